@@ -129,7 +129,7 @@ impl Documents {
 
 /// Maximum number of entries that are looked at in the folders of the open documents.
 const MOST_FILES: usize = 10_000;
-/// Maximum depth of folders below that of an open document.
+/// Number of levels of folders that are searched below the folder of an open document.
 const DEEPEST: usize = 6;
 
 /// Adds the plan files of a folder.

@@ -5,6 +5,7 @@
 //! nothing of the protocol. `requests` and `convert` translate between both, with positions in UTF-16.
 
 mod answers;
+mod brackets;
 mod check;
 mod commands;
 pub mod completion;
@@ -14,6 +15,7 @@ pub mod diagnostics;
 mod documents;
 pub mod fixes;
 pub mod formatting;
+mod guard;
 pub mod hints;
 pub mod hover;
 pub mod lenses;
@@ -21,10 +23,12 @@ pub mod lines;
 pub mod mentions;
 pub mod outline;
 mod params;
+mod publishing;
 mod refactoring;
 pub mod rename;
 mod requests;
 mod server;
+mod synchronization;
 pub mod tokens;
 mod uri;
 pub mod view;

@@ -1,76 +1,39 @@
 //! The loop of the server: takes messages in their order, and checks documents when none is waiting.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
 
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestId, Response};
-use serde::Deserialize;
-use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use crate::ServeError;
-use crate::documents::{Change, Document, Documents};
+use crate::documents::Documents;
+use crate::guard::guarded;
 use crate::params::Refusal;
 use crate::requests;
-use crate::{check, uri};
 
 /// Pause of the client after which a document is checked: shorter than that between two keystrokes.
 const PAUSE: Duration = Duration::from_millis(5);
 
 /// The server of one client, after `initialize`.
-struct Server<'c> {
-    connection: &'c Connection,
-    documents: Documents,
+pub(crate) struct Server<'c> {
+    pub(crate) connection: &'c Connection,
+    pub(crate) documents: Documents,
     /// Address of the book, for links to the explanations of messages.
-    book: Option<String>,
+    pub(crate) book: Option<String>,
     /// Messages that were received and wait for their turn.
-    waiting: VecDeque<Message>,
+    pub(crate) waiting: VecDeque<Message>,
     /// Documents to check.
-    stale: BTreeSet<String>,
+    pub(crate) stale: BTreeSet<String>,
     /// Documents whose diagnostics are published once no document is stale: what one check finds in a file that another
     /// check still has to read would be of two texts.
-    concerned: BTreeSet<String>,
+    pub(crate) concerned: BTreeSet<String>,
     /// Diagnostics by the document whose check found them, and by the document that contains them.
-    found: BTreeMap<String, BTreeMap<String, Vec<Value>>>,
+    pub(crate) found: BTreeMap<String, BTreeMap<String, Vec<Value>>>,
     /// Open documents that use other files, or try to.
-    users: BTreeSet<String>,
+    pub(crate) users: BTreeSet<String>,
     /// `true` after `shutdown`: only `exit` may follow.
-    is_shut_down: bool,
-}
-
-/// Settings of the client, in `initialize` and in `workspace/didChangeConfiguration`.
-#[derive(Debug, Default, Deserialize)]
-struct Options {
-    target: Option<String>,
-    book: Option<String>,
-}
-
-#[derive(Deserialize)]
-struct Opened {
-    #[serde(rename = "textDocument")]
-    document: Text,
-}
-
-#[derive(Deserialize)]
-struct Text {
-    uri: String,
-    version: i64,
-    text: String,
-}
-
-#[derive(Deserialize)]
-struct Changed {
-    #[serde(rename = "textDocument")]
-    document: Versioned,
-    #[serde(rename = "contentChanges")]
-    changes: Vec<Change>,
-}
-
-#[derive(Deserialize)]
-struct Versioned {
-    uri: String,
-    version: i64,
+    pub(crate) is_shut_down: bool,
 }
 
 /// Serves one client, until it ends the server.
@@ -116,21 +79,8 @@ fn initialize(connection: &Connection) -> Result<Value, ServeError> {
     }
 }
 
-fn send(connection: &Connection, message: impl Into<Message>) -> Result<(), ServeError> {
+pub(crate) fn send(connection: &Connection, message: impl Into<Message>) -> Result<(), ServeError> {
     connection.sender.send(message.into()).map_err(|_| ServeError::Vanished)
-}
-
-/// Runs a piece of work; a panic in it is an error of this work alone.
-fn guarded<T>(work: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|cause| {
-        let text = cause.downcast_ref::<&str>().copied().map(str::to_owned);
-        let text = text.or_else(|| cause.downcast_ref::<String>().cloned()).unwrap_or_default();
-        Err(Refusal { code: ErrorCode::InternalError, message: format!("a bug in mdlec: {text}") })
-    })
-}
-
-fn read<T: DeserializeOwned>(params: Value) -> Result<T, Refusal> {
-    serde_json::from_value(params).map_err(|error| Refusal::params(&error.to_string()))
 }
 
 impl Server<'_> {
@@ -221,129 +171,9 @@ impl Server<'_> {
         }
     }
 
-    fn notified(&mut self, method: &str, params: Value) -> Result<(), Refusal> {
-        match method {
-            "textDocument/didOpen" => {
-                let Text { uri, version, text } = read::<Opened>(params)?.document;
-                let document = Document { path: uri::path(&uri), text, version };
-                self.documents.open.insert(uri.clone(), document);
-                self.mark(&uri);
-            }
-            "textDocument/didChange" => self.change(read(params)?)?,
-            "textDocument/didClose" => {
-                let uri = requests::uri_of(&params)?;
-                self.documents.open.remove(&uri);
-                self.mark(&uri);
-            }
-            "textDocument/didSave" | "workspace/didChangeWatchedFiles" => self.mark_all(),
-            "workspace/didChangeConfiguration" => {
-                let settings = params.get("settings").cloned().unwrap_or_default();
-                self.configure(settings.get("mdle").unwrap_or(&settings));
-            }
-            // The others, of which an editor has many, change no document.
-            _ => {}
-        }
-        Ok(())
-    }
-
-    fn change(&mut self, Changed { document: Versioned { uri, version }, changes }: Changed) -> Result<(), Refusal> {
-        let document = self.documents.open.get_mut(&uri).ok_or_else(|| Refusal::unknown(&uri))?;
-        if version < document.version {
-            let known = document.version;
-            return Err(Refusal::params(&format!("version {version} of `{uri}` came after version {known}: ignored")));
-        }
-        document.version = version;
-        document.change(changes);
-        self.mark(&uri);
-        Ok(())
-    }
-
-    /// Takes the client's settings.
-    fn configure(&mut self, settings: &Value) {
-        let Options { target, book } = Options::deserialize(settings).unwrap_or_default();
-        self.documents.robot = target.filter(|target| !target.is_empty());
-        self.book = book.filter(|book| !book.is_empty());
-        self.mark_all();
-    }
-
-    /// Marks a document, and those that may use it, to be checked.
-    fn mark(&mut self, uri: &str) {
-        self.stale.insert(uri.to_owned());
-        self.stale.extend(self.users.iter().cloned());
-    }
-
-    fn mark_all(&mut self) {
-        self.stale.extend(self.documents.open.keys().cloned());
-    }
-
-    /// Checks one of the marked documents, and after the last of them publishes what changed.
-    fn check_one(&mut self) -> Result<(), ServeError> {
-        let Some(uri) = self.stale.pop_first() else { return Ok(()) };
-        let documents = &self.documents;
-        let checked = match documents.open.get(&uri) {
-            None => Ok(check::Checked::default()),
-            Some(document) => guarded(|| Ok(check::check(documents, &uri, document, self.book.as_deref()))),
-        };
-        match checked {
-            Ok(checked) => self.keep(uri, checked),
-            Err(Refusal { message, .. }) => self.log(&format!("check of {uri}: {message}"))?,
-        }
-        if !self.stale.is_empty() {
-            return Ok(());
-        }
-        let concerned = std::mem::take(&mut self.concerned);
-        concerned.iter().try_for_each(|uri| self.publish(uri))
-    }
-
-    /// Keeps the diagnostics of a check until they are published.
-    fn keep(&mut self, uri: String, checked: check::Checked) {
-        if checked.uses_files {
-            self.users.insert(uri.clone())
-        } else {
-            self.users.remove(&uri)
-        };
-        self.concerned.extend(checked.diagnostics.keys().cloned());
-        self.concerned.insert(uri.clone());
-        let before = match self.documents.open.contains_key(&uri) {
-            true => self.found.insert(uri, checked.diagnostics),
-            false => self.found.remove(&uri),
-        };
-        self.concerned.extend(before.into_iter().flat_map(BTreeMap::into_keys));
-    }
-
-    /// Publishes the diagnostics in a document, each once, by whichever check it was found.
-    fn publish(&self, uri: &str) -> Result<(), ServeError> {
-        let mut diagnostics: Vec<&Value> = Vec::new();
-        for diagnostic in self.found.values().filter_map(|found| found.get(uri)).flatten() {
-            if !diagnostics.contains(&diagnostic) {
-                diagnostics.push(diagnostic);
-            }
-        }
-        let mut params = json!({ "uri": uri, "diagnostics": diagnostics });
-        if let Some(document) = self.documents.open.get(uri) {
-            params["version"] = json!(document.version);
-        }
-        send(self.connection, Notification::new("textDocument/publishDiagnostics".into(), params))
-    }
-
     /// Reports an error that no answer can carry, in the client's log.
-    fn log(&self, message: &str) -> Result<(), ServeError> {
+    pub(crate) fn log(&self, message: &str) -> Result<(), ServeError> {
         let params = json!({ "type": 1, "message": message });
         send(self.connection, Notification::new("window/logMessage".into(), params))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
-
-    use super::*;
-
-    #[test]
-    fn a_panic_is_an_error_of_its_request_alone() {
-        let refused = guarded(|| -> Result<(), Refusal> { panic!("at {}", 7) }).unwrap_err();
-        assert!(matches!(refused.code, ErrorCode::InternalError));
-        assert_eq!(refused.message, "a bug in mdlec: at 7");
-        assert_eq!(guarded(|| Ok(1)).ok(), Some(1));
     }
 }

@@ -1,0 +1,111 @@
+//! The brackets that are open in an unfinished text, and what was read in each.
+
+use crate::words::{Kind, Word};
+
+/// Kind of a bracket that is open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Bracket {
+    Plan,
+    Parameters,
+    Body,
+    Atom,
+    Condition,
+    /// Arguments of the call that the enclosing bracket has open.
+    Arguments,
+}
+
+/// A call that is being written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OpenCall<'t> {
+    /// Name of the quark or plan.
+    pub name: &'t str,
+    /// Number of arguments before the cursor.
+    pub args: usize,
+    /// `true` in a condition, `false` for a law or a plan.
+    pub is_condition: bool,
+}
+
+/// A bracket with what was read in it.
+#[derive(Debug, Clone)]
+pub(crate) struct Open<'t> {
+    pub(crate) bracket: Bracket,
+    /// Number of words and brackets read directly in it.
+    pub(crate) items: usize,
+    pub(crate) last: &'t str,
+    pub(crate) call: Option<OpenCall<'t>>,
+}
+
+impl Open<'_> {
+    pub(crate) fn new(bracket: Bracket) -> Self {
+        Self { bracket, items: 0, last: "", call: None }
+    }
+}
+
+/// Reads one word in the innermost bracket.
+pub(crate) fn read<'t>(stack: &mut Vec<Open<'t>>, word: &Word<'t>, touches: bool) {
+    match word.text {
+        "{" | "(" => {
+            let bracket = opened(stack.last(), word.text, touches);
+            if let Some(outer) = stack.last_mut() {
+                outer.items += 1;
+            }
+            stack.push(Open::new(bracket));
+        }
+        "}" | ")" => {
+            stack.pop();
+            if let Some(outer) = stack.last_mut() {
+                outer.last = ")";
+            }
+        }
+        text => {
+            let Some(open) = stack.last_mut() else { return };
+            if text == "Atom" && open.items == 0 {
+                open.bracket = Bracket::Atom;
+            }
+            read_in(open, word);
+            open.items += usize::from(text != ",");
+            open.last = text;
+        }
+    }
+}
+
+/// Kind of the bracket `sign` in this one.
+fn opened(outer: Option<&Open<'_>>, sign: &str, touches: bool) -> Bracket {
+    let Some(outer) = outer else { return if sign == "{" { Bracket::Plan } else { Bracket::Body } };
+    match (sign, outer.bracket) {
+        ("{", _) if outer.last.starts_with(|letter: char| letter.is_ascii_digit()) || outer.last == "inf" => {
+            Bracket::Body
+        }
+        ("{", _) => Bracket::Plan,
+        (_, Bracket::Plan) if outer.items == 1 && touches => Bracket::Parameters,
+        (_, Bracket::Plan) if outer.items == 1 || (outer.items == 2 && outer.last == ")") => Bracket::Condition,
+        (_, Bracket::Atom) if outer.items == 1 => Bracket::Condition,
+        (_, _) if touches && !is_keyword(outer.last) => Bracket::Arguments,
+        (_, Bracket::Condition) if outer.call.is_none() => Bracket::Condition,
+        (_, Bracket::Condition | Bracket::Arguments) => Bracket::Arguments,
+        (_, Bracket::Plan | Bracket::Body | Bracket::Parameters) => Bracket::Body,
+        // The law, in parentheses of its own.
+        (_, Bracket::Atom) => Bracket::Arguments,
+    }
+}
+
+fn is_keyword(word: &str) -> bool {
+    ["OR", "AND", "NOT", "RISING", "or", "and", "not", "rising", "after", "Atom", "ExecPlan"].contains(&word)
+}
+
+/// Keeps track of the call that is written in a bracket.
+fn read_in<'t>(open: &mut Open<'t>, word: &Word<'t>) {
+    let is_condition = open.bracket == Bracket::Condition;
+    let begins = |name| Some(OpenCall { name, args: 0, is_condition });
+    match (word.kind, &mut open.call) {
+        (Kind::Sign, _) if matches!(word.text, "<" | ">" | "=" | ",") => open.call = None,
+        (Kind::Name, _) if is_keyword(word.text) => open.call = None,
+        (Kind::Name, _) if open.last == "after" => open.call = None,
+        (Kind::Name, None) if open.bracket != Bracket::Plan || open.items > 0 => open.call = begins(word.text),
+        (Kind::Name | Kind::Number, Some(call)) if open.bracket != Bracket::Plan && open.bracket != Bracket::Body => {
+            call.args += 1;
+        }
+        (Kind::Name, Some(_)) => open.call = begins(word.text),
+        (Kind::Name | Kind::Number | Kind::Opaque | Kind::Sign, _) => {}
+    }
+}

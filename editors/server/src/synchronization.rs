@@ -1,0 +1,106 @@
+//! Notifications of the client: what it opens, changes and closes, and its settings.
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use crate::documents::{Change, Document};
+use crate::params::Refusal;
+use crate::server::Server;
+use crate::{requests, uri};
+
+/// Settings of the client, in `initialize` and in `workspace/didChangeConfiguration`.
+#[derive(Debug, Default, Deserialize)]
+struct Options {
+    target: Option<String>,
+    book: Option<String>,
+}
+
+#[derive(Deserialize)]
+struct Opened {
+    #[serde(rename = "textDocument")]
+    document: Text,
+}
+
+#[derive(Deserialize)]
+struct Text {
+    uri: String,
+    version: i64,
+    text: String,
+}
+
+#[derive(Deserialize)]
+struct Changed {
+    #[serde(rename = "textDocument")]
+    document: Versioned,
+    #[serde(rename = "contentChanges")]
+    changes: Vec<Change>,
+}
+
+#[derive(Deserialize)]
+struct Versioned {
+    uri: String,
+    version: i64,
+}
+
+fn read<T: DeserializeOwned>(params: Value) -> Result<T, Refusal> {
+    serde_json::from_value(params).map_err(|error| Refusal::params(&error.to_string()))
+}
+
+impl Server<'_> {
+    /// Takes a notification.
+    pub(crate) fn notified(&mut self, method: &str, params: Value) -> Result<(), Refusal> {
+        match method {
+            "textDocument/didOpen" => {
+                let Text { uri, version, text } = read::<Opened>(params)?.document;
+                let document = Document { path: uri::path(&uri), text, version };
+                self.documents.open.insert(uri.clone(), document);
+                self.mark(&uri);
+            }
+            "textDocument/didChange" => self.change(read(params)?)?,
+            "textDocument/didClose" => {
+                let uri = requests::uri_of(&params)?;
+                self.documents.open.remove(&uri);
+                self.mark(&uri);
+            }
+            "textDocument/didSave" | "workspace/didChangeWatchedFiles" => self.mark_all(),
+            "workspace/didChangeConfiguration" => {
+                let settings = params.get("settings").cloned().unwrap_or_default();
+                self.configure(settings.get("mdle").unwrap_or(&settings));
+            }
+            // The others, of which an editor has many, change no document.
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn change(&mut self, Changed { document: Versioned { uri, version }, changes }: Changed) -> Result<(), Refusal> {
+        let document = self.documents.open.get_mut(&uri).ok_or_else(|| Refusal::unknown(&uri))?;
+        if version < document.version {
+            let known = document.version;
+            return Err(Refusal::params(&format!("version {version} of `{uri}` came after version {known}: ignored")));
+        }
+        document.version = version;
+        document.change(changes);
+        self.mark(&uri);
+        Ok(())
+    }
+
+    /// Takes the client's settings.
+    pub(crate) fn configure(&mut self, settings: &Value) {
+        let Options { target, book } = Options::deserialize(settings).unwrap_or_default();
+        self.documents.robot = target.filter(|target| !target.is_empty());
+        self.book = book.filter(|book| !book.is_empty());
+        self.mark_all();
+    }
+
+    /// Marks a document, and those that may use it, to be checked.
+    fn mark(&mut self, uri: &str) {
+        self.stale.insert(uri.to_owned());
+        self.stale.extend(self.users.iter().cloned());
+    }
+
+    fn mark_all(&mut self) {
+        self.stale.extend(self.documents.open.keys().cloned());
+    }
+}
