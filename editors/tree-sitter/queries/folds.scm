@@ -1,0 +1,7 @@
+[
+  (plan)
+  (loop)
+  (string)
+  (formal)
+  (block_comment)
+] @fold
