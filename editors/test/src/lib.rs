@@ -1,0 +1,11 @@
+//! The tree-sitter grammar of MDLe, generated and compiled from `editors/tree-sitter`.
+
+use tree_sitter_language::LanguageFn;
+
+unsafe extern "C" {
+    fn tree_sitter_mdle() -> *const ();
+}
+
+/// The grammar.
+// SAFETY: the generated parser defines this function, and its result is valid for ever.
+pub const LANGUAGE: LanguageFn = unsafe { LanguageFn::from_raw(tree_sitter_mdle) };
