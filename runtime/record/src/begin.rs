@@ -1,0 +1,113 @@
+//! The begin of a record: the run, its plan, and what never changes in the robot's outputs.
+
+use mdle_runtime::capability::Steering;
+use mdle_runtime::{Meters, MetersPerSecond, Nanos, PathStore, Radians, Sensed, Setpoint, Shape, StoredPath};
+
+use crate::bytes::{Bytes, put_f64, put_text, put_u32, put_u64};
+
+/// The data of a run that never change.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Begin {
+    /// Version of the program that drove the robot.
+    pub version: String,
+    /// Name of the target.
+    pub target: String,
+    /// Name of the plan.
+    pub plan: String,
+    /// The words by which the program was called, as a shell takes them.
+    pub command: String,
+    /// Period of a turn.
+    pub period: Nanos,
+    /// Files of the plan, its own first: the name and the text of each. Empty for an executable, which does not have
+    /// the text of its plan.
+    pub files: Vec<(String, String)>,
+    /// Causes of inputs besides the plan and the outputs, such as safety rules: empty if there is nothing, and
+    /// then the run can be replayed.
+    pub beside: String,
+}
+
+/// The part of a robot's outputs that never changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Constants {
+    /// Constants of the body.
+    pub shape: Shape,
+    /// The paths that the plan can replay.
+    pub paths: PathStore,
+}
+
+impl Begin {
+    /// Writes the begin of a run whose first output is `y`, and in which the plan replays these paths.
+    pub(crate) fn put(&self, y: &Sensed, paths: &[&str], to: &mut Vec<u8>) {
+        for text in [&self.version, &self.target, &self.plan, &self.command, &self.beside] {
+            put_text(to, text);
+        }
+        put_u64(to, self.period.0);
+        put_u32(to, count(&self.files));
+        for (name, text) in &self.files {
+            put_text(to, name);
+            put_text(to, text);
+        }
+        put_shape(&y.shape, to);
+        put_u32(to, count(paths));
+        for name in paths {
+            put_text(to, name);
+            let setpoints = y.paths.path(name).unwrap_or_default();
+            put_u32(to, count(setpoints));
+            for Setpoint { at, heading, speed } in setpoints {
+                put_u64(to, at.0);
+                put_f64(to, heading.0);
+                put_f64(to, speed.0);
+            }
+        }
+    }
+
+    /// Reads the begin of a run. Its paths stay until the program ends, as those of a run do.
+    pub(crate) fn take(from: &mut Bytes<'_>) -> Option<(Self, Constants)> {
+        let [version, target, plan, command, beside] =
+            [from.text()?, from.text()?, from.text()?, from.text()?, from.text()?];
+        let period = from.nanos()?;
+        let files = from.list(|from| Some((from.text()?, from.text()?)))?;
+        let shape = take_shape(from)?;
+        let setpoint = |from: &mut Bytes<'_>| {
+            Some(Setpoint { at: from.nanos()?, heading: Radians(from.f64()?), speed: MetersPerSecond(from.f64()?) })
+        };
+        let mut paths = from.list(|from| Some((from.text()?, from.list(setpoint)?)))?;
+        paths.sort_by(|(one, _), (other, _)| one.cmp(other));
+        let stored =
+            paths.into_iter().map(|(name, setpoints)| StoredPath { name: name.leak(), setpoints: setpoints.leak() });
+        let stored: Vec<_> = stored.collect();
+        let paths = if stored.is_empty() { PathStore::EMPTY } else { PathStore::new(stored.leak()) };
+        Some((Self { version, target, plan, command, period, files, beside }, Constants { shape, paths }))
+    }
+}
+
+fn count<T>(items: &[T]) -> u32 {
+    u32::try_from(items.len()).unwrap_or(u32::MAX)
+}
+
+fn put_shape(shape: &Shape, to: &mut Vec<u8>) {
+    let Shape { body_radius, half_length, half_width, wheel_base, sonars_apart, ring_radius, confirmation, steering } =
+        *shape;
+    for Meters(length) in [body_radius, half_length, half_width, wheel_base, ring_radius] {
+        put_f64(to, length);
+    }
+    to.push(u8::from(sonars_apart.is_some()));
+    put_f64(to, sonars_apart.map_or(0.0, |apart| apart.0));
+    put_u64(to, confirmation as u64);
+    for gain in [steering.rotate, steering.align, steering.avoid] {
+        put_f64(to, gain);
+    }
+}
+
+fn take_shape(from: &mut Bytes<'_>) -> Option<Shape> {
+    let mut lengths = [Meters(0.0); 5];
+    for length in &mut lengths {
+        *length = Meters(from.f64()?);
+    }
+    let [body_radius, half_length, half_width, wheel_base, ring_radius] = lengths;
+    let (is_known, apart) = (from.u8()? != 0, Meters(from.f64()?));
+    let confirmation = usize::try_from(from.u64()?).ok()?;
+    let steering = Steering { rotate: from.f64()?, align: from.f64()?, avoid: from.f64()? };
+    let sonars_apart = is_known.then_some(apart);
+    Some(Shape { body_radius, half_length, half_width, wheel_base, sonars_apart, ring_radius, confirmation, steering })
+}

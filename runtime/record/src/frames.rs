@@ -1,0 +1,153 @@
+//! Frames: what the thread that drives a robot hands over to the thread that writes the record. A frame is a tag, the
+//! number of its bytes, and these.
+
+use mdle_runtime::{Nanos, Sensed, Twist};
+
+use crate::bytes::{Bytes, put_u32, put_u64};
+use crate::turn::{self, Made};
+use crate::{Applied, Begin, Chain, RecordedTurn, Step};
+
+/// Bytes before the content of a frame.
+const HEAD: usize = 5;
+
+/// Kind of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Tag {
+    Begin,
+    Turn,
+    Transition,
+    Event,
+    End,
+}
+
+impl Tag {
+    const ALL: [Self; 5] = [Self::Begin, Self::Turn, Self::Transition, Self::Event, Self::End];
+
+    fn of(byte: u8) -> Option<Self> {
+        Self::ALL.get(usize::from(byte)).copied()
+    }
+}
+
+/// Encodes the turns of a run as frames.
+#[derive(Debug, Default)]
+pub struct Frames {
+    before: Option<Sensed>,
+    chain: Chain,
+    content: Vec<u8>,
+}
+
+/// A turn of a run that goes on, besides its output.
+#[derive(Debug, Clone, Copy)]
+pub struct TurnMade {
+    /// Number of the turn, from 0.
+    pub number: u64,
+    /// Time of the run.
+    pub t: Nanos,
+    /// The input that is sent after it.
+    pub sent: Twist,
+    /// Source of the input.
+    pub applied: Applied,
+    /// Number of the plan that ran, from 1.
+    pub plan: u64,
+    /// The state in which the turn ended.
+    pub state: u64,
+}
+
+impl Frames {
+    /// Writes the begin of a record, whose first output is `y`, and in which the plan replays these paths.
+    pub fn begin(&mut self, begin: &Begin, y: &Sensed, paths: &[&str], to: &mut Vec<u8>) {
+        self.content.clear();
+        begin.put(y, paths, &mut self.content);
+        self.put(Tag::Begin, to);
+    }
+
+    /// Writes a turn with the output `y`.
+    pub fn turn(&mut self, made: TurnMade, y: &Sensed, steps: impl ExactSizeIterator<Item = Step>, to: &mut Vec<u8>) {
+        let TurnMade { number, t, sent, applied, plan, state } = made;
+        self.content.clear();
+        let made = Made { sent, applied, plan, state, steps };
+        turn::put((number, t), (y, self.before.as_ref()), made, &mut self.content);
+        self.chain = self.chain.with(&self.content);
+        self.content.extend_from_slice(&self.chain.bytes());
+        self.before = Some(*y);
+        self.put(Tag::Turn, to);
+    }
+
+    /// Writes a transition of the turn at time `t` as a JSON object.
+    pub fn transition(&mut self, t: Nanos, json: &str, to: &mut Vec<u8>) {
+        self.text(Tag::Transition, t, json, to);
+    }
+
+    /// Writes an event at time `t` as a JSON object.
+    pub fn event(&mut self, t: Nanos, json: &str, to: &mut Vec<u8>) {
+        self.text(Tag::Event, t, json, to);
+    }
+
+    /// Writes the end of the record.
+    pub fn end(&mut self, to: &mut Vec<u8>) {
+        self.content.clear();
+        self.put(Tag::End, to);
+    }
+
+    fn text(&mut self, tag: Tag, t: Nanos, json: &str, to: &mut Vec<u8>) {
+        self.content.clear();
+        put_u64(&mut self.content, t.0);
+        self.content.extend_from_slice(json.as_bytes());
+        self.put(tag, to);
+    }
+
+    fn put(&self, tag: Tag, to: &mut Vec<u8>) {
+        to.push(tag as u8);
+        put_u32(to, u32::try_from(self.content.len()).unwrap_or(u32::MAX));
+        to.extend_from_slice(&self.content);
+    }
+}
+
+/// Returns the first frame of these bytes, and the number of its bytes; `None` until it is complete, or if it is no
+/// frame.
+pub(crate) fn first(bytes: &[u8]) -> Option<(Tag, &[u8], usize)> {
+    let mut from = Bytes(bytes);
+    let tag = Tag::of(from.u8()?)?;
+    let length = from.u32()? as usize;
+    Some((tag, from.take(length)?, HEAD + length))
+}
+
+/// Decodes the turns of a record.
+#[derive(Debug)]
+pub(crate) struct Turns {
+    pub(crate) begin: Begin,
+    constants: crate::Constants,
+    before: Option<Sensed>,
+    chain: Chain,
+}
+
+/// Reason why a turn cannot be decoded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Undecoded {
+    /// The sum over the turns differs: bytes were changed.
+    Changed,
+    /// The bytes are none of a turn.
+    Unreadable,
+}
+
+impl Turns {
+    /// Takes the content of a frame of the begin.
+    pub(crate) fn of(content: &[u8]) -> Option<Self> {
+        let (begin, constants) = Begin::take(&mut Bytes(content))?;
+        Some(Self { begin, constants, before: None, chain: Chain::default() })
+    }
+
+    /// Takes the content of the next frame of a turn.
+    pub(crate) fn next(&mut self, content: &[u8]) -> Result<RecordedTurn, Undecoded> {
+        let length = content.len().checked_sub(Chain::LENGTH).ok_or(Undecoded::Unreadable)?;
+        let (content, sum) = content.split_at_checked(length).ok_or(Undecoded::Unreadable)?;
+        self.chain = self.chain.with(content);
+        if self.chain.bytes() != sum {
+            return Err(Undecoded::Changed);
+        }
+        let turn = turn::take(&mut Bytes(content), self.before.as_ref(), &self.constants);
+        let turn = turn.ok_or(Undecoded::Unreadable)?;
+        self.before = Some(turn.y);
+        Ok(turn)
+    }
+}

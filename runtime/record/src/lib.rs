@@ -1,0 +1,20 @@
+//! Records of runs: an MCAP file with everything that a replay to the bit needs, and channels that viewers open unaided
+//! (docs/src/reference/interfaces.md, 6.6).
+//!
+//! The thread that drives a robot encodes each turn as a [frame](frames); the thread that writes the file turns frames
+//! into an MCAP file, a [`RecordFile`]. [`Records`] reads the turns of such a file.
+#![forbid(unsafe_code)]
+
+mod begin;
+mod bytes;
+mod exact;
+pub mod frames;
+mod reader;
+mod turn;
+mod viewers;
+mod writer;
+
+pub use begin::{Begin, Constants};
+pub use reader::{ReadError, Records};
+pub use turn::{Applied, Chain, RecordedTurn, Step};
+pub use writer::RecordFile;

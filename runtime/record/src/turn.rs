@@ -1,0 +1,145 @@
+//! A turn of a record: the output, the input that was sent, the transitions and the state.
+
+use mdle_runtime::{Cause, Nanos, Sensed, Transition, Twist};
+
+use crate::Constants;
+use crate::bytes::{Bytes, put_u32, put_u64};
+use crate::exact::{self, put_twist, take_twist};
+
+/// A turn of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordedTurn {
+    /// Number of the turn, from 0.
+    pub number: u64,
+    /// Time of the run.
+    pub t: Nanos,
+    /// The robot's output.
+    pub y: Sensed,
+    /// The input that was sent after it.
+    pub sent: Twist,
+    /// Source of the input.
+    pub applied: Applied,
+    /// Number of the plan that ran, from 1.
+    pub plan: u64,
+    /// The state in which the turn ended.
+    pub state: u64,
+    /// The transitions, in order.
+    pub steps: Vec<Step>,
+}
+
+/// What a turn led to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Applied {
+    /// The law of the current atom was applied.
+    Law,
+    /// The turn had too many transitions, so that the input is the null input.
+    Cut,
+    /// The plan is over.
+    Over,
+}
+
+/// A transition of a turn, with the numbers of the operands that had fired.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Step {
+    /// The state left.
+    pub from: u64,
+    /// The scope that ended, by its bracket.
+    pub scope: u32,
+    /// Cause of the end.
+    pub cause: Cause,
+    /// The state entered.
+    pub to: u64,
+    /// Numbers of the operands that had fired.
+    pub operands: Vec<u32>,
+}
+
+impl Step {
+    /// The step of a transition.
+    #[must_use]
+    pub fn new(transition: &Transition, operands: impl IntoIterator<Item = u32>) -> Self {
+        let Transition { from, scope, cause, to, .. } = *transition;
+        Self { from, scope, cause, to, operands: operands.into_iter().collect() }
+    }
+}
+
+/// The part of a turn besides its output.
+#[derive(Debug, Clone)]
+pub(crate) struct Made<S> {
+    pub(crate) sent: Twist,
+    pub(crate) applied: Applied,
+    pub(crate) plan: u64,
+    pub(crate) state: u64,
+    pub(crate) steps: S,
+}
+
+/// Writes a turn, whose output came after `before`.
+pub(crate) fn put(
+    (number, t): (u64, Nanos),
+    (y, before): (&Sensed, Option<&Sensed>),
+    made: Made<impl ExactSizeIterator<Item = Step>>,
+    to: &mut Vec<u8>,
+) {
+    put_u64(to, number);
+    put_u64(to, t.0);
+    exact::put(y, before, to);
+    put_twist(made.sent, to);
+    to.push(match made.applied {
+        Applied::Law => 0,
+        Applied::Cut => 1,
+        Applied::Over => 2,
+    });
+    put_u64(to, made.plan);
+    put_u64(to, made.state);
+    put_u32(to, u32::try_from(made.steps.len()).unwrap_or(u32::MAX));
+    for Step { from, scope, cause, to: entered, operands } in made.steps {
+        put_u64(to, from);
+        put_u32(to, scope);
+        to.push(u8::from(matches!(cause, Cause::Completed(_))));
+        put_u32(to, u32::from(cause.level()));
+        put_u64(to, entered);
+        put_u32(to, u32::try_from(operands.len()).unwrap_or(u32::MAX));
+        operands.into_iter().for_each(|operand| put_u32(to, operand));
+    }
+}
+
+/// Reads a turn, whose output came after `before`.
+pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Constants) -> Option<RecordedTurn> {
+    let (number, t) = (from.u64()?, from.nanos()?);
+    let y = exact::take(from, before, constants)?;
+    let sent = take_twist(from)?;
+    let applied = match from.u8()? {
+        0 => Applied::Law,
+        1 => Applied::Cut,
+        2 => Applied::Over,
+        _ => return None,
+    };
+    let (plan, state) = (from.u64()?, from.u64()?);
+    let steps = from.list(|from| {
+        let (left, scope, is_completed) = (from.u64()?, from.u32()?, from.u8()? != 0);
+        let level = u16::try_from(from.u32()?).ok()?;
+        let cause = if is_completed { Cause::Completed(level) } else { Cause::Fired(level) };
+        Some(Step { from: left, scope, cause, to: from.u64()?, operands: from.list(Bytes::u32)? })
+    })?;
+    Some(RecordedTurn { number, t, y, sent, applied, plan, state, steps })
+}
+
+/// The sum over all turns so far, by which a reader finds the first turn that was changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Chain(u32);
+
+impl Chain {
+    /// Bytes of a sum.
+    pub(crate) const LENGTH: usize = 4;
+
+    /// Returns the sum with the bytes of the next turn.
+    pub(crate) fn with(self, bytes: &[u8]) -> Self {
+        let mut sum = crc32fast::Hasher::new();
+        sum.update(&self.0.to_le_bytes());
+        sum.update(bytes);
+        Self(sum.finalize())
+    }
+
+    pub(crate) fn bytes(self) -> [u8; Self::LENGTH] {
+        self.0.to_le_bytes()
+    }
+}

@@ -1,0 +1,96 @@
+//! Channels for viewers: JSON messages under the schemas that Foxglove, Lichtblick and PlotJuggler know.
+
+use std::fmt::{self, Write as _};
+
+use mdle_runtime::{Nanos, SONARS};
+
+use crate::RecordedTurn;
+
+/// A channel for viewers: its topic, the name of its schema, and the schema.
+pub(crate) struct Channel {
+    pub(crate) topic: &'static str,
+    pub(crate) schema: &'static str,
+    pub(crate) text: &'static str,
+    /// Writes the message of a turn.
+    pub(crate) message: fn(&RecordedTurn, &mut String) -> fmt::Result,
+}
+
+/// The channels that have a message for each turn.
+pub(crate) const CHANNELS: [Channel; 4] = [
+    Channel {
+        topic: "/robot/pose",
+        schema: "foxglove.PoseInFrame",
+        text: include_str!("schemas/pose.json"),
+        message: pose,
+    },
+    Channel {
+        topic: "/robot/ranges",
+        schema: "foxglove.LaserScan",
+        text: include_str!("schemas/ranges.json"),
+        message: ranges,
+    },
+    Channel {
+        topic: "/robot/command",
+        schema: "mdle.Command",
+        text: include_str!("schemas/command.json"),
+        message: command,
+    },
+    Channel { topic: "/plan/state", schema: "mdle.State", text: include_str!("schemas/state.json"), message: state },
+];
+
+/// A number as JSON has it: `null` unless it is finite.
+struct Number(f64);
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_finite() { write!(f, "{}", self.0) } else { f.write_str("null") }
+    }
+}
+
+fn time(t: Nanos) -> String {
+    format!("{{\"sec\":{},\"nsec\":{}}}", t.0 / 1_000_000_000, t.0 % 1_000_000_000)
+}
+
+/// The pose by odometry, in metres; the heading as a quaternion.
+fn pose(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
+    let pose = &turn.y.odometry;
+    let (sin, cos) = libm::sincos(pose.theta.0 / 2.0);
+    write!(
+        to,
+        "{{\"timestamp\":{},\"frame_id\":\"odometry\",\"pose\":{{\"position\":{{\"x\":{},\"y\":{},\"z\":0}},\
+         \"orientation\":{{\"x\":0,\"y\":0,\"z\":{},\"w\":{}}}}}}}",
+        time(turn.t),
+        Number(pose.x.0),
+        Number(pose.y.0),
+        Number(sin),
+        Number(cos)
+    )
+}
+
+/// The last range of each sonar from the middle of the robot, in metres and counter-clockwise from the front; 0 if no
+/// echo came back.
+fn ranges(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
+    let last = core::f64::consts::TAU * (SONARS - 1) as f64 / SONARS as f64;
+    write!(
+        to,
+        "{{\"timestamp\":{},\"frame_id\":\"robot\",\"start_angle\":0,\"end_angle\":{last},\"ranges\":[",
+        time(turn.t)
+    )?;
+    for (sonar, pings) in turn.y.pings.iter().enumerate() {
+        let range = pings.newest_first().next().and_then(|ping| ping.range);
+        let range = range.map_or(0.0, |range| range.0 + turn.y.shape.ring_radius.0);
+        // Millimetres suffice for a picture.
+        write!(to, "{}{}", if sonar == 0 { "" } else { "," }, Number(libm::round(range * 1e3) / 1e3))?;
+    }
+    to.write_str("],\"intensities\":[]}")
+}
+
+/// The input that was sent.
+fn command(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
+    write!(to, "{{\"v\":{},\"omega\":{}}}", Number(turn.sent.v.0), Number(turn.sent.omega.0))
+}
+
+/// The state of the plan, and the number of its plan.
+fn state(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
+    write!(to, "{{\"state\":{},\"plan\":{}}}", turn.state, turn.plan)
+}
