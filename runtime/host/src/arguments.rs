@@ -79,7 +79,11 @@ pub(crate) fn command(target: &TargetOptions, program: Program<'_>, call: &Call)
         )
         .arg(
             option("log", "FILE")
-                .help("File for a log of the run, one JSON object per turn, in the format of `mdlec trace`")
+                .help("File for a log of the run, one JSON object per turn; `FILE.mcap` is a record to replay")
+                .long_help(
+                    "File for a log of the run, one JSON object per turn, in the format of `mdlec trace`; a file whose \
+                     name ends in `.mcap` is a record, which `mdle replay` re-executes",
+                )
                 .value_parser(value_parser!(PathBuf)),
         );
     let command = match call.several_words() {

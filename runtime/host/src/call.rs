@@ -13,13 +13,26 @@ pub struct Call {
     pub options: Vec<OsString>,
     /// Files that the program has read for the plan: no option may name one of them to be written.
     pub read: Vec<PathBuf>,
+    /// The plan's part of a record.
+    pub recorded: RecordedPlan,
+}
+
+/// The part of a record that a program knows of its plan.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct RecordedPlan {
+    /// The name and the text of each file of the plan, its own first; empty for an executable, which has no texts.
+    pub files: Vec<(String, String)>,
+    /// Causes of inputs besides the plan and the robot's outputs, such as safety rules; empty if there is
+    /// nothing. Such a run cannot be replayed.
+    pub beside: String,
 }
 
 impl Call {
     /// Returns the call of an executable with these arguments, its own name first.
     pub(crate) fn of_executable(arguments: impl IntoIterator<Item = OsString>) -> Self {
         let mut arguments = arguments.into_iter();
-        Self { words: arguments.next().into_iter().collect(), options: arguments.collect(), read: Vec::new() }
+        let words = arguments.next().into_iter().collect();
+        Self { words, options: arguments.collect(), read: Vec::new(), recorded: RecordedPlan::default() }
     }
 
     /// Returns the name by which usage calls the program, if it is more than the name of a file.
@@ -61,6 +74,7 @@ mod tests {
             words: words.iter().map(Into::into).collect(),
             options: Vec::new(),
             read: Vec::new(),
+            recorded: RecordedPlan::default(),
         };
         assert_eq!(call(&["./it's"]).command("P"), r"'./it'\''s'");
         assert_eq!(call(&["mdle", "run", "a b.mdle"]).command("P"), "mdle run 'a b.mdle'");

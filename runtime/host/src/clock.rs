@@ -1,7 +1,7 @@
 //! Clock of a run: the start and the time of each turn (docs/src/reference/semantics.md, 3.1).
 //!
 //! Turns begin at absolute deadlines, so lateness never adds up. A real robot that was late skips ahead: it is never
-//! sent a burst of inputs. In stepped time no turn may be skipped; what scheduling cost is caught up there.
+//! sent a burst of inputs. In stepped time no turn may be skipped: turns that are late follow each other at once.
 
 use std::time::Duration;
 

@@ -1,18 +1,18 @@
 //! A plan that drives a robot, behind one interface without the types of either: the host around the turns is compiled
 //! once, and each executable compiles its own turn only.
 
+use std::any::Any;
 use std::time::Duration;
 
-use mdle_runtime::{MetersPerSecond, Nanos, Output as _, Plan, Radians, Robot, Turn};
+use mdle_runtime::{MetersPerSecond, Nanos, Output as _, Plan, Radians, Robot, Sensed, Turn, Twist};
 
 use crate::observer::{Observer, Observes};
 use crate::pilot::{Moment, Pilot, PilotFault};
 use crate::position::Position;
 use crate::report::Report;
 use crate::run_end::RunEnd;
-use crate::standing::standing;
 use crate::transitions::Transitions;
-use crate::{Break, Intervention, Orders, Supervisor, Verdict};
+use crate::{Break, Intervention, Orders, SettingsOf, Supervisor, Verdict};
 
 /// A robot with the plan that drives it: exchange and turn alternate, the exchange first.
 pub(crate) trait Drive {
@@ -35,6 +35,9 @@ pub(crate) trait Drive {
     fn longest_gap(&self) -> Option<Duration>;
     /// Returns the heading and the speed of the robot by its last output, if it has one and paths are recorded.
     fn motion(&self) -> Option<(Radians, MetersPerSecond)>;
+    /// Returns the last output and the input that is sent next, for a record; `None` if they are of other types than a
+    /// record has.
+    fn exact(&self) -> Option<(&Sensed, Twist)>;
     /// Makes turn `number` with the last output at time `t`; the first turn begins the plan.
     ///
     /// # Errors
@@ -46,8 +49,14 @@ pub(crate) trait Drive {
     fn parts(&mut self) -> (Option<&mut dyn Observer>, Option<&dyn Position>);
     /// Returns the time of the run at which the plan began.
     fn zero(&self) -> Nanos;
-    /// Returns what the supervisor did in the last turn, and the number of the plan that runs, from 1.
-    fn supervised(&self) -> (Option<Intervention<'_>>, u64);
+    /// Returns what the supervisor did in the last turn.
+    fn intervention(&self) -> Option<Intervention<'_>>;
+    /// Returns the requests that the supervisor has carried out since the last call.
+    fn take_requests(&mut self) -> Vec<String>;
+    /// Returns the number of the plan that runs, from 1, and why it has replaced another one.
+    fn plan(&self) -> (u64, &str);
+    /// Ends the plan for this rule of the supervisor; returns `true` if another plan goes on.
+    fn ended_by(&mut self, rule: &str) -> bool;
     /// Calls the supervisor, if there is one, at the break after `turns` turns, the last one at time `t`.
     fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &Report<'_>) -> Orders;
 
@@ -64,7 +73,9 @@ pub(crate) struct PilotOnRobot<'p, R: Robot, B: Pilot> {
     /// Returns the speed of the robot by an output, if paths are recorded.
     speed: Option<Speed<R>>,
     pilot: B,
-    supervised: Option<Supervised<'p, R, B::Plan>>,
+    supervised: Option<Supervised<'p, B>>,
+    /// Settings of the robot, for the supervisor.
+    settings: Option<SettingsOf<R>>,
     /// Time of the last turn.
     t: Nanos,
     output: Option<R::Output>,
@@ -72,23 +83,27 @@ pub(crate) struct PilotOnRobot<'p, R: Robot, B: Pilot> {
 }
 
 /// The supervisor of a run, and the plans to which it may divert.
-pub(crate) struct Supervised<'p, R: Robot, P> {
-    pub(crate) supervisor: Box<dyn Supervisor<R::Output, R::Input> + 'p>,
-    pub(crate) diversions: &'p dyn Fn(usize) -> Option<P>,
+pub(crate) struct Supervised<'p, B: Pilot> {
+    pub(crate) supervisor: Box<dyn Supervisor<B> + 'p>,
+    pub(crate) diversions: &'p dyn Fn(usize) -> Option<B::Plan>,
 }
 
 /// Returns the forward speed of a robot by an output.
 type Speed<R> = fn(&<R as Robot>::Output) -> MetersPerSecond;
 
-impl<'p, R: Robot, B: Pilot> PilotOnRobot<'p, R, B> {
+impl<'p, R, B> PilotOnRobot<'p, R, B>
+where
+    R: Robot,
+    B: Pilot<Plan: Plan<Output = R::Output, Input = R::Input>>,
+{
     pub(crate) fn new(robot: R, observer: Observes<R>, speed: Option<Speed<R>>, pilot: B) -> Self {
         let (output, input) = (None, R::Input::default());
-        Self { robot, observer, speed, pilot, supervised: None, t: Nanos::ZERO, output, input }
+        Self { robot, observer, speed, pilot, supervised: None, settings: None, t: Nanos::ZERO, output, input }
     }
 
-    /// Puts a supervisor between the plan and the robot.
-    pub(crate) fn supervised(self, supervised: Option<Supervised<'p, R, B::Plan>>) -> Self {
-        Self { supervised, ..self }
+    /// Puts a supervisor between the plan and the robot, which can change the robot's settings.
+    pub(crate) fn supervised(self, supervised: Option<Supervised<'p, B>>, settings: Option<SettingsOf<R>>) -> Self {
+        Self { supervised, settings, ..self }
     }
 
     /// Sets the input that is sent next, as the supervisor changes it.
@@ -111,7 +126,7 @@ impl<'p, R: Robot, B: Pilot> PilotOnRobot<'p, R, B> {
 
 impl<R, B> Drive for PilotOnRobot<'_, R, B>
 where
-    R: Robot,
+    R: Robot<Output: 'static, Input: 'static>,
     B: Pilot<Plan: Plan<Output = R::Output, Input = R::Input>>,
 {
     fn exchange(&mut self) -> Result<(), String> {
@@ -137,11 +152,17 @@ where
         Some((output.here().theta, speed(output)))
     }
 
+    fn exact(&self) -> Option<(&Sensed, Twist)> {
+        let y = (self.output.as_ref()? as &dyn Any).downcast_ref()?;
+        Some((y, *(&self.input as &dyn Any).downcast_ref()?))
+    }
+
     fn turn(&mut self, t: Nanos, number: u64, transitions: &mut Transitions) -> Result<Turn<()>, RunEnd> {
         self.t = t;
         let diversion = self.diversion();
         // Without an output no law can compute an input.
-        let Some(y) = &self.output else { return Ok(Turn::Cut) };
+        let Some(y) = &mut self.output else { return Ok(Turn::Cut) };
+        self.pilot.complete(y, t);
         if let Some(plan) = diversion {
             self.pilot.divert(plan, Moment { y, t, number });
         }
@@ -171,16 +192,27 @@ where
         self.pilot.zero()
     }
 
-    fn supervised(&self) -> (Option<Intervention<'_>>, u64) {
-        let supervised = self.supervised.as_ref();
-        (supervised.and_then(|supervised| supervised.supervisor.intervention()), self.pilot.plan_number())
+    fn intervention(&self) -> Option<Intervention<'_>> {
+        self.supervised.as_ref().and_then(|supervised| supervised.supervisor.intervention())
+    }
+
+    fn take_requests(&mut self) -> Vec<String> {
+        self.supervised.as_mut().map(|supervised| supervised.supervisor.take_requests()).unwrap_or_default()
+    }
+
+    fn plan(&self) -> (u64, &str) {
+        (self.pilot.plan_number(), self.pilot.reason())
+    }
+
+    fn ended_by(&mut self, rule: &str) -> bool {
+        self.pilot.ended_by(rule)
     }
 
     fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &Report<'_>) -> Orders {
-        let Self { supervised: Some(supervised), output: Some(y), input, pilot, .. } = self else {
+        let Self { robot, supervised: Some(supervised), settings, output: Some(y), input, pilot, .. } = self else {
             return Orders::default();
         };
-        let position = || pilot.machine().map(|machine| standing(machine, t, pilot.zero(), report));
-        supervised.supervisor.at_break(&Break { turns, t, y, input, is_over, position: &position })
+        let (settings, course) = (settings.map(|settings| settings(robot)), report.course());
+        supervised.supervisor.at_break(&mut Break { turns, t, y, input, is_over, pilot, settings, course })
     }
 }

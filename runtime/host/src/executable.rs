@@ -1,6 +1,7 @@
 //! The target and the plan of an executable, behind one interface without the types of either.
 
 use std::marker::PhantomData;
+use std::os::fd::BorrowedFd;
 use std::time::Duration;
 
 use clap::ArgMatches;
@@ -17,8 +18,8 @@ use crate::{Pace, Refusal, Replays, StopRequest, Supervision, Target, Time};
 pub(crate) trait Executable: Sync {
     /// Returns the target's options and their defaults.
     fn target(&self) -> TargetOptions;
-    /// Returns `true` if standard output is that of a session.
-    fn is_session(&self) -> bool;
+    /// Returns the stream of the report and of messages in a session; `None` if there is no session.
+    fn session(&self) -> Option<BorrowedFd<'_>>;
     /// Makes a plan, for its texts.
     fn plan(&self) -> Box<dyn Texts + '_>;
     /// Opens the robot, with the plan that will drive it and the paths that the plan replays: [`Target::connect`].
@@ -45,7 +46,7 @@ pub(crate) struct PlanOnTarget<'p, 's, T, P, B: Pilot> {
     plan: &'p (dyn Fn() -> P + Sync),
     /// Makes the pilot of a run.
     pilot: &'p MakePilot<'p, B>,
-    supervision: Option<Supervision<'s, B::Plan>>,
+    supervision: Option<Supervision<'s, B>>,
     target: PhantomData<fn() -> T>,
 }
 
@@ -58,7 +59,7 @@ where
     }
 
     /// Puts a supervisor between the pilot and the robot.
-    pub(crate) fn supervised(self, supervision: Option<Supervision<'s, B::Plan>>) -> Self {
+    pub(crate) fn supervised(self, supervision: Option<Supervision<'s, B>>) -> Self {
         Self { supervision, ..self }
     }
 
@@ -72,7 +73,7 @@ where
         let supervised = self
             .supervision
             .map(|Supervision { supervisor, diversions, .. }| Supervised { supervisor: supervisor(terms), diversions });
-        Box::new(PilotOnRobot::new(robot, observer, speed, pilot).supervised(supervised))
+        Box::new(PilotOnRobot::new(robot, observer, speed, pilot).supervised(supervised, T::SETTINGS))
     }
 }
 
@@ -84,8 +85,8 @@ where
         TargetOptions::of::<T>()
     }
 
-    fn is_session(&self) -> bool {
-        self.supervision.is_some_and(|supervision| supervision.session)
+    fn session(&self) -> Option<BorrowedFd<'_>> {
+        self.supervision.and_then(|supervision| supervision.session)
     }
 
     fn plan(&self) -> Box<dyn Texts + '_> {
@@ -110,7 +111,7 @@ where
     fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore) -> Result<Option<Runs<'_>>, Refusal> {
         let Some(observation) = T::OBSERVATION else { return Ok(None) };
         let batch = (observation.batch)(matches, period)?;
-        if batch.is_some() && self.is_session() {
+        if batch.is_some() && self.session().is_some() {
             return Err(Refusal::Usage("a session is one run: leave --runs out".to_owned()));
         }
         let terms = RunTerms { time: Time::Stepped(Pace::Max), period, request: StopRequest::default() };

@@ -35,12 +35,15 @@ mod pilot;
 mod position;
 mod program;
 mod progress;
+mod record;
 mod refusal;
 mod replays;
 mod report;
 mod required;
+mod robot_settings;
 mod rounded;
 mod run_end;
+mod run_log;
 mod runs;
 mod safety;
 mod scheduling;
@@ -70,7 +73,7 @@ use std::process::ExitCode;
 
 use background_writer::{Keeps, Outlet};
 pub use batch::Batch;
-pub use call::Call;
+pub use call::{Call, RecordedPlan};
 pub use clap;
 use executable::{Executable, PlanOnTarget};
 pub use files::{read_file, read_text};
@@ -87,9 +90,12 @@ pub use pilot::{Moment, Pilot, PilotFault, RunTerms};
 pub use program::Program;
 pub use refusal::Refusal;
 pub use replays::Replays;
+pub use robot_settings::{RobotSettings, SettingsOf, sonar_order};
 pub use scheduling::claim_for_worker;
 pub use stop_request::StopRequest;
-pub use supervisor::{Break, Intervention, MakeSupervisor, Orders, Supervision, Supervisor, Verdict};
+pub use supervisor::{
+    Break, Intervention, MakeSupervisor, Orders, PilotInput, PilotOutput, Supervision, Supervisor, Verdict,
+};
 pub use target::Target;
 pub use time::{Pace, Time};
 pub use transitions::Transitions;
@@ -131,7 +137,7 @@ pub fn run_piloted<'a, 's, T: Target, B>(
     call: Call,
     plan: &(dyn Fn() -> B::Plan + Sync),
     pilot: impl Fn(&RunTerms) -> Result<B, Refusal> + Sync,
-    supervision: Option<Supervision<'s, B::Plan>>,
+    supervision: Option<Supervision<'s, B>>,
 ) -> ExitCode
 where
     B: Pilot<Plan: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>>,
@@ -164,7 +170,7 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
             return ExitCode::from(run_end::FAULT);
         }
     };
-    let (out, err) = match standard_streams(signals.patience(), executable.is_session()) {
+    let (out, err) = match standard_streams(signals.patience(), executable.session()) {
         Ok(streams) => streams,
         Err(error) => {
             run_end::say(&mut io::stderr(), format_args!("error: the system gives no threads: {error}"));
@@ -174,7 +180,7 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
     panic_hook::tell_to(err.aside());
     let begun = std::time::Instant::now();
     // A person in a session types where the line would be.
-    let shows_progress = io::stderr().is_terminal() && !executable.is_session();
+    let shows_progress = io::stderr().is_terminal() && executable.session().is_none();
     let seen = shows_progress.then(|| Box::new(move || begun.elapsed()) as Box<dyn FnMut() -> _>);
     let (out, mut err) = (|| Box::new(out) as Box<dyn Write>, err);
     let surroundings = session::Surroundings { instants: clock::SinceBoot, signals, out, err: &mut err, seen };
@@ -182,11 +188,11 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
 }
 
 /// Returns standard output and standard error, each with a thread that writes to it. The library's own buffer of
-/// standard output is left out: its content may be lost when the program ends. In a session both are standard error.
-fn standard_streams(patience: &Patience, is_session: bool) -> io::Result<(Outlet, Outlet)> {
+/// standard output is left out: its content may be lost when the program ends. In a session both are its stream.
+fn standard_streams(patience: &Patience, session: Option<BorrowedFd<'_>>) -> io::Result<(Outlet, Outlet)> {
     let open = |stream: BorrowedFd<'_>| -> io::Result<Outlet> {
         Outlet::open(File::from(stream.try_clone_to_owned()?), Keeps::WhatIsRead, patience)
     };
-    let out = if is_session { open(io::stderr().as_fd()) } else { open(io::stdout().as_fd()) };
-    Ok((out?, open(io::stderr().as_fd())?))
+    let (stdout, stderr) = (io::stdout(), io::stderr());
+    Ok((open(session.unwrap_or(stdout.as_fd()))?, open(session.unwrap_or(stderr.as_fd()))?))
 }

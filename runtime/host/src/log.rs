@@ -4,8 +4,9 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::Path;
 
+use mdle_record::RecordFile;
 use mdle_runtime::trace::{Fired, Json, Line};
-use mdle_runtime::{Frame, Nanos};
+use mdle_runtime::{Frame, Nanos, Turn};
 
 use crate::Intervention;
 use crate::background_writer::{Keeps, Outlet};
@@ -32,7 +33,9 @@ pub(crate) struct Entry<'a> {
     pub(crate) t: Nanos,
     /// The state in which it ended.
     pub(crate) state: u64,
-    /// The atom whose law was applied, as written; `None` for the null input.
+    /// Source of the input.
+    pub(crate) kind: Turn<()>,
+    /// Number of the atom whose law was applied, counted in the plan's text; `None` for the null input.
     pub(crate) applied: Option<u32>,
     /// Frame of that law, if a `FRAME here` encloses its atom.
     pub(crate) frame: Option<Frame>,
@@ -51,7 +54,10 @@ impl Entry<'_> {
         let safety = self.supervised.intervention().map(|Intervention { verdict, rule }| {
             format!(",\"safety\":{{\"verdict\":\"{}\",\"rule\":{}}}", verdict.word(), Json(rule))
         });
-        (plan.is_some() || safety.is_some()).then(|| plan.unwrap_or_default() + &safety.unwrap_or_default())
+        let requests: Vec<_> = self.supervised.requests.iter().map(|request| Json(request).to_string()).collect();
+        let requests = (!requests.is_empty()).then(|| format!(",\"requests\":[{}]", requests.join(",")));
+        let parts = [plan, safety, requests];
+        parts.iter().any(Option::is_some).then(|| parts.into_iter().flatten().collect())
     }
 }
 
@@ -92,6 +98,19 @@ impl<'p> UnchangedFile<'p> {
     /// # Errors
     /// When the earlier content cannot be cut off.
     pub(crate) fn emptied(self, patience: &Patience) -> io::Result<Outlet> {
+        Outlet::open(self.cut()?, Keeps::All, patience)
+    }
+
+    /// Empties the file and returns a writer that makes a record of the frames that are written to it.
+    ///
+    /// # Errors
+    /// When the earlier content cannot be cut off.
+    pub(crate) fn recorded(self, patience: &Patience) -> io::Result<Outlet> {
+        Outlet::open(RecordFile::new(self.cut()?), Keeps::All, patience)
+    }
+
+    /// Cuts the earlier content off; from now on the file stays.
+    fn cut(self) -> io::Result<File> {
         let Self { file, new } = self;
         // A device or a pipe has no length.
         if file.metadata()?.is_file() {
@@ -100,7 +119,7 @@ impl<'p> UnchangedFile<'p> {
         if let Some(new) = new {
             std::mem::forget(new);
         }
-        Outlet::open(file, Keeps::All, patience)
+        Ok(file)
     }
 }
 

@@ -13,6 +13,9 @@ pub trait Pilot {
     /// The plan, for reports.
     type Plan: Plan;
 
+    /// Completes the output of a turn at time `t` before the turn, for the supervisor: with what modules published.
+    fn complete(&mut self, _y: &mut <Self::Plan as Plan>::Output, _t: Nanos) {}
+
     /// Makes a turn; the first one begins the plan, or waits with null inputs until the plan can begin. `transitions`
     /// is empty, and takes those of the plan.
     ///
@@ -29,6 +32,17 @@ pub trait Pilot {
 
     /// Returns the number of the plan that runs, from 1; each plan that replaces one has the next.
     fn plan_number(&self) -> u64;
+
+    /// Returns why the plan that runs has replaced another one; empty if [`Pilot::divert`] did it.
+    fn reason(&self) -> &str {
+        ""
+    }
+
+    /// Called when a rule of the supervisor has ended the plan that runs; returns `true` if another plan goes on with
+    /// the next turn, so that the run does not end.
+    fn ended_by(&mut self, _rule: &str) -> bool {
+        false
+    }
 
     /// Returns the plan, once it has begun.
     fn machine(&self) -> Option<&Machine<Self::Plan>>;

@@ -7,9 +7,9 @@ use mdle_runtime::trace::COMPLETED;
 use mdle_runtime::{Cause, Measured, Nanos, Printable, Transition};
 
 use crate::cause::{CauseText, place};
-use crate::passes::Passes;
 use crate::position::Texts;
 use crate::rounded::Clocked;
+use crate::standing::Course;
 use crate::supervised::Supervised;
 use crate::transitions::{Operand, Transitions};
 use crate::{Intervention, Judgement, Verdict};
@@ -21,10 +21,7 @@ pub(crate) struct Report<'a> {
     prompt: bool,
     /// Nothing more is written after an error; the error is kept unless it means that the reader has gone.
     state: ReportState,
-    /// The passes of loops.
-    passes: Passes,
-    /// Cause of the last transition, which began the current atom; empty for the plan's first atom.
-    since: String,
+    course: Course,
     /// End of the plan, once it is over.
     over: Option<Over>,
     /// The strength and the rule of the intervention that was reported last, if it lasts.
@@ -63,8 +60,7 @@ impl<'a> Report<'a> {
             out,
             prompt,
             state: ReportState::Open,
-            passes: Passes::default(),
-            since: String::new(),
+            course: Course::default(),
             over: None,
             held: None,
             limiting: Vec::new(),
@@ -76,25 +72,20 @@ impl<'a> Report<'a> {
         self.over.as_ref()
     }
 
-    /// Returns the passes of loops, as of the last turn.
-    pub(crate) fn passes(&self) -> &Passes {
-        &self.passes
-    }
-
-    /// Returns why the current atom runs; empty for the plan's first.
-    pub(crate) fn since(&self) -> &str {
-        &self.since
+    /// Returns the course of the run, as of the last turn.
+    pub(crate) fn course(&self) -> &Course {
+        &self.course
     }
 
     /// Reports the transitions of the turn at time `t`.
     pub(crate) fn turn(&mut self, plan: &dyn Texts, t: Nanos, transitions: &Transitions) {
         for (transition, operands) in transitions.iter() {
-            self.passes.step(plan.fsm(), transition);
+            self.course.passes.step(plan.fsm(), transition);
             let cause = Printable(CauseText { plan, transition, operands }).to_string();
             let written = match (&self.state, transition.atom) {
                 (ReportState::Closed(_), _) => Ok(()),
                 (ReportState::Open, Some(atom)) => {
-                    let (law, place) = (Printable(plan.law(atom)), place(plan, &self.passes, atom));
+                    let (law, place) = (Printable(plan.law(atom)), place(plan, &self.course.passes, atom));
                     let place = if place.is_empty() { place } else { format!(" ({place})") };
                     writeln!(self.out, "{}  {law}{}  <- {cause}", Clocked(t), Printable(&place))
                 }
@@ -104,21 +95,21 @@ impl<'a> Report<'a> {
             if transition.atom.is_none() {
                 self.over = Some(Over::of(plan, transition, operands, cause.clone()));
             }
-            self.since = cause;
+            self.course.since = cause;
         }
         if self.prompt && !transitions.is_empty() {
             self.flush();
         }
     }
 
-    /// Reports that `plan` began at time `t` with this atom, because a supervisor's rule replaced the plan before.
-    pub(crate) fn begins(&mut self, plan: &dyn Texts, t: Nanos, atom: Option<u32>, rule: &str) {
-        self.passes = Passes::default();
-        self.since = format!("safety: {rule}");
+    /// Reports that `plan` drives from the turn at time `t` on with this atom, because it replaced the plan before for
+    /// this reason.
+    pub(crate) fn begins(&mut self, plan: &dyn Texts, t: Nanos, atom: Option<u32>, reason: &str) {
+        self.course = Course { since: reason.to_owned(), ..Course::default() };
         let Some(atom) = atom else { return };
-        let (law, place) = (plan.law(atom), place(plan, &self.passes, atom));
+        let (law, place) = (plan.law(atom), place(plan, &self.course.passes, atom));
         let place = if place.is_empty() { place } else { format!(" ({place})") };
-        let line = format!("{law}{place}  <- {}", self.since);
+        let line = format!("{law}{place}  <- {reason}");
         self.line(t, &line);
     }
 
@@ -139,7 +130,7 @@ impl<'a> Report<'a> {
         self.held = intervention.map(|it| (it.verdict, it.rule.to_owned()));
         match intervention {
             Some(intervention) => self.line(t, &format!("safety: {intervention}")),
-            None if supervised.begins => {}
+            None if supervised.begins.is_some() => {}
             None => self.line(t, "safety: the plan goes on"),
         }
     }

@@ -7,21 +7,24 @@ use std::time::Duration;
 
 use clap::ArgMatches;
 use clap::error::{ContextKind, ContextValue};
-use mdle_runtime::{PathStore, PrintableLines};
+use mdle_record::Begin;
+use mdle_runtime::{Nanos, PathStore, PrintableLines};
 
 use crate::arguments::{self, Options};
 use crate::call::Call;
-use crate::clock::{Clock, Instants};
+use crate::clock::{Clock, Instants, nanos};
 use crate::cycle::Limits;
 use crate::drive::Drive;
 use crate::executable::Executable;
 use crate::held_report::HeldReport;
-use crate::log::{Log, UnchangedFile};
+use crate::log::UnchangedFile;
 use crate::paths::{self, Recorder};
 use crate::progress::Progress;
+use crate::record::Record;
 use crate::report::Report;
 use crate::required::Required;
 use crate::run_end::{self, RunEnd, RunFault, say};
+use crate::run_log::{RunLog, is_record};
 use crate::runs::{self, Runs, Terms};
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
@@ -85,7 +88,16 @@ where
         Ok(None) => {}
     }
     let read = KnownFiles { read: &call.read, paths: &paths };
-    let ready = ready(executable, &matches, &options, store, read, &signals);
+    let begin = Begin {
+        version: program.version.to_owned(),
+        target: target.name.to_owned(),
+        plan: program.plan.to_owned(),
+        command: call.command(program.plan),
+        period: Nanos(nanos(options.period)),
+        files: call.recorded.files.clone(),
+        beside: call.recorded.beside.clone(),
+    };
+    let ready = ready(executable, &matches, &options, store, read, &signals, begin);
     let Ready { mut drive, time, mut log, mut path } = match ready {
         Ok(ready) => ready,
         Err(Refusal::Ended(stopped)) => return ended_at_the_start(&signals, stopped, err),
@@ -274,7 +286,7 @@ struct Ready<'p> {
     drive: Box<dyn Drive + 'p>,
     time: Time,
     /// A log that cannot begin is no refusal: the robot is there already, and has to be stopped.
-    log: io::Result<Option<Log>>,
+    log: io::Result<Option<RunLog>>,
     /// The path that is recorded.
     path: io::Result<Option<Recorder>>,
 }
@@ -287,11 +299,13 @@ fn ready<'p>(
     store: PathStore,
     plan: KnownFiles<'_>,
     signals: &Signals,
+    begin: Begin,
 ) -> Result<Ready<'p>, Refusal> {
     let target = executable.target();
     let opened = shielded(|| {
         let time = (target.time)(matches).map_err(Refusal::Usage)?;
         named_file::check(named_files(&target, matches, options, plan))?;
+        check_record(&target, options)?;
         let log = untouched("run log", options.log.as_deref())?;
         let path = untouched("path", options.path.as_deref())?;
         if options.path.is_some() {
@@ -300,11 +314,38 @@ fn ready<'p>(
         // From here on a signal must not end the program before the robot was stopped.
         signals.robot_runs(time);
         let drive = executable.connect(matches, options.period, &signals.stop_request(), store)?;
-        let log = log.map(|file| file.begin(is_watched(time), signals.patience())).transpose();
+        let log = log.map(|file| begun(file, options, begin, is_watched(time), signals)).transpose();
         let path = path.map(|file| file.emptied(signals.patience()).map(Recorder::new)).transpose();
         Ok(Ready { drive, time, log, path })
     });
     opened.unwrap_or_else(bug_before)
+}
+
+/// Refuses a record of a robot whose outputs or inputs a record cannot hold.
+fn check_record(target: &TargetOptions, options: &Options) -> Result<(), Refusal> {
+    let Some(path) = options.log.as_deref().filter(|path| !target.records && is_record(path)) else { return Ok(()) };
+    let (path, lines) = (path.display(), path.with_extension("jsonl"));
+    Err(Refusal::Usage(format!(
+        "--log {path}: the robot {} has outputs or inputs of a type of its own, which a record does not have; `--log {}` \
+         writes a log of JSON lines",
+        target.name,
+        lines.display()
+    )))
+}
+
+/// Begins the log, in the format of its name.
+fn begun(
+    file: UnchangedFile<'_>,
+    options: &Options,
+    begin: Begin,
+    prompt: bool,
+    signals: &Signals,
+) -> io::Result<RunLog> {
+    if !options.log.as_deref().is_some_and(is_record) {
+        return file.begin(prompt, signals.patience()).map(RunLog::Lines);
+    }
+    let file = file.recorded(signals.patience())?;
+    Ok(RunLog::Record(Box::new(Record::new(file, begin, prompt))))
 }
 
 /// Reports that a signal ended the run while the robot was opened; returns the exit status.

@@ -4,17 +4,21 @@ use mdle_runtime::Nanos;
 use mdle_runtime::fsm::Kind;
 
 use crate::cause::place;
+use crate::passes::Passes;
 use crate::position::Position;
-use crate::report::Report;
 use crate::{Around, PlanPosition};
 
+/// The course of the run up to its last turn, as far as a plan does not know it.
+#[derive(Debug, Default)]
+pub(crate) struct Course {
+    /// The passes of loops.
+    pub(crate) passes: Passes,
+    /// Cause of the last transition, which began the current atom; empty for the plan's first atom.
+    pub(crate) since: String,
+}
+
 /// Returns the state of a plan that is not over, and that began at time `zero`.
-pub(crate) fn standing<'m>(
-    position: &'m dyn Position,
-    t: Nanos,
-    zero: Nanos,
-    report: &'m Report<'_>,
-) -> PlanPosition<'m> {
+pub(crate) fn standing<'m>(position: &'m dyn Position, t: Nanos, zero: Nanos, course: &'m Course) -> PlanPosition<'m> {
     let (plan, fsm) = (position.texts(), position.texts().fsm());
     let atom = position.atom().and_then(|atom| fsm.atoms.get(atom as usize));
     let own = atom.and_then(|atom| fsm.brackets.get(atom.scope as usize)).map(|bracket| bracket.kind);
@@ -27,6 +31,6 @@ pub(crate) fn standing<'m>(
         Around { name: plan.name(scope), condition: plan.condition(scope), since: position.since(level, t.since(zero)) }
     });
     let law = position.atom().map_or("", |atom| plan.law(atom));
-    let place = position.atom().map_or_else(String::new, |atom| place(plan, report.passes(), atom));
-    PlanPosition { t, state: position.state(), law, place, since: report.since(), scopes: scopes.collect() }
+    let place = position.atom().map_or_else(String::new, |atom| place(plan, &course.passes, atom));
+    PlanPosition { t, state: position.state(), law, place, since: &course.since, scopes: scopes.collect() }
 }

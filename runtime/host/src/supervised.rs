@@ -9,16 +9,26 @@ pub(crate) struct Supervised {
     pub(crate) verdict: Option<Verdict>,
     /// The rule that asked for it.
     pub(crate) rule: String,
-    /// `true` if the turn was the first of another plan.
-    pub(crate) begins: bool,
-    /// The rule that replaced the plan last; empty before.
+    /// Reason why another plan has replaced the plan in this turn, if one has.
+    pub(crate) begins: Option<String>,
+    /// The requests that were carried out before the turn.
+    pub(crate) requests: Vec<String>,
+    /// The rule that replaced the plan last; empty if none did, or if people have replaced the plan since.
     pub(crate) diverted_by: String,
 }
 
 impl Supervised {
-    /// Notes what the supervisor did in a turn, and whether another plan `begins` in it.
-    pub(crate) fn note(&mut self, intervention: Option<Intervention<'_>>, begins: bool) {
-        self.begins = begins;
+    /// Notes what the supervisor did in a turn, and that another plan began in it for this reason, which is empty for
+    /// a diversion.
+    pub(crate) fn note(&mut self, intervention: Option<Intervention<'_>>, begins: Option<&str>) {
+        self.begins = match begins {
+            Some("") => Some(format!("safety: {}", self.diverted_by)),
+            Some(reason) => {
+                self.diverted_by.clear();
+                Some(reason.to_owned())
+            }
+            None => None,
+        };
         self.verdict = intervention.map(|intervention| intervention.verdict);
         self.rule.clear();
         self.rule.push_str(intervention.map_or("", |intervention| intervention.rule));

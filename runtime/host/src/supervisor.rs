@@ -2,19 +2,21 @@
 //! See docs/src/reference/interfaces.md, 7.6.
 
 use std::fmt;
+use std::os::fd::BorrowedFd;
 
 use mdle_runtime::{Nanos, Plan};
 
-use crate::{Pace, PlanPosition, RunTerms};
+use crate::standing::{Course, standing};
+use crate::{Pace, Pilot, PlanPosition, RobotSettings, RunTerms};
 
-/// Decides which input a robot is sent, and is called between the turns of a run.
+/// Decides which input a robot is sent, and is called between the turns that the pilot `B` makes.
 ///
 /// It runs on the thread that drives the robot: a real robot waits for it.
-pub trait Supervisor<Y, U> {
+pub trait Supervisor<B: Pilot> {
     /// Returns the input that the robot is sent instead of `asked`, the plan's input of the turn with output `y` at
     /// time `t`. Every input passes here, also the null inputs of a turn that is cut and of the end, but for the one
     /// before the first output.
-    fn filter(&mut self, asked: U, _y: &Y, _t: Nanos) -> U {
+    fn filter(&mut self, asked: PilotInput<B>, _y: &PilotOutput<B>, _t: Nanos) -> PilotInput<B> {
         asked
     }
 
@@ -25,10 +27,20 @@ pub trait Supervisor<Y, U> {
 
     /// Called before the first turn and after each turn, when the input of the turn has not been sent yet. A call that
     /// takes long delays the robot; in stepped time it may wait as long as it likes.
-    fn at_break(&mut self, _moment: &Break<'_, Y, U>) -> Orders {
+    fn at_break(&mut self, _moment: &mut Break<'_, B>) -> Orders {
         Orders::default()
     }
+
+    /// Returns the requests that were carried out at breaks since the last call, for the log.
+    fn take_requests(&mut self) -> Vec<String> {
+        Vec::new()
+    }
 }
+
+/// Output of the robot that a pilot drives.
+pub type PilotOutput<B> = <<B as Pilot>::Plan as Plan>::Output;
+/// Input of the robot that a pilot drives.
+pub type PilotInput<B> = <<B as Pilot>::Plan as Plan>::Input;
 
 /// A change that a supervisor made to the input of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,23 +89,34 @@ impl fmt::Display for Intervention<'_> {
 }
 
 /// The moment between two turns.
-#[derive(Clone, Copy)]
-pub struct Break<'b, Y, U> {
+pub struct Break<'b, B: Pilot> {
     /// Number of turns that have been made.
     pub turns: u64,
     /// Time of the last turn; zero before the first.
     pub t: Nanos,
     /// Output of the last turn, or that of the first turn before it.
-    pub y: &'b Y,
+    pub y: &'b PilotOutput<B>,
     /// The input that the robot will be sent next.
-    pub input: &'b U,
+    pub input: &'b PilotInput<B>,
     /// `true` if the plan is over: this is the last break.
     pub is_over: bool,
-    /// Returns the place in the plan; `None` before the first turn.
-    pub position: &'b dyn Fn() -> Option<PlanPosition<'b>>,
+    /// The pilot, for requests.
+    pub pilot: &'b mut B,
+    /// Settings of the robot, if it has any.
+    pub settings: Option<&'b mut dyn RobotSettings>,
+    pub(crate) course: &'b Course,
 }
 
-impl<Y, U> fmt::Debug for Break<'_, Y, U> {
+impl<B: Pilot> Break<'_, B> {
+    /// Returns the place in the plan; `None` before the first turn.
+    #[must_use]
+    pub fn position(&self) -> Option<PlanPosition<'_>> {
+        let machine = self.pilot.machine()?;
+        Some(standing(machine, self.t, self.pilot.zero(), self.course))
+    }
+}
+
+impl<B: Pilot> fmt::Debug for Break<'_, B> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Break {{ turns: {}, t: {:?}, is_over: {} }}", self.turns, self.t, self.is_over)
     }
@@ -109,27 +132,27 @@ pub struct Orders {
 }
 
 /// The supervisors of runs, and the plans to which they may divert.
-pub struct Supervision<'s, P: Plan> {
+pub struct Supervision<'s, B: Pilot> {
     /// Makes the supervisor of a run.
-    pub supervisor: &'s MakeSupervisor<'s, P::Output, P::Input>,
+    pub supervisor: &'s MakeSupervisor<'s, B>,
     /// Makes the plan of this number, to which [`Verdict::Diverted`] leads; `None` if there is no such plan.
-    pub diversions: &'s (dyn Fn(usize) -> Option<P> + Sync),
-    /// `true` for a session: one run only, whose report goes to standard error, as standard output is the session's.
-    pub session: bool,
+    pub diversions: &'s (dyn Fn(usize) -> Option<B::Plan> + Sync),
+    /// The stream of the report and of messages for a session, which is one run only: standard output is the session's.
+    pub session: Option<BorrowedFd<'s>>,
 }
 
 /// Makes the supervisor of a run with these terms.
-pub type MakeSupervisor<'s, Y, U> = dyn Fn(&RunTerms) -> Box<dyn Supervisor<Y, U> + 's> + Sync + 's;
+pub type MakeSupervisor<'s, B> = dyn Fn(&RunTerms) -> Box<dyn Supervisor<B> + 's> + Sync + 's;
 
-impl<P: Plan> Clone for Supervision<'_, P> {
+impl<B: Pilot> Clone for Supervision<'_, B> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<P: Plan> Copy for Supervision<'_, P> {}
+impl<B: Pilot> Copy for Supervision<'_, B> {}
 
-impl<P: Plan> fmt::Debug for Supervision<'_, P> {
+impl<B: Pilot> fmt::Debug for Supervision<'_, B> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Supervision").field("session", &self.session).finish_non_exhaustive()
     }

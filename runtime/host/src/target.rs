@@ -5,7 +5,7 @@ use std::time::Duration;
 use clap::{ArgMatches, Command};
 use mdle_runtime::Robot;
 
-use crate::{NamedFile, Observation, Refusal, Replays, StopRequest, Time};
+use crate::{NamedFile, Observation, Refusal, Replays, SettingsOf, StopRequest, Time};
 
 /// A robot that executables are built for; implemented once in each target crate. A driver needs no more than a
 /// [`Robot`] and [`Target::connect`].
@@ -21,6 +21,9 @@ pub trait Target {
     const PATHS: Option<Replays<Self::Robot>> = None;
     /// The observer of its runs, if it has one, as a simulator does.
     const OBSERVATION: Option<Observation<Self::Robot>> = None;
+
+    /// The settings that people change while it drives, if there are any.
+    const SETTINGS: Option<SettingsOf<Self::Robot>> = None;
 
     /// Adds the target's own options to the executable's.
     fn arguments(command: Command) -> Command {

@@ -1,9 +1,10 @@
 //! The parts of a target that have none of its types.
 
+use std::any::TypeId;
 use std::time::Duration;
 
 use clap::{ArgMatches, Command};
-use mdle_runtime::Twist;
+use mdle_runtime::{Robot, Sensed, Twist};
 
 use crate::{NamedFile, Refusal, Target, Time};
 
@@ -18,6 +19,8 @@ pub(crate) struct TargetOptions {
     pub(crate) answer: fn(&ArgMatches) -> Result<Option<String>, Refusal>,
     /// Maximum speeds of a path; `None` if the target replays no paths.
     pub(crate) fastest: Option<Twist>,
+    /// `true` if a record can hold the robot's outputs and inputs.
+    pub(crate) records: bool,
     /// Returns `true` if the robot shows its run on standard output itself.
     pub(crate) screen: fn(&ArgMatches) -> bool,
     /// Gives the terminal back.
@@ -35,6 +38,8 @@ impl TargetOptions {
             files: T::files,
             answer: T::answer,
             fastest: T::PATHS.map(|replays| replays.fastest),
+            records: TypeId::of::<<T::Robot as Robot>::Output>() == TypeId::of::<Sensed>()
+                && TypeId::of::<<T::Robot as Robot>::Input>() == TypeId::of::<Twist>(),
             screen: |matches| T::OBSERVATION.is_some_and(|observation| (observation.screen)(matches)),
             leave_screen: T::OBSERVATION.map_or(|| {}, |observation| observation.leave_screen),
         }

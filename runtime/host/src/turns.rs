@@ -7,12 +7,13 @@ use mdle_runtime::{Nanos, Turn};
 use crate::clock::{Clock, Instants};
 use crate::cycle::{Limits, Step, Turns, cycle};
 use crate::drive::Drive;
-use crate::log::{Entry, Log};
+use crate::log::Entry;
 use crate::paths::Recorder;
 use crate::position::Position;
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::run_end::{RunEnd, say};
+use crate::run_log::RunLog;
 use crate::signals::Signals;
 use crate::standing::standing;
 use crate::supervised::Supervised;
@@ -25,7 +26,7 @@ pub(crate) struct Witnesses<'a, 'o> {
     /// The lines on standard output.
     pub(crate) report: &'a mut Report<'o>,
     /// The run log, if one was asked for.
-    pub(crate) log: Option<&'a mut Log>,
+    pub(crate) log: Option<&'a mut RunLog>,
     /// The path that is driven, if it is to be recorded.
     pub(crate) path: Option<&'a mut Recorder>,
     /// The line that shows that a fast run goes on, if standard error is a terminal.
@@ -43,8 +44,8 @@ pub(crate) fn run<I: Instants>(
     witnesses: &mut Witnesses<'_, '_>,
 ) -> RunEnd {
     let transitions = Transitions::default();
-    let mut turns =
-        OnePlan { drive, witnesses, transitions, fresh: true, plan: 1, supervised: Supervised::default(), pace: None };
+    let supervised = Supervised::default();
+    let mut turns = OnePlan { drive, witnesses, transitions, fresh: true, plan: 1, supervised, pace: None, number: 0 };
     cycle(&mut turns, limits, clock, signals)
 }
 
@@ -62,6 +63,8 @@ struct OnePlan<'t, 'a, 'o> {
     supervised: Supervised,
     /// A pace that the supervisor has asked for.
     pace: Option<Pace>,
+    /// The number of the last turn.
+    number: u64,
 }
 
 impl OnePlan<'_, '_, '_> {
@@ -73,9 +76,10 @@ impl OnePlan<'_, '_, '_> {
     }
 
     /// Returns how the run goes on after a turn, as far as the plan and the supervisor's intervention decide it.
-    fn step(&self, turn: Turn<()>) -> Result<Step, RunEnd> {
+    fn step(&mut self, turn: Turn<()>) -> Result<Step, RunEnd> {
         let Supervised { verdict, rule, diverted_by, .. } = &self.supervised;
         match turn {
+            _ if *verdict == Some(Verdict::Ended) && self.drive.ended_by(rule) => Ok(Step::Next),
             _ if *verdict == Some(Verdict::Ended) => Err(RunEnd::Safety(rule.clone())),
             Turn::Over if !diverted_by.is_empty() => Err(RunEnd::Safety(diverted_by.clone())),
             Turn::Over => Ok(Step::Over),
@@ -90,6 +94,7 @@ impl Turns for OnePlan<'_, '_, '_> {
     }
 
     fn turn(&mut self, t: Nanos, number: u64) -> Result<Step, RunEnd> {
+        self.number = number;
         if number == 0 {
             self.at_break(0, t, false)?;
         }
@@ -102,9 +107,14 @@ impl Turns for OnePlan<'_, '_, '_> {
         drive.messages(&mut |message| witnesses.say(message));
         let turn = turn?;
         let zero = drive.zero();
-        let (intervention, number_of_plan) = drive.supervised();
-        supervised.note(intervention, std::mem::replace(plan, number_of_plan) != number_of_plan);
-        *fresh |= !transitions.is_empty() || supervised.begins;
+        let (number_of_plan, reason) = drive.plan();
+        let begins = std::mem::replace(plan, number_of_plan) != number_of_plan;
+        supervised.note(drive.intervention(), begins.then_some(reason));
+        supervised.requests = drive.take_requests();
+        *fresh |= !transitions.is_empty() || begins;
+        if let Some(log) = &mut witnesses.log {
+            log.take(drive.exact());
+        }
         if let (observer, Some(position)) = drive.parts() {
             let written = witnesses.tell(position, MadeTurn { turn, number, t, plan: *plan }, transitions, supervised);
             written.map_err(|error| RunEnd::Log(error.to_string()))?;
@@ -114,7 +124,7 @@ impl Turns for OnePlan<'_, '_, '_> {
             }
         }
         let step = self.step(turn)?;
-        self.at_break(number.saturating_add(1), t, turn == Turn::Over)?;
+        self.at_break(number.saturating_add(1), t, step == Step::Over)?;
         Ok(step)
     }
 
@@ -129,6 +139,10 @@ impl Turns for OnePlan<'_, '_, '_> {
     }
 
     fn ended(&mut self, ending: &RunEnd, t: Nanos) {
+        if let Some(log) = &mut self.witnesses.log {
+            let cause = self.witnesses.report.over().map_or_else(|| ending.brief(), |over| over.cause.clone());
+            log.ended(self.number, t, &cause);
+        }
         if let (Some(observer), Some(position)) = self.drive.parts() {
             ended(observer, position, ending, self.witnesses.report, t);
         }
@@ -150,7 +164,7 @@ fn watched(
         observer.began(written.state, plan.law(atom), t);
     }
     if turn != Turn::Over && observer.looks() {
-        observer.turned(&standing(position, t, zero, report));
+        observer.turned(&standing(position, t, zero, report.course()));
     }
 }
 
@@ -180,8 +194,8 @@ impl Witnesses<'_, '_> {
     ) -> io::Result<()> {
         let plan = position.texts();
         let MadeTurn { turn, number, t, plan: plan_number } = made;
-        if supervised.begins {
-            self.report.begins(plan, t, position.atom(), &supervised.diverted_by);
+        if let Some(reason) = &supervised.begins {
+            self.report.begins(plan, t, position.atom(), reason);
         }
         self.report.turn(plan, t, transitions);
         self.report.supervised(t, supervised);
@@ -196,7 +210,8 @@ impl Witnesses<'_, '_> {
         };
         let frame = position.frame().filter(|_| applied.is_some());
         let state = position.state();
-        log.turn(&Entry { plan, turn: number, t, state, applied, frame, transitions, plan_number, supervised })
+        let kind = turn;
+        log.turn(&Entry { plan, turn: number, t, state, kind, applied, frame, transitions, plan_number, supervised })
     }
 }
 

@@ -4,10 +4,10 @@ use std::io::{self, Write};
 
 use crate::Judgement;
 use crate::drive::Drive;
-use crate::log::Log;
 use crate::report::Report;
 use crate::required::Required;
 use crate::run_end::{RunEnd, RunFault};
+use crate::run_log::RunLog;
 use crate::safety::{Panicked, shielded};
 
 /// A panic as an ending.
@@ -70,7 +70,7 @@ pub(crate) fn judge(drive: &mut dyn Drive, ending: RunEnd, required: &Required, 
 
 /// The files that a run has written.
 pub(crate) struct Files {
-    pub(crate) log: Option<Log>,
+    pub(crate) log: Option<RunLog>,
     /// Error that kept the path from being written.
     pub(crate) path: Option<io::Error>,
 }
@@ -87,7 +87,7 @@ pub(crate) fn tell(
 ) -> u8 {
     let is_stopped = !faults.iter().any(|fault| matches!(fault, RunFault::Stop(_)));
     // Without a word on a broken log the reader of a short one would take it for a whole run.
-    let logged = files.log.map_or(Ok(()), |mut log| log.flush());
+    let logged = files.log.map_or(Ok(()), |mut log| log.close());
     faults.extend(logged.err().filter(|_| !matches!(ending, RunEnd::Log(_))).map(RunFault::Log));
     faults.extend(files.path.map(RunFault::Path));
     report.flush();

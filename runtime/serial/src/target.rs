@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{NamedFile, Refusal, Replays, StopRequest, Target, Time};
+use mdle_host::{NamedFile, Refusal, Replays, SettingsOf, StopRequest, Target, Time};
 use mdle_runtime::{Nanos, PathStore, Robot, Sensed, Twist};
 
 use crate::capacity::carries;
@@ -20,6 +20,8 @@ pub trait SerialRobot: Robot<Output = Sensed, Input = Twist, Error: Into<Refusal
     const PERIOD: Nanos;
     /// The highest speed and turn rate of a path, as those of `go` in the alphabet.
     const FASTEST: Twist;
+    /// The settings that people change while the robot drives, if there are any.
+    const SETTINGS: Option<SettingsOf<Self>> = None;
     /// The values by which robots of this kind differ.
     type Config: Configuration;
 
@@ -60,6 +62,7 @@ impl<R: SerialRobot> Target for SerialTarget<R> {
     type Robot = R;
     const PATHS: Option<Replays<R>> =
         Some(Replays { fastest: R::FASTEST, take: R::take_paths, speed: |sensed| sensed.velocity.v });
+    const SETTINGS: Option<SettingsOf<R>> = R::SETTINGS;
 
     fn arguments(command: Command) -> Command {
         options::arguments(command)

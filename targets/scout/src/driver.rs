@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use mdle_host::StopRequest;
+use mdle_host::{RobotSettings, StopRequest, sonar_order};
 use mdle_runtime::{Compass, Meters, Nanos, PathStore, Published, Robot, Sensed, Shape, Supply, Twist, Volts};
 use mdle_serial::{Clock, LineFault, Moment, Obedience, Times, time_of};
 
@@ -42,6 +42,8 @@ pub struct Scout {
     clock: Clock,
     odometer: Odometer,
     ring: Ring,
+    /// `true` if the robot has not been sent the order of its sonars yet.
+    is_reordered: bool,
     /// Drift of the odometry, measured by walls.
     compass: Compass,
     freshness: Freshness,
@@ -72,9 +74,20 @@ impl Scout {
         // Each wheel brakes for both: where it goes forward and turns, half as hard for either.
         let brakes = config.acceleration / 2.0;
         let obedience = Obedience::new(brakes, brakes, Duration::from_millis(config.disobey));
-        let (commanded, paths, compass) = (None, PathStore::EMPTY, Compass::default());
-        let mut scout =
-            Self { line, config, clock, odometer, ring, compass, freshness, obedience, times, commanded, paths };
+        let mut scout = Self {
+            line,
+            config,
+            clock,
+            odometer,
+            ring,
+            is_reordered: false,
+            compass: Compass::default(),
+            freshness,
+            obedience,
+            times,
+            commanded: None,
+            paths: PathStore::EMPTY,
+        };
         match scout.prepare(period, request) {
             Ok(()) => Ok(scout),
             Err(Fault::Ended(_)) => Err(Fault::Ended(scout.stop().err().map(Box::new))),
@@ -100,7 +113,7 @@ impl Scout {
         let acceleration = libm::trunc(self.config.acceleration / wheels::UNIT) as u16;
         self.command(Command::Accelerations(acceleration, acceleration))?;
         go_on()?;
-        self.command(Command::Sonars((self.config.gap / 4) as u8, self.config.order()))?;
+        self.order_sonars()?;
         let mut left = Duration::from_nanos(self.ring.around().0);
         while !left.is_zero() {
             self.clock.pass_unless(request, period.min(left));
@@ -116,6 +129,12 @@ impl Scout {
         }
         self.commanded = Some(Moment::now());
         Ok(())
+    }
+
+    /// Sends the order in which the sonars ping.
+    fn order_sonars(&mut self) -> Result<(), Fault> {
+        self.is_reordered = false;
+        self.command(Command::Sonars((self.config.gap / 4) as u8, self.config.order())).map(drop)
     }
 
     /// Waits until the robot is at rest.
@@ -191,12 +210,39 @@ fn supply(state: &State, config: &Config) -> Supply {
     Supply { battery, is_low: battery.0 < config.low_battery, is_plugged: state.is_plugged() }
 }
 
+/// Name of the setting of the sonars' order.
+const SONARS: &str = "sonars";
+
+impl RobotSettings for Scout {
+    fn settings(&self) -> &'static [(&'static str, &'static str)] {
+        &[(SONARS, "sonars that ping, in their order")]
+    }
+
+    fn setting(&self, name: &str) -> Option<String> {
+        let order: Vec<_> = self.config.sonars.iter().map(u8::to_string).collect();
+        (name == SONARS).then(|| order.join(" "))
+    }
+
+    fn set(&mut self, name: &str, value: &str) -> Result<(), String> {
+        if name != SONARS {
+            return Err(format!("a Scout has no setting `{name}`"));
+        }
+        self.config.sonars = sonar_order(value)?;
+        self.ring.reorder(&self.config.sonars);
+        self.is_reordered = true;
+        Ok(())
+    }
+}
+
 impl Robot for Scout {
     type Output = Sensed;
     type Input = Twist;
     type Error = Fault;
 
     fn exchange(&mut self, input: &Twist) -> Result<Sensed, Fault> {
+        if self.is_reordered {
+            self.order_sonars()?;
+        }
         let (right, left) = wheels::speeds(input, self.config.fastest);
         let state = self.command(Command::Velocities(right, left))?;
         let at = self.times.now();

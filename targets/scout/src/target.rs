@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use mdle_host::{Refusal, StopRequest};
+use mdle_host::{Refusal, SettingsOf, StopRequest};
 use mdle_runtime::{MetersPerSecond, Nanos, PathStore, RadiansPerSecond, Twist};
 use mdle_serial::{Clock, SerialRobot};
 
@@ -15,6 +15,7 @@ impl SerialRobot for Scout {
     const NAME: &'static str = alphabet::NAME;
     const PERIOD: Nanos = alphabet::PERIOD;
     const FASTEST: Twist = Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) };
+    const SETTINGS: Option<SettingsOf<Self>> = Some(|scout| scout);
     type Config = Config;
 
     fn connect(config: Config, clock: Clock, period: Duration, request: &StopRequest) -> Result<Self, Fault> {

@@ -1,6 +1,6 @@
 //! The simulated robot with its observers: pictures, the live view, and the table of its poses.
 
-use mdle_host::{Ended, Judgement, Observer, PlanPosition};
+use mdle_host::{Ended, Judgement, Observer, PlanPosition, RobotSettings, sonar_order};
 use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, PathStore, Pose, Robot, Sensed, Twist};
 use mdle_simulator::{Charger, Drawing, Fault, Goal, Simulated, World};
@@ -135,6 +135,28 @@ impl Robot for Observed {
             drawing.stopped(&self.robot);
         }
         stopped
+    }
+}
+
+/// Name of the setting of the sonars' order.
+const SONARS: &str = "sonars";
+
+impl RobotSettings for Observed {
+    fn settings(&self) -> &'static [(&'static str, &'static str)] {
+        if self.robot.sonar_order().is_some() { &[(SONARS, "sonars that ping, in their order")] } else { &[] }
+    }
+
+    fn setting(&self, name: &str) -> Option<String> {
+        let order = self.robot.sonar_order().filter(|_| name == SONARS)?;
+        Some(order.iter().map(u8::to_string).collect::<Vec<_>>().join(" "))
+    }
+
+    fn set(&mut self, name: &str, value: &str) -> Result<(), String> {
+        if self.setting(name).is_none() {
+            return Err(format!("this body has no setting `{name}`"));
+        }
+        self.robot.order_sonars(&sonar_order(value)?);
+        Ok(())
     }
 }
 

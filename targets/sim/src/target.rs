@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{NamedFile, Observation, Refusal, Replays, StopRequest, Target, Time};
+use mdle_host::{NamedFile, Observation, Refusal, Replays, SettingsOf, StopRequest, Target, Time};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
 use mdle_simulator::alphabet;
 
@@ -24,6 +24,7 @@ impl Target for Sim {
         take: Observed::take_paths,
         speed: |sensed| sensed.velocity.v,
     });
+    const SETTINGS: Option<SettingsOf<Observed>> = Some(|robot| robot);
     const OBSERVATION: Option<Observation<Observed>> = Some(Observation {
         observer: |robot| robot,
         screen: options::watch,

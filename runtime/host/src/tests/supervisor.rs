@@ -3,7 +3,7 @@
 use mdle_runtime::Cause::Fired;
 use mdle_runtime::Nanos;
 
-use super::toy::{Act, Makes, Run, Sensed, Stage};
+use super::toy::{Act, Alone, Makes, Run, Sensed, Stage};
 use crate::{Break, Intervention, Orders, Pace, RunTerms, Supervisor, Time, Verdict};
 
 /// A supervisor that halves inputs, intervenes in one turn, and ends the run at a break.
@@ -13,12 +13,13 @@ struct Strict {
     end: Option<u64>,
     pace: Option<Pace>,
     turn: u64,
+    requests: Vec<String>,
 }
 
-impl Supervisor<Sensed, u32> for Strict {
+impl Supervisor<Alone> for Strict {
     fn filter(&mut self, asked: u32, _: &Sensed, t: Nanos) -> u32 {
         self.turn = t.0 / 100_000_000;
-        if self.intervention().is_some() { 0 } else { asked + 10 }
+        if Supervisor::intervention(self).is_some() { 0 } else { asked + 10 }
     }
 
     fn intervention(&self) -> Option<Intervention<'_>> {
@@ -26,15 +27,19 @@ impl Supervisor<Sensed, u32> for Strict {
         (turn == self.turn).then_some(Intervention { verdict, rule: "rule" })
     }
 
-    fn at_break(&mut self, moment: &Break<'_, Sensed, u32>) -> Orders {
-        let is_begun = (moment.position)().is_some();
+    fn at_break(&mut self, moment: &mut Break<'_, Alone>) -> Orders {
+        let is_begun = moment.position().is_some();
         assert_eq!((is_begun, moment.t.0), (moment.turns > 0, moment.turns.saturating_sub(1) * 100_000_000));
         Orders { pace: self.pace.take(), end: self.end == Some(moment.turns) }
+    }
+
+    fn take_requests(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.requests)
     }
 }
 
 /// Returns a supervisor with this verdict on turn 1.
-fn strict(verdict: Verdict) -> Box<dyn Supervisor<Sensed, u32>> {
+fn strict(verdict: Verdict) -> Box<dyn Supervisor<Alone>> {
     Box::new(Strict { verdict: Some((1, verdict)), ..Strict::default() })
 }
 
@@ -111,7 +116,7 @@ fn a_run_ends_at_a_break_if_the_supervisor_asks() {
 
 #[test]
 fn a_supervisor_changes_the_pace() {
-    let slow = |terms: &RunTerms| -> Box<dyn Supervisor<Sensed, u32>> {
+    let slow = |terms: &RunTerms| -> Box<dyn Supervisor<Alone>> {
         assert_eq!((terms.period.as_millis(), terms.time), (100, Time::Stepped(Pace::Max)));
         Box::new(Strict { pace: Some(Pace::Times(0.5)), ..Strict::default() })
     };
@@ -135,6 +140,18 @@ fn a_log_has_interventions() {
     {"turn":2,"t":0.2,"state":1,"law":"go 20 0","fired":[]}
     {"turn":3,"t":0.3,"state":5,"law":null,"fired":[{"from":1,"level":0,"by":"bumper","operands":[]}]}
     "#);
+}
+
+#[test]
+fn a_log_has_the_requests_before_a_turn() {
+    let asked = |_: &RunTerms| -> Box<dyn Supervisor<Alone>> {
+        let requests = ["set /a \"b\"", "call /c"].map(str::to_owned).to_vec();
+        Box::new(Strict { requests, ..Strict::default() })
+    };
+    let lines = log("a_log_has_the_requests_before_a_turn", asked);
+    let [first, second] = [0, 1].map(|line| lines.lines().nth(line).expect("two turns"));
+    assert!(first.ends_with(r#","fired":[],"requests":["set /a \"b\"","call /c"]}"#), "{first}");
+    assert!(second.ends_with(r#","fired":[]}"#), "{second}");
 }
 
 #[test]

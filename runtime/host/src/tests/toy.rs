@@ -4,6 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::io::{self, Write};
+use std::os::fd::AsFd as _;
 use std::rc::Rc;
 use std::time::Duration;
 
@@ -38,9 +39,12 @@ pub(super) enum Act {
 }
 
 /// Makes the supervisor of a run.
-pub(super) type Makes = fn(&RunTerms) -> Box<dyn Supervisor<Sensed, u32>>;
+pub(super) type Makes = fn(&RunTerms) -> Box<dyn Supervisor<Alone>>;
 
-/// A stage: the robot's script, how it behaves on the way out, and everything that happens.
+/// The pilot of all runs.
+pub(super) type Alone = PlanAlone<'static, ToyPlan>;
+
+/// Set-up of a test: what the robot does in each turn and while it is stopped, and a record of all that happens.
 #[derive(Debug)]
 pub(super) struct Stage {
     pub(super) script: Vec<Act>,
@@ -142,13 +146,16 @@ impl Stage {
             seen: None,
         };
         let arguments = [&self.program].into_iter().chain(arguments).map(OsString::from);
-        let plan = || self.plan.clone();
+        // The pilot lives as long as the program does.
+        let plan = self.plan;
+        let plan: &'static (dyn Fn() -> ToyPlan + Sync) = Box::leak(Box::new(move || plan.clone()));
         let make = |terms: &RunTerms| (self.supervisor.expect("a supervisor"))(terms);
+        let stderr = io::stderr();
         let diversions = |number| (number == 0).then(ToyPlan::lab);
-        let supervision = Supervision { supervisor: &make, diversions: &diversions, session: true };
+        let supervision = Supervision { supervisor: &make, diversions: &diversions, session: Some(stderr.as_fd()) };
         let supervision = self.supervisor.map(|_| supervision);
-        let pilot = |_: &RunTerms| Ok(PlanAlone::new(&plan));
-        let executable = PlanOnTarget::<ToyTarget, _, _>::new(&plan, &pilot).supervised(supervision);
+        let pilot = |_: &RunTerms| Ok(PlanAlone::new(plan));
+        let executable = PlanOnTarget::<ToyTarget, _, _>::new(plan, &pilot).supervised(supervision);
         let status = session("Lab".into(), Call::of_executable(arguments), &executable, surroundings);
         // Otherwise a program may end before its last message is written.
         assert_ne!(patience.limit(), Some(Duration::ZERO), "readers are not waited for at the end");

@@ -161,30 +161,42 @@ fn a_writer_that_is_blocked_holds_up_no_robot() {
 
 #[test]
 fn a_writer_that_is_closed_full_or_limited_is_no_reason_to_drive_on() {
-    for (writer, status) in WRITERS.into_iter().zip([143, 143, 3, 143]) {
-        let mut cart = Cart::new(&format!("full_{writer:?}"), &[]);
-        cart.to(writer, Path::new("/dev/full"));
-        // A log that cannot be written stops it before the signal does.
-        if writer == Writer::Log {
-            let mut child = cart.command.spawn().unwrap();
-            assert_eq!(cart.end(&mut child), (Some(3), true));
-        } else {
-            assert_eq!(stopped(cart), (Some(status), true), "full {writer:?}");
+    thread::scope(|scope| {
+        for (writer, status) in WRITERS.into_iter().zip([143, 143, 3, 143]) {
+            scope.spawn(move || assert_stops_when_full(writer, status));
+            scope.spawn(move || assert_stops_when_limited(writer, status));
         }
-        let mut cart = Cart::new(&format!("limited_{writer:?}"), &[]);
-        cart.limited(writer);
+        for writer in [Writer::Out, Writer::Err] {
+            scope.spawn(move || {
+                let mut cart = Cart::new(&format!("closed_{writer:?}"), &[]);
+                cart.closed(writer);
+                assert_eq!(stopped(cart), (Some(143), true), "closed {writer:?}");
+            });
+        }
+    });
+}
+
+fn assert_stops_when_full(writer: Writer, status: i32) {
+    let mut cart = Cart::new(&format!("full_{writer:?}"), &[]);
+    cart.to(writer, Path::new("/dev/full"));
+    // A log that cannot be written stops it before the signal does.
+    if writer == Writer::Log {
         let mut child = cart.command.spawn().unwrap();
-        if writer != Writer::Log {
-            cart.moves_on(20);
-            send(&child, "TERM");
-        }
-        assert_eq!(cart.end(&mut child), (Some(status), true), "limited {writer:?}");
+        assert_eq!(cart.end(&mut child), (Some(3), true));
+    } else {
+        assert_eq!(stopped(cart), (Some(status), true), "full {writer:?}");
     }
-    for writer in [Writer::Out, Writer::Err] {
-        let mut cart = Cart::new(&format!("closed_{writer:?}"), &[]);
-        cart.closed(writer);
-        assert_eq!(stopped(cart), (Some(143), true), "closed {writer:?}");
+}
+
+fn assert_stops_when_limited(writer: Writer, status: i32) {
+    let mut cart = Cart::new(&format!("limited_{writer:?}"), &[]);
+    cart.limited(writer);
+    let mut child = cart.command.spawn().unwrap();
+    if writer != Writer::Log {
+        cart.moves_on(20);
+        send(&child, "TERM");
     }
+    assert_eq!(cart.end(&mut child), (Some(status), true), "limited {writer:?}");
 }
 
 #[test]

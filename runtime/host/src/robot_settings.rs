@@ -1,0 +1,47 @@
+//! Settings of a robot that people change while it drives, such as the order in which its sonars ping (paper, Fig. 7).
+
+use mdle_runtime::SONARS;
+
+/// Settings of a robot, as texts that people read and type.
+pub trait RobotSettings {
+    /// Returns the name of each setting, and a noun phrase about it. They stay the same in a run.
+    fn settings(&self) -> &'static [(&'static str, &'static str)];
+
+    /// Returns the value of a setting, as it may be typed; `None` if there is no such setting.
+    fn setting(&self, name: &str) -> Option<String>;
+
+    /// Changes a setting from the next exchange on.
+    ///
+    /// # Errors
+    /// There is no such setting, or the value is none for it: a sentence with what to type instead.
+    fn set(&mut self, name: &str, value: &str) -> Result<(), String>;
+}
+
+/// Returns the settings of a robot.
+pub type SettingsOf<R> = fn(&mut R) -> &mut dyn RobotSettings;
+
+/// Reads an order in which sonars ping: from one to sixteen of their numbers, which begin with 0.
+///
+/// # Errors
+/// A sentence with what to type instead.
+pub fn sonar_order(text: &str) -> Result<Vec<u8>, String> {
+    let number = |word: &str| word.parse().ok().filter(|number: &u8| usize::from(*number) < SONARS);
+    let order: Option<Vec<u8>> = text.split_whitespace().map(number).collect();
+    let order = order.filter(|order| (1..=SONARS).contains(&order.len()));
+    order.ok_or_else(|| format!("expected from one to sixteen numbers of sonars, from 0 to 15; found `{text}`"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sonar_order;
+
+    #[test]
+    fn an_order_of_sonars_is_read() {
+        assert_eq!(sonar_order(" 0 15  3"), Ok(vec![0, 15, 3]));
+        let many = "1 ".repeat(17);
+        for wrong in ["", "16", "-1", "0,1", "a", "0x1", &many] {
+            let expected = format!("expected from one to sixteen numbers of sonars, from 0 to 15; found `{wrong}`");
+            assert_eq!(sonar_order(wrong), Err(expected));
+        }
+    }
+}
