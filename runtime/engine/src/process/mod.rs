@@ -1,0 +1,109 @@
+//! `/lib/process`: a child process in any language as a background module. It speaks lines of JSON on its standard
+//! input and output (docs/src/own_module.md).
+//!
+//! The first line of the child declares its attributes. After each turn break at which it waits it gets a line with the
+//! values that it reads, and answers with a line of values that it publishes at the next break.
+
+mod child;
+mod declaration;
+mod line;
+
+use std::time::Duration;
+
+use mdle_host::StopRequest;
+use mdle_runtime::Printable;
+
+use crate::attribute::is_name;
+use crate::module::{Background, Candidate, Declare, Exchange, Fault, Refusal};
+use child::{Child, LONGEST_FAREWELL, Silence};
+use declaration::Declaration;
+
+/// Maximum time from the start of a child to its declaration.
+const DECLARATION: Duration = Duration::from_secs(10);
+/// Maximum time from a line for the child to its answer.
+const ANSWER: Duration = Duration::from_secs(10);
+/// Maximum number of characters of a line in a message.
+const SHOWN: usize = 60;
+
+/// A module whose turns a child process makes.
+struct Process {
+    child: Child,
+    declaration: Declaration,
+}
+
+impl<Y> Candidate<Y> {
+    /// Starts a child process with the command line `command`, which `/bin/sh` reads, and makes it a background module
+    /// of this name. The child ends with the module. It has ten seconds to declare itself.
+    ///
+    /// # Errors
+    /// The name is wrong, the child cannot be started, its first line is no declaration, or `request` is made before
+    /// there is one.
+    pub fn process(name: &str, command: &str, request: &StopRequest) -> Result<Self, Refusal> {
+        if !is_name(name) {
+            return Err(Refusal::BadName(name.to_owned()));
+        }
+        let refused = |sentence: String| Refusal::Process(name.to_owned(), sentence);
+        let mut child =
+            Child::start(command).map_err(|error| refused(format!("its process does not start: {error}")))?;
+        let line = child.line(DECLARATION, || request.is_made()).map_err(|silence| match silence {
+            Silence::Over => Refusal::Ended,
+            Silence::Late => refused(format!(
+                "its process has declared no attributes within {} s\nhelp: its first line declares them, and is flushed, as in \
+                 `print('{{\"publishes\": {{\"range\": \"m\"}}}}', flush=True)`",
+                DECLARATION.as_secs()
+            )),
+            Silence::Fault(sentence) => refused(sentence),
+        })?;
+        let declaration = Declaration::read(&line).map_err(refused)?;
+        Self::background(name, |declare: &mut Declare| {
+            declaration.declare(declare);
+            declare.farewell(LONGEST_FAREWELL);
+            Process { child, declaration }
+        })
+    }
+}
+
+impl Background for Process {
+    fn run(self: Box<Self>, mut exchange: Exchange) -> Result<(), Fault> {
+        let Self { mut child, declaration } = *self;
+        let end = converse(&mut child, &declaration, &mut exchange);
+        if end.is_err() {
+            // The break is not to wait for the farewell of a child that breaks the rules.
+            child.kill();
+        }
+        end
+    }
+}
+
+/// Passes lines between a child and the breaks until the module is to end.
+///
+/// # Errors
+/// The child breaks the rules.
+fn converse(child: &mut Child, declaration: &Declaration, exchange: &mut Exchange) -> Result<(), Fault> {
+    let mut values = Vec::new();
+    // The first break has the first values for the child.
+    while exchange.exchange(|offer| values.drain(..).for_each(|(place, value)| offer.put(place, value))).is_ok() {
+        let (now, readings) = exchange.readings();
+        let question = declaration.question(now, readings);
+        let answer = match child.ask(question.as_bytes(), ANSWER, || exchange.is_stopped()) {
+            Ok(answer) => answer,
+            Err(Silence::Over) => return Ok(()),
+            Err(Silence::Late) => {
+                return Err(Fault(format!("its process has not answered within {} s", ANSWER.as_secs())));
+            }
+            Err(Silence::Fault(sentence)) => return Err(Fault(sentence)),
+        };
+        values = declaration.answer(&answer).map_err(Fault)?;
+    }
+    Ok(())
+}
+
+/// A line of a child as messages show it.
+fn shown(line: &[u8]) -> String {
+    let text = String::from_utf8_lossy(line);
+    let mut start: String = text.chars().take(SHOWN).collect();
+    if start.len() < text.len() {
+        start.push('…');
+    }
+    format!("`{}`", Printable(start))
+}
