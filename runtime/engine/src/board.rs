@@ -37,6 +37,11 @@ impl Board {
         &self.posts
     }
 
+    /// Returns the attributes of a module.
+    pub fn of(&self, module: &str) -> impl Iterator<Item = &Post> {
+        self.posts.iter().filter(move |post| &*post.name.module == module)
+    }
+
     /// Returns an attribute.
     #[must_use]
     pub fn post(&self, module: &str, attribute: &str) -> Option<&Post> {

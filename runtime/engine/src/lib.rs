@@ -11,6 +11,7 @@ mod fork;
 mod library;
 mod module;
 mod plans;
+mod process;
 pub mod safety;
 pub mod shell;
 #[cfg(test)]
@@ -25,4 +26,6 @@ pub use library::Library;
 pub use module::{
     About, Background, Candidate, Declare, Exchange, Fault, Module, Offer, Refusal, Relevance, Stopped, Turn,
 };
-pub use plans::{Compile, EngineAlphabet, NoTrial, PlanEvent, Plans, TRIAL, When};
+pub use plans::{
+    Compile, CompiledPlans, EngineAlphabet, MOST_STORED, NoTrial, PlanEvent, PlanSource, Plans, StoredPlan, TRIAL, When,
+};

@@ -1,16 +1,19 @@
 //! The modules of a program: functions that make them, for each run anew.
 
 use std::fmt;
+use std::sync::Arc;
+
+use mdle_host::StopRequest;
 
 use crate::module::{Background, Candidate, Declare, Module, Refusal};
 
 /// The modules that each run of a program loads, in this order.
 pub struct Library<Y> {
-    makers: Vec<Box<MakeCandidate<Y>>>,
+    makers: Vec<(String, Arc<MakeCandidate<Y>>)>,
 }
 
 /// Makes a module.
-type MakeCandidate<Y> = dyn Fn() -> Result<Candidate<Y>, Refusal> + Send + Sync;
+type MakeCandidate<Y> = dyn Fn(&StopRequest) -> Result<Candidate<Y>, Refusal> + Send + Sync;
 
 impl<Y> Library<Y> {
     /// Returns a library without modules.
@@ -25,19 +28,46 @@ impl<Y> Library<Y> {
         name: &str,
         make: impl Fn(&mut Declare) -> M + Send + Sync + 'static,
     ) {
-        let name = name.to_owned();
-        self.makers.push(Box::new(move || Candidate::registered(&name, &make)));
+        let own = name.to_owned();
+        self.makers.push((name.to_owned(), Arc::new(move |_| Candidate::registered(&own, &make))));
     }
 
     /// Adds a background module of this name, which `make` declares and returns.
     pub fn background<M: Background>(&mut self, name: &str, make: impl Fn(&mut Declare) -> M + Send + Sync + 'static) {
-        let name = name.to_owned();
-        self.makers.push(Box::new(move || Candidate::background(&name, &make)));
+        let own = name.to_owned();
+        self.makers.push((name.to_owned(), Arc::new(move |_| Candidate::background(&own, &make))));
     }
 
-    /// Makes the modules.
-    pub(crate) fn candidates(&self) -> impl Iterator<Item = Result<Candidate<Y>, Refusal>> {
-        self.makers.iter().map(|make| make())
+    /// Adds a background module of this name that is a child process, which `/bin/sh` starts by this command line: see
+    /// [`Candidate::process`].
+    pub fn process(&mut self, name: &str, command: &str) {
+        let (own, command) = (name.to_owned(), command.to_owned());
+        self.makers.push((name.to_owned(), Arc::new(move |request| Candidate::process(&own, &command, request))));
+    }
+
+    /// Returns the names of the modules.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.makers.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Makes the modules, unless `request` is made before.
+    pub(crate) fn candidates(&self, request: &StopRequest) -> impl Iterator<Item = Result<Candidate<Y>, Refusal>> {
+        self.makers.iter().map(move |(_, make)| make(request))
+    }
+
+    /// Makes the module of this name, unless `request` is made before.
+    ///
+    /// # Errors
+    /// There is no such module, or it cannot be made.
+    pub(crate) fn candidate(&self, name: &str, request: &StopRequest) -> Result<Candidate<Y>, Refusal> {
+        let found = self.makers.iter().find(|(known, _)| known == name);
+        found.map_or_else(|| Err(Refusal::Unknown(name.to_owned())), |(_, make)| make(request))
+    }
+}
+
+impl<Y> Clone for Library<Y> {
+    fn clone(&self) -> Self {
+        Self { makers: self.makers.clone() }
     }
 }
 

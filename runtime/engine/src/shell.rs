@@ -7,9 +7,11 @@ mod clock;
 mod command;
 mod converse;
 mod lines;
+mod modules;
 mod parts;
+mod plans;
 mod session;
 
 pub use converse::{Conversation, converse};
-pub use lines::{Input, Lines, Terminal, Typed};
+pub use lines::{Input, Lines, PrintAbove, Terminal, Typed};
 pub use session::Session;

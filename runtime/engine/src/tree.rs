@@ -10,6 +10,7 @@ mod node;
 mod request;
 mod shared;
 mod value;
+mod watch;
 
 pub use desk::{Desk, Reply, Served};
 pub use hub::{Hub, QUEUE};

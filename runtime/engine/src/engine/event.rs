@@ -62,7 +62,9 @@ pub struct Arrivals {
 pub enum End {
     /// Its code returned.
     Returned,
-    /// Its code panicked: the message.
+    /// It cannot go on: a sentence.
+    Failed(String),
+    /// The module's code panicked: the message.
     Panicked(String),
     /// In stepped time it did not exchange values when its latency had passed.
     GivenUp,

@@ -3,6 +3,7 @@
 mod event;
 mod janitor;
 mod loaded;
+mod loading;
 mod modules;
 mod piloting;
 mod relevance;

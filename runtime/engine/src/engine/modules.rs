@@ -8,11 +8,14 @@ use mdle_runtime::{ModuleRead, Nanos};
 
 use super::event::{Arrivals, Event};
 use super::janitor::Janitor;
-use super::loaded::{Loaded, Standing};
+use super::loaded::{Loaded, Runs, Standing};
 use crate::attribute::{AttributeName, Reading, Value};
 use crate::board::Board;
 use crate::fork::{Fork, Threads};
 use crate::module::{About, Candidate, Refusal};
+
+/// Name of the robot among the modules, in the tree of attributes; no module can have it.
+const ROBOT: &str = "robot";
 
 /// The clock by which a module that waits is served.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,8 +79,9 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// # Errors
     /// The system gives no threads.
     pub fn replaying(threads: Threads, arrivals: impl IntoIterator<Item = Arrivals>) -> io::Result<Self> {
-        let modules = Self::new(threads, Service::WhenReady)?;
-        Ok(Self { replayed: Some(arrivals.into_iter().collect()), ..modules })
+        let mut modules = Self::new(threads, Service::WhenReady)?;
+        modules.replayed = Some(arrivals.into_iter().collect());
+        Ok(modules)
     }
 
     /// Returns the board as of the last break.
@@ -110,7 +114,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// The name is taken, or a kind is wrong; nothing has changed then.
     pub fn load(&mut self, candidate: Candidate<Y>) -> Result<(), Refusal> {
         let name = Arc::clone(&candidate.name);
-        if self.loaded.iter().any(|module| module.name == name) {
+        if &*name == ROBOT || self.loaded.iter().any(|module| module.name == name) {
             return Err(Refusal::NameTaken(name.to_string()));
         }
         self.board.add(&name, &candidate.declared);
@@ -199,5 +203,16 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         self.order = (0..self.loaded.len()).collect();
         self.has_changed = true;
         self.reorder();
+    }
+}
+
+impl<Y> Drop for Modules<Y> {
+    /// Asks all threads to end before the first is waited for.
+    fn drop(&mut self) {
+        for module in &self.loaded {
+            if let Runs::InBackground(visit) = &module.runs {
+                visit.gate.stop();
+            }
+        }
     }
 }

@@ -4,14 +4,15 @@ use std::time::{Duration, Instant};
 
 use mdle_compiler::load::LoadedPlan;
 use mdle_host::{Moment, Pilot, PilotFault, RunTerms, Time, Transitions, claim_for_worker};
-use mdle_runtime::{Machine, Nanos, Output as _, Turn};
+use mdle_runtime::{Machine, ModuleRead, Nanos, Output as _, Turn};
 
 use super::event::Event;
+use super::loading::Loading;
 use super::modules::{Modules, Service};
 use crate::fork::Threads;
 use crate::library::Library;
-use crate::module::{Candidate, Declare};
-use crate::plans::{EngineAlphabet, PlanTurn, Plans};
+use crate::module::{Candidate, Declare, Refusal};
+use crate::plans::{EngineAlphabet, NoTrial, PlanTurn, Plans, reads};
 
 /// Name of the module that makes the turns of plans; no other module can have it.
 pub const PLAN: &str = "mdle";
@@ -22,8 +23,11 @@ const WORKERS: usize = 2;
 pub struct Engine<A: EngineAlphabet> {
     plans: Plans<A>,
     modules: Modules<A::Output>,
+    loading: Loading<A::Output>,
     /// Time from the output of a turn to the deadline of its modules; `None` in stepped time.
     patience: Option<Duration>,
+    /// Attributes of modules that safety rules read; `None` without rules.
+    rules_read: Option<&'static [ModuleRead]>,
     messages: Vec<String>,
 }
 
@@ -32,7 +36,7 @@ impl<A: EngineAlphabet> Engine<A> {
     /// in stepped time on the thread of the caller.
     ///
     /// # Errors
-    /// A module is refused (exit status 2), or the system gives no threads.
+    /// A module is refused (exit status 2), the system gives no threads, or the run is asked to end before.
     pub fn new(
         plan: LoadedPlan<A>,
         library: &Library<A::Output>,
@@ -44,25 +48,105 @@ impl<A: EngineAlphabet> Engine<A> {
         };
         let no_threads = |error| mdle_host::Refusal::Fault(format!("the system gives no threads: {error}"));
         let (plans, modules) = (Plans::new(plan), Modules::new(threads, service).map_err(no_threads)?);
-        let mut engine = Self { plans, modules, patience, messages: Vec::new() };
+        let loading = Loading::new(library.clone(), terms.request.clone());
+        let mut engine = Self { plans, modules, loading, patience, rules_read: None, messages: Vec::new() };
         engine.load_plan_module();
-        for candidate in library.candidates() {
+        for candidate in library.candidates(&terms.request) {
             let loaded = candidate.and_then(|candidate| engine.modules.load(candidate));
-            loaded.map_err(|refusal| mdle_host::Refusal::Usage(refusal.to_string()))?;
+            loaded.map_err(|refusal| {
+                let is_ended = refusal == Refusal::Ended;
+                if is_ended {
+                    mdle_host::Refusal::Ended(Ok(()))
+                } else {
+                    mdle_host::Refusal::Usage(refusal.to_string())
+                }
+            })?;
         }
         engine.modules.plan_reads(engine.plans.reads());
         engine.modules.prepare();
         Ok(engine)
     }
 
+    /// Puts the engine under safety rules that read these attributes of modules: outputs have them from now on.
+    ///
+    /// # Errors
+    /// A module publishes one with another kind (exit status 2).
+    pub fn under_rules(self, reads: &'static [ModuleRead]) -> Result<Self, mdle_host::Refusal> {
+        reads::check(reads, self.modules.board()).map_err(mdle_host::Refusal::Usage)?;
+        let mut engine = Self { rules_read: Some(reads), ..self };
+        engine.modules.plan_reads(engine.plans.reads().chain(reads));
+        engine.modules.prepare();
+        Ok(engine)
+    }
+
+    /// Returns the plans.
+    pub fn plans(&self) -> &Plans<A> {
+        &self.plans
+    }
+
     /// Returns the plans, for requests at a turn break.
-    pub fn plans(&mut self) -> &mut Plans<A> {
+    pub fn plans_mut(&mut self) -> &mut Plans<A> {
         &mut self.plans
     }
 
+    /// Returns the modules.
+    pub fn modules(&self) -> &Modules<A::Output> {
+        &self.modules
+    }
+
     /// Returns the modules, for requests at a turn break.
-    pub fn modules(&mut self) -> &mut Modules<A::Output> {
+    pub fn modules_mut(&mut self) -> &mut Modules<A::Output> {
         &mut self.modules
+    }
+
+    /// Returns the names of the modules that can be loaded.
+    pub fn library(&self) -> impl Iterator<Item = &str> {
+        self.loading.library().names()
+    }
+
+    /// Begins to load a module of the library, which is made on a thread of its own; returns the number of the request,
+    /// which [`Engine::progress`] answers.
+    ///
+    /// # Errors
+    /// It cannot be loaded at present: a sentence.
+    pub fn load(&mut self, name: &str) -> Result<u32, String> {
+        if self.modules.names().any(|(loaded, _)| loaded == name) {
+            return Err(Refusal::NameTaken(name.to_owned()).to_string());
+        }
+        self.loading.begin(name)
+    }
+
+    /// Reports a message to the operator with the next turn.
+    pub fn tell(&mut self, message: String) {
+        self.messages.push(message);
+    }
+
+    /// Carries on with requests at a break: a plan that is compiled is armed, a module that is made is loaded, and
+    /// modules get what has changed. Returns the number of a request to load a module with its result.
+    pub fn progress(&mut self) -> Option<(u32, Result<(), Refusal>)> {
+        self.plans.arm();
+        let made = self.loading.next();
+        let loaded =
+            made.map(|(number, candidate)| (number, candidate.and_then(|candidate| self.modules.load(candidate))));
+        self.modules.drop_later(self.plans.take_spent());
+        self.modules.plan_reads(self.plans.reads().chain(self.rules_read.unwrap_or_default()));
+        self.modules.prepare();
+        loaded
+    }
+
+    /// Ends the plan on trial for this reason; the plan before it goes on in the next turn at its atom, as if no time
+    /// had passed for it.
+    ///
+    /// # Errors
+    /// No plan is on trial.
+    pub fn rollback(&mut self, why: &str) -> Result<(), NoTrial> {
+        let was_late = self.plans.is_late();
+        self.plans.rollback(why)?;
+        if was_late {
+            // The plan before goes on, with a module of its own.
+            self.load_plan_module();
+        }
+        Ok(())
     }
 
     /// Loads the module that makes the turns of plans, in place of one that hangs.
@@ -84,49 +168,56 @@ impl<A: EngineAlphabet> Engine<A> {
         match self.plans.land(t, transitions) {
             PlanTurn::Made(turn) => Ok(turn),
             PlanTurn::Late => Ok(Turn::Cut),
-            PlanTurn::Panicked(message) => match self.plans.rollback(&format!("its code panicked: {message}")) {
-                Ok(()) => {
-                    self.load_plan_module();
-                    Ok(Turn::Cut)
-                }
-                Err(_) => Err(PilotFault::Panicked(message)),
-            },
+            PlanTurn::Panicked(message) => {
+                let sentence = format!("its code panicked, which is a bug: {message}");
+                self.ends_trial(&sentence).map(|()| Turn::Cut).map_err(|_| PilotFault::Panicked(message))
+            }
         }
+    }
+
+    /// Rolls back for a reason that the operator has to be told.
+    fn ends_trial(&mut self, why: &str) -> Result<(), NoTrial> {
+        let name = self.plans.name().to_owned();
+        self.rollback(why)?;
+        self.messages.push(format!("warning: the plan {name} on trial is ended: {why}"));
+        Ok(())
     }
 
     /// Makes the turn break, as far as it follows from the turn.
     fn turn_break(&mut self) -> Result<(), PilotFault> {
-        let (mut result, mut is_given_up) = (Ok(()), false);
+        let mut is_given_up = false;
         for event in self.modules.events() {
             match event {
-                Event::GivenUp(name) if &**name == PLAN => {
-                    let sentence = "the plan has not ended its turn";
-                    result = self.plans.rollback(sentence).map_err(|_| PilotFault::Stopped(sentence.to_owned()));
-                    is_given_up = true;
-                }
+                Event::GivenUp(name) if &**name == PLAN => is_given_up = true,
                 Event::Loaded(_) | Event::Unloaded(_) | Event::Started(_) | Event::Stopped(_) => {}
                 Event::Failed(..) | Event::Late(_) | Event::GivenUp(_) | Event::Ended(_) | Event::NotANumber(_) => {
                     self.messages.push(format!("warning: {event}"));
                 }
             }
         }
-        if is_given_up && result.is_ok() {
-            // The plan before goes on, with a module of its own.
-            self.load_plan_module();
+        if is_given_up && self.ends_trial("it has not ended its turn").is_err() {
+            return Err(PilotFault::Stopped("the plan has not ended its turn".to_owned()));
         }
-        result
+        Ok(())
     }
 }
 
 impl<A: EngineAlphabet> Pilot for Engine<A> {
     type Plan = LoadedPlan<A>;
 
+    fn complete(&mut self, y: &mut A::Output, now: Nanos) {
+        let Some(rules_read) = self.rules_read else { return };
+        let board = self.modules.board();
+        let oldest = reads::oldest(rules_read.iter().chain(self.plans.driving_reads()), board, now);
+        y.take_published(reads::current(rules_read, board, now).as_old_as(oldest));
+    }
+
     fn turn(
         &mut self,
         Moment { y, t, number }: Moment<'_, A::Output>,
         transitions: &mut Transitions,
     ) -> Result<Turn<A::Input>, PilotFault> {
-        let published = self.plans.take_off(t, self.modules.board()).map_err(PilotFault::Stopped)?;
+        let published = self.plans.take_off(y, t, self.modules.board()).map_err(PilotFault::Stopped)?;
         let mut y = y.clone();
         if let Some(published) = published {
             y.take_published(published);
@@ -138,7 +229,7 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
         self.turn_break()?;
         self.plans.arm();
         self.modules.drop_later(self.plans.take_spent());
-        self.modules.plan_reads(self.plans.reads());
+        self.modules.plan_reads(self.plans.reads().chain(self.rules_read.unwrap_or_default()));
         self.modules.prepare();
         Ok(turn)
     }
@@ -154,6 +245,14 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
 
     fn plan_number(&self) -> u64 {
         self.plans.number().into()
+    }
+
+    fn reason(&self) -> &str {
+        self.plans.reason()
+    }
+
+    fn ended_by(&mut self, rule: &str) -> bool {
+        self.ends_trial(&format!("the safety rule {rule} ends it")).is_ok()
     }
 
     fn machine(&self) -> Option<&Machine<LoadedPlan<A>>> {

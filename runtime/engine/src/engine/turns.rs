@@ -10,7 +10,7 @@ use super::loaded::{Loaded, Runs, Standing};
 use super::modules::{Modules, Service};
 use super::relevance::relevant;
 use crate::fork::{Progress, Task};
-use crate::module::Fault;
+use crate::module::{Fault, ThreadEnd};
 
 /// Number of turns after which a late module is given up, if [`PATIENCE`] has passed as well.
 const LATE_TURNS: u64 = 10;
@@ -76,6 +76,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
                 Runs::InBackground(visit) => {
                     if let Some(mut ports) = visit.ports.take() {
                         self.board.hand(declared, wires, &mut ports);
+                        ports.now = self.turn.1;
                         visit.gate.give_back(ports);
                     }
                 }
@@ -173,8 +174,9 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
             return;
         }
         let end = match visit.gate.take_end() {
-            Some(Ok(())) => End::Returned,
-            Some(Err(message)) => End::Panicked(message),
+            Some(ThreadEnd::Returned) => End::Returned,
+            Some(ThreadEnd::Failed(sentence)) => End::Failed(sentence),
+            Some(ThreadEnd::Panicked(message)) => End::Panicked(message),
             None if is_there => return,
             None => End::GivenUp,
         };
@@ -252,10 +254,14 @@ impl<Y> Loaded<Y> {
         let name = Arc::clone(&self.name);
         let (standing, event) = match end {
             End::Returned => (Standing::Ended, Event::Ended(name)),
+            End::Failed(sentence) => (Standing::Failed, Event::Failed(name, sentence)),
             End::Panicked(message) => {
                 (Standing::Failed, Event::Failed(name, format!("its code panicked, which is a bug: {message}")))
             }
-            End::GivenUp => (Standing::GivenUp, Event::GivenUp(name)),
+            End::GivenUp => {
+                let sentence = format!("it has exchanged no values within {} s", PATIENCE.as_secs());
+                (Standing::GivenUp, Event::Failed(name, sentence))
+            }
         };
         self.standing = standing;
         event

@@ -4,13 +4,18 @@
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use super::Ports;
-use crate::attribute::{Attribute, In, Out, Reading};
+use mdle_runtime::Nanos;
+
+use super::{Fault, Ports};
+use crate::attribute::{Attribute, In, Out, Reading, Value};
 
 /// A module that runs in the background.
 pub trait Background: Send + 'static {
     /// Runs on a thread of its own until an exchange returns [`Stopped`]. When it returns, the module has ended.
-    fn run(self: Box<Self>, exchange: Exchange);
+    ///
+    /// # Errors
+    /// Why the module cannot go on, for the operator.
+    fn run(self: Box<Self>, exchange: Exchange) -> Result<(), Fault>;
 }
 
 /// The module is to end: the engine ends, or the module is unloaded.
@@ -40,6 +45,18 @@ impl Exchange {
         self.ports = self.gate.hand_over(std::mem::take(&mut self.ports))?;
         Ok(result)
     }
+
+    /// Returns the time of the last break, and the values that the module reads as of that break, in the order of its
+    /// declaration.
+    pub(crate) fn readings(&self) -> (Nanos, &[Option<Reading>]) {
+        (self.ports.now, &self.ports.ins)
+    }
+
+    /// Returns `true` once the module is to end, for code that waits for something else than a break.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.gate.lock().is_stopped
+    }
 }
 
 /// Values that a background module hands over at its next exchange.
@@ -47,6 +64,12 @@ impl Exchange {
 pub struct Offer<'o>(&'o mut Ports);
 
 impl Offer<'_> {
+    /// Returns the time of the turn that ended with the last break, on the engine's clock; zero before the first.
+    #[must_use]
+    pub fn now(&self) -> Nanos {
+        self.0.now
+    }
+
     /// Returns the value of an attribute as of the last exchange, or of a setting.
     #[must_use]
     pub fn get<T: Attribute>(&self, attribute: In<T>) -> Option<T> {
@@ -62,6 +85,13 @@ impl Offer<'_> {
     /// Publishes a value at the next break; a value with a NaN is never published.
     pub fn publish<T: Attribute>(&mut self, attribute: Out<T>, value: T) {
         self.0.publish(attribute, value);
+    }
+
+    /// Publishes a value of the attribute at this place in the declaration, whose kind it has.
+    pub(crate) fn put(&mut self, place: usize, value: Value) {
+        if let Some(out) = self.0.outs.get_mut(place) {
+            *out = Some(value);
+        }
     }
 }
 
@@ -81,8 +111,19 @@ struct Meeting {
     /// Values that a break has returned to the module.
     returned: Option<Ports>,
     is_stopped: bool,
-    /// Result of the module's thread, once it has ended: the message of a panic.
-    ended: Option<Result<(), String>>,
+    /// End of the module's thread, once it has ended.
+    ended: Option<ThreadEnd>,
+}
+
+/// End of the thread of a background module.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum ThreadEnd {
+    /// The module was to end, or has nothing left to do.
+    Returned,
+    /// The module cannot go on: a sentence.
+    Failed(String),
+    /// The module's code panicked: the message.
+    Panicked(String),
 }
 
 impl Gate {
@@ -120,8 +161,8 @@ impl Gate {
     }
 
     /// On the module's thread: notes that it has ended.
-    pub(crate) fn has_ended(&self, result: Result<(), String>) {
-        self.lock().ended = Some(result);
+    pub(crate) fn has_ended(&self, end: ThreadEnd) {
+        self.lock().ended = Some(end);
         self.changed.notify_all();
     }
 
@@ -151,7 +192,7 @@ impl Gate {
     }
 
     /// Returns how the module's thread has ended, once.
-    pub(crate) fn take_end(&self) -> Option<Result<(), String>> {
+    pub(crate) fn take_end(&self) -> Option<ThreadEnd> {
         self.meeting.try_lock().ok()?.ended.take()
     }
 
@@ -159,5 +200,11 @@ impl Gate {
     pub(crate) fn stop(&self) {
         self.lock().is_stopped = true;
         self.changed.notify_all();
+    }
+
+    /// Waits for at most this time until the module's thread has ended.
+    pub(crate) fn wait_for_end(&self, patience: Duration) {
+        let lasts = |meeting: &mut Meeting| meeting.ended.is_none();
+        drop(self.changed.wait_timeout_while(self.lock(), patience, lasts));
     }
 }

@@ -6,8 +6,9 @@ use std::ops::Deref;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::thread;
+use std::time::Duration;
 
-use super::{Background, Declare, Declared, Exchange, Gate, Module, Ports};
+use super::{Background, Declare, Declared, Exchange, Fault, Gate, Module, Ports, ThreadEnd};
 use crate::attribute::{AttributeKind, AttributeName, is_name};
 
 /// A module that is made, and not loaded yet. The robot's turns do not wait while it is made.
@@ -25,9 +26,10 @@ pub(crate) enum Form<Y> {
     Background(ThreadGate),
 }
 
-/// Gate of a module's thread, which is asked to end when nothing needs the gate any more.
+/// Gate of a module's thread, which is asked to end when nothing needs the gate any more; and the maximum wait for its
+/// end.
 #[derive(Debug)]
-pub(crate) struct ThreadGate(Arc<Gate>);
+pub(crate) struct ThreadGate(Arc<Gate>, Duration);
 
 impl Deref for ThreadGate {
     type Target = Gate;
@@ -40,6 +42,9 @@ impl Deref for ThreadGate {
 impl Drop for ThreadGate {
     fn drop(&mut self) {
         self.0.stop();
+        if !self.1.is_zero() {
+            self.0.wait_for_end(self.1);
+        }
     }
 }
 
@@ -75,6 +80,10 @@ pub enum Refusal {
     },
     /// The system gives no thread for the module: its name, and the system's message.
     NoThread(String, String),
+    /// The child process of the module does not do its part: the module's name, and a sentence.
+    Process(String, String),
+    /// The run was asked to end while the module was made.
+    Ended,
 }
 
 impl<Y> Candidate<Y> {
@@ -100,14 +109,18 @@ impl<Y> Candidate<Y> {
         let exchange = Exchange::new(Arc::clone(&gate), ports);
         let own = Arc::clone(&gate);
         let run = move || {
-            if own.wait_for_begin() {
-                let result = catch_unwind(AssertUnwindSafe(|| Box::new(module).run(exchange)));
-                own.has_ended(result.map_err(panicked));
-            }
+            let has_begun = own.wait_for_begin();
+            let run = || if has_begun { Box::new(module).run(exchange) } else { Ok(()) };
+            own.has_ended(match catch_unwind(AssertUnwindSafe(run)) {
+                Ok(Ok(())) => ThreadEnd::Returned,
+                Ok(Err(Fault(sentence))) => ThreadEnd::Failed(sentence),
+                Err(payload) => ThreadEnd::Panicked(panicked(payload)),
+            });
         };
         let thread = thread::Builder::new().name(name.to_owned()).spawn(run);
         thread.map_err(|error| Refusal::NoThread(name.to_owned(), error.to_string()))?;
-        Ok(Self { name: name.into(), declared, form: Form::Background(ThreadGate(gate)) })
+        let gate = ThreadGate(gate, declared.farewell);
+        Ok(Self { name: name.into(), declared, form: Form::Background(gate) })
     }
 
     /// Name of the module.
@@ -167,6 +180,8 @@ impl fmt::Display for Refusal {
                 published.words()
             ),
             Self::NoThread(name, message) => write!(f, "the system gives no thread for module `{name}`: {message}"),
+            Self::Process(name, sentence) => write!(f, "module `{name}` cannot be loaded: {sentence}"),
+            Self::Ended => f.write_str("the run was asked to end while its modules were made"),
         }
     }
 }

@@ -2,6 +2,7 @@
 //! modules.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use mdle_compiler::alphabet::Unit;
 use mdle_runtime::Nanos;
@@ -27,6 +28,8 @@ pub(crate) struct Declared {
     pub(crate) priority: i32,
     pub(crate) relevance: Relevance,
     pub(crate) latency: Nanos,
+    /// Time for which the engine waits at most for the end of the module's thread.
+    pub(crate) farewell: Duration,
 }
 
 /// Source of a value that a module reads.
@@ -66,6 +69,8 @@ pub enum Relevance {
 pub(crate) struct Ports {
     pub(crate) outs: Vec<Option<Value>>,
     pub(crate) ins: Vec<Option<Reading>>,
+    /// Time of the last break, for a background module.
+    pub(crate) now: Nanos,
 }
 
 impl Ports {
@@ -88,30 +93,40 @@ impl Declare {
     /// Declares an attribute that the module publishes. Its name is a name of MDLe, unlike those of the module's other
     /// attributes and settings.
     pub fn publishes<T: Attribute>(&mut self, name: &str) -> Out<T> {
-        let about = self.about::<T>(name);
-        self.declared.publishes.push(about);
+        Out::new(self.publishes_as(name, T::KIND, None))
+    }
+
+    /// Declares an attribute of this kind, and returns its place; people read it in this unit, by default the SI unit.
+    pub(crate) fn publishes_as(&mut self, name: &str, kind: AttributeKind, unit: Option<Unit>) -> usize {
+        let about = self.about(name, kind);
+        self.declared.publishes.push(About { unit: unit.or(about.unit), ..about });
         self.ports.outs.push(None);
-        Out::new(self.ports.outs.len().saturating_sub(1))
+        self.ports.outs.len().saturating_sub(1)
     }
 
     /// Declares an attribute of another module that this one reads. The other module may be loaded later, or never; if
     /// it publishes the attribute with another kind, whichever of the two is loaded last is refused.
     pub fn reads<T: Attribute>(&mut self, module: &str, attribute: &str) -> In<T> {
+        In::new(self.reads_as(module, attribute, T::KIND))
+    }
+
+    /// Declares an attribute of another module that this one reads as this kind, and returns its place.
+    pub(crate) fn reads_as(&mut self, module: &str, attribute: &str, kind: AttributeKind) -> usize {
         for name in [module, attribute] {
             self.check_name(name);
         }
-        self.input(Source::Attribute(AttributeName::new(module, attribute), T::KIND), None)
+        self.input(Source::Attribute(AttributeName::new(module, attribute), kind), None)
     }
 
     /// Declares a setting of the module that people can change, with its value at first.
     pub fn setting<T: Attribute>(&mut self, name: &str, initial: T) -> In<T> {
-        let about = self.about::<T>(name);
+        let about = self.about(name, T::KIND);
         let value = initial.into_value();
         if value.has_nan() {
             self.refuse(format!("the setting `{name}` is NaN at first"));
         }
         let reading = Reading { value, at: Nanos::ZERO };
-        self.input(Source::Setting(about, reading.clone()), Some(reading))
+        In::new(self.input(Source::Setting(about, reading.clone()), Some(reading)))
     }
 
     /// Describes an attribute or a setting that was declared before: the unit in which people read and write it, empty
@@ -158,19 +173,24 @@ impl Declare {
         self.declared.latency = latency;
     }
 
-    fn input<T>(&mut self, source: Source, reading: Option<Reading>) -> In<T> {
-        self.declared.reads.push(source);
-        self.ports.ins.push(reading);
-        In::new(self.ports.ins.len().saturating_sub(1))
+    /// Sets the time for which the engine waits at most for the end of the module's thread, 0 by default.
+    pub(crate) fn farewell(&mut self, farewell: Duration) {
+        self.declared.farewell = farewell;
     }
 
-    fn about<T: Attribute>(&mut self, name: &str) -> About {
+    fn input(&mut self, source: Source, reading: Option<Reading>) -> usize {
+        self.declared.reads.push(source);
+        self.ports.ins.push(reading);
+        self.ports.ins.len().saturating_sub(1)
+    }
+
+    fn about(&mut self, name: &str, kind: AttributeKind) -> About {
         self.check_name(name);
         if self.declared.abouts().any(|about| &*about.name == name) {
             self.refuse(format!("`{name}` is declared twice"));
         }
-        let unit = T::KIND.quantity().and_then(mdle_compiler::alphabet::Kind::base_unit);
-        About { name: name.into(), kind: T::KIND, unit, doc: "" }
+        let unit = kind.quantity().and_then(mdle_compiler::alphabet::Kind::base_unit);
+        About { name: name.into(), kind, unit, doc: "" }
     }
 
     fn check_name(&mut self, name: &str) {

@@ -6,6 +6,7 @@ mod candidate;
 mod declare;
 
 use background::Gate;
+pub(crate) use background::ThreadEnd;
 pub use background::{Background, Exchange, Offer, Stopped};
 pub use candidate::{Candidate, Refusal};
 pub(crate) use candidate::{Form, ThreadGate, panicked};
@@ -20,7 +21,7 @@ use crate::attribute::{Attribute, In, Out, Reading};
 ///
 /// A module is called on any thread, but by one at a time.
 pub trait Module<Y>: Send {
-    /// Makes a turn: reads what was published up to the last break, and the robot's output of this turn.
+    /// Makes a turn: reads the robot's output of this turn, and what modules had published when the last turn ended.
     ///
     /// # Errors
     /// Why the module cannot go on, for the operator. It makes no further turn.

@@ -1,34 +1,69 @@
-//! The thread that compiles plans beside the turns: one at a time, and one waits.
+//! The thread that compiles plans beside the turns, one order after the other.
 
+use std::collections::VecDeque;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::path::PathBuf;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-use mdle_compiler::load::{Loaded, LoadedPlan};
+use mdle_compiler::load::LoadedPlan;
 
-use super::{EngineAlphabet, When};
+use super::{EngineAlphabet, StoredPlan, When};
 use crate::module::panicked;
 
-/// Compiles and loads the text of a plan.
+/// Maximum number of orders that wait.
+const WAITING: usize = 16;
+
+/// The text of plans.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum PlanSource {
+    /// A file.
+    File(PathBuf),
+    /// A text that was typed.
+    Text(String),
+}
+
+/// The plans of a text.
+pub struct CompiledPlans<A: EngineAlphabet> {
+    /// The plans that no other plan of the text uses.
+    pub plans: Vec<StoredPlan<A>>,
+    /// Diagnostics, for people; empty if there are none.
+    pub warnings: String,
+}
+
+/// Compiles and loads the plans of a text.
 ///
 /// # Errors
 /// The diagnostics, for people.
-pub type Compile<A> = dyn Fn(&str) -> Result<Arc<Loaded<A>>, String> + Send;
+pub type Compile<A> = dyn Fn(&PlanSource) -> Result<CompiledPlans<A>, String> + Send;
 
-/// A request to replace the plan.
-pub(crate) struct Order {
-    pub(crate) number: u32,
-    pub(crate) text: String,
-    pub(crate) when: When,
+/// A request that takes longer than a turn may.
+pub(crate) struct Order<A: EngineAlphabet> {
+    pub(crate) ticket: u32,
+    pub(crate) task: Task<A>,
+}
+
+pub(crate) enum Task<A: EngineAlphabet> {
+    /// Compiles plans, which are then stored. The only one takes over if there is a moment for it.
+    Compile(PlanSource, Option<When>),
+    /// Makes a stored plan ready to take over.
+    Begin(StoredPlan<A>, When),
 }
 
 /// Result of an order.
-pub(crate) struct Compiled<A: EngineAlphabet> {
-    pub(crate) number: u32,
-    pub(crate) when: When,
-    /// The plan before its first turn, or diagnostics.
-    pub(crate) plan: Result<LoadedPlan<A>, String>,
+pub(crate) struct Outcome<A: EngineAlphabet> {
+    pub(crate) ticket: u32,
+    /// The plans, or diagnostics.
+    pub(crate) product: Result<Product<A>, String>,
+}
+
+/// The plans that an order has made.
+pub(crate) struct Product<A: EngineAlphabet> {
+    /// Plans to be stored, and their warnings.
+    pub(crate) compiled: CompiledPlans<A>,
+    /// The plan that is to take over, before its first turn.
+    pub(crate) next: Option<(LoadedPlan<A>, When)>,
 }
 
 /// The thread, which ends when this value is dropped.
@@ -41,8 +76,8 @@ struct Counter<A: EngineAlphabet> {
 }
 
 struct State<A: EngineAlphabet> {
-    waiting: Option<Order>,
-    done: Vec<Compiled<A>>,
+    waiting: VecDeque<Order<A>>,
+    done: VecDeque<Outcome<A>>,
     quits: bool,
 }
 
@@ -52,59 +87,107 @@ impl<A: EngineAlphabet> Compiler<A> {
     /// # Errors
     /// The system gives no thread.
     pub(crate) fn new(compile: Box<Compile<A>>) -> io::Result<Self> {
-        let state = State { waiting: None, done: Vec::new(), quits: false };
+        let state = State { waiting: VecDeque::new(), done: VecDeque::new(), quits: false };
         let counter = Arc::new(Counter { state: Mutex::new(state), changed: Condvar::new() });
         let own = Arc::clone(&counter);
         thread::Builder::new().name("mdle compiler".to_owned()).spawn(move || own.serve(&compile))?;
         Ok(Self(counter))
     }
 
-    /// Gives an order; returns the one that has waited and is never carried out now.
-    pub(crate) fn order(&self, order: Order) -> Option<Order> {
-        let mut state = self.0.state.lock().unwrap_or_else(PoisonError::into_inner);
-        let superseded = state.waiting.replace(order);
+    /// Gives an order. If a plan is to take over, the order that has waited for the same is never carried out now, and
+    /// is returned.
+    ///
+    /// # Errors
+    /// Too many orders wait: a sentence.
+    pub(crate) fn order(&self, order: Order<A>) -> Result<Option<Order<A>>, String> {
+        let mut state = self.0.lock();
+        let superseded = if order.task.takes_over() { state.take_back() } else { None };
+        if state.waiting.len() >= WAITING {
+            return Err(format!("{WAITING} requests wait for the compiler already: try again later"));
+        }
+        state.waiting.push_back(order);
         self.0.changed.notify_all();
-        superseded
+        Ok(superseded)
     }
 
-    /// Takes back the order that waits.
-    pub(crate) fn take_back(&self) -> Option<Order> {
-        self.0.state.lock().unwrap_or_else(PoisonError::into_inner).waiting.take()
+    /// Takes back the order that waits for a plan to take over.
+    pub(crate) fn take_back(&self) -> Option<Order<A>> {
+        self.0.lock().take_back()
     }
 
-    /// Returns the next plan that is compiled; never waits.
-    pub(crate) fn done(&self) -> Option<Compiled<A>> {
-        let mut state = self.0.state.try_lock().ok()?;
-        if state.done.is_empty() { None } else { Some(state.done.remove(0)) }
+    /// Returns the next order that is carried out; never waits.
+    pub(crate) fn done(&self) -> Option<Outcome<A>> {
+        self.0.state.try_lock().ok()?.done.pop_front()
     }
 }
 
 impl<A: EngineAlphabet> Drop for Compiler<A> {
     fn drop(&mut self) {
-        self.0.state.lock().unwrap_or_else(PoisonError::into_inner).quits = true;
+        self.0.lock().quits = true;
         self.0.changed.notify_all();
     }
 }
 
+impl<A: EngineAlphabet> State<A> {
+    fn take_back(&mut self) -> Option<Order<A>> {
+        let place = self.waiting.iter().position(|order| order.task.takes_over())?;
+        self.waiting.remove(place)
+    }
+}
+
 impl<A: EngineAlphabet> Counter<A> {
+    fn lock(&self) -> MutexGuard<'_, State<A>> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Carries out orders until the compiler is to quit.
     fn serve(&self, compile: &Compile<A>) {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut state = self.lock();
         loop {
             if state.quits {
                 return;
             }
-            let Some(Order { number, text, when }) = state.waiting.take() else {
+            let Some(Order { ticket, task }) = state.waiting.pop_front() else {
                 state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
                 continue;
             };
             drop(state);
-            let plan = catch_unwind(AssertUnwindSafe(|| compile(&text).map(|loaded| loaded.plan())));
-            let plan = plan.unwrap_or_else(|payload| {
-                Err(format!("error: the compiler panicked, which is a bug: {}", panicked(payload)))
-            });
-            state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-            state.done.push(Compiled { number, when, plan });
+            let product = catch_unwind(AssertUnwindSafe(|| task.carry_out(compile)));
+            let product = product
+                .unwrap_or_else(|payload| Err(format!("the compiler panicked, which is a bug: {}", panicked(payload))));
+            state = self.lock();
+            state.done.push_back(Outcome { ticket, product });
+        }
+    }
+}
+
+impl<A: EngineAlphabet> Task<A> {
+    /// Returns `true` if a plan is to take over.
+    fn takes_over(&self) -> bool {
+        match self {
+            Self::Compile(_, when) => when.is_some(),
+            Self::Begin(..) => true,
+        }
+    }
+
+    fn carry_out(self, compile: &Compile<A>) -> Result<Product<A>, String> {
+        match self {
+            Self::Compile(source, when) => {
+                let compiled = compile(&source)?;
+                let next = match (when, compiled.plans.as_slice()) {
+                    (None, _) => None,
+                    (Some(when), [only]) => Some((only.loaded.plan(), when)),
+                    (Some(_), plans) => {
+                        let names = plans.iter().map(|plan| &*plan.name).collect::<Vec<_>>().join(", ");
+                        return Err(format!("the text has several plans, and one of them can drive: {names}"));
+                    }
+                };
+                Ok(Product { compiled, next })
+            }
+            Self::Begin(plan, when) => {
+                let compiled = CompiledPlans { plans: Vec::new(), warnings: String::new() };
+                Ok(Product { compiled, next: Some((plan.loaded.plan(), when)) })
+            }
         }
     }
 }

@@ -28,7 +28,7 @@ pub(super) fn published(reads: &'static [ModuleRead], board: &Board, now: Nanos)
     for (place, read) in reads.iter().enumerate().take(PUBLISHED) {
         let post = board.post(read.module, read.attribute);
         if let Some(post) = post {
-            check_kind(read, post)?;
+            check_kind(read, post).map_err(|sentence| Unready::OtherKind(format!("the plan {sentence}")))?;
         }
         match post.and_then(|post| number(post.reading.as_ref()?, now)) {
             Some(number) => numbers.set(place, Some(number)),
@@ -39,7 +39,7 @@ pub(super) fn published(reads: &'static [ModuleRead], board: &Board, now: Nanos)
 }
 
 /// Returns the numbers that a plan which runs reads at time `now`. A module may have vanished meanwhile.
-pub(super) fn current(reads: &'static [ModuleRead], board: &Board, now: Nanos) -> Published {
+pub(crate) fn current(reads: &'static [ModuleRead], board: &Board, now: Nanos) -> Published {
     let mut numbers = Published::new(reads);
     for (place, read) in reads.iter().enumerate().take(PUBLISHED) {
         let post = board.post(read.module, read.attribute);
@@ -49,18 +49,37 @@ pub(super) fn current(reads: &'static [ModuleRead], board: &Board, now: Nanos) -
     numbers
 }
 
+/// Compares the kinds of attributes with the units in which safety rules read them.
+///
+/// # Errors
+/// They differ: a sentence.
+pub(crate) fn check(reads: &[ModuleRead], board: &Board) -> Result<(), String> {
+    let posts = reads.iter().filter_map(|read| Some((read, board.post(read.module, read.attribute)?)));
+    let mut checked = posts.map(|(read, post)| check_kind(read, post));
+    checked.try_for_each(|checked| checked.map_err(|sentence| format!("a safety rule {sentence}")))
+}
+
+/// Returns the age at time `now` of the oldest of these attributes; one that no module has published is as old as the
+/// run.
+pub(crate) fn oldest<'r>(reads: impl Iterator<Item = &'r ModuleRead>, board: &Board, now: Nanos) -> Nanos {
+    let age = |read: &ModuleRead| {
+        let reading = board.post(read.module, read.attribute).and_then(|post| post.reading.as_ref());
+        now.since(reading.map_or(Nanos::ZERO, |reading| reading.at))
+    };
+    reads.map(age).max().unwrap_or(Nanos::ZERO)
+}
+
 /// Compares the kind of an attribute with the unit in which a plan reads it.
 ///
 /// # Errors
-/// They differ.
-fn check_kind(read: &ModuleRead, post: &Post) -> Result<(), Unready> {
+/// They differ: a sentence without a subject.
+fn check_kind(read: &ModuleRead, post: &Post) -> Result<(), String> {
     let Post { name, about, .. } = post;
     let quantity = about.kind.quantity();
     let unit = quantity.and_then(|kind| kind.base_unit()).map(|unit| unit.name);
     if quantity.is_none() || read.unit.is_some() && read.unit != unit {
         let expected = read.unit.unwrap_or("a number");
-        let sentence = format!("the plan reads {name} in {expected}, and it is {}", about.kind.words());
-        return Err(Unready::OtherKind(sentence));
+        return Err(format!("reads {name} in {expected}, and it is {}", about.kind.words()));
     }
     Ok(())
 }

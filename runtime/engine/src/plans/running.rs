@@ -1,5 +1,7 @@
 //! A plan that runs, or is about to, with its own clock.
 
+use std::sync::Arc;
+
 use mdle_compiler::load::LoadedPlan;
 use mdle_runtime::{Alphabet, Machine, ModuleRead, Nanos, Plan, Published, Turn, Watch};
 
@@ -32,7 +34,10 @@ where
 /// A plan of the engine.
 pub(crate) struct Running<A: Alphabet> {
     /// Number of the request that brought it.
+    pub(crate) ticket: u32,
+    /// Number of the plan among those that have begun, from 1; 0 before it begins.
     pub(crate) number: u32,
+    pub(crate) name: Arc<str>,
     /// The plan before its first turn.
     ready: Option<LoadedPlan<A>>,
     pub(crate) machine: Option<Machine<LoadedPlan<A>>>,
@@ -48,10 +53,20 @@ pub(crate) struct Running<A: Alphabet> {
 
 impl<A: Alphabet> Running<A> {
     /// Returns a plan before its first turn.
-    pub(crate) fn new(number: u32, plan: LoadedPlan<A>) -> Self {
+    pub(crate) fn new(ticket: u32, plan: LoadedPlan<A>) -> Self {
         let reads = Plan::reads(&plan);
-        let zero = Nanos::ZERO;
-        Self { number, ready: Some(plan), machine: None, zero, reads, waits_since: None, is_back: false }
+        let name = Plan::name(&plan, 0).into();
+        Self {
+            ticket,
+            number: 0,
+            name,
+            ready: Some(plan),
+            machine: None,
+            zero: Nanos::ZERO,
+            reads,
+            waits_since: None,
+            is_back: false,
+        }
     }
 
     /// Returns the numbers of modules that the plan reads in the turn at `now`; `None` if it cannot begin yet.
@@ -86,6 +101,13 @@ impl<A: Alphabet> Running<A> {
             machine.reenter(y, t);
         }
         machine.turn(y, t, watch)
+    }
+
+    /// Suspends the plan at this output, to which its last input has led.
+    pub(crate) fn suspend(&mut self, y: &A::Output) {
+        if let Some(machine) = &mut self.machine {
+            machine.suspend(y);
+        }
     }
 
     /// Lets the plan go on at `now` as if no time had passed since it was suspended. The law of its atom begins anew,

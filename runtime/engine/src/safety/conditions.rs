@@ -1,5 +1,6 @@
 //! The conditions of guards, compiled and loaded for a robot.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
@@ -8,12 +9,16 @@ use mdle_compiler::diagnostic::{Diagnostic, Severity, Sources};
 use mdle_compiler::fsm;
 use mdle_compiler::load::{self, LoadError, Loaded, LoadedPlan};
 use mdle_runtime as runtime;
-use mdle_runtime::{Machine, Nanos, Plan as _};
+use mdle_runtime::{Machine, ModuleRead, Nanos, PUBLISHED, Plan as _};
 
 use super::{Condition, Guard};
 
 /// The conditions of the guards of a safety file.
-pub struct Conditions<A: runtime::Alphabet>(Vec<Arc<Loaded<A>>>);
+pub struct Conditions<A: runtime::Alphabet> {
+    loaded: Vec<Arc<Loaded<A>>>,
+    /// Attributes of modules that they read.
+    reads: &'static [ModuleRead],
+}
 
 /// The conditions in a run.
 pub struct Watched<A: runtime::Alphabet> {
@@ -36,7 +41,7 @@ pub enum GuardError {
 
 impl<A: runtime::Alphabet> fmt::Debug for Conditions<A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Conditions of {} guards", self.0.len())
+        write!(f, "Conditions of {} guards", self.loaded.len())
     }
 }
 
@@ -59,13 +64,29 @@ impl<A: runtime::Alphabet> Conditions<A> {
         alphabet: &alphabet::Alphabet,
     ) -> Result<Self, GuardError> {
         let loaded = guards.iter().map(|guard| compiled(file, &guard.when, sources, alphabet));
-        Ok(Self(loaded.collect::<Result<_, _>>()?))
+        let loaded: Vec<_> = loaded.collect::<Result<_, _>>()?;
+        let reads: BTreeSet<_> =
+            loaded.iter().flat_map(|loaded| runtime::Plan::reads(&loaded.plan())).copied().collect();
+        if reads.len() > PUBLISHED {
+            let line = guards.first().map_or(1, |guard| guard.when.line);
+            let sentence =
+                format!("the guards read {} attributes of modules, and {PUBLISHED} is the most", reads.len());
+            return Err(GuardError::Unfit(line, sentence));
+        }
+        // A process reads one safety file.
+        Ok(Self { loaded, reads: Vec::from_iter(reads).leak() })
     }
 
     /// Returns the conditions before the first output of a run.
     #[must_use]
     pub fn watch(&self) -> Watched<A> {
-        Watched { loaded: self.0.clone(), machines: Vec::new(), fired: Vec::new() }
+        Watched { loaded: self.loaded.clone(), machines: Vec::new(), fired: Vec::new() }
+    }
+
+    /// Returns the attributes of modules that the conditions read.
+    #[must_use]
+    pub fn reads(&self) -> &'static [ModuleRead] {
+        self.reads
     }
 }
 

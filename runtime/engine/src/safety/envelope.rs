@@ -39,8 +39,10 @@ pub struct Envelope {
 pub enum RuleId {
     /// Every input is a number.
     Finite,
-    /// `[stale]`.
+    /// `output` of `[stale]`.
     Stale,
+    /// `module` of `[stale]`.
+    StaleModule,
     /// `[overrun]`.
     Overrun,
     /// `[contact]`.
@@ -118,14 +120,16 @@ impl Envelope {
     where
         Y: Bumpers + SonarRing,
     {
-        let Rules { contact, stale, overrun, guards, .. } = &self.rules;
+        let Rules { contact, stale, stale_module, overrun, guards, .. } = &self.rules;
         let finite = (!(asked.v.0.is_finite() && asked.omega.0.is_finite())).then_some((Then::End, RuleId::Finite));
         let stale = stale.filter(|(age, _)| now.since(y.now()) > *age).map(|(_, then)| (then, RuleId::Stale));
+        let module = stale_module.filter(|(age, _)| y.oldest_published() > *age);
+        let module = module.map(|(_, then)| (then, RuleId::StaleModule));
         let overrun = overrun.filter(|(turns, _)| self.late >= *turns).map(|(_, then)| (then, RuleId::Overrun));
         let contact = contact.filter(|_| y.pressed()).map(|then| (then, RuleId::Contact));
         let guards = guards.iter().zip(fired).enumerate().filter(|(_, (_, fired))| **fired);
         let guards = guards.map(|(number, (guard, _))| (guard.then, RuleId::Guard(number)));
-        let demands = [finite, stale, overrun, contact].into_iter().flatten().chain(guards);
+        let demands = [finite, stale, module, overrun, contact].into_iter().flatten().chain(guards);
         let demands = demands.filter(|(_, id)| !self.spent.contains(id));
         demands.reduce(|strictest, other| if other.0 > strictest.0 { other } else { strictest })
     }
@@ -202,6 +206,7 @@ impl Envelope {
         match id {
             RuleId::Finite => "not a number",
             RuleId::Stale => "stale",
+            RuleId::StaleModule => "stale module",
             RuleId::Overrun => "overrun",
             RuleId::Contact => "contact",
             RuleId::Guard(number) => self.rules.guards.get(number).map_or("", |guard| &guard.name),
@@ -214,10 +219,11 @@ impl Envelope {
 
     /// The rules that can decide.
     fn ids(&self) -> impl Iterator<Item = RuleId> + use<> {
-        let Rules { fences, contact, stale, overrun, guards, .. } = &self.rules;
+        let Rules { fences, contact, stale, stale_module, overrun, guards, .. } = &self.rules;
         let own = [
             (true, RuleId::Finite),
             (stale.is_some(), RuleId::Stale),
+            (stale_module.is_some(), RuleId::StaleModule),
             (overrun.is_some(), RuleId::Overrun),
             (contact.is_some(), RuleId::Contact),
             (true, RuleId::Speed),

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use mdle_host::{Intervention, Supervisor};
+use mdle_host::{Intervention, Pilot, Supervisor};
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
-use mdle_runtime::{Alphabet, Nanos, Twist};
+use mdle_runtime::{Alphabet, Nanos, Plan, Twist};
 
 use super::{Conditions, Envelope, Rules, Watched};
 
@@ -34,14 +34,26 @@ impl<A: Alphabet> Guardian<A> {
     }
 }
 
-impl<A> Supervisor<A::Output, Twist> for Guardian<A>
+impl<A> Guardian<A>
 where
     A: Alphabet<Input = Twist>,
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
 {
-    fn filter(&mut self, asked: Twist, y: &A::Output, t: Nanos) -> Twist {
+    /// Returns the input that the robot is sent instead of `asked`.
+    pub fn filtered(&mut self, asked: Twist, y: &A::Output, t: Nanos) -> Twist {
         let fired = self.conditions.fired(y, t);
         self.envelope.filter(asked, y, t, fired)
+    }
+}
+
+impl<A, B> Supervisor<B> for Guardian<A>
+where
+    A: Alphabet<Input = Twist>,
+    A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
+    B: Pilot<Plan: Plan<Output = A::Output, Input = Twist>>,
+{
+    fn filter(&mut self, asked: Twist, y: &A::Output, t: Nanos) -> Twist {
+        self.filtered(asked, y, t)
     }
 
     fn intervention(&self) -> Option<Intervention<'_>> {

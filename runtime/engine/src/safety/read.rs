@@ -31,10 +31,18 @@ pub fn read(text: &str) -> Result<Rules, RulesError> {
                 reading.rules.contact = Some(reading.then(section, &ALL)?);
             }
             "stale" => {
-                let section = file.table("stale", value)?.only(&["output", "then"])?;
-                let age = section.time("output", section.needed("output", "\"400ms\"")?)?;
-                let age = Nanos(u64::try_from(age.as_nanos()).unwrap_or(u64::MAX));
-                reading.rules.stale = Some((age, reading.then(section, &HOLD_OR_END)?));
+                let section = file.table("stale", value)?.only(&["output", "module", "then"])?;
+                let age = |key| {
+                    let age = section.get(key).map(|value| section.time(key, value)).transpose()?;
+                    Ok(age.map(|age| Nanos(u64::try_from(age.as_nanos()).unwrap_or(u64::MAX))))
+                };
+                let (output, module) = (age("output")?, age("module")?);
+                if module.is_none() {
+                    section.needed("output", "\"400ms\"")?;
+                }
+                let then = reading.then(section, &HOLD_OR_END)?;
+                reading.rules.stale = output.map(|age| (age, then));
+                reading.rules.stale_module = module.map(|age| (age, then));
             }
             "overrun" => {
                 let section = file.table("overrun", value)?.only(&["turns", "then"])?;
@@ -146,7 +154,8 @@ impl<'t, 'i> Reading<'t, 'i> {
 }
 
 /// Names that rules have already.
-const RESERVED: [&str; 7] = ["stale", "overrun", "contact", "speed", "turn_rate", "acceleration", "fence"];
+const RESERVED: [&str; 8] =
+    ["stale", "stale_module", "overrun", "contact", "speed", "turn_rate", "acceleration", "fence"];
 
 /// Reads the corners of a fence.
 fn corners(section: Section<'_, '_>, value: &Value<'_>) -> Result<Vec<[f64; 2]>, RulesError> {

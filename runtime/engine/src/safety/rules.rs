@@ -16,6 +16,8 @@ pub struct Rules {
     pub contact: Option<Then>,
     /// The age of an output from which it is stale, and what follows.
     pub stale: Option<(Nanos, Then)>,
+    /// The age of a value from which a module that the plan or a guard reads is stale, and what follows.
+    pub stale_module: Option<(Nanos, Then)>,
     /// The number of turns in a row that begin late, and what follows.
     pub overrun: Option<(u64, Then)>,
     /// Conditions of the plan language, in the order of the file.

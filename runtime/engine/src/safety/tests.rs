@@ -19,6 +19,7 @@ then = "retreat.mdle"
 
 [stale]
 output = "400ms"
+module = "2s"
 then = "hold"
 
 [overrun]
@@ -72,6 +73,7 @@ fn a_wrong_file_is_refused_with_line_and_cure() {
         "[stale]\nthen = \"hold\"",
         "[stale]\noutput = \"0s\"\nthen = \"hold\"",
         "[stale]\noutput = \"1s\"\nthen = \"hold forward\"",
+        "[stale]\nmodule = \"2m\"\nthen = \"hold\"",
         "[overrun]\nturns = 0\nthen = \"end\"",
         "[overrun]\nturns = 2.5\nthen = \"end\"",
         "[guards]\nnear = \"r0 < 1m\"",

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use mdle_host::{Break, Pace, Time};
+use mdle_host::{Break, Pace, Pilot, Time};
 use mdle_quantity::Quantity;
 use mdle_runtime::Nanos;
 
@@ -37,7 +37,7 @@ impl SessionClock {
     }
 
     /// Tells those whose turn or whose time has come.
-    pub(super) fn made<Y, U>(&mut self, moment: &Break<'_, Y, U>) {
+    pub(super) fn made<B: Pilot>(&mut self, moment: &Break<'_, B>) {
         let now = said(moment);
         if let Some((_, reply)) = self.steps.take_if(|(turns, _)| moment.turns >= *turns || moment.is_over) {
             self.is_paused = true;
@@ -54,11 +54,11 @@ impl SessionClock {
         }
     }
 
-    fn step<Y, U>(&mut self, arguments: &[String], moment: &Break<'_, Y, U>, reply: Reply) {
+    fn step<B: Pilot>(&mut self, arguments: &[String], moment: &Break<'_, B>, reply: Reply) {
         let count = match arguments {
             [] => Ok(1),
             [count] => match read(count, Kind::Integer) {
-                Ok(Value::Integer(count @ 1..)) => Ok(count),
+                Ok(Value::Integer(count @ 1..)) => Ok(count.unsigned_abs()),
                 Ok(_) => Err("`step` takes a number of turns from 1".to_owned()),
                 Err(refusal) => Err(format!("`step`: {refusal}")),
             },
@@ -74,7 +74,7 @@ impl SessionClock {
         }
     }
 
-    fn wait<Y, U>(&mut self, arguments: &[String], moment: &Break<'_, Y, U>, reply: Reply) {
+    fn wait<B: Pilot>(&mut self, arguments: &[String], moment: &Break<'_, B>, reply: Reply) {
         let time = match arguments {
             [] => Ok(Nanos::MAX),
             [time] => match read(time, SECONDS) {
@@ -112,15 +112,15 @@ impl SessionClock {
 const REAL: &str = "the time of a real robot goes on by itself";
 
 /// The time of a break, for an answer.
-fn said<Y, U>(moment: &Break<'_, Y, U>) -> String {
+fn said<B: Pilot>(moment: &Break<'_, B>) -> String {
     let (turns, t) = (moment.turns, Value::Quantity(moment.t.seconds(), "s"));
     let word = if turns == 1 { "turn" } else { "turns" };
     let over = if moment.is_over { ", and the plan is over" } else { "" };
     format!("{turns} {word}, {t}{over}")
 }
 
-impl<Y, U> Served<Break<'_, Y, U>> for SessionClock {
-    fn nodes(&self) -> Vec<(String, Node)> {
+impl<B: Pilot> Served<Break<'_, B>> for SessionClock {
+    fn nodes(&self, _: &Break<'_, B>) -> Vec<(String, Node)> {
         let nodes = [
             ("now", Node::reading(SECONDS, "time of the last turn")),
             ("turns", Node::reading(Kind::Integer, "number of turns that have been made")),
@@ -141,7 +141,7 @@ impl<Y, U> Served<Break<'_, Y, U>> for SessionClock {
         nodes.map(|(name, node)| (format!("/clock/{name}"), node)).into()
     }
 
-    fn values(&self, moment: &Break<'_, Y, U>, to: &mut Vec<Option<Value>>) {
+    fn values(&self, moment: &Break<'_, B>, to: &mut Vec<Option<Value>>) {
         let pace = match self.pace {
             None => "real".to_owned(),
             Some(Pace::Max) => "max".to_owned(),
@@ -150,15 +150,15 @@ impl<Y, U> Served<Break<'_, Y, U>> for SessionClock {
         let state = if self.is_paused { "stands" } else { "runs" };
         to.extend([
             Some(Value::Quantity(moment.t.seconds(), "s")),
-            Some(Value::Integer(moment.turns)),
+            Some(Value::count(moment.turns)),
             Some(Value::Quantity(self.period.as_secs_f64(), "s")),
-            Some(Value::Text(pace)),
-            Some(Value::Text(state.to_owned())),
+            Some(Value::Text(pace.into())),
+            Some(Value::text(state)),
         ]);
         to.extend([const { None }; 4]);
     }
 
-    fn change(&mut self, path: &str, change: &Change, moment: &Break<'_, Y, U>, reply: Reply) {
+    fn change(&mut self, path: &str, change: &Change, moment: &mut Break<'_, B>, reply: Reply) {
         match (path, change) {
             ("/clock/step", Change::Call(arguments)) => return self.step(arguments, moment, reply),
             ("/clock/wait", Change::Call(arguments)) => return self.wait(arguments, moment, reply),

@@ -20,14 +20,20 @@ pub(super) enum Command {
 }
 
 /// The commands, with their arguments and what they do.
-pub(super) const COMMANDS: [(&str, &str, &str); 13] = [
+pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
     ("ls", "[PATH]", "list a folder"),
     ("cd", "[PATH]", "change the folder"),
     ("pwd", "", "print the folder"),
     ("get", "PATH", "print a value"),
     ("set", "PATH VALUE", "set a value, as in `set /clock/pace 2`"),
     ("call", "PATH [ARGUMENTS]", "call a method"),
+    ("watch", "PATH", "print a value when it changes"),
+    ("unwatch", "PATH", "print it no longer"),
     ("help", "[PATH]", "print the commands, or what a node is"),
+    ("load_plan", "FILE", "compile the plans of a file, and store them"),
+    ("swap", "PLAN [now|atom|plan]", "let a stored plan take over: now, when the atom ends, or when the plan ends"),
+    ("cancel", "", "take back a plan that has not taken over yet"),
+    ("rollback", "", "end the plan on trial: the plan before it goes on"),
     ("pause", "", "stop stepped time"),
     ("resume", "", "let stepped time go on"),
     ("step", "[N]", "make N turns, and stop the time"),
@@ -61,20 +67,23 @@ pub(super) fn command(line: &str, here: &str) -> Result<Command, String> {
     let call = |path: &str, arguments| Ok(Command::Ask(path.to_owned(), Operation::Change(Change::Call(arguments))));
     let path = || path(first, here);
     match name {
-        "pwd" | "pause" | "resume" | "quit" if !rest.is_empty() => usage(),
-        "ls" | "cd" | "get" | "help" if !others.is_empty() => usage(),
-        "get" | "call" | "set" | "pace" if first.is_empty() => usage(),
+        "pwd" | "pause" | "resume" | "quit" | "cancel" | "rollback" if !rest.is_empty() => usage(),
+        "ls" | "cd" | "get" | "help" | "watch" | "unwatch" if !others.is_empty() => usage(),
+        "get" | "call" | "set" | "pace" | "load_plan" | "swap" | "watch" | "unwatch" if first.is_empty() => usage(),
         "set" if others.trim().is_empty() => usage(),
         "ls" => Ok(Command::Ask(path(), Operation::List)),
         "cd" if first.is_empty() => Ok(Command::Enter("/".to_owned())),
         "cd" => Ok(Command::Enter(path())),
         "pwd" => Ok(Command::Here),
         "get" => Ok(Command::Ask(path(), Operation::Get)),
+        "watch" | "unwatch" => Ok(Command::Ask(path(), Operation::Watch(name == "watch"))),
         "set" => Ok(Command::Ask(path(), Operation::Change(Change::Set(others.trim().to_owned())))),
         "call" => call(&path(), others.split_whitespace().map(str::to_owned).collect()),
         "help" => Ok(Command::Help((!first.is_empty()).then(path))),
         "pace" => Ok(Command::Ask("/clock/pace".to_owned(), Operation::Change(Change::Set(rest.to_owned())))),
         "quit" => Ok(Command::Quit),
+        "swap" => call(&format!("/plans/{first}/run"), others.split_whitespace().map(str::to_owned).collect()),
+        "load_plan" | "cancel" | "rollback" => call(&format!("/usr/mdle/{name}"), words()),
         other => call(&format!("/clock/{other}"), words()),
     }
 }

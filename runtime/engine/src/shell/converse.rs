@@ -1,6 +1,7 @@
 //! The front end of the shell: reads commands, asks the hub, and prints the answers.
 
 use std::io::Write;
+use std::time::Duration;
 
 use mdle_runtime::PrintableLines;
 
@@ -48,10 +49,12 @@ pub fn converse(
         if command == Ok(Command::Quit) {
             break;
         }
+        let mut asker = Asker { hub, conversation, out };
         let answer = match command {
-            Ok(command) => carried_out(hub, conversation.role, command, &mut here),
+            Ok(command) => asker.carried_out(command, &mut here),
             Err(sentence) => Answer::Refused(sentence),
         };
+        asker.report();
         let has_ended = answer == Answer::Ended;
         let sentence = match answer {
             Answer::Entries(entries) => Ok(entries.join("\n")),
@@ -80,33 +83,59 @@ pub fn converse(
     is_well
 }
 
-/// Carries out a command.
-fn carried_out(hub: &Hub, role: Role, command: Command, here: &mut String) -> Answer {
-    match command {
-        Command::Nothing | Command::Quit => Answer::Done(String::new()),
-        Command::Ask(path, operation) => hub.ask(Request { path, operation, role }),
-        Command::Here => Answer::Done(here.clone()),
-        Command::Help(None) => {
-            let line =
-                |(name, arguments, does): (&str, &str, &str)| format!("{:20} {does}", format!("{name} {arguments}"));
-            Answer::Done(COMMANDS.map(line).join("\n"))
+/// The side of a conversation that asks.
+struct Asker<'a> {
+    hub: &'a Hub,
+    conversation: &'a Conversation,
+    out: &'a mut dyn Write,
+}
+
+impl Asker<'_> {
+    /// Asks the hub, and prints reports while its answer is waited for.
+    fn ask(&mut self, path: &str, operation: Operation) -> Answer {
+        let request = Request { path: path.to_owned(), operation, role: self.conversation.role };
+        self.hub.wait(request, &mut || self.report())
+    }
+
+    /// Prints the reports of what is watched. At a terminal others do it, also while a line is typed.
+    fn report(&mut self) {
+        if self.conversation.file.is_some() {
+            while let Some(report) = self.hub.report(Duration::ZERO) {
+                let _ = writeln!(self.out, "{}", PrintableLines(&report));
+            }
+            let _ = self.out.flush();
         }
-        Command::Help(Some(path)) => {
-            match (hub.ask(Request { path: path.clone(), operation: Operation::List, role }), hub.node(&path)) {
+    }
+
+    /// Carries out a command.
+    fn carried_out(&mut self, command: Command, here: &mut String) -> Answer {
+        match command {
+            Command::Nothing | Command::Quit => Answer::Done(String::new()),
+            Command::Ask(path, operation) => self.ask(&path, operation),
+            Command::Here => Answer::Done(here.clone()),
+            Command::Help(None) => {
+                let line = |(name, arguments, does): (&str, &str, &str)| {
+                    format!("{:28} {does}", format!("{name} {arguments}"))
+                };
+                Answer::Done(COMMANDS.map(line).join("\n"))
+            }
+            Command::Help(Some(path)) => match (self.ask(&path, Operation::List), self.hub.node(&path)) {
                 (Answer::Ended, _) => Answer::Ended,
                 (_, Some(node)) => Answer::Done(described(&path, &node)),
                 (answer, None) => answer,
-            }
-        }
-        Command::Enter(path) => {
-            let answer = hub.ask(Request { path: path.clone(), operation: Operation::List, role });
-            match answer {
-                Answer::Entries(_) => {
-                    *here = path;
-                    Answer::Done(String::new())
+            },
+            Command::Enter(path) => {
+                let answer = self.ask(&path, Operation::List);
+                match answer {
+                    Answer::Entries(_) => {
+                        *here = path;
+                        Answer::Done(String::new())
+                    }
+                    Answer::Refused(_) if self.hub.node(&path).is_some() => {
+                        Answer::Refused(format!("`{path}` is no folder"))
+                    }
+                    other @ (Answer::Value(_) | Answer::Done(_) | Answer::Refused(_) | Answer::Ended) => other,
                 }
-                Answer::Refused(_) if hub.node(&path).is_some() => Answer::Refused(format!("`{path}` is no folder")),
-                other @ (Answer::Value(_) | Answer::Done(_) | Answer::Refused(_) | Answer::Ended) => other,
             }
         }
     }
@@ -117,6 +146,10 @@ fn described(path: &str, node: &Node) -> String {
     let kind = match node.kind {
         Kind::Flag => "true or false".to_owned(),
         Kind::Integer => "a whole number".to_owned(),
+        Kind::Number => "a number".to_owned(),
+        Kind::Pose => "two lengths and an angle".to_owned(),
+        Kind::Numbers => "numbers".to_owned(),
+        Kind::Bytes => "bytes, as hexadecimal digits".to_owned(),
         Kind::Quantity(_, unit) => format!("in {unit}"),
         Kind::Text => "text".to_owned(),
     };

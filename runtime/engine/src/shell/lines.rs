@@ -7,7 +7,7 @@ use rustyline::error::ReadlineError;
 use rustyline::highlight::Highlighter;
 use rustyline::hint::Hinter;
 use rustyline::validate::Validator;
-use rustyline::{Config, Context, Editor, Helper};
+use rustyline::{Config, Context, Editor, ExternalPrinter, Helper};
 
 use crate::tree::Hub;
 
@@ -94,6 +94,9 @@ impl<R: BufRead> Lines for Input<R> {
     }
 }
 
+/// Prints whole lines above the line that is being typed.
+pub type PrintAbove = dyn FnMut(&str) -> io::Result<()> + Send;
+
 /// Lines of a person at a terminal, with completion of paths. Ctrl-C and Ctrl-D end them.
 pub struct Terminal {
     editor: Editor<Completion, rustyline::history::MemHistory>,
@@ -101,16 +104,18 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// Returns the lines that are typed at this process's terminal.
+    /// Returns the lines that are typed at this process's terminal, and what prints above the line that is typed.
     ///
     /// # Errors
     /// The terminal cannot be used.
-    pub fn open(hub: Hub) -> io::Result<Self> {
+    pub fn open(hub: Hub) -> io::Result<(Self, Box<PrintAbove>)> {
         let history = rustyline::history::MemHistory::new();
         let editor = Editor::with_history(Config::builder().build(), history);
         let mut editor = editor.map_err(io::Error::other)?;
         editor.set_helper(Some(Completion { hub, here: "/".to_owned() }));
-        Ok(Self { editor, number: 0 })
+        let mut printer = editor.create_external_printer().map_err(io::Error::other)?;
+        let print = move |text: &str| printer.print(text.to_owned()).map_err(io::Error::other);
+        Ok((Self { editor, number: 0 }, Box::new(print)))
     }
 }
 

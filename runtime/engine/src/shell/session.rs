@@ -7,7 +7,11 @@ use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{Alphabet, Nanos, Twist};
 
 use super::clock::SessionClock;
-use super::parts::{EnginePart, PlanPart, RobotPart};
+use super::modules::ModulesPart;
+use super::parts::{EnginePart, RobotPart, SafetyPart};
+use super::plans::PlansPart;
+use crate::engine::Engine;
+use crate::plans::EngineAlphabet;
 use crate::safety::Guardian;
 use crate::tree::{Desk, Served};
 
@@ -18,69 +22,104 @@ const LOOK: Duration = Duration::from_millis(20);
 #[derive(Debug)]
 pub struct Session<A: Alphabet> {
     desk: Desk,
-    guardian: Option<Guardian<A>>,
+    parts: Parts<A>,
+    request: StopRequest,
+}
+
+/// The parts of the tree.
+#[derive(Debug)]
+struct Parts<A: Alphabet> {
+    robot: RobotPart,
+    plans: PlansPart,
+    modules: ModulesPart,
     clock: SessionClock,
     engine: EnginePart,
-    request: StopRequest,
+    safety: SafetyPart<A>,
 }
 
 impl<A: Alphabet> Session<A> {
     /// Returns the session of a run with these terms. If `is_paused`, stepped time stands before the first turn.
     #[must_use]
     pub fn new(desk: Desk, guardian: Option<Guardian<A>>, terms: &RunTerms, is_paused: bool) -> Self {
-        let clock = SessionClock::new(terms.period, terms.time, is_paused);
-        Self { desk, guardian, clock, engine: EnginePart::default(), request: terms.request.clone() }
+        let parts = Parts {
+            robot: RobotPart,
+            plans: PlansPart::default(),
+            modules: ModulesPart::default(),
+            clock: SessionClock::new(terms.period, terms.time, is_paused),
+            engine: EnginePart::default(),
+            safety: SafetyPart(guardian),
+        };
+        Self { desk, parts, request: terms.request.clone() }
     }
 }
 
-impl<A> Supervisor<A::Output, Twist> for Session<A>
+impl<A> Supervisor<Engine<A>> for Session<A>
 where
-    A: Alphabet<Input = Twist>,
+    A: EngineAlphabet<Input = Twist>,
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
 {
     fn filter(&mut self, asked: Twist, y: &A::Output, t: Nanos) -> Twist {
-        self.guardian.as_mut().map_or(asked, |guardian| guardian.filter(asked, y, t))
+        match &mut self.parts.safety.0 {
+            Some(guardian) => guardian.filtered(asked, y, t),
+            None => asked,
+        }
     }
 
     fn intervention(&self) -> Option<Intervention<'_>> {
-        self.guardian.as_ref()?.intervention()
+        self.parts.safety.0.as_ref()?.envelope().intervention()
     }
 
-    fn at_break(&mut self, moment: &Break<'_, A::Output, Twist>) -> Orders {
-        self.clock.made(moment);
+    fn at_break(&mut self, moment: &mut Break<'_, Engine<A>>) -> Orders {
+        self.parts.clock.made(moment);
         self.serve(moment, None);
-        while self.clock.is_paused && !moment.is_over && !self.engine.quits && !self.request.is_made() {
+        while self.parts.clock.is_paused && !moment.is_over && !self.parts.engine.quits && !self.request.is_made() {
             self.serve(moment, Some(LOOK));
         }
-        Orders { pace: self.clock.ordered.take(), end: self.engine.quits }
+        Orders { pace: self.parts.clock.ordered.take(), end: self.parts.engine.quits }
+    }
+
+    fn take_requests(&mut self) -> Vec<String> {
+        self.desk.take_carried_out()
     }
 }
 
 impl<A> Session<A>
 where
-    A: Alphabet<Input = Twist>,
+    A: EngineAlphabet<Input = Twist>,
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
 {
     /// Serves requests; waits for one for this long, if it is to wait.
-    fn serve(&mut self, moment: &Break<'_, A::Output, Twist>, wait: Option<Duration>) {
-        let Self { desk, guardian, clock, engine, .. } = self;
-        let (mut robot, mut plan) = (RobotPart, PlanPart);
-        let mut all: [&mut dyn Served<Break<'_, A::Output, Twist>>; 5];
-        let mut unguarded: [&mut dyn Served<Break<'_, A::Output, Twist>>; 4];
-        let parts: &mut [&mut dyn Served<_>] = match guardian {
-            Some(guardian) => {
-                all = [&mut robot, &mut plan, clock, engine, guardian];
-                &mut all
-            }
-            None => {
-                unguarded = [&mut robot, &mut plan, clock, engine];
-                &mut unguarded
-            }
+    fn serve(&mut self, moment: &mut Break<'_, Engine<A>>, wait: Option<Duration>) {
+        let Self { desk, parts, .. } = self;
+        let has_changed = match wait {
+            Some(time) => desk.wait(&mut parts.all(), moment, time),
+            None => desk.serve(&mut parts.all(), moment),
         };
-        match wait {
-            None if moment.is_over => desk.close(parts, moment),
-            None => desk.serve(parts, moment),
-            Some(time) => desk.wait(parts, moment, time),
+        parts.proceed(moment.pilot, has_changed);
+        if wait.is_none() && moment.is_over {
+            desk.close(&parts.all(), moment, moment.t);
+        } else {
+            desk.publish(&parts.all(), moment, moment.t);
         }
+    }
+}
+
+impl<A> Parts<A>
+where
+    A: EngineAlphabet<Input = Twist>,
+    A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
+{
+    fn all<'b>(&mut self) -> [&mut dyn Served<Break<'b, Engine<A>>>; 6] {
+        let Self { robot, plans, modules, clock, engine, safety } = self;
+        [robot, plans, modules, clock, engine, safety]
+    }
+
+    /// Carries on with the requests that take longer than a break, and answers those that are decided.
+    fn proceed(&mut self, pilot: &mut Engine<A>, has_changed: bool) {
+        if has_changed || self.plans.waits() || self.modules.waits() {
+            let loaded = pilot.progress();
+            loaded.into_iter().for_each(|(number, result)| self.modules.answer(number, result));
+        }
+        self.plans.answer(pilot.plans_mut()).into_iter().for_each(|message| pilot.tell(message));
     }
 }

@@ -226,7 +226,7 @@ struct Busy {
 }
 
 impl Background for Busy {
-    fn run(self: Box<Self>, mut exchange: Exchange) {
+    fn run(self: Box<Self>, mut exchange: Exchange) -> Result<(), Fault> {
         loop {
             let number = self.exchanges.fetch_add(1, Ordering::SeqCst);
             let ended = exchange.exchange(|offer| {
@@ -236,7 +236,7 @@ impl Background for Busy {
                 offer.publish(self.out, offer.get(self.read).unwrap_or(-1.0));
             });
             if ended.is_err() || self.dies == Some((number, false)) {
-                return;
+                return Ok(());
             }
         }
     }
@@ -290,13 +290,13 @@ fn a_background_module_that_dies_is_reported() {
 fn stepped_time_waits_for_a_background_module() {
     struct Asleep(Out<f64>);
     impl Background for Asleep {
-        fn run(self: Box<Self>, mut exchange: Exchange) {
+        fn run(self: Box<Self>, mut exchange: Exchange) -> Result<(), Fault> {
             let mut count = 0.0;
             loop {
                 std::thread::sleep(Duration::from_millis(5));
                 count += 1.0;
                 if exchange.exchange(|offer| offer.publish(self.0, count)).is_err() {
-                    return;
+                    return Ok(());
                 }
             }
         }

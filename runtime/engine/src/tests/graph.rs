@@ -93,7 +93,7 @@ pub(super) struct Slow {
 }
 
 impl Background for Slow {
-    fn run(mut self: Box<Self>, mut exchange: Exchange) {
+    fn run(mut self: Box<Self>, mut exchange: Exchange) -> Result<(), Fault> {
         loop {
             std::thread::sleep(Duration::from_micros(self.chance.below(300)));
             let (own, Self { reads, out, .. }) = (self.chance.next(), &*self);
@@ -103,7 +103,7 @@ impl Background for Slow {
                 offer.publish(*out, (state >> 12) as f64);
             });
             if ended.is_err() {
-                return;
+                return Ok(());
             }
         }
     }

@@ -5,9 +5,12 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, sync_channel};
 use std::sync::{Arc, PoisonError};
 use std::time::Duration;
 
+use mdle_runtime::Nanos;
+
 use super::hub::{Hub, QUEUE};
-use super::shared::{Pending, Shared, Snapshot};
-use super::{Answer, Change, Node, Tree, Value};
+use super::shared::{NO_VALUE, Pending, Shared, Snapshot};
+use super::watch::{REPORTS, Watches};
+use super::{Answer, Change, Node, Operation, Tree, Value};
 
 /// Maximum number of changes that one break carries out.
 const EACH_BREAK: usize = 16;
@@ -26,14 +29,14 @@ impl Reply {
 /// A part of the engine that has nodes in the tree. `M` is what it is shown at a break.
 pub trait Served<M: ?Sized> {
     /// Returns its nodes with their paths, in a fixed order.
-    fn nodes(&self) -> Vec<(String, Node)>;
+    fn nodes(&self, moment: &M) -> Vec<(String, Node)>;
 
     /// Adds a value for each node, in the order of [`Served::nodes`]: `None` for methods, and while there is none.
     fn values(&self, moment: &M, to: &mut Vec<Option<Value>>);
 
     /// Carries out a change of one of its nodes, which its kind, access and role permit. It may keep `reply`, to answer
     /// in a later break.
-    fn change(&mut self, path: &str, change: &Change, moment: &M, reply: Reply);
+    fn change(&mut self, path: &str, change: &Change, moment: &mut M, reply: Reply);
 }
 
 /// The side that serves requests at breaks. It never waits, unless it is asked to.
@@ -45,6 +48,11 @@ pub struct Desk {
     /// For each node of the tree, the place of its value among those of the parts.
     places: Vec<usize>,
     number: u64,
+    watches: Watches,
+    /// Replies to requests to watch an attribute; they follow its first report.
+    watchers: Vec<Reply>,
+    /// The changes that breaks have carried out since they were taken, as commands.
+    carried_out: Vec<String>,
 }
 
 impl Desk {
@@ -53,51 +61,96 @@ impl Desk {
     pub fn with_hub() -> (Hub, Self) {
         let (queue, requests) = sync_channel(QUEUE);
         let shared = Arc::new(Shared::default());
-        let hub = Hub::new(Arc::clone(&shared), queue);
-        (hub, Self { shared, requests, tree: Arc::default(), places: Vec::new(), number: 0 })
+        let (reporter, reports) = sync_channel(REPORTS);
+        let hub = Hub::new(Arc::clone(&shared), queue, reports);
+        let desk = Self {
+            shared,
+            requests,
+            tree: Arc::default(),
+            places: Vec::new(),
+            number: 0,
+            watches: Watches::new(reporter),
+            watchers: Vec::new(),
+            carried_out: Vec::new(),
+        };
+        (hub, desk)
     }
 
-    /// Carries out the changes that wait, and hands out a snapshot if somebody wants one.
-    pub fn serve<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &M) {
+    /// Carries out the changes that wait; returns `true` if there were any.
+    pub fn serve<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &mut M) -> bool {
+        let mut served = false;
         for _ in 0..EACH_BREAK {
             let Ok(pending) = self.requests.try_recv() else { break };
-            Self::carry_out(pending, parts, moment);
+            self.carry_out(pending, parts, moment);
+            served = true;
         }
-        self.publish(parts, moment);
+        served
     }
 
-    /// Carries out the changes that wait at the last break, and hands out a snapshot that stays.
-    pub fn close<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &M) {
-        self.shared.wanted.store(true, Ordering::SeqCst);
-        self.serve(parts, moment);
-    }
-
-    /// Waits for a change, for at most this long, and carries it out.
-    pub fn wait<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &M, time: Duration) {
+    /// Waits for a change, for at most this long, and carries it out; returns `true` if there was one.
+    pub fn wait<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &mut M, time: Duration) -> bool {
         match self.requests.recv_timeout(time) {
-            Ok(pending) => Self::carry_out(pending, parts, moment),
+            Ok(pending) => {
+                self.carry_out(pending, parts, moment);
+                return true;
+            }
             Err(RecvTimeoutError::Timeout) => {}
             // Without front ends there is nothing to wait for.
             Err(RecvTimeoutError::Disconnected) => std::thread::sleep(time),
         }
-        self.publish(parts, moment);
+        false
     }
 
-    fn carry_out<M: ?Sized>(Pending { request, reply }: Pending, parts: &mut [&mut dyn Served<M>], moment: &M) {
-        let super::Operation::Change(change) = &request.operation else { return };
+    /// Hands out the last snapshot of the run, which stays.
+    pub fn close<M: ?Sized>(&mut self, parts: &[&mut dyn Served<M>], moment: &M, t: Nanos) {
+        self.shared.wanted.store(true, Ordering::SeqCst);
+        self.publish(parts, moment, t);
+    }
+
+    /// Returns the changes that breaks have carried out since the last call, as commands of the shell.
+    pub fn take_carried_out(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.carried_out)
+    }
+
+    fn carry_out<M: ?Sized>(
+        &mut self,
+        Pending { request, reply }: Pending,
+        parts: &mut [&mut dyn Served<M>],
+        moment: &mut M,
+    ) {
         let path = request.path.as_str();
-        match parts.iter_mut().find(|part| part.nodes().iter().any(|(known, _)| known == path)) {
+        let change = match &request.operation {
+            Operation::Change(change) => change,
+            Operation::Watch(begins) => {
+                let result = if *begins { self.watches.add(path) } else { self.watches.remove(path) };
+                match result {
+                    Ok(()) if *begins => self.watchers.push(Reply(reply)),
+                    Ok(()) => Reply(reply).answer(Answer::Done(String::new())),
+                    Err(sentence) => Reply(reply).answer(Answer::Refused(sentence)),
+                }
+                return;
+            }
+            Operation::List | Operation::Get => return,
+        };
+        self.carried_out.push(request.to_string());
+        match parts.iter_mut().find(|part| part.nodes(moment).iter().any(|(known, _)| known == path)) {
             Some(part) => part.change(path, change, moment, Reply(reply)),
             None => Reply(reply).answer(Answer::Refused(format!("`{path}` has gone"))),
         }
     }
 
-    /// Hands out a snapshot if somebody wants one.
-    fn publish<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &M) {
-        if !self.shared.wanted.load(Ordering::SeqCst) {
+    /// Hands out a snapshot if somebody wants one, and reports what is watched; the last turn was at `t`.
+    pub fn publish<M: ?Sized>(&mut self, parts: &[&mut dyn Served<M>], moment: &M, t: Nanos) {
+        self.show(parts, moment, t);
+        self.watchers.drain(..).for_each(|reply| reply.answer(Answer::Done(String::new())));
+    }
+
+    fn show<M: ?Sized>(&mut self, parts: &[&mut dyn Served<M>], moment: &M, t: Nanos) {
+        let is_wanted = self.shared.wanted.load(Ordering::SeqCst);
+        if !is_wanted && !self.watches.are_due(t) {
             return;
         }
-        let nodes: Vec<(String, Node)> = parts.iter().flat_map(|part| part.nodes()).collect();
+        let nodes: Vec<(String, Node)> = parts.iter().flat_map(|part| part.nodes(moment)).collect();
         if self.tree.len() != nodes.len() || nodes.iter().any(|(path, node)| self.tree.get(path) != Some(node)) {
             let tree: Tree = nodes.iter().cloned().collect();
             let place = |path: &String| nodes.iter().position(|(known, _)| known == path).unwrap_or(usize::MAX);
@@ -108,7 +161,16 @@ impl Desk {
         for part in parts.iter() {
             part.values(moment, &mut values);
         }
-        let values = self.places.iter().map(|place| values.get_mut(*place).and_then(Option::take)).collect();
+        let values: Vec<_> = self.places.iter().map(|place| values.get_mut(*place).and_then(Option::take)).collect();
+        let tree = &self.tree;
+        self.watches.report(t, |path| {
+            let place = tree.keys().position(|known| known == path);
+            let value = place.and_then(|place| values.get(place)).and_then(Option::as_ref);
+            value.map_or_else(|| NO_VALUE.to_owned(), Value::to_string)
+        });
+        if !is_wanted {
+            return;
+        }
         self.number = self.number.saturating_add(1);
         let snapshot = Arc::new(Snapshot { tree: Arc::clone(&self.tree), values, number: self.number });
         // A front end holds the lock while it copies a pointer; the next break tries again.

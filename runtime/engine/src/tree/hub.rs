@@ -2,17 +2,19 @@
 
 use std::collections::BTreeSet;
 use std::sync::atomic::Ordering;
-use std::sync::mpsc::{SyncSender, TrySendError, channel};
-use std::sync::{Arc, MutexGuard, PoisonError};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use mdle_compiler::alphabet::nearest;
 
-use super::shared::{Pending, Shared, Snapshot};
+use super::shared::{NO_VALUE, Pending, Shared, Snapshot};
 use super::{Access, Answer, Change, Node, Operation, Request, Tree};
 
 /// Maximum number of changes that wait for a break.
 pub const QUEUE: usize = 64;
+/// Time between two calls of what a front end does while it waits.
+const LOOK: Duration = Duration::from_millis(50);
 /// Maximum wait for a snapshot that is not older than the question.
 const PATIENCE: Duration = Duration::from_secs(2);
 
@@ -21,12 +23,13 @@ const PATIENCE: Duration = Duration::from_secs(2);
 pub struct Hub {
     shared: Arc<Shared>,
     queue: SyncSender<Pending>,
+    reports: Arc<Mutex<Receiver<String>>>,
 }
 
 impl Hub {
     /// Returns the front ends' side of what both sides share.
-    pub(super) fn new(shared: Arc<Shared>, queue: SyncSender<Pending>) -> Self {
-        Self { shared, queue }
+    pub(super) fn new(shared: Arc<Shared>, queue: SyncSender<Pending>, reports: Receiver<String>) -> Self {
+        Self { shared, queue, reports: Arc::new(Mutex::new(reports)) }
     }
 
     /// Waits for the first break of the run; returns `false` if the run has ended before it.
@@ -38,9 +41,28 @@ impl Hub {
         kept.number > 0
     }
 
-    /// Answers a request. A change waits until a break has carried it out; after the run, only readings are answered.
+    /// Returns `true` once the run has ended.
+    #[must_use]
+    pub fn has_ended(&self) -> bool {
+        self.shared.ended.load(Ordering::SeqCst)
+    }
+
+    /// Returns the next report of a watched attribute: its time, path and value. Waits for it for this long.
+    #[must_use]
+    pub fn report(&self, wait: Duration) -> Option<String> {
+        self.reports.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(wait).ok()
+    }
+
+    /// Answers a request as [`Hub::wait`] does.
     #[must_use]
     pub fn ask(&self, request: Request) -> Answer {
+        self.wait(request, &mut || ())
+    }
+
+    /// Answers a request. A change waits until a break has carried it out, and `meanwhile` is called now and then;
+    /// after the run, only readings are answered.
+    #[must_use]
+    pub fn wait(&self, request: Request, meanwhile: &mut dyn FnMut()) -> Answer {
         let Some(snapshot) = self.snapshot() else { return Answer::Ended };
         let path = request.path.trim_end_matches('/').to_owned();
         match request.operation {
@@ -55,16 +77,23 @@ impl Hub {
                     _ if snapshot.tree.get(&path).is_some_and(|node| node.access == Access::Call) => {
                         Answer::Refused(format!("`{path}` is a method: call it"))
                     }
-                    Some(None) | None => Answer::Value("(no value yet)".to_owned()),
+                    Some(None) | None => Answer::Value(NO_VALUE.to_owned()),
                 },
             },
             Operation::Change(ref change) => {
                 let Some(node) = snapshot.tree.get(&path) else { return nothing(&snapshot.tree, &path) };
                 match refusal(&path, node, change, &request) {
                     Some(refusal) => Answer::Refused(refusal),
-                    None => self.change(Request { path, ..request }),
+                    None => self.change(Request { path, ..request }, meanwhile),
                 }
             }
+            Operation::Watch(_) => match snapshot.tree.get(&path) {
+                None => nothing(&snapshot.tree, &path),
+                Some(node) if node.access == Access::Call => {
+                    Answer::Refused(format!("`{path}` is a method: it has no value"))
+                }
+                Some(_) => self.change(Request { path, ..request }, meanwhile),
+            },
         }
     }
 
@@ -86,10 +115,16 @@ impl Hub {
     }
 
     /// Hands a change over, and waits for its answer.
-    fn change(&self, request: Request) -> Answer {
+    fn change(&self, request: Request, meanwhile: &mut dyn FnMut()) -> Answer {
         let (reply, answer) = channel();
         match self.queue.try_send(Pending { request, reply }) {
-            Ok(()) => answer.recv().unwrap_or(Answer::Ended),
+            Ok(()) => loop {
+                match answer.recv_timeout(LOOK) {
+                    Ok(answer) => break answer,
+                    Err(RecvTimeoutError::Timeout) => meanwhile(),
+                    Err(RecvTimeoutError::Disconnected) => break Answer::Ended,
+                }
+            },
             Err(TrySendError::Full(_)) => {
                 Answer::Refused(format!("{QUEUE} changes are waiting already: try again later"))
             }

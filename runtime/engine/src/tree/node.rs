@@ -38,10 +38,18 @@ pub enum Kind {
     Flag,
     /// A whole number.
     Integer,
-    /// A number with this unit, which is the one of the quantity that [`Quantity::read`] returns.
+    /// A number without a unit.
+    Number,
+    /// A number with this unit, which is one of the quantity.
     Quantity(Quantity, &'static str),
     /// Text.
     Text,
+    /// A place and a heading in the plane: two lengths and an angle.
+    Pose,
+    /// Numbers without a unit.
+    Numbers,
+    /// Bytes, as hexadecimal digits.
+    Bytes,
 }
 
 /// The roles of those who ask. Each may do what those before it may.

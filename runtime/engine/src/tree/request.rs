@@ -1,5 +1,7 @@
 //! Requests to the tree, and their answers: the same from wherever they come.
 
+use std::fmt;
+
 use super::Role;
 
 /// A request.
@@ -22,6 +24,27 @@ pub enum Operation {
     Get,
     /// Sets or calls: waits for a break.
     Change(Change),
+    /// Reports an attribute when it changes, from the next break on, if this is `true`, or no longer: see
+    /// [`Hub::report`](super::Hub::report).
+    Watch(bool),
+}
+
+impl fmt::Display for Request {
+    /// Writes the request as a command of the shell.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { path, operation, .. } = self;
+        match operation {
+            Operation::List => write!(f, "ls {path}"),
+            Operation::Get => write!(f, "get {path}"),
+            Operation::Change(Change::Set(text)) => write!(f, "set {path} {text}"),
+            Operation::Change(Change::Call(arguments)) => {
+                write!(f, "call {path}")?;
+                arguments.iter().try_for_each(|argument| write!(f, " {argument}"))
+            }
+            Operation::Watch(true) => write!(f, "watch {path}"),
+            Operation::Watch(false) => write!(f, "unwatch {path}"),
+        }
+    }
 }
 
 /// A change, which a break carries out.
@@ -42,7 +65,7 @@ pub enum Answer {
     Value(String),
     /// The change was carried out: a sentence, which may be empty.
     Done(String),
-    /// The request was refused: a sentence.
+    /// The request was refused; the sentence says why.
     Refused(String),
     /// The run has ended, or has not begun: there is nobody to ask.
     Ended,

@@ -6,6 +6,9 @@ use std::sync::{Arc, Condvar, Mutex};
 
 use super::{Answer, Request, Tree, Value};
 
+/// Text of an attribute that has no value.
+pub(super) const NO_VALUE: &str = "(no value yet)";
+
 /// Everything that can be read, as it was at one break.
 #[derive(Debug, Default)]
 pub(super) struct Snapshot {

@@ -1,6 +1,7 @@
 //! Values of attributes, as they are shown and typed: quantities have the units of plans.
 
-use std::fmt;
+use std::fmt::{self, Write as _};
+use std::sync::Arc;
 
 use mdle_quantity::Quantity;
 
@@ -12,28 +13,76 @@ pub enum Value {
     /// Of [`Kind::Flag`].
     Flag(bool),
     /// Of [`Kind::Integer`].
-    Integer(u64),
+    Integer(i64),
+    /// Of [`Kind::Number`].
+    Number(f64),
     /// Of [`Kind::Quantity`], in the unit of the kind.
     Quantity(f64, &'static str),
     /// Of [`Kind::Text`].
-    Text(String),
+    Text(Arc<str>),
+    /// Of [`Kind::Pose`]: two lengths in metres and an angle in degrees.
+    Pose([f64; 3]),
+    /// Of [`Kind::Numbers`].
+    Numbers(Arc<[f64]>),
+    /// Of [`Kind::Bytes`].
+    Bytes(Arc<[u8]>),
+}
+
+impl Value {
+    /// Returns a text.
+    #[must_use]
+    pub fn text(text: &str) -> Self {
+        Self::Text(text.into())
+    }
+
+    /// Returns a number that counts something.
+    #[must_use]
+    pub fn count(count: u64) -> Self {
+        Self::Integer(i64::try_from(count).unwrap_or(i64::MAX))
+    }
 }
 
 impl fmt::Display for Value {
-    /// Writes the value as it may be typed: quantities to a millionth.
+    /// Writes the value as it may be typed: numbers with units to a millionth.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Flag(flag) => write!(f, "{flag}"),
             Self::Integer(number) => write!(f, "{number}"),
-            Self::Quantity(number, _) if number.is_infinite() => write!(f, "none"),
-            Self::Quantity(number, unit) => {
-                let text = format!("{number:.6}");
-                let text = text.trim_end_matches('0').trim_end_matches('.');
-                write!(f, "{}{unit}", if text == "-0" { "0" } else { text })
-            }
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Quantity(number, unit) => write!(f, "{}", Rounded(*number, unit)),
             Self::Text(text) => f.write_str(text),
+            Self::Pose([x, y, theta]) => {
+                write!(f, "{} {} {}", Rounded(*x, "m"), Rounded(*y, "m"), Rounded(*theta, "deg"))
+            }
+            Self::Numbers(numbers) => separated(f, numbers.iter()),
+            Self::Bytes(bytes) => bytes.iter().try_for_each(|byte| write!(f, "{byte:02x}")),
         }
     }
+}
+
+/// A number with its unit, rounded to a millionth; infinity is `none`.
+struct Rounded(f64, &'static str);
+
+impl fmt::Display for Rounded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(number, unit) = self;
+        if number.is_infinite() {
+            return f.write_str("none");
+        }
+        let text = format!("{number:.6}");
+        let text = text.trim_end_matches('0').trim_end_matches('.');
+        write!(f, "{}{unit}", if text == "-0" { "0" } else { text })
+    }
+}
+
+fn separated<T: fmt::Display>(f: &mut fmt::Formatter<'_>, parts: impl Iterator<Item = T>) -> fmt::Result {
+    for (place, part) in parts.enumerate() {
+        if place > 0 {
+            f.write_char(' ')?;
+        }
+        write!(f, "{part}")?;
+    }
+    Ok(())
 }
 
 /// Reads a value of this kind.
@@ -48,22 +97,54 @@ pub fn read(text: &str, kind: Kind) -> Result<Value, String> {
             _ => Err(format!("expected true or false, found `{text}`")),
         },
         Kind::Integer => {
-            let number = text.parse().ok().filter(|_| text.bytes().all(|byte| byte.is_ascii_digit()));
+            let digits = text.strip_prefix('-').unwrap_or(text);
+            let number = text.parse().ok().filter(|_| digits.bytes().all(|byte| byte.is_ascii_digit()));
             number.map(Value::Integer).ok_or_else(|| format!("expected a whole number, found `{text}`"))
         }
-        Kind::Quantity(quantity, unit) => quantity_of(text, quantity, unit),
-        Kind::Text => Ok(Value::Text(text.to_owned())),
+        Kind::Number => number(text).map(Value::Number).ok_or_else(|| format!("expected a number, found `{text}`")),
+        Kind::Quantity(quantity, unit) => quantity_of(text, quantity, unit).map(|number| Value::Quantity(number, unit)),
+        Kind::Text => Ok(Value::text(text)),
+        Kind::Pose => {
+            let [x, y, theta] = text.split_whitespace().collect::<Vec<_>>()[..] else {
+                return Err(format!("expected two lengths and an angle, such as `1m 0.5m 90deg`; found `{text}`"));
+            };
+            let length = |text| quantity_of(text, Quantity::Length, "m");
+            Ok(Value::Pose([length(x)?, length(y)?, quantity_of(theta, Quantity::Angle, "deg")?]))
+        }
+        Kind::Numbers => {
+            let numbers: Option<Vec<f64>> = text.split_whitespace().map(number).collect();
+            let numbers = numbers.ok_or_else(|| format!("expected numbers between spaces, found `{text}`"))?;
+            Ok(Value::Numbers(numbers.into()))
+        }
+        Kind::Bytes => {
+            let pairs = text.as_bytes().chunks(2);
+            let byte = |pair: &[u8]| match pair {
+                [first, second] if first.is_ascii_hexdigit() && second.is_ascii_hexdigit() => {
+                    u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok()
+                }
+                [..] => None,
+            };
+            let bytes: Option<Vec<u8>> = pairs.map(byte).collect();
+            let bytes = bytes.ok_or_else(|| format!("expected two hexadecimal digits a byte, found `{text}`"))?;
+            Ok(Value::Bytes(bytes.into()))
+        }
     }
 }
 
-fn quantity_of(text: &str, quantity: Quantity, unit: &'static str) -> Result<Value, String> {
-    if text.parse::<f64>().is_ok_and(f64::is_finite) {
+fn number(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+/// Reads a number with a unit of this quantity, and returns it in `unit`.
+fn quantity_of(text: &str, quantity: Quantity, unit: &str) -> Result<f64, String> {
+    if number(text).is_some() {
         return Err(format!("`{text}` has no unit: write `{text}{unit}`"));
     }
     let read = quantity.read(text, unit);
     // A number alone has been refused.
     let number = read.map_err(|refusal| refusal.replace(&format!(", or a number in {unit}"), ""))?;
-    Ok(Value::Quantity(number, unit))
+    let (_, factor, divisor) = Quantity::of_unit(unit).unwrap_or((quantity, 1.0, 1.0));
+    Ok(number * divisor / factor)
 }
 
 #[cfg(test)]
@@ -83,6 +164,19 @@ mod tests {
             (read("true", Kind::Flag), read("7", Kind::Integer)),
             (Ok(Value::Flag(true)), Ok(Value::Integer(7)))
         );
+        let length = Kind::Quantity(Quantity::Length, "cm");
+        assert_eq!(read("1.5m", length), Ok(Value::Quantity(150.0, "cm")));
+        let typed = [
+            ("-7", Kind::Integer),
+            ("0.1", Kind::Number),
+            ("1m -0.5m 90deg", Kind::Pose),
+            ("1 -2.5 1000", Kind::Numbers),
+            ("00ff7a", Kind::Bytes),
+            ("", Kind::Numbers),
+        ];
+        for (text, kind) in typed {
+            assert_eq!(read(text, kind).map(|value| value.to_string()), Ok(text.to_owned()));
+        }
     }
 
     #[test]
@@ -96,10 +190,15 @@ mod tests {
             ("NaN", speed),
             ("", speed),
             ("yes", Kind::Flag),
-            ("-1", Kind::Integer),
             ("+1", Kind::Integer),
             ("1.5", Kind::Integer),
             ("99999999999999999999", Kind::Integer),
+            ("inf", Kind::Number),
+            ("1m 2m", Kind::Pose),
+            ("1m 2m 3", Kind::Pose),
+            ("1 x", Kind::Numbers),
+            ("0", Kind::Bytes),
+            ("+1é", Kind::Bytes),
         ];
         insta::assert_snapshot!(refused.map(|(text, kind)| read(text, kind).unwrap_err()).join("\n"), @"
         `40` has no unit: write `40m/s`
@@ -109,10 +208,15 @@ mod tests {
         `NaN` is not a number with a unit: expected a speed, such as `5m/s`
         `` is not a number with a unit: expected a speed, such as `5m/s`
         expected true or false, found `yes`
-        expected a whole number, found `-1`
         expected a whole number, found `+1`
         expected a whole number, found `1.5`
         expected a whole number, found `99999999999999999999`
+        expected a number, found `inf`
+        expected two lengths and an angle, such as `1m 0.5m 90deg`; found `1m 2m`
+        `3` has no unit: write `3deg`
+        expected numbers between spaces, found `1 x`
+        expected two hexadecimal digits a byte, found `0`
+        expected two hexadecimal digits a byte, found `+1é`
         ");
     }
 }

@@ -1,0 +1,73 @@
+//! Moments at which plans take over, and the events of plans at run time.
+
+use std::fmt;
+use std::sync::Arc;
+
+/// Moment at which a new plan takes over. In each case the robot has exactly one input in that turn, that of the new
+/// plan's first turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum When {
+    /// In the next turn.
+    Now,
+    /// In the turn in which the current atom ends.
+    AtomEnds,
+    /// In the turn in which the current plan is over.
+    PlanEnds,
+}
+
+impl When {
+    /// Every moment, with the word by which people name it.
+    pub const ALL: [(&'static str, Self); 3] = [("now", Self::Now), ("atom", Self::AtomEnds), ("plan", Self::PlanEnds)];
+}
+
+impl fmt::Display for When {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Now => "in the next turn",
+            Self::AtomEnds => "when the atom ends",
+            Self::PlanEnds => "when the plan ends",
+        })
+    }
+}
+
+/// An event of a request, by the number that the request returned; the first plan has number 1.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum PlanEvent {
+    /// Nothing has changed: the diagnostics of a text, or a sentence.
+    Refused(u32, String),
+    /// The text has warnings: the diagnostics. Another event follows.
+    Warned(u32, String),
+    /// The plans of these names are stored.
+    Stored(u32, Vec<Arc<str>>),
+    /// Another request came before this one took over, and replaces it.
+    Superseded(u32),
+    /// The plan is compiled, and takes over when its moment comes.
+    Armed(u32),
+    /// The plan was cancelled before it took over.
+    Cancelled(u32),
+    /// The plan has taken over: this was its first turn.
+    Began(u32),
+    /// The trial of the plan is over, and the plan before it is gone.
+    Accepted(u32),
+    /// The plan on trial was ended, and the plan before it goes on.
+    RolledBack {
+        /// The plan that was ended.
+        from: u32,
+        /// The plan that goes on.
+        to: u32,
+        /// Why: a sentence.
+        why: String,
+    },
+}
+
+/// Reason why there is nothing to roll back to: no plan is on trial.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NoTrial;
+
+impl fmt::Display for NoTrial {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("no plan is on trial, so there is none to roll back to")
+    }
+}
+
+impl std::error::Error for NoTrial {}

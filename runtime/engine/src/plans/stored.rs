@@ -1,0 +1,63 @@
+//! The plans that are compiled and wait by their names.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use mdle_compiler::load::Loaded;
+
+use super::EngineAlphabet;
+
+/// Maximum number of stored plans.
+pub const MOST_STORED: usize = 64;
+
+/// A plan that was compiled.
+pub struct StoredPlan<A: EngineAlphabet> {
+    /// Name of the plan.
+    pub name: Arc<str>,
+    /// The text of its file.
+    pub text: Arc<str>,
+    /// The plan before it begins.
+    pub loaded: Arc<Loaded<A>>,
+}
+
+impl<A: EngineAlphabet> Clone for StoredPlan<A> {
+    fn clone(&self) -> Self {
+        let Self { name, text, loaded } = self;
+        Self { name: Arc::clone(name), text: Arc::clone(text), loaded: Arc::clone(loaded) }
+    }
+}
+
+/// Plans by their names.
+pub(crate) struct Store<A: EngineAlphabet>(BTreeMap<Arc<str>, StoredPlan<A>>);
+
+impl<A: EngineAlphabet> Default for Store<A> {
+    fn default() -> Self {
+        Self(BTreeMap::new())
+    }
+}
+
+impl<A: EngineAlphabet> Store<A> {
+    /// Stores plans; returns those that had their names before.
+    ///
+    /// # Errors
+    /// There would be more than [`MOST_STORED`]: a sentence, and the plans. Nothing has changed then.
+    pub(crate) fn put(&mut self, plans: Vec<StoredPlan<A>>) -> Result<Vec<StoredPlan<A>>, Vec<StoredPlan<A>>> {
+        let new = plans.iter().filter(|plan| !self.0.contains_key(&plan.name)).count();
+        if self.0.len().saturating_add(new) > MOST_STORED {
+            return Err(plans);
+        }
+        Ok(plans.into_iter().filter_map(|plan| self.0.insert(Arc::clone(&plan.name), plan)).collect())
+    }
+
+    pub(crate) fn get(&self, name: &str) -> Option<&StoredPlan<A>> {
+        self.0.get(name)
+    }
+
+    pub(crate) fn remove(&mut self, name: &str) -> Option<StoredPlan<A>> {
+        self.0.remove(name)
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &StoredPlan<A>> {
+        self.0.values()
+    }
+}

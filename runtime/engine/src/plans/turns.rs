@@ -1,0 +1,201 @@
+//! The turns of plans: which plan makes the turn, and what follows from its result.
+
+use std::sync::Arc;
+
+use mdle_compiler::load::LoadedPlan;
+use mdle_host::Transitions;
+use mdle_runtime::{ModuleRead, Nanos, Published, Turn};
+
+use super::compiler::{Compiler, Outcome, Product};
+use super::flight::{Flight, Landed, PlanModule};
+use super::running::Running;
+use super::{Driving, EngineAlphabet, NoTrial, PlanEvent, Plans, When};
+use crate::board::Board;
+
+/// Result of the plan's turn.
+pub(crate) enum PlanTurn<U> {
+    /// The plan has made its turn.
+    Made(Turn<U>),
+    /// The plan has not ended its turn yet.
+    Late,
+    /// The plan panicked: the message.
+    Panicked(String),
+}
+
+impl<A: EngineAlphabet> Plans<A> {
+    /// Lays the plan's turn with output `y` at time `now` on the desk of its module; returns the numbers of modules
+    /// that the plan reads. A plan that cannot begin yet makes no turn.
+    ///
+    /// # Errors
+    /// Why the first plan never begins: a sentence.
+    pub(crate) fn take_off(&mut self, y: &A::Output, now: Nanos, board: &Board) -> Result<Option<Published>, String> {
+        let next = self.ready_to_follow(now, board);
+        let Some(mut flight) = self.current.take() else { return Ok(None) };
+        if let Some(suspended) = self.resumes.take() {
+            flight.current.resume(suspended, now);
+        }
+        if let Some((next, when, published)) = next {
+            flight.published = published;
+            if when == When::Now {
+                let mut old = std::mem::replace(&mut flight.current, next);
+                old.suspend(y);
+                self.begins(old, &mut flight.current, now);
+            } else {
+                flight.next = Some((next, when));
+            }
+        }
+        let published = flight.current.published(board, now);
+        if let Ok(Some(_)) = published {
+            flight.transitions.clear();
+            (flight.turn, flight.at) = (None, now);
+            self.desk.lay(flight);
+        } else {
+            self.current = Some(flight);
+        }
+        published
+    }
+
+    /// Takes the plan that is armed if it can begin in the turn at `now`, with the numbers of modules that it reads.
+    fn ready_to_follow(&mut self, now: Nanos, board: &Board) -> Option<(Running<A>, When, Published)> {
+        let (mut next, when) = self.armed.take_if(|_| self.current.is_some())?;
+        match next.published(board, now) {
+            Ok(Some(published)) => return Some((next, when, published)),
+            Ok(None) => self.armed = Some((next, when)),
+            Err(sentence) => {
+                self.events.push(PlanEvent::Refused(next.ticket, sentence));
+                self.discard(next);
+            }
+        }
+        None
+    }
+
+    /// Takes the plan's turn at time `now` from the desk; `transitions` takes those of the plan that drives now.
+    pub(crate) fn land(&mut self, now: Nanos, transitions: &mut Transitions) -> PlanTurn<A::Input> {
+        let Landed { flight, replaced, panic } = self.desk.take();
+        if let Some(message) = panic {
+            return PlanTurn::Panicked(message);
+        }
+        let Some(mut flight) = flight else { return PlanTurn::Late };
+        // The input of a turn that was late comes too late.
+        let turn = flight.turn.take().filter(|_| flight.at == now);
+        if let Some(old) = replaced {
+            self.begins(old, &mut flight.current, now);
+        }
+        if now >= self.trial_ends
+            && let Some((old, _)) = self.suspended.take()
+        {
+            self.discard(old);
+            self.events.push(PlanEvent::Accepted(flight.current.ticket));
+        }
+        // A request may have come while the turn was late.
+        let armed = flight.next.take();
+        self.armed = self.armed.take().or(armed);
+        std::mem::swap(transitions, &mut flight.transitions);
+        self.current = Some(flight);
+        turn.map_or(PlanTurn::Late, PlanTurn::Made)
+    }
+
+    /// At a break: takes the result of one order of the compiler.
+    pub(crate) fn arm(&mut self) {
+        let Some(Outcome { ticket, product }) = self.compiler.as_ref().and_then(Compiler::done) else { return };
+        let product = product.and_then(|Product { compiled, next }| {
+            if !compiled.warnings.is_empty() {
+                self.events.push(PlanEvent::Warned(ticket, compiled.warnings));
+            }
+            let names = compiled.plans.iter().map(|plan| Arc::clone(&plan.name)).collect();
+            self.store_all(compiled.plans).map(|()| (names, next))
+        });
+        match product {
+            Ok((_, Some((plan, when)))) => self.arm_plan(ticket, plan, when),
+            Ok((names, None)) => self.events.push(PlanEvent::Stored(ticket, names)),
+            Err(diagnostics) => self.events.push(PlanEvent::Refused(ticket, diagnostics)),
+        }
+    }
+
+    /// Ends the plan on trial for this reason; the plan before it goes on in the next turn at its atom, as if no time
+    /// had passed for it.
+    ///
+    /// # Errors
+    /// No plan is on trial.
+    pub(crate) fn rollback(&mut self, why: &str) -> Result<(), NoTrial> {
+        let (old, suspended) = self.suspended.take().ok_or(NoTrial)?;
+        self.resumes = Some(suspended);
+        let from = self.drives(&old, "rolled back".to_owned());
+        let to = old.ticket;
+        self.take_over(old);
+        self.events.push(PlanEvent::RolledBack { from, to, why: why.to_owned() });
+        Ok(())
+    }
+
+    /// Replaces the plan that drives at once and without a trial, as for a supervisor; a plan that is armed is
+    /// cancelled.
+    pub(crate) fn divert(&mut self, plan: LoadedPlan<A>) {
+        self.cancel();
+        self.last = self.last.saturating_add(1);
+        let mut plan = Running::new(self.last, plan);
+        plan.number = self.next_number();
+        self.drives(&plan, String::new());
+        self.take_over(plan);
+        if let Some((old, _)) = self.suspended.take() {
+            self.discard(old);
+        }
+        self.resumes = None;
+        self.events.push(PlanEvent::Began(self.last));
+    }
+
+    /// Returns `true` while the turn of the plan that drives is late, or after it has panicked.
+    pub(crate) fn is_late(&self) -> bool {
+        self.current.is_none()
+    }
+
+    /// Returns the attributes of modules that plans read: the plan that drives, the next one, and the suspended one.
+    pub(crate) fn reads(&self) -> impl Iterator<Item = &'static ModuleRead> + Clone {
+        let next = |flight: &Flight<A>| flight.next.as_ref().map(|(next, _)| next.reads);
+        let current = self.current.iter().flat_map(move |flight| [Some(flight.current.reads), next(flight)]).flatten();
+        let armed = self.armed.iter().map(|(armed, _)| armed.reads);
+        let suspended = self.suspended.iter().map(|(suspended, _)| suspended.reads);
+        current.chain(armed).chain(suspended).flatten()
+    }
+
+    /// Returns the module that makes the turns of these plans.
+    pub(crate) fn module(&self) -> PlanModule<A> {
+        PlanModule(Arc::clone(&self.desk))
+    }
+
+    /// Notes that a plan has replaced `old` in the turn at `now`, and suspends that one.
+    fn begins(&mut self, old: Running<A>, new: &mut Running<A>, now: Nanos) {
+        new.number = self.next_number();
+        if let Some((older, _)) = self.suspended.replace((old, now)) {
+            self.discard(older);
+        }
+        self.trial_ends = Nanos(now.0.saturating_add(self.trial.0));
+        self.drives(new, format!("main set to {}", new.name));
+        self.events.push(PlanEvent::Began(new.ticket));
+    }
+
+    fn next_number(&mut self) -> u32 {
+        self.begun = self.begun.saturating_add(1);
+        self.begun
+    }
+
+    /// Notes that a plan drives from now on, for this reason; returns the request of the one before.
+    fn drives(&mut self, plan: &Running<A>, reason: String) -> u32 {
+        let driving = Driving { number: plan.number, ticket: plan.ticket, name: Arc::clone(&plan.name) };
+        self.reason = reason;
+        std::mem::replace(&mut self.driving, driving).ticket
+    }
+
+    /// Puts a plan in the place of the one that drives. If that one panicked or hangs, its thread keeps it.
+    fn take_over(&mut self, plan: Running<A>) {
+        match &mut self.current {
+            Some(flight) => {
+                let old = std::mem::replace(&mut flight.current, plan);
+                self.discard(old);
+            }
+            None => {
+                self.current = Some(Flight::new(plan));
+                self.desk = Arc::default();
+            }
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! The modules in the tree: `/usr/NAME` for each that is loaded, `/lib/NAME` for each that can be loaded (paper,
+//! III-H).
+
+use std::time::Duration;
+
+use mdle_host::Break;
+use mdle_quantity::Quantity;
+use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Volts};
+
+use crate::attribute::{self, AttributeKind};
+use crate::engine::{Engine, PLAN, Standing};
+use crate::module::{About, Refusal};
+use crate::plans::EngineAlphabet;
+use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
+
+/// The methods and readings that every module has, in the order of their values.
+const OWN: [(&str, Node); 4] = [
+    (
+        ".state",
+        Node::reading(Kind::Text, "state of the module: `active`, `stopped`, `late`, `given up`, `failed`, `ended`"),
+    ),
+    (".start", Node::method(Role::Admin, "lets the module make turns again")),
+    (".stop", Node::method(Role::Admin, "stops the module until it is started")),
+    (".unload", Node::method(Role::Admin, "unloads the module; its attributes vanish")),
+];
+
+/// The modules, and the requests to load some that have not been answered.
+#[derive(Debug, Default)]
+pub(super) struct ModulesPart {
+    waiting: Vec<(u32, Reply)>,
+}
+
+impl ModulesPart {
+    /// Returns `true` if a request has not been answered.
+    pub(super) fn waits(&self) -> bool {
+        !self.waiting.is_empty()
+    }
+
+    /// Answers the request of this number to load a module.
+    pub(super) fn answer(&mut self, number: u32, result: Result<(), Refusal>) {
+        let Some(place) = self.waiting.iter().position(|(waiting, _)| *waiting == number) else { return };
+        let (_, reply) = self.waiting.remove(place);
+        reply.answer(done(result));
+    }
+}
+
+impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for ModulesPart {
+    fn nodes(&self, moment: &Break<'_, Engine<A>>) -> Vec<(String, Node)> {
+        let modules = moment.pilot.modules();
+        let mut nodes = Vec::new();
+        for (name, _) in modules.names().filter(|(name, _)| *name != PLAN) {
+            let mut add = |own: &str, node| nodes.push((format!("/usr/{name}/{own}"), node));
+            for about in modules.board().of(name).map(|post| &post.about) {
+                add(&about.name, Node::reading(kind(about), about.doc));
+            }
+            for (about, _) in modules.settings(name) {
+                add(&about.name, Node::setting(kind(about), Role::Tune, about.doc));
+            }
+            OWN.into_iter().for_each(|(own, node)| add(own, node));
+        }
+        let load = Node::method(Role::Admin, "loads the module, which is then in /usr");
+        nodes.extend(moment.pilot.library().map(|name| (format!("/lib/{name}"), load)));
+        nodes
+    }
+
+    fn values(&self, moment: &Break<'_, Engine<A>>, to: &mut Vec<Option<Value>>) {
+        let modules = moment.pilot.modules();
+        for (name, standing) in modules.names().filter(|(name, _)| *name != PLAN) {
+            let posts = modules.board().of(name);
+            to.extend(posts.map(|post| post.reading.as_ref().map(|reading| shown(&post.about, &reading.value))));
+            to.extend(modules.settings(name).map(|(about, reading)| Some(shown(about, &reading.value))));
+            to.extend([Some(Value::text(state(standing))), None, None, None]);
+        }
+        to.extend(moment.pilot.library().map(|_| None));
+    }
+
+    fn change(&mut self, path: &str, change: &Change, moment: &mut Break<'_, Engine<A>>, reply: Reply) {
+        if let Some(name) = path.strip_prefix("/lib/") {
+            return match moment.pilot.load(name) {
+                Ok(number) => self.waiting.push((number, reply)),
+                Err(sentence) => reply.answer(Answer::Refused(sentence)),
+            };
+        }
+        let (name, own) = path.strip_prefix("/usr/").and_then(|rest| rest.split_once('/')).unwrap_or_default();
+        let modules = moment.pilot.modules_mut();
+        let result = match change {
+            Change::Call(arguments) if !arguments.is_empty() => {
+                return reply.answer(Answer::Refused(format!("`{path}` takes no arguments")));
+            }
+            Change::Call(_) if own == ".unload" => modules.unload(name),
+            Change::Call(_) => modules.hold(name, own == ".stop"),
+            Change::Set(text) => {
+                let about = modules.settings(name).map(|(about, _)| about).find(|about| &*about.name == own).cloned();
+                let Some(about) = about else {
+                    return reply.answer(Answer::Refused(format!("`{path}` is read-only")));
+                };
+                match read(text, kind(&about)).and_then(|value| taken(&about, value)) {
+                    Ok(value) => modules.set(name, own, value),
+                    Err(refusal) => return reply.answer(Answer::Refused(format!("`{path}`: {refusal}"))),
+                }
+            }
+        };
+        reply.answer(done(result));
+    }
+}
+
+fn done(result: Result<(), Refusal>) -> Answer {
+    match result {
+        Ok(()) => Answer::Done(String::new()),
+        Err(refusal) => Answer::Refused(refusal.to_string()),
+    }
+}
+
+fn state(standing: Standing) -> &'static str {
+    match standing {
+        Standing::Active => "active",
+        Standing::Stopped => "stopped",
+        Standing::Late(..) => "late",
+        Standing::GivenUp => "given up",
+        Standing::Failed => "failed",
+        Standing::Ended => "ended",
+    }
+}
+
+/// The kind of an attribute as people see it: a quantity has the unit of its description.
+fn kind(about: &About) -> Kind {
+    let quantity = about.unit.and_then(|unit| Some((Quantity::of_unit(unit.name)?.0, unit.name)));
+    match (about.kind, quantity) {
+        (_, Some((quantity, unit))) => Kind::Quantity(quantity, unit),
+        (AttributeKind::Flag, None) => Kind::Flag,
+        (AttributeKind::Integer, None) => Kind::Integer,
+        (AttributeKind::Text, None) => Kind::Text,
+        (AttributeKind::Pose, None) => Kind::Pose,
+        (AttributeKind::Numbers, None) => Kind::Numbers,
+        (AttributeKind::Bytes, None) => Kind::Bytes,
+        (
+            AttributeKind::Number
+            | AttributeKind::Length
+            | AttributeKind::Speed
+            | AttributeKind::Angle
+            | AttributeKind::AngularRate
+            | AttributeKind::Voltage
+            | AttributeKind::Time,
+            None,
+        ) => Kind::Number,
+    }
+}
+
+/// Returns a value as people see it.
+fn shown(about: &About, value: &attribute::Value) -> Value {
+    use attribute::Value as Of;
+    let number = |number: f64| match about.unit {
+        Some(unit) => Value::Quantity(number / unit.to_si(1.0), unit.name),
+        None => Value::Number(number),
+    };
+    match value {
+        Of::Flag(flag) => Value::Flag(*flag),
+        Of::Integer(number) => Value::Integer(*number),
+        Of::Text(text) => Value::Text(text.clone()),
+        Of::Pose(pose) => Value::Pose([pose.x.0, pose.y.0, pose.theta.degrees()]),
+        Of::Numbers(numbers) => Value::Numbers(numbers.clone()),
+        Of::Bytes(bytes) => Value::Bytes(bytes.clone()),
+        Of::Time(time) => number(time.seconds()),
+        Of::Number(of)
+        | Of::Length(Meters(of))
+        | Of::Speed(MetersPerSecond(of))
+        | Of::Angle(Radians(of))
+        | Of::AngularRate(RadiansPerSecond(of))
+        | Of::Voltage(Volts(of)) => number(*of),
+    }
+}
+
+/// Returns the value of an attribute that people have typed as `value`.
+fn taken(about: &About, value: Value) -> Result<attribute::Value, String> {
+    use attribute::Value as Of;
+    let si = match value {
+        Value::Flag(flag) => return Ok(Of::Flag(flag)),
+        Value::Integer(number) => return Ok(Of::Integer(number)),
+        Value::Text(text) => return Ok(Of::Text(text)),
+        Value::Pose([x, y, theta]) => {
+            return Ok(Of::Pose(Pose { x: Meters(x), y: Meters(y), theta: Radians(theta.to_radians()) }));
+        }
+        Value::Numbers(numbers) => return Ok(Of::Numbers(numbers)),
+        Value::Bytes(bytes) => return Ok(Of::Bytes(bytes)),
+        Value::Number(number) => number,
+        Value::Quantity(number, _) => about.unit.map_or(number, |unit| unit.to_si(number)),
+    };
+    Ok(match about.kind {
+        AttributeKind::Length => Of::Length(Meters(si)),
+        AttributeKind::Speed => Of::Speed(MetersPerSecond(si)),
+        AttributeKind::Angle => Of::Angle(Radians(si)),
+        AttributeKind::AngularRate => Of::AngularRate(RadiansPerSecond(si)),
+        AttributeKind::Voltage => Of::Voltage(Volts(si)),
+        AttributeKind::Time => {
+            let time = Duration::try_from_secs_f64(si).map_err(|_| "expected a time of at least 0s".to_owned())?;
+            Of::Time(Nanos(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)))
+        }
+        AttributeKind::Number
+        | AttributeKind::Flag
+        | AttributeKind::Integer
+        | AttributeKind::Pose
+        | AttributeKind::Text
+        | AttributeKind::Numbers
+        | AttributeKind::Bytes => Of::Number(si),
+    })
+}

@@ -1,0 +1,217 @@
+//! The plans in the tree: `/usr/mdle`, the module that makes their turns, and `/plans`, where they are stored (paper,
+//! III-D and Fig. 7).
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use mdle_host::{Break, PlanPosition};
+use mdle_quantity::Quantity;
+use mdle_runtime::Nanos;
+
+use crate::Engine;
+use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
+use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
+
+const SECONDS: Kind = Kind::Quantity(Quantity::Time, "s");
+
+/// The attributes of `/usr/mdle`, in the order of [`Served::values`].
+const OWN: [(&str, Node); 13] = [
+    (
+        "main",
+        Node::setting(Kind::Text, Role::Swap, "name of the plan that drives; a stored plan, or a text, replaces it"),
+    ),
+    ("armed", Node::reading(Kind::Text, "plan that is to follow, and when")),
+    ("on_trial", Node::reading(Kind::Flag, "`true` while `rollback` leads back to the plan before")),
+    ("trial", Node::setting(SECONDS, Role::Swap, "time for which a plan that takes over is on trial")),
+    ("atom", Node::reading(Kind::Text, "law of the current atom")),
+    ("place", Node::reading(Kind::Text, "place of the atom: file, line, and the scopes around it")),
+    ("since", Node::reading(Kind::Text, "why the atom runs")),
+    ("state", Node::reading(Kind::Integer, "number of the state in the expanded plan, from 1")),
+    ("scopes", Node::reading(Kind::Text, "conditions of the scopes around the atom, the plan's first")),
+    ("t", Node::reading(SECONDS, "time since the plan began")),
+    ("load_plan", Node::method(Role::Swap, "compiles the plans of a file, and stores them")),
+    ("cancel", Node::method(Role::Swap, "takes back a plan that has not taken over yet")),
+    ("rollback", Node::method(Role::Swap, "ends the plan on trial, and lets the plan before it go on")),
+];
+
+/// The plans, and the requests about them that have not been answered.
+#[derive(Debug, Default)]
+pub(super) struct PlansPart {
+    waiting: Vec<Waiting>,
+}
+
+/// A request that waits for the compiler.
+#[derive(Debug)]
+struct Waiting {
+    /// Number of the request.
+    ticket: u32,
+    /// Warnings of the text; empty if there are none.
+    warnings: String,
+    reply: Reply,
+}
+
+impl PlansPart {
+    /// Returns `true` if a request has not been answered.
+    pub(super) fn waits(&self) -> bool {
+        !self.waiting.is_empty()
+    }
+
+    /// Answers the requests on which the engine has decided. Returns messages about plans whose requests were answered
+    /// before.
+    pub(super) fn answer<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>) -> Vec<String> {
+        let mut messages = Vec::new();
+        let armed = plans.armed().map(|(name, when)| format!("{name} takes over {when}"));
+        for event in plans.take_events() {
+            match event {
+                PlanEvent::Warned(ticket, warnings) => {
+                    let waiting = self.waiting.iter_mut().find(|waiting| waiting.ticket == ticket);
+                    waiting.into_iter().for_each(|waiting| waiting.warnings.clone_from(&warnings));
+                }
+                PlanEvent::Refused(ticket, sentence) => {
+                    if self.waiting.iter().all(|waiting| waiting.ticket != ticket) {
+                        messages.push(format!("warning: a plan does not take over: {sentence}"));
+                    }
+                    self.settle(ticket, Err(sentence));
+                }
+                PlanEvent::Stored(ticket, names) => {
+                    let verb = if names.len() == 1 { "is" } else { "are" };
+                    self.settle(ticket, Ok(format!("{} {verb} stored", names.join(", "))));
+                }
+                PlanEvent::Armed(ticket) => self.settle(ticket, Ok(armed.clone().unwrap_or_default())),
+                PlanEvent::Superseded(ticket) => {
+                    self.settle(ticket, Err("a later request replaces this one".to_owned()))
+                }
+                PlanEvent::Cancelled(ticket) => self.settle(ticket, Err("the request was cancelled".to_owned())),
+                PlanEvent::Began(_) | PlanEvent::Accepted(_) | PlanEvent::RolledBack { .. } => {}
+            }
+        }
+        messages
+    }
+
+    /// Answers the request of this number, if it has not been answered.
+    fn settle(&mut self, ticket: u32, result: Result<String, String>) {
+        let Some(place) = self.waiting.iter().position(|waiting| waiting.ticket == ticket) else { return };
+        let Waiting { warnings, reply, .. } = self.waiting.remove(place);
+        reply.answer(match result {
+            Ok(sentence) => Answer::Done(warnings + &sentence),
+            Err(sentence) => Answer::Refused(sentence),
+        });
+    }
+}
+
+impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
+    fn nodes(&self, moment: &Break<'_, Engine<A>>) -> Vec<(String, Node)> {
+        let own = OWN.map(|(name, node)| (format!("/usr/mdle/{name}"), node));
+        let stored = moment.pilot.plans().stored().flat_map(|plan| {
+            let nodes = [
+                ("text", Node::reading(Kind::Text, "text of the plan's file")),
+                (
+                    "run",
+                    Node::method(
+                        Role::Swap,
+                        "lets the plan take over: `now`, when the `atom` ends, or when the `plan` ends",
+                    ),
+                ),
+                ("delete", Node::method(Role::Swap, "deletes the plan; if it drives, it goes on")),
+            ];
+            nodes.map(|(name, node)| (format!("/plans/{}/{name}", plan.name), node))
+        });
+        own.into_iter().chain(stored).collect()
+    }
+
+    fn values(&self, moment: &Break<'_, Engine<A>>, to: &mut Vec<Option<Value>>) {
+        let plans = moment.pilot.plans();
+        let armed = plans.armed().map(|(name, when)| Value::Text(format!("{name}, {when}").into()));
+        to.extend([
+            Some(Value::text(plans.name())),
+            armed,
+            Some(Value::Flag(plans.trial_ends().is_some())),
+            Some(Value::Quantity(plans.trial().seconds(), "s")),
+        ]);
+        match moment.position() {
+            Some(place) => to.extend(standing(&place).map(Some)),
+            None => to.extend([const { None }; 6]),
+        }
+        to.extend([const { None }; 3]);
+        to.extend(plans.stored().flat_map(|plan| [Some(Value::Text(plan.text.clone())), None, None]));
+    }
+
+    fn change(&mut self, path: &str, change: &Change, moment: &mut Break<'_, Engine<A>>, reply: Reply) {
+        let result = match change {
+            Change::Set(text) => set(path, text, moment.pilot.plans_mut()),
+            Change::Call(arguments) => call(path, arguments, moment.pilot),
+        };
+        match result {
+            Ok(Some(ticket)) => self.waiting.push(Waiting { ticket, warnings: String::new(), reply }),
+            Ok(None) => reply.answer(Answer::Done(String::new())),
+            Err(sentence) => reply.answer(Answer::Refused(sentence)),
+        }
+    }
+}
+
+/// Sets an attribute; returns the number of the request if the compiler answers it.
+fn set<A: EngineAlphabet>(path: &str, text: &str, plans: &mut Plans<A>) -> Result<Option<u32>, String> {
+    match path {
+        "/usr/mdle/main" if text.starts_with('{') => Ok(Some(plans.swap(PlanSource::Text(text.to_owned()), When::Now))),
+        "/usr/mdle/main" => plans.run(text, When::Now).map(Some),
+        _ => set_trial(plans, text).map(|()| None),
+    }
+}
+
+/// Calls a method; returns the number of the request if the compiler answers it.
+fn call<A: EngineAlphabet>(path: &str, arguments: &[String], engine: &mut Engine<A>) -> Result<Option<u32>, String> {
+    if path == "/usr/mdle/load_plan" {
+        let [file] = arguments else { return Err("`load_plan` takes the name of a file".to_owned()) };
+        return Ok(Some(engine.plans_mut().load(PlanSource::File(PathBuf::from(file)))));
+    }
+    let stored = path.strip_prefix("/plans/");
+    if let Some(name) = stored.and_then(|stored| stored.strip_suffix("/run")) {
+        return engine.plans_mut().run(name, when(arguments)?).map(Some);
+    }
+    if !arguments.is_empty() {
+        return Err(format!("`{path}` takes no arguments"));
+    }
+    match (path, stored.and_then(|stored| stored.strip_suffix("/delete"))) {
+        (_, Some(name)) => engine.plans_mut().delete(name)?,
+        ("/usr/mdle/cancel", None) => engine.plans_mut().cancel(),
+        (_, None) => engine.rollback("asked for").map_err(|none| none.to_string())?,
+    }
+    Ok(None)
+}
+
+/// The moment that arguments name: the next turn if there are none.
+fn when(arguments: &[String]) -> Result<When, String> {
+    let words = || When::ALL.map(|(word, _)| word).join(", ");
+    match arguments {
+        [] => Ok(When::Now),
+        [word] => {
+            let found = When::ALL.iter().find(|(known, _)| known == word);
+            found.map(|(_, when)| *when).ok_or_else(|| format!("expected one of {}, found `{word}`", words()))
+        }
+        [_, _, ..] => Err(format!("a plan takes over at one moment: {}", words())),
+    }
+}
+
+fn set_trial<A: EngineAlphabet>(plans: &mut Plans<A>, text: &str) -> Result<(), String> {
+    let Value::Quantity(seconds, _) = read(text, SECONDS)? else {
+        return Err("`/usr/mdle/trial` is a time".to_owned());
+    };
+    let time = Duration::try_from_secs_f64(seconds);
+    let time = time.map_err(|_| format!("`/usr/mdle/trial` has to be at least 0s; found `{text}`"))?;
+    plans.set_trial(Nanos(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)));
+    Ok(())
+}
+
+/// The values of the place in a plan.
+fn standing(place: &PlanPosition<'_>) -> [Value; 6] {
+    let conditions: Vec<_> = place.scopes.iter().map(|scope| scope.condition).collect();
+    let t = place.scopes.first().map_or(place.t, |plan| plan.since);
+    [
+        Value::text(place.law),
+        Value::text(&place.place),
+        Value::text(place.since),
+        Value::count(place.state),
+        Value::Text(conditions.join("; ").into()),
+        Value::Quantity(t.seconds(), "s"),
+    ]
+}

@@ -1,0 +1,81 @@
+//! Attributes that a front end watches: each is reported when its value has changed, but not more often than people
+//! can read.
+
+use std::sync::mpsc::SyncSender;
+
+use mdle_runtime::Nanos;
+
+/// Minimum time between two reports of one attribute, by the robot's clock.
+const APART: Nanos = Nanos(200_000_000);
+/// Maximum number of watched attributes.
+const MOST: usize = 32;
+/// Maximum number of reports that wait for a front end.
+pub(super) const REPORTS: usize = 1024;
+
+/// The watched attributes.
+#[derive(Debug)]
+pub(super) struct Watches {
+    watched: Vec<Watched>,
+    reports: SyncSender<String>,
+}
+
+#[derive(Debug)]
+struct Watched {
+    path: String,
+    /// The value that was reported last.
+    reported: Option<String>,
+    /// Time from which it may be reported.
+    next: Nanos,
+}
+
+impl Watches {
+    pub(super) fn new(reports: SyncSender<String>) -> Self {
+        Self { watched: Vec::new(), reports }
+    }
+
+    /// Watches an attribute from now on.
+    ///
+    /// # Errors
+    /// Too many are watched: a sentence.
+    pub(super) fn add(&mut self, path: &str) -> Result<(), String> {
+        if self.watched.iter().any(|watched| watched.path == path) {
+            return Ok(());
+        }
+        if self.watched.len() >= MOST {
+            return Err(format!("{MOST} attributes are watched, which is the most: `unwatch` one"));
+        }
+        self.watched.push(Watched { path: path.to_owned(), reported: None, next: Nanos::ZERO });
+        Ok(())
+    }
+
+    /// Watches an attribute no longer.
+    ///
+    /// # Errors
+    /// It is not watched: a sentence.
+    pub(super) fn remove(&mut self, path: &str) -> Result<(), String> {
+        let place = self.watched.iter().position(|watched| watched.path == path);
+        let place = place.ok_or_else(|| format!("`{path}` is not watched"))?;
+        self.watched.remove(place);
+        Ok(())
+    }
+
+    /// Returns `true` if an attribute may be reported at time `t`.
+    pub(super) fn are_due(&self, t: Nanos) -> bool {
+        self.watched.iter().any(|watched| t >= watched.next)
+    }
+
+    /// Reports the attributes that have changed; `value` returns the value of a path, as it is shown.
+    pub(super) fn report(&mut self, t: Nanos, value: impl Fn(&str) -> String) {
+        let Self { watched, reports } = self;
+        for Watched { path, reported, next } in watched.iter_mut().filter(|watched| t >= watched.next) {
+            let value = value(path);
+            // A report that does not fit is made later.
+            if reported.as_ref() != Some(&value)
+                && reports.try_send(format!("{:.1} s  {path} {value}", t.seconds())).is_ok()
+            {
+                *reported = Some(value);
+                *next = Nanos(t.0.saturating_add(APART.0));
+            }
+        }
+    }
+}
