@@ -8,11 +8,33 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
 use mdle_engine::tree::Role;
+use mdle_quantity::Quantity;
 
 use crate::Failure;
+use crate::new_module::NewModule;
+
+/// The command that was given.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Asked {
+    /// `mdle run` or `mdle shell`.
+    Run(Box<Run>),
+    /// `mdle new-module`.
+    NewModule(NewModule),
+    /// `mdle replay`.
+    Replay(Replay),
+}
+
+/// The arguments of `mdle replay`.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Replay {
+    /// The record; `-` is standard input.
+    pub(crate) log: PathBuf,
+    /// File of the plan; `None` for that of the record.
+    pub(crate) plan: Option<PathBuf>,
+}
 
 /// The arguments of `mdle run`.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, PartialEq)]
 pub(crate) struct Run {
     /// The plan's file; `-` is standard input.
     pub(crate) file: PathBuf,
@@ -22,6 +44,10 @@ pub(crate) struct Run {
     pub(crate) plan: Option<String>,
     /// File of the safety rules.
     pub(crate) safety: Option<PathBuf>,
+    /// Child processes to load as modules: the name of each, and its command line.
+    pub(crate) modules: Vec<(String, String)>,
+    /// Point of the module `heading`, in metres, if it is to be loaded.
+    pub(crate) point: Option<(f64, f64)>,
     /// `true` if warnings count as errors.
     pub(crate) deny_warnings: bool,
     /// Program and arguments of this call, without the options of the run.
@@ -48,7 +74,7 @@ pub(crate) struct SessionOptions {
 }
 
 /// Options of `mdle` itself that have a value.
-const WITH_VALUE: [&str; 6] = ["--target", "--plan", "--safety", "-c", "--commands", "--role"];
+const WITH_VALUE: [&str; 8] = ["--target", "--plan", "--safety", "--module", "--point", "-c", "--commands", "--role"];
 /// Options that ask for help.
 const HELP: [&str; 2] = ["-h", "--help"];
 /// Options of `mdle` itself without a value.
@@ -58,15 +84,21 @@ const FLAGS: [&str; 4] = ["--deny-warnings", "-e", "-x", "--paused"];
 ///
 /// # Errors
 /// The arguments are wrong, or ask for help.
-pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Run, Failure> {
-    let (own, options) = apart(arguments)?;
+pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
+    let is_run = arguments.get(1).is_some_and(|command| command == "run" || command == "shell");
+    let (own, options) = if is_run { apart(arguments)? } else { (arguments, Vec::new()) };
     let matches = command().try_get_matches_from(&own).map_err(Failure::Unparsed)?;
     match matches.subcommand() {
         Some(("run", run)) => Ok(of(run, own, options, None)),
-        Some(("shell", shell)) => {
-            let session = session(shell);
-            Ok(of(shell, own, options, Some(session)))
+        Some(("shell", shell)) => Ok(of(shell, own, options, Some(session(shell)))),
+        Some(("new-module", new)) => {
+            let name = new.get_one("name").cloned().unwrap_or_default();
+            Ok(Asked::NewModule(NewModule { name, checkout: new.get_one("checkout").cloned() }))
         }
+        Some(("replay", replay)) => Ok(Asked::Replay(Replay {
+            log: replay.get_one("log").cloned().unwrap_or_default(),
+            plan: replay.get_one("plan").cloned(),
+        })),
         Some(_) | None => Err(Failure::Usage("no command was given\nhelp: `mdle run PLAN` runs a plan".to_owned())),
     }
 }
@@ -82,17 +114,19 @@ fn session(shell: &ArgMatches) -> SessionOptions {
     }
 }
 
-fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: Option<SessionOptions>) -> Run {
-    Run {
+fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: Option<SessionOptions>) -> Asked {
+    Asked::Run(Box::new(Run {
         file: run.get_one("file").cloned().unwrap_or_default(),
         target: run.get_one("target").cloned(),
         plan: run.get_one("plan").cloned(),
         safety: run.get_one("safety").cloned(),
+        modules: run.get_many("module").into_iter().flatten().cloned().collect(),
+        point: run.get_one("point").copied(),
         deny_warnings: run.get_flag("deny-warnings"),
         words,
         options,
         session,
-    }
+    }))
 }
 
 /// Takes the options of the run, which come after the plan, away from the arguments that `mdle` parses itself.
@@ -140,6 +174,54 @@ fn command() -> Command {
         .arg_required_else_help(true)
         .subcommand(run())
         .subcommand(shell())
+        .subcommand(new_module())
+        .subcommand(replay())
+}
+
+fn new_module() -> Command {
+    Command::new("new-module")
+        .about("Create a crate with a module of your own, and a program `mdle` that has it")
+        .arg(
+            Arg::new("name")
+                .value_name("NAME")
+                .help("Name of the module and of its folder, which is created in the current folder")
+                .required(true),
+        )
+        .arg(
+            Arg::new("checkout")
+                .long("checkout")
+                .value_name("FOLDER")
+                .help("Checkout of mdle, whose packages the crate uses [default: ../mdle from the new folder]")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .after_help("Exit status: 0, or 2 if the folder cannot be created")
+}
+
+fn replay() -> Command {
+    Command::new("replay")
+        .about("Re-execute a recorded run and compare it with the record")
+        .long_about(
+            "Re-execute a recorded run and compare it with the record\n\nThe plan makes its turns again with the recorded \
+             outputs of the robot. The first turn that differs in a bit is printed, with what differs.",
+        )
+        .arg(
+            Arg::new("log")
+                .value_name("LOG")
+                .help("Record that `--log FILE.mcap` has written; `-` reads standard input")
+                .required(true)
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            Arg::new("plan")
+                .long("plan")
+                .value_name("PLAN")
+                .help("File of the plan to run [default: the text in the record]")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .after_help(
+            "Exit status: 0 if all turns are those of the record; 1 if a turn differs, the record was changed, or the plan has \
+             errors; 2 for wrong usage or a file that cannot be read",
+        )
 }
 
 fn shell() -> Command {
@@ -226,8 +308,38 @@ fn with_plan(command: Command) -> Command {
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(
+            Arg::new("module")
+                .long("module")
+                .value_name("NAME=COMMAND")
+                .help("Child process to load as a module, which speaks lines of JSON; may be repeated")
+                .action(ArgAction::Append)
+                .value_parser(module),
+        )
+        .arg(
+            Arg::new("point")
+                .long("point")
+                .value_name("X,Y")
+                .help("Point to which the module `heading` publishes bearing and range, in metres or as in `3m,50cm`")
+                .allow_hyphen_values(true)
+                .value_parser(point),
+        )
+        .arg(
             Arg::new("deny-warnings").long("deny-warnings").action(ArgAction::SetTrue).help("Treat warnings as errors"),
         )
+}
+
+/// Reads the name and the command line of a module.
+fn module(text: &str) -> Result<(String, String), String> {
+    let split = text.split_once('=').filter(|(name, command)| !name.is_empty() && !command.trim().is_empty());
+    let (name, command) = split.ok_or("write NAME=COMMAND, as in `--module 'ears=python3 ears.py'`")?;
+    Ok((name.to_owned(), command.to_owned()))
+}
+
+/// Reads a point, in metres.
+fn point(text: &str) -> Result<(f64, f64), String> {
+    let (x, y) = text.split_once(',').ok_or("write X,Y, as in `--point 3,0.5`")?;
+    let metres = |text: &str| Quantity::Length.read(text.trim(), "m");
+    Ok((metres(x)?, metres(y)?))
 }
 
 #[cfg(test)]
@@ -235,7 +347,11 @@ mod tests {
     use super::*;
 
     fn parsed(line: &str) -> Run {
-        parse(line.split(' ').map(OsString::from).collect()).unwrap()
+        match parse(line.split(' ').map(OsString::from).collect()).unwrap() {
+            Asked::Run(run) => *run,
+            Asked::NewModule(new) => panic!("{new:?}"),
+            Asked::Replay(replay) => panic!("{replay:?}"),
+        }
     }
 
     #[test]
@@ -252,6 +368,20 @@ mod tests {
         assert_eq!(parsed("mdle run - --target sim --help").options, ["--help"]);
         for own in ["mdle --help", "mdle run --help", "mdle run", "mdle", "mdle run --world office a.mdle"] {
             assert!(parse(own.split(' ').map(OsString::from).collect()).is_err(), "{own}");
+        }
+    }
+
+    #[test]
+    fn modules_have_a_name_and_a_command() {
+        let run = parsed("mdle run a.mdle --module ears=./ears --point=-1,50cm --module=nose=./nose --seed 3");
+        let named = |name: &str, command: &str| (name.to_owned(), command.to_owned());
+        assert_eq!(run.modules, [named("ears", "./ears"), named("nose", "./nose")]);
+        assert_eq!((run.point, run.options.len()), (Some((-1.0, 0.5)), 2));
+        let refused =
+            ["--module ears", "--module =ears", "--module ears=", "--point 3", "--point 3s,1", "--point NaN,1"];
+        for option in refused {
+            let words = ["mdle", "run", "a.mdle"].into_iter().chain(option.split(' '));
+            assert!(parse(words.map(OsString::from).collect()).is_err(), "{option}");
         }
     }
 

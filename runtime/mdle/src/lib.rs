@@ -6,13 +6,20 @@
 
 mod arguments;
 mod failure;
+mod modules;
+mod new_module;
+mod plans;
+mod replay;
+mod replayed;
 mod run;
 mod safety;
 mod session;
 mod targets;
+mod terminal;
 
 use std::process::ExitCode;
 
+use arguments::Asked;
 use failure::Failure;
 pub use mdle_engine as engine;
 use mdle_engine::Library;
@@ -25,12 +32,21 @@ pub fn main() -> ExitCode {
     main_with(|_| ())
 }
 
-/// Runs the command line of this process, as [`main`] does, with the modules that `add` adds: each run loads them.
+/// Runs the command line of this process, as [`main`] does, with the modules that `add` adds: each run loads them,
+/// after the module `sensors` and before those of options.
 #[must_use]
 pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
     let mut library = Library::new();
+    modules::shipped(&mut library);
     add(&mut library);
     let arguments = std::env::args_os().collect();
-    let run = |arguments| run::run(arguments, &library);
+    let run = |asked| match asked {
+        Asked::Run(arguments) => {
+            modules::of_options(&arguments, &mut library);
+            run::run(*arguments, &library)
+        }
+        Asked::NewModule(arguments) => new_module::new_module(&arguments),
+        Asked::Replay(arguments) => replay::replay(&arguments),
+    };
     arguments::parse(arguments).and_then(run).unwrap_or_else(Failure::tell)
 }

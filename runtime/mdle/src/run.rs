@@ -2,11 +2,12 @@
 
 use std::ffi::OsString;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use mdle_compiler::diagnostic::judged;
 use mdle_engine::Library;
 use mdle_files::{Input, InputError, Known, Settings, Target, read_plan};
-use mdle_host::{Call, Program};
+use mdle_host::{Call, Program, RecordedPlan};
 use mdle_runtime::Sensed;
 
 use crate::arguments::Run;
@@ -23,7 +24,7 @@ pub(crate) fn run(arguments: Run, library: &Library<Sensed>) -> Result<ExitCode,
     let settings = Settings::beside(&arguments.file)?;
     let name = settings.name_of_target(arguments.target.as_deref()).ok_or(InputError::NoTarget)?;
     let linked = targets::linked(&name).map_err(Failure::Usage)?;
-    let target = settings.target(arguments.target.as_deref())?;
+    let target = Arc::new(settings.target(arguments.target.as_deref())?);
     let safety = arguments.safety.as_deref().map(SafetyFile::read).transpose()?;
     let mut input = read_plan(&arguments.file, &target)?;
     let (plan, ready) = compiled(&arguments, &linked, &target, &mut input, safety.as_ref())?;
@@ -31,23 +32,45 @@ pub(crate) fn run(arguments: Run, library: &Library<Sensed>) -> Result<ExitCode,
     let given: Vec<_> = arguments.options.iter().map(|option| option.to_string_lossy().into_owned()).collect();
     let mut options: Vec<OsString> = Vec::new();
     for option in settings.run_options(arguments.target.as_deref(), &given, |_| Known::default())? {
-        let call = Call { words: arguments.words.clone(), options: option.arguments.clone(), read: Vec::new() };
+        let call = Call { words: arguments.words.clone(), options: option.arguments.clone(), ..no_call() };
         (linked.check)(program, &call).map_err(|text| option.refused(&text))?;
         options.extend(option.arguments);
     }
+    let recorded = RecordedPlan { files: recorded(&input), beside: beside(&arguments, ready.as_ref()) };
     options.extend(arguments.options);
     let read = input.inputs(&target).into_iter().chain(safety.iter().flat_map(SafetyFile::files)).collect();
     drop(input);
-    let call = Call { words: arguments.words, options, read };
+    let call = Call { words: arguments.words, options, read, recorded };
     let Some(session) = &arguments.session else { return Ok(ready.run(&plan, call, library)) };
     session::held(session, &arguments.file, |seat| ready.session(&plan, call, library, seat))
+}
+
+/// The call of nothing.
+fn no_call() -> Call {
+    Call { words: Vec::new(), options: Vec::new(), read: Vec::new(), recorded: RecordedPlan::default() }
+}
+
+/// Names and texts of the files of a plan, its own first.
+fn recorded(input: &Input) -> Vec<(String, String)> {
+    let names = input.files().map(|path| path.display().to_string());
+    names.zip(input.texts().map(str::to_owned)).collect()
+}
+
+/// Names the causes of inputs besides the plan and the robot's outputs; empty if there are none.
+fn beside(arguments: &Run, ready: &dyn Ready) -> String {
+    let parts = [
+        (arguments.safety.is_some(), "safety rules"),
+        (arguments.session.is_some(), "the commands of a session"),
+        (ready.reads_modules(), "modules"),
+    ];
+    parts.into_iter().filter_map(|(is_there, words)| is_there.then_some(words)).collect::<Vec<_>>().join(" and ")
 }
 
 /// Compiles the only plan to run and loads it; returns it with its name. Messages go to standard error.
 fn compiled(
     arguments: &Run,
     linked: &LinkedTarget,
-    target: &Target,
+    target: &Arc<Target>,
     input: &mut Input,
     safety: Option<&SafetyFile>,
 ) -> Result<(String, Box<dyn Ready>), Failure> {

@@ -7,7 +7,7 @@ use mdle_compiler::diagnostic::{Sources, judged};
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::safety::{Conditions, GuardError, Guardian, Rules, read};
 use mdle_files::{Target, read_plan};
-use mdle_runtime::{Alphabet, Plan as _};
+use mdle_runtime::{Alphabet, ModuleRead, Plan as _};
 
 use crate::failure::{self, Failure};
 
@@ -96,6 +96,11 @@ impl<A: Alphabet> Guarded<A> {
     /// Returns the guardian of a run with this period.
     pub(crate) fn guardian(&self, period: std::time::Duration) -> Guardian<A> {
         Guardian::new(self.rules.clone(), &self.conditions, period)
+    }
+
+    /// Returns the attributes of modules that the rules read.
+    pub(crate) fn reads(&self) -> &'static [ModuleRead] {
+        self.conditions.reads()
     }
 
     /// Returns the plan of this number to which a rule diverts.

@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, BufReader, IsTerminal as _};
+use std::os::fd::{AsFd as _, OwnedFd};
 use std::os::unix::fs::FileTypeExt as _;
 use std::path::Path;
 use std::process::ExitCode;
@@ -9,12 +10,12 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread::Builder;
 use std::time::Duration;
 
-use mdle_engine::shell::{Conversation, Input, Lines, Terminal, converse};
+use mdle_engine::shell::{Conversation, Input, Lines, converse};
 use mdle_engine::tree::{Desk, Hub};
-use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 use crate::arguments::SessionOptions;
 use crate::failure::Failure;
+use crate::terminal::{HeldTerminal, Printing};
 
 /// Maximum wait after a run for the last answer of the front end.
 const LAST_ANSWER: Duration = Duration::from_millis(500);
@@ -26,6 +27,8 @@ pub(crate) struct Seat {
     pub(crate) desk: Desk,
     /// `true` if stepped time stands before the first turn.
     pub(crate) is_paused: bool,
+    /// Where the run reports.
+    pub(crate) stream: OwnedFd,
 }
 
 /// Holds a session around `run`; `plan` is the file of the plan. Returns the exit status of the run, or 1 if that is 0
@@ -39,22 +42,34 @@ pub(crate) fn held(
     run: impl FnOnce(Seat) -> ExitCode,
 ) -> Result<ExitCode, Failure> {
     let (hub, desk) = Desk::with_hub();
-    let is_terminal = options.commands.is_none() && io::stdin().is_terminal();
-    let before = if is_terminal { tcgetattr(io::stdin()).ok() } else { None };
-    let outcome = front_end(options, plan, hub, is_terminal)?;
-    let status = run(Seat { desk, is_paused: options.is_paused });
-    // A person who is typing is not waited for.
-    let is_well = outcome.recv_timeout(if is_terminal { Duration::ZERO } else { LAST_ANSWER }).unwrap_or(true);
-    if let Some(before) = before {
-        // The line that is being typed has changed how the terminal reads.
-        let _ = tcsetattr(io::stdin(), OptionalActions::Now, &before);
+    let unheld = |error: io::Error| Failure::Usage(format!("the system gives no session: {error}"));
+    let (terminal, printing) = if options.commands.is_none() && io::stdin().is_terminal() {
+        HeldTerminal::take().map(|(terminal, printing)| (Some(terminal), Some(printing))).map_err(unheld)?
+    } else {
+        (None, None)
+    };
+    let stderr = io::stderr();
+    let stream = terminal.as_ref().map_or(stderr.as_fd(), |terminal| terminal.reports().as_fd());
+    let stream = stream.try_clone_to_owned().map_err(unheld)?;
+    let outcome = front_end(options, plan, hub, printing)?;
+    let status = run(Seat { desk, is_paused: options.is_paused, stream });
+    if let Some(terminal) = terminal {
+        // A person who is typing is not waited for.
+        terminal.give_back();
+        return Ok(status);
     }
-    let is_refused = status == ExitCode::SUCCESS && !is_well && !is_terminal;
+    let is_refused = status == ExitCode::SUCCESS && !outcome.recv_timeout(LAST_ANSWER).unwrap_or(true);
     Ok(if is_refused { ExitCode::from(REFUSED) } else { status })
 }
 
-/// Starts the front end on a thread of its own; it sends `true` when every command was carried out.
-fn front_end(options: &SessionOptions, plan: &Path, hub: Hub, is_terminal: bool) -> Result<Receiver<bool>, Failure> {
+/// Starts the front end on a thread of its own, at a terminal if it has one for `printing`; it sends `true` when every
+/// command was carried out.
+fn front_end(
+    options: &SessionOptions,
+    plan: &Path,
+    hub: Hub,
+    printing: Option<Printing>,
+) -> Result<Receiver<bool>, Failure> {
     let file = match &options.commands {
         Some(path) => Some(opened(path)?),
         None if plan == Path::new("-") => {
@@ -66,19 +81,18 @@ fn front_end(options: &SessionOptions, plan: &Path, hub: Hub, is_terminal: bool)
     };
     let name = options.commands.as_ref().map_or("standard input".to_owned(), |path| path.display().to_string());
     let conversation = Conversation {
-        file: (!is_terminal).then_some(name),
+        file: printing.is_none().then_some(name),
         role: options.role,
         stops_at_errors: options.stops_at_errors,
         echoes: options.echoes,
     };
     let (sender, outcome) = channel();
     let talk = move || {
-        let lines: Result<Box<dyn Lines>, _> = match file {
-            Some(file) => Ok(Box::new(Input::new(BufReader::new(file)))),
-            None if is_terminal => Terminal::open(hub.clone()).map(|terminal| Box::new(terminal) as _),
-            None => Ok(Box::new(Input::new(BufReader::new(io::stdin())))),
+        let mut lines: Box<dyn Lines> = match (file, printing.map(|printing| printing.begin(&hub))) {
+            (Some(file), _) => Box::new(Input::new(BufReader::new(file))),
+            (None, Some(Ok(terminal))) => Box::new(terminal),
+            (None, Some(Err(_)) | None) => Box::new(Input::new(BufReader::new(io::stdin()))),
         };
-        let mut lines = lines.unwrap_or_else(|_| Box::new(Input::new(BufReader::new(io::stdin()))));
         let is_well = converse(&hub, &conversation, &mut *lines, &mut io::stdout(), &mut io::stderr());
         let _ = sender.send(is_well);
     };

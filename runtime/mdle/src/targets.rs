@@ -1,19 +1,23 @@
 //! The robots that this program can run plans on.
 
+use std::os::fd::AsFd as _;
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use mdle_compiler::alphabet::did_you_mean;
+use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::fsm::Machine;
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::shell::Session;
 use mdle_engine::tree::Desk;
-use mdle_engine::{Engine, EngineAlphabet, Library};
+use mdle_engine::{Engine, EngineAlphabet, Library, StoredPlan};
 use mdle_files::{Input, Target};
-use mdle_host::{Call, Program, RunTerms, Supervision};
-use mdle_runtime::{Alphabet, Robot, Sensed, Twist};
+use mdle_host::{Call, Program, Refusal, RunTerms, Supervision};
+use mdle_runtime::{Alphabet, Plan as _, Robot, Sensed, Twist};
 
 use crate::failure::Failure;
+use crate::plans;
+use crate::replayed::{Outcome, Record, replayed};
 use crate::safety::{Guarded, SafetyFile};
 use crate::session::Seat;
 
@@ -24,15 +28,23 @@ pub(crate) struct LinkedTarget {
     pub(crate) name: &'static str,
     /// Loads a plan.
     pub(crate) load: Load,
+    /// Runs a plan on the outputs of a record.
+    pub(crate) replay: ReplayRecord,
     /// Returns the message if a run has no such options.
     pub(crate) check: fn(Program<'_>, &Call) -> Result<(), String>,
 }
 
 /// Loads a plan of a file for a target, with the safety rules of its runs.
-type Load = fn(&Machine, &Input, &Target, Option<&SafetyFile>) -> Result<Box<dyn Ready>, Failure>;
+type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Box<dyn Ready>, Failure>;
+
+/// Runs the plan of a machine on the outputs of a record.
+type ReplayRecord = fn(&Machine, &Sources, &Target, Record) -> Result<Outcome, Failure>;
 
 /// A plan that is ready to run.
 pub(crate) trait Ready {
+    /// Returns `true` if the plan reads attributes of modules.
+    fn reads_modules(&self) -> bool;
+
     /// Runs the plan of this name, with these modules.
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode;
 
@@ -70,15 +82,30 @@ impl LinkedTarget {
         T: mdle_host::Target<Robot: Robot<Output = Sensed, Input = Twist>> + 'static,
         A: EngineAlphabet<Output = Sensed, Input = Twist>,
     {
-        Self { name: T::NAME, load: load::<T, A>, check: mdle_host::check_options::<T> }
+        Self { name: T::NAME, load: load::<T, A>, replay: replay::<A>, check: mdle_host::check_options::<T> }
     }
 }
 
 /// A plan for the target `T`.
 struct PlanFor<T, A: Alphabet> {
     loaded: Arc<Loaded<A>>,
+    /// The text of its file.
+    text: Arc<str>,
+    /// The target, for other plans.
+    known: Arc<Target>,
     safety: Option<Guarded<A>>,
     target: std::marker::PhantomData<fn() -> T>,
+}
+
+impl<T, A: EngineAlphabet<Output = Sensed>> PlanFor<T, A> {
+    /// Makes the engine of a run.
+    fn engine(&self, library: &Library<Sensed>, terms: &RunTerms) -> Result<Engine<A>, Refusal> {
+        let engine = Engine::new(self.loaded.plan(), library, terms)?;
+        match &self.safety {
+            Some(safety) => engine.under_rules(safety.reads()),
+            None => Ok(engine),
+        }
+    }
 }
 
 impl<T, A> Ready for PlanFor<T, A>
@@ -86,19 +113,29 @@ where
     T: mdle_host::Target<Robot: Robot<Output = Sensed, Input = Twist>>,
     A: EngineAlphabet<Output = Sensed, Input = Twist>,
 {
+    fn reads_modules(&self) -> bool {
+        !self.loaded.plan().reads().is_empty()
+    }
+
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode {
         let plan = || self.loaded.plan();
-        let engine = |terms: &RunTerms| Engine::<A>::new(self.loaded.plan(), library, terms);
+        let engine = |terms: &RunTerms| self.engine(library, terms);
         let Some(safety) = &self.safety else { return mdle_host::run_piloted::<T, _>(name, call, &plan, engine, None) };
         let supervisor = |terms: &RunTerms| Box::new(safety.guardian(terms.period)) as _;
         let diversions = |number| safety.diversion(number);
-        let supervision = Supervision { supervisor: &supervisor, diversions: &diversions, session: false };
+        let supervision = Supervision { supervisor: &supervisor, diversions: &diversions, session: None };
         mdle_host::run_piloted::<T, _>(name, call, &plan, engine, Some(supervision))
     }
 
-    fn session(&self, name: &str, call: Call, library: &Library<Sensed>, Seat { desk, is_paused }: Seat) -> ExitCode {
+    fn session(&self, name: &str, call: Call, library: &Library<Sensed>, seat: Seat) -> ExitCode {
+        let Seat { desk, is_paused, stream } = seat;
         let (plan, desk) = (|| self.loaded.plan(), Mutex::new(Some(desk)));
-        let engine = |terms: &RunTerms| Engine::<A>::new(self.loaded.plan(), library, terms);
+        let first = StoredPlan { name: name.into(), text: self.text.clone(), loaded: self.loaded.clone() };
+        let engine = |terms: &RunTerms| {
+            let mut engine = self.engine(library, terms)?;
+            plans::begin(engine.plans_mut(), first.clone(), &self.known)?;
+            Ok(engine)
+        };
         let supervisor = |terms: &RunTerms| {
             let guardian = self.safety.as_ref().map(|safety| safety.guardian(terms.period));
             // A session is one run.
@@ -106,15 +143,24 @@ where
             Box::new(Session::<A>::new(desk, guardian, terms, is_paused)) as _
         };
         let diversions = |number| self.safety.as_ref().and_then(|safety| safety.diversion(number));
-        let supervision = Supervision { supervisor: &supervisor, diversions: &diversions, session: true };
+        let supervision =
+            Supervision { supervisor: &supervisor, diversions: &diversions, session: Some(stream.as_fd()) };
         mdle_host::run_piloted::<T, _>(name, call, &plan, engine, Some(supervision))
     }
+}
+
+fn replay<A>(machine: &Machine, sources: &Sources, target: &Target, record: Record) -> Result<Outcome, Failure>
+where
+    A: Alphabet<Output = Sensed, Input = Twist>,
+{
+    let loaded = Arc::new(load::load::<A>(machine, sources, &target.alphabet)?);
+    Ok(replayed(&loaded, record))
 }
 
 fn load<T, A>(
     machine: &Machine,
     input: &Input,
-    target: &Target,
+    target: &Arc<Target>,
     safety: Option<&SafetyFile>,
 ) -> Result<Box<dyn Ready>, Failure>
 where
@@ -123,5 +169,6 @@ where
 {
     let loaded = Arc::new(load::load::<A>(machine, &input.sources, &target.alphabet)?);
     let safety = safety.map(|safety| safety.compile(target)).transpose()?;
-    Ok(Box::new(PlanFor::<T, A> { loaded, safety, target: std::marker::PhantomData }))
+    let text = input.sources.text(input.source).into();
+    Ok(Box::new(PlanFor::<T, A> { loaded, text, known: Arc::clone(target), safety, target: std::marker::PhantomData }))
 }

@@ -1,0 +1,85 @@
+//! Plans that a session loads while the robot runs: their texts are compiled as that of the first plan is.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use codespan_reporting::term::termcolor::NoColor;
+use mdle_compiler::diagnostic::{Diagnostic, Sources, judged};
+use mdle_compiler::load;
+use mdle_engine::{CompiledPlans, EngineAlphabet, PlanSource, Plans, StoredPlan};
+use mdle_files::{Input, InputError, Target, plan, read_plan};
+use mdle_host::Refusal;
+use mdle_runtime::Alphabet;
+
+/// Name of a text that was typed, in diagnostics.
+const TYPED: &str = "main";
+
+/// Stores the first plan of a run, and lets others of this target be loaded.
+///
+/// # Errors
+/// The system gives no thread for the compiler.
+pub(crate) fn begin<A: EngineAlphabet>(
+    plans: &mut Plans<A>,
+    first: StoredPlan<A>,
+    target: &Arc<Target>,
+) -> Result<(), Refusal> {
+    let target = Arc::clone(target);
+    let started = plans.compile_with(Box::new(move |source| compiled(source, &target)));
+    started.map_err(|error| Refusal::Fault(format!("the system gives no thread for the compiler: {error}")))?;
+    plans.store(first).map_err(Refusal::Fault)
+}
+
+/// Compiles and loads the plans of a text that no other of its plans uses.
+///
+/// # Errors
+/// The diagnostics, as `mdlec check` prints them, after a sentence.
+fn compiled<A: EngineAlphabet>(source: &PlanSource, target: &Target) -> Result<CompiledPlans<A>, String> {
+    let input = match source {
+        PlanSource::File(path) => read_plan(path, target),
+        PlanSource::Text(text) => plan(Path::new(TYPED), text.clone(), target),
+    };
+    let mut input = input.map_err(unread)?;
+    let (machines, diagnostics) = input.compile(&target.alphabet, None);
+    let warnings = rendered(&input.sources, &diagnostics);
+    if let Err(count) = judged(&diagnostics, false) {
+        return Err(faulty(&count, &warnings));
+    }
+    let machines = machines.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine));
+    let machines: Vec<_> = machines.collect();
+    if machines.is_empty() {
+        return Err(input.only::<()>(Vec::new()).err().map(unread).unwrap_or_default());
+    }
+    let text: Arc<str> = input.sources.text(input.source).into();
+    let stored = machines.into_iter().map(|(name, machine)| stored(name, &machine, &input, target, &text));
+    Ok(CompiledPlans { plans: stored.collect::<Result<_, _>>()?, warnings })
+}
+
+fn stored<A: Alphabet + EngineAlphabet>(
+    name: String,
+    machine: &mdle_compiler::fsm::Machine,
+    input: &Input,
+    target: &Target,
+    text: &Arc<str>,
+) -> Result<StoredPlan<A>, String> {
+    let loaded = load::load(machine, &input.sources, &target.alphabet).map_err(|error| error.to_string())?;
+    Ok(StoredPlan { name: name.into(), text: Arc::clone(text), loaded: Arc::new(loaded) })
+}
+
+/// The message about a text that cannot be read.
+fn unread(error: InputError) -> String {
+    let error = error.cause();
+    let InputError::Faulty { sources, diagnostics, .. } = &error else { return error.to_string() };
+    faulty(&judged(diagnostics, false).err().unwrap_or_default(), &rendered(sources, diagnostics))
+}
+
+fn faulty(count: &str, diagnostics: &str) -> String {
+    format!("{count} in the plan, and nothing has changed\n{}", diagnostics.trim_end())
+}
+
+/// The diagnostics as a terminal without colours shows them.
+fn rendered(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
+    let mut text = NoColor::new(Vec::new());
+    // A vector takes everything.
+    let _ = sources.write_all(diagnostics, &mut text);
+    String::from_utf8_lossy(&text.into_inner()).into_owned()
+}

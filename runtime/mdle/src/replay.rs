@@ -1,0 +1,158 @@
+//! `mdle replay`: re-executes a recorded run, and compares it with the record to the bit.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read, Write as _};
+use std::os::unix::fs::FileTypeExt as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use mdle_compiler::Compiled;
+use mdle_compiler::alphabet::Alphabet;
+use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, judged};
+use mdle_compiler::fsm::Machine;
+use mdle_compiler::syntax::Loader;
+use mdle_files::{InputError, Target, read_plan};
+use mdle_record::{Begin, ReadError, Records};
+use mdle_runtime::Printable;
+
+use crate::arguments::Replay;
+use crate::failure::{self, Failure};
+use crate::replayed::{Difference, Outcome};
+use crate::targets;
+
+/// Exit status of a run that is not that of the record.
+const DIFFERS: u8 = 1;
+
+/// Re-executes a record; returns 0 if the run is that of the record, and 1 if it differs or the record was changed.
+///
+/// # Errors
+/// The record or the plan cannot be read.
+pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
+    let name = arguments.log.display();
+    let unread = |error: &dyn std::fmt::Display| Failure::Usage(format!("the record {name} cannot be read: {error}"));
+    let file = opened(&arguments.log).map_err(|error| unread(&error))?;
+    let (begin, records) = Records::open(BufReader::new(file)).map_err(|error| unread(&error))?;
+    if !begin.beside.is_empty() {
+        return Err(Failure::Usage(format!(
+            "the record {name} cannot be replayed: the run depended on {} as well, which a record does not have",
+            begin.beside
+        )));
+    }
+    let linked = targets::linked(&begin.target).map_err(Failure::Usage)?;
+    let target = mdle_files::target(Some(&begin.target))?;
+    let (machine, sources) = plan(arguments, &begin, &target)?;
+    let outcome = (linked.replay)(&machine, &sources, &target, records)?;
+    tell(&outcome).map_err(|error| Failure::Usage(format!("standard output cannot be written: {error}")))?;
+    match outcome {
+        Outcome::Unread(_, error @ ReadError::System(_)) => Err(unread(&error)),
+        Outcome::Same { .. } => Ok(ExitCode::SUCCESS),
+        Outcome::Differs(_) | Outcome::Unread(..) => Ok(ExitCode::from(DIFFERS)),
+    }
+}
+
+/// Opens a record, which may be a pipe; `-` is standard input.
+fn opened(path: &Path) -> io::Result<Box<dyn Read>> {
+    if path == Path::new("-") {
+        return Ok(Box::new(io::stdin()));
+    }
+    let file = File::open(path)?;
+    let kind = file.metadata()?.file_type();
+    if kind.is_file() || kind.is_fifo() {
+        return Ok(Box::new(file));
+    }
+    Err(io::Error::other("expected a file or a pipe"))
+}
+
+/// Compiles the plan of a record, or the plan that the arguments name.
+fn plan(arguments: &Replay, begin: &Begin, target: &Target) -> Result<(Machine, Sources), Failure> {
+    let (plans, diagnostics, sources) = match (&arguments.plan, begin.files.split_first()) {
+        (Some(path), _) => {
+            let mut input = read_plan(path, target)?;
+            input.must_have(&begin.plan)?;
+            let (plans, diagnostics) = input.compile(&target.alphabet, Some(&begin.plan));
+            (plans, diagnostics, input.sources)
+        }
+        (None, Some((own, used))) => {
+            let mut files = RecordedFiles::new(own, used, target);
+            let (plans, diagnostics) = files.compile(&target.alphabet, &begin.plan);
+            (plans, diagnostics, files.sources)
+        }
+        (None, None) => {
+            return Err(Failure::Usage(format!(
+                "the record of an executable does not have the text of its plan\nhelp: name its file, as in `mdle replay \
+                 {} --plan PLAN.mdle`",
+                arguments.log.display()
+            )));
+        }
+    };
+    // Warnings were printed before the run.
+    if let Err(sentence) = judged(&diagnostics, false) {
+        failure::print(&sources, &diagnostics);
+        failure::error(&sentence);
+        return Err(Failure::Plan);
+    }
+    let only = plans.into_iter().next().map(|compiled| compiled.machine);
+    let name = || InputError::Unusable(format!("the record has no plan `{}`", begin.plan));
+    Ok((only.ok_or_else(name)?, sources))
+}
+
+/// The files of a plan as its record has them: they are used in place of those on the disk.
+struct RecordedFiles<'b> {
+    sources: Sources,
+    own: SourceId,
+    /// Files that the plan uses, by their names in the record.
+    used: &'b [(String, String)],
+    /// Names of the files that were added to the sources.
+    names: Vec<(SourceId, PathBuf)>,
+}
+
+impl<'b> RecordedFiles<'b> {
+    fn new((name, text): &(String, String), used: &'b [(String, String)], target: &Target) -> Self {
+        let mut sources = target.sources();
+        let own = sources.add(name.clone(), text.clone());
+        Self { sources, own, used, names: vec![(own, name.into())] }
+    }
+
+    fn compile(&mut self, alphabet: &Alphabet, plan: &str) -> (Vec<Compiled>, Vec<Diagnostic>) {
+        let text = self.sources.text(self.own).to_owned();
+        mdle_compiler::compile_with(self.own, &text, alphabet, Some(plan), self)
+    }
+}
+
+impl Loader for RecordedFiles<'_> {
+    fn find(&mut self, from: SourceId, path: &str) -> Result<SourceId, String> {
+        let folder = self.names.iter().find(|(source, _)| *source == from).and_then(|(_, name)| name.parent());
+        let name = folder.unwrap_or(Path::new("")).join(path);
+        if let Some((source, _)) = self.names.iter().find(|(_, known)| *known == name) {
+            return Ok(*source);
+        }
+        let text = self.used.iter().find(|(known, _)| Path::new(known) == name).map(|(_, text)| text);
+        let text = text.ok_or_else(|| format!("the record has no file `{}`", name.display()))?;
+        let source = self.sources.add(name.display().to_string(), text.clone());
+        self.names.push((source, name));
+        Ok(source)
+    }
+
+    fn text(&self, source: SourceId) -> &str {
+        self.sources.text(source)
+    }
+}
+
+/// Prints the outcome.
+fn tell(outcome: &Outcome) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    match outcome {
+        Outcome::Same { turns, is_whole } => {
+            let end = if *is_whole { "" } else { "; the record has no end" };
+            writeln!(out, "the same to the bit, {turns} turns{end}")
+        }
+        Outcome::Differs(Difference { turn, t, parts }) => {
+            writeln!(out, "turn {turn} at {} s differs", mdle_runtime::trace::Seconds(*t))?;
+            parts.iter().try_for_each(|part| {
+                let [name, recorded, replayed] = [&part.name, &part.recorded, &part.replayed].map(Printable);
+                writeln!(out, "{name}\n  recorded: {recorded}\n  replayed: {replayed}")
+            })
+        }
+        Outcome::Unread(turns, error) => writeln!(out, "the same to the bit, {turns} turns; then {error}"),
+    }
+}

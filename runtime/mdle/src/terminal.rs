@@ -1,0 +1,108 @@
+//! The terminal of a session: what the run reports is printed above the line that is being typed.
+
+use std::io::{self, BufRead as _, BufReader, PipeReader, PipeWriter, Write as _};
+use std::sync::mpsc::{Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::Builder;
+use std::time::Duration;
+
+use mdle_engine::shell::{PrintAbove, Terminal};
+use mdle_engine::tree::Hub;
+use rustix::termios::{OptionalActions, Termios, tcgetattr, tcsetattr};
+
+/// The line that ends what a run reports.
+const END: &[u8] = b"\0\n";
+/// A line that changes nothing on the screen: when it has been taken, those before it have been printed.
+const NOTHING: &str = "\x1b[A\n";
+/// Maximum wait for the last report to be printed.
+const LAST: Duration = Duration::from_millis(500);
+/// Maximum wait for a report of what is watched, between two checks of the end of the run.
+const LOOK: Duration = Duration::from_millis(200);
+
+/// A terminal while a session has it.
+#[derive(Debug)]
+pub(crate) struct HeldTerminal {
+    /// The way in which the terminal was read before.
+    before: Option<Termios>,
+    /// Where the run reports.
+    reports: PipeWriter,
+    printed: std::sync::mpsc::Receiver<()>,
+}
+
+/// The side of the terminal that prints.
+#[derive(Debug)]
+pub(crate) struct Printing {
+    reports: PipeReader,
+    printed: Sender<()>,
+}
+
+impl HeldTerminal {
+    /// Takes the terminal of this process.
+    ///
+    /// # Errors
+    /// The system gives no pipe.
+    pub(crate) fn take() -> io::Result<(Self, Printing)> {
+        let (reader, reports) = io::pipe()?;
+        let (sender, printed) = channel();
+        let before = tcgetattr(io::stdin()).ok();
+        Ok((Self { before, reports, printed }, Printing { reports: reader, printed: sender }))
+    }
+
+    /// Returns where the run reports.
+    pub(crate) fn reports(&self) -> &PipeWriter {
+        &self.reports
+    }
+
+    /// Gives the terminal back, when all that the run has reported is printed.
+    pub(crate) fn give_back(mut self) {
+        let _ = self.reports.write_all(END);
+        let _ = self.printed.recv_timeout(LAST);
+        if let Some(before) = self.before {
+            // The line that is being typed has changed how the terminal reads.
+            let _ = tcsetattr(io::stdin(), OptionalActions::Now, &before);
+        }
+        let _ = writeln!(io::stderr());
+    }
+}
+
+impl Printing {
+    /// Opens the terminal for typing, and lets threads print what the run and the hub report.
+    ///
+    /// # Errors
+    /// The terminal cannot be used, or the system gives no threads; all that the run reports is printed anyway.
+    pub(crate) fn begin(self, hub: &Hub) -> io::Result<Terminal> {
+        let (terminal, print): (_, Box<PrintAbove>) = match Terminal::open(hub.clone()) {
+            Ok((terminal, print)) => (Ok(terminal), print),
+            Err(error) => (Err(error), Box::new(|text: &str| io::stderr().write_all(text.as_bytes()))),
+        };
+        let print = Arc::new(Mutex::new(print));
+        let (watched, hub) = (Arc::clone(&print), hub.clone());
+        Builder::new().name("reports".to_owned()).spawn(move || self.print(&print))?;
+        Builder::new().name("watched".to_owned()).spawn(move || {
+            loop {
+                match hub.report(LOOK) {
+                    Some(report) => say(&watched, &format!("{report}\n")),
+                    None if hub.has_ended() => break,
+                    None => {}
+                }
+            }
+        })?;
+        terminal
+    }
+
+    /// Prints what the run reports, up to its end.
+    fn print(self, print: &Mutex<Box<PrintAbove>>) {
+        let (mut reports, mut line) = (BufReader::new(self.reports), Vec::new());
+        while reports.read_until(b'\n', &mut line).is_ok_and(|read| read > 0) && line != END {
+            say(print, &String::from_utf8_lossy(&line));
+            line.clear();
+        }
+        (0..2).for_each(|_| say(print, NOTHING));
+        let _ = self.printed.send(());
+    }
+}
+
+fn say(print: &Mutex<Box<PrintAbove>>, text: &str) {
+    // A terminal that has gone is no reason to stop.
+    let _ = (print.lock().unwrap_or_else(PoisonError::into_inner))(text);
+}
