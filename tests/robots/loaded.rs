@@ -114,6 +114,11 @@ fn every_plan_runs_as_its_executable_does() {
         if fs::read_to_string(&plan).unwrap().contains("heading module") {
             let built = run_mdlec(&folder, &[file, "--target", "sim"]);
             assert!(String::from_utf8(built.stderr).unwrap().starts_with("error[E0403]"), "{file}");
+            let mut command = loaded(file, "sim");
+            command.args(["--speed", "max", "--timeout", "20", "--point", "3,0"]).args(["--log", FILES[0]]);
+            let run = left(&folder, &called(&command), command.current_dir(&folder).output().unwrap());
+            assert_eq!(run.status, Some(4), "{file}: {}", run.err);
+            assert!(run.files[0].as_ref().is_some_and(|log| log.contains("goAvoid heading module")), "{file}: {run:?}");
             in_an_engine += 1;
             continue;
         }
@@ -157,7 +162,7 @@ fn a_run_on_an_emulated_robot_is_that_of_the_executable() {
 }
 
 /// A robot in the office, at the start of the tour.
-fn simulated(body: Body, step: Duration) -> Simulated {
+pub(crate) fn simulated(body: Body, step: Duration) -> Simulated {
     let world = World::office().unwrap();
     let make = Make { body, without: Vec::new(), seed: None };
     Simulated::with(&make, &world, world.start, step).unwrap()
@@ -194,7 +199,7 @@ fn random_plans_run_as_their_executables_do() {
 }
 
 /// A plan of the simulated robot: behaviors in behaviors, loops, frames, memories, and laws that drive it about.
-fn random_plan(chance: &mut Chance) -> String {
+pub(crate) fn random_plan(chance: &mut Chance) -> String {
     let mut text = String::from("{ Main (wait 90)\n");
     let mut labels = 0;
     strings(chance, &mut text, 3, &mut labels);

@@ -2,14 +2,21 @@
 
 mod atrv;
 mod batches;
+mod building;
+mod contacts;
+mod driven;
 mod emulators;
 mod lab_tour;
 mod loaded;
+mod module_faults;
 mod modules;
 mod movement;
 mod operands;
 mod paths;
 mod power;
+mod processes;
+mod records;
 mod safety;
 mod scout;
+mod sessions;
 mod several;

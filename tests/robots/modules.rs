@@ -13,7 +13,7 @@ use mdle_engine::{
     Background, Declare, Engine, Exchange, Fault, In, Library, Module, Modules, Out, PlanEvent, Relevance, Standing,
     Turn, When,
 };
-use mdle_host::{Moment, Pace, Pilot, PilotFault, RunTerms, StopRequest, Time, Transitions};
+use mdle_host::{Moment, Pace, Pilot, PilotFault, Refusal, RunTerms, StopRequest, Time, Transitions};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, Robot, Sensed, Turn as PlanTurn, Twist};
 use mdle_sim::alphabet::Alphabet;
 use mdle_sim::{Simulated, World};
@@ -47,7 +47,7 @@ struct Ears {
 }
 
 impl Background for Ears {
-    fn run(self: Box<Self>, mut exchange: Exchange) {
+    fn run(self: Box<Self>, mut exchange: Exchange) -> Result<(), Fault> {
         let Self { place, bearing, range } = *self;
         let hear = move |offer: &mut mdle_engine::Offer<'_>| {
             let Some(pose) = offer.get(place) else { return };
@@ -56,6 +56,7 @@ impl Background for Ears {
             offer.publish(range, Meters(libm::hypot(x, y)));
         };
         while exchange.exchange(hear).is_ok() {}
+        Ok(())
     }
 }
 
@@ -109,25 +110,29 @@ fn loaded(text: &str) -> Arc<Loaded<Alphabet>> {
 }
 
 /// A simulated robot in the hall, and the engine that drives it.
-struct Run {
+pub(super) struct Run {
     robot: Simulated,
-    engine: Engine<Alphabet>,
-    input: Twist,
+    pub(super) engine: Engine<Alphabet>,
+    pub(super) input: Twist,
     /// Place of the robot by odometry.
     place: Pose,
-    turns: u64,
+    pub(super) turns: u64,
 }
 
 impl Run {
     fn of(text: &str, library: &Library<Sensed>) -> Self {
-        let world = World::named("hall").unwrap().unwrap();
-        let robot = Simulated::new(&world, world.start, Some(3), PERIOD).unwrap();
-        let terms = RunTerms { time: Time::Stepped(Pace::Max), period: PERIOD, request: StopRequest::default() };
-        let engine = Engine::new(loaded(text).plan(), library, &terms).unwrap();
-        Self { robot, engine, input: Twist::default(), place: Pose::ORIGIN, turns: 0 }
+        Self::begin(text, library, Time::Stepped(Pace::Max)).unwrap()
     }
 
-    fn turn(&mut self) -> Result<PlanTurn<Twist>, PilotFault> {
+    pub(super) fn begin(text: &str, library: &Library<Sensed>, time: Time) -> Result<Self, Refusal> {
+        let world = World::named("hall").unwrap().unwrap();
+        let robot = Simulated::new(&world, world.start, Some(3), PERIOD).unwrap();
+        let terms = RunTerms { time, period: PERIOD, request: StopRequest::default() };
+        let engine = Engine::new(loaded(text).plan(), library, &terms)?;
+        Ok(Self { robot, engine, input: Twist::default(), place: Pose::ORIGIN, turns: 0 })
+    }
+
+    pub(super) fn turn(&mut self) -> Result<PlanTurn<Twist>, PilotFault> {
         let y = self.robot.exchange(&self.input).unwrap();
         self.place = y.odometry;
         let t = Nanos(self.turns * 100_000_000);
@@ -206,7 +211,7 @@ fn a_plan_that_reads_nothing_new_takes_over_at_once() {
     (0..10).for_each(|_| _ = run.turn().unwrap());
     let standing = |modules: &Modules<Sensed>| modules.names().find(|(name, _)| *name == "heading").unwrap().1;
     assert_eq!(standing(run.engine.modules()), Standing::Stopped, "nothing reads it");
-    run.engine.plans().replace(loaded(FOLLOW).plan(), When::Now);
+    run.engine.plans_mut().replace(loaded(FOLLOW).plan(), When::Now);
     // It is started for the plan that is to follow, which takes over once it has published.
     let taken = (0..10).position(|_| {
         run.turn().unwrap();
@@ -220,9 +225,9 @@ fn a_plan_that_reads_nothing_new_takes_over_at_once() {
 #[test]
 fn a_plan_that_cannot_take_over_is_refused() {
     let mut run = Run::of("{ Stand (wait 60) (Atom (null) stop) }", &Library::new());
-    run.engine.plans().replace(loaded(FOLLOW).plan(), When::Now);
+    run.engine.plans_mut().replace(loaded(FOLLOW).plan(), When::Now);
     (0..25).for_each(|_| _ = run.turn().unwrap());
-    let events: Vec<_> = run.engine.plans().take_events().collect();
+    let events: Vec<_> = run.engine.plans_mut().take_events().collect();
     let [PlanEvent::Armed(2), PlanEvent::Refused(2, sentence)] = &events[..] else { panic!("{events:?}") };
     assert!(sentence.contains("/usr/heading/range, which no module has published"), "{sentence}");
     assert_eq!(run.engine.plans().number(), 1);

@@ -1,0 +1,107 @@
+//! The worlds in which a plan makes sense, and where it asks for contact.
+
+/// The plans of one name of a file or of a page of the book.
+pub(super) struct Row {
+    pub(super) file: &'static str,
+    pub(super) plan: &'static str,
+    /// The worlds in which the way of the plan is free as far as it does not look: a plan that goes ahead by time needs
+    /// that much room, and one that waits for `atIsection 1000` or for a range ahead comes to a wall that is square to
+    /// its way, since a sonar hears nothing of a wall at a slant.
+    pub(super) worlds: &'static str,
+    /// The reason why the plan asks for contact; empty if it does not.
+    pub(super) asks: &'static str,
+    /// Greatest number of runs in a hundred with a contact that the plan does not ask for.
+    pub(super) most: u64,
+    /// The cause of such contacts.
+    pub(super) cause: &'static str,
+}
+
+const fn row(file: &'static str, plan: &'static str, worlds: &'static str) -> Row {
+    Row { file, plan, worlds, asks: "", most: 0, cause: "" }
+}
+
+impl Row {
+    /// A plan that asks for contact, for this reason.
+    const fn asks(self, asks: &'static str) -> Self {
+        Self { asks, ..self }
+    }
+
+    /// A plan that touches something in at most `most` runs of a hundred, for this reason.
+    const fn touches(self, most: u64, cause: &'static str) -> Self {
+        Self { most, cause, ..self }
+    }
+}
+
+pub(super) const TABLE: &[Row] = &[
+    row("plans/branching.mdle", "Branching", "floor, hall, home"),
+    row("plans/dock.mdle", "Dock", "floor, hall"),
+    row("plans/lab_tour.mdle", "LabTour", "office"),
+    row("plans/patrol.mdle", "Patrol", "floor, hall, office, maze, home"),
+    row("plans/patrol.mdle", "Patrol", "room").touches(15, "the way back is between the desk and a chair"),
+    row("plans/retreat.mdle", "Explore", "floor, hall, room, home").asks("it explores by touch"),
+    row("plans/sentry.mdle", "Sentry", "floor, hall, room, office, maze, home, yard"),
+    row("plans/wall_following.mdle", "WallFollowing", "hall"),
+    row("plans/wall_following.mdle", "WallFollowing", "home")
+        .touches(15, "one sonar at 45 degrees and one ahead hear little of a corner"),
+    row("plans/paper/lab1_to_office.mdle", "Lab1ToOfficePlan", "lab 1"),
+    row("plans/paper/lab2_to_lab1.mdle", "Lab2ToLab1Plan", "office"),
+    row("analysis.md", "Outing", "floor, hall, home, yard"),
+    row("analysis.md", "Dock", "floor, hall, home"),
+    row("conditions.md", "P", "floor").asks("it ends at a contact"),
+    row("embedding.md", "Round", "floor, hall, home"),
+    row("faults.md", "Approach", "floor, hall, home, yard"),
+    row("first_plan.md", "First", "floor, hall"),
+    row("language.md", "P", "floor"),
+    row("language.md", "Outer", "floor, hall"),
+    row("language.md", "ToTheOffice", "floor, hall, room, office, maze, home"),
+    row("language.md", "Ahead", "floor, hall, office, home"),
+    row("language.md", "Ahead", "room").touches(10, "furniture beside the way, and a rectangle that turns there"),
+    row("language.md", "Ahead", "maze").touches(30, "a rectangle turns in passages of 1.2 m"),
+    row("layout.md", "Dock", "floor, hall"),
+    row("loops.md", "Main", "floor, hall").asks("it drives until it touches"),
+    row("machines.md", "Rest", "floor, hall, home"),
+    row("memory.md", "Main", "floor, hall").asks("it drives until it touches"),
+    row("names.md", "Tour", "floor, hall"),
+    row("names.md", "Patrol", "floor, hall"),
+    row("names.md", "Corridor", "floor, hall"),
+    row("own_loop.md", "Shuttle", "floor, hall, home"),
+    row("own_plan.md", "Side", "floor, hall, room, office, home"),
+    row("own_plan.md", "Square", "floor"),
+    row("own_plan.md", "Square", "hall").touches(5, "a rectangle turns beside a column"),
+    row("own_robot.md", "Square", "floor, hall"),
+    row("pictures.md", "Figure2", "floor, hall"),
+    row("pictures.md", "Search", "hall, room, home").touches(
+        60,
+        "three sonars hear nothing of what is beside the way, and an ATRV-mini at 40 cm/s hears them late",
+    ),
+    row("pictures.md", "Figure3", "floor").asks("it drives until it touches"),
+    row("quarks.md", "Rounds", "floor, hall, room, home").asks("it turns away where it touches"),
+    row("quarks.md", "Legs", "floor, office"),
+    row("quarks.md", "Legs", "hall, room").touches(10, "a column or a chair beside the way"),
+    row("quarks.md", "Metre", "floor, hall"),
+    row("quarks.md", "P", "floor"),
+    row("quarks.md", "Round", "floor, hall"),
+    row("records.md", "Square", "floor, hall"),
+    row("reference/interfaces.md", "Lab", "floor, hall, office"),
+    row("reference/interfaces.md", "Lab", "room").touches(25, "the point is outside: it drives about among furniture"),
+    row("reference/interfaces.md", "Pair", "floor, hall, home"),
+    row("reference/semantics.md", "Levels", "floor, hall, room, office, maze, home, yard"),
+    row("safety.md", "Rush", "floor"),
+    row("safety.md", "Retreat", "floor"),
+    row("safety.md", "Ahead", "floor"),
+    row("shell.md", "Ahead", "floor, hall"),
+    row("shell.md", "Go", "floor").asks("it ends at a contact"),
+    row("shell.md", "Null", "floor, hall"),
+    row("simulator.md", "Ahead", "floor"),
+    row("simulator.md", "Ahead", "hall").touches(10, "the walker comes up from a side while the robot stands"),
+    row("simulator.md", "Ahead", "room").touches(30, "furniture beside the way, most often a rectangle at 30 cm/s"),
+    row("simulator.md", "Home", "home"),
+    row("state_machine.md", "Main", "floor, hall").asks("it drives until it touches"),
+    row("theorem_1.md", "Beacon", "floor, hall, room, office, maze, home, yard"),
+    row("turns.md", "Main", "floor, hall").asks("it drives until it touches"),
+    row("what_a_plan_is.md", "Approach", "floor, hall"),
+    row("what_a_plan_is.md", "Dock", "floor, hall"),
+    row("why.md", "Dock", "floor, hall"),
+    row("without_compiler.md", "Square", "floor, hall, home"),
+    row("worlds.md", "Cross", "yard"),
+];

@@ -1,0 +1,282 @@
+//! Records of runs: each replays to the bit, on the simulator and on both emulated robots; a record that was changed,
+//! cut short, or that belongs to a run that was killed says so.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use mdle_atrv_emulator::atrv::{Atrv, step};
+use mdle_emulator::{Emulated, Pace, Port, serve};
+use mdle_scout_emulator::scout::Scout;
+use mdle_sim::Body;
+use mdle_tests::chance::{Chance, repeated};
+use mdle_tests::executable::{folder, mdle, run_mdlec};
+use mdle_tests::repository::root;
+
+use crate::loaded::{random_plan, simulated};
+
+const PERIOD: Duration = Duration::from_millis(100);
+const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
+
+/// The text of a plan with a loop, a memory, a rising condition and a frame.
+const PLAN: &str = "{ Rounds (wait 60s)
+  ((Atom (RISING (r0 < 80cm) OR wait 4s) (go 30 0)) ahead: (Atom (wait 2s OR bumper) (go 0 0.7))
+  (Atom (NOT after ahead (wait 2s) OR wait 1s) stop))^inf
+}
+";
+
+/// Runs `mdle` with these arguments.
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap()
+}
+
+/// The report, the messages and the exit status of a replay.
+fn replay(folder: &Path, arguments: &[&str]) -> (String, String, Option<i32>) {
+    let output = run(folder, &[&["replay"], arguments].concat());
+    let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    (out, err, output.status.code())
+}
+
+/// Asserts that a record replays to the bit; returns the number of its turns.
+fn assert_same(folder: &Path, arguments: &[&str]) -> u64 {
+    let (out, err, status) = replay(folder, arguments);
+    assert_eq!((err.as_str(), status), ("", Some(0)), "{arguments:?}: {out}");
+    let turns = out.strip_prefix("the same to the bit, ").and_then(|rest| rest.strip_suffix(" turns\n"));
+    turns.expect(&out).parse().unwrap()
+}
+
+/// A record of `PLAN` in the simulator, as `run.mcap` in this folder.
+fn recorded(folder: &Path, options: &[&str]) {
+    fs::write(folder.join("rounds.mdle"), PLAN).unwrap();
+    let common = ["run", "rounds.mdle", "--target", "sim", "--world", "hall", "--speed", "max", "--log", "run.mcap"];
+    let output = run(folder, &[&common, options].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn runs_of_every_plan_replay_to_the_bit() {
+    let folder = folder("plans");
+    let plans = fs::read_dir(root().join("plans")).unwrap().map(|entry| entry.unwrap().path());
+    let mut records = 0;
+    for plan in plans.filter(|plan| plan.is_file()) {
+        for (body, seed) in [("ideal", "1"), ("scout", "2"), ("atrv", "3")] {
+            let plan = plan.to_str().unwrap();
+            let common = ["run", plan, "--target", "sim", "--speed", "max", "--timeout", "200", "--log", "run.MCAP"];
+            let output = run(&folder, &[&common[..], &["--body", body, "--seed", seed]].concat());
+            assert!(matches!(output.status.code(), Some(0 | 4)), "{}", String::from_utf8_lossy(&output.stderr));
+            assert!(assert_same(&folder, &["run.MCAP"]) > 40, "{plan} {body}");
+            records += 1;
+        }
+    }
+    assert!(records >= 21, "{records}");
+}
+
+#[test]
+fn runs_of_random_plans_replay_to_the_bit() {
+    let folder = folder("random");
+    for seed in 0..repeated(8) {
+        fs::write(folder.join("random.mdle"), random_plan(&mut Chance::new(seed))).unwrap();
+        let body = ["ideal", "scout", "atrv"][seed as usize % 3];
+        let options = ["run", "random.mdle", "--target", "sim", "--speed", "max", "--log", "run.mcap", "--body", body];
+        let output = run(&folder, &[&options[..], &["--seed", &seed.to_string()]].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_same(&folder, &["run.mcap"]);
+    }
+}
+
+/// Runs a plan on an emulated robot in lockstep.
+fn emulated<R: Emulated + Send>(folder: &Path, mut robot: R, target: &str) -> Output {
+    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
+    let mut command = Command::new(mdle());
+    command.args(["run", "rounds.mdle", "--target", target, "--lockstep", "--log", "run.mcap", "--device"]);
+    thread::scope(|scope| {
+        let serving = scope.spawn(|| serve(&mut robot, &port, IN_LOCKSTEP, &|| !over.load(Ordering::Relaxed)));
+        let output = command.arg(port.path()).current_dir(folder).output();
+        over.store(true, Ordering::Relaxed);
+        serving.join().unwrap().unwrap();
+        output.unwrap()
+    })
+}
+
+#[test]
+fn runs_on_emulated_robots_replay_to_the_bit() {
+    let folder = folder("emulated");
+    fs::write(folder.join("rounds.mdle"), PLAN).unwrap();
+    let step = step(IN_LOCKSTEP);
+    let check = |target: &str, output: Output| {
+        assert!(output.status.success(), "{target}: {}", String::from_utf8_lossy(&output.stderr));
+        assert!(assert_same(&folder, &["run.mcap"]) > 500, "{target}");
+    };
+    check("scout", emulated(&folder, Scout::new(simulated(Body::Scout, PERIOD)).unwrap(), "scout"));
+    check("atrv", emulated(&folder, Atrv::new(simulated(Body::Atrv, step), step, false).unwrap(), "atrv"));
+}
+
+#[test]
+fn the_record_of_an_executable_needs_the_text_of_its_plan() {
+    let folder = folder("executable");
+    recorded(&folder, &["--body", "scout", "--seed", "5"]);
+    let turns = assert_same(&folder, &["run.mcap"]);
+    let built = run_mdlec(&folder, &["rounds.mdle", "--target", "sim", "-o", "rounds"]);
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    let options = ["--world", "hall", "--speed", "max", "--body", "scout", "--seed", "5", "--log", "own.mcap"];
+    let output = Command::new(folder.join("rounds")).args(options).current_dir(&folder).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(assert_same(&folder, &["own.mcap", "--plan", "rounds.mdle"]), turns);
+    let (_, err, status) = replay(&folder, &["own.mcap"]);
+    let expected = "error: the record of an executable does not have the text of its plan\n\
+                    help: name its file, as in `mdle replay own.mcap --plan PLAN.mdle`\n";
+    assert_eq!((err.as_str(), status), (expected, Some(2)));
+}
+
+/// Another plan on the outputs of the record is another run: the first turn that differs is named.
+#[test]
+fn another_plan_differs_in_a_turn() {
+    let folder = folder("other");
+    recorded(&folder, &["--seed", "5"]);
+    fs::write(folder.join("edited.mdle"), PLAN.replace("wait 4s", "wait 3s")).unwrap();
+    let (out, err, status) = replay(&folder, &["run.mcap", "--plan", "edited.mdle"]);
+    assert_eq!((err.as_str(), status), ("", Some(1)));
+    let expected = [
+        "turn 30 at 3.0 s differs",
+        "transitions\n  recorded: none\n  replayed: 1 to 2 by wait 3",
+        "state\n  recorded: 1\n  replayed: 2",
+        "input\n  recorded: 0.3 m/s, 0 rad/s\n  replayed: 0 m/s, 0.7 rad/s\n",
+    ];
+    assert_eq!(out, expected.join("\n"));
+}
+
+#[test]
+fn a_plan_that_uses_others_replays_without_their_files() {
+    let folder = folder("used");
+    fs::create_dir(folder.join("parts")).unwrap();
+    fs::write(folder.join("main.mdle"), "use \"parts/leg.mdle\"\n{ Main (bumper) Leg(2s) Leg(1s) }\n").unwrap();
+    fs::write(folder.join("parts/leg.mdle"), "{ Leg(long: time) (Atom (wait long) (go 20 0)) }\n").unwrap();
+    let options = ["run", "main.mdle", "--target", "sim", "--speed", "max", "--log", "run.mcap"];
+    assert!(run(&folder, &options).status.success());
+    fs::remove_file(folder.join("main.mdle")).unwrap();
+    fs::remove_dir_all(folder.join("parts")).unwrap();
+    assert_eq!(assert_same(&folder, &["run.mcap"]), 31);
+}
+
+/// The place in a record of the range of the first new ping in a turn that has one. The turn begins with its number,
+/// its time, and the time of its output, which is the same on a simulated robot.
+fn range_of(record: &[u8], turn: u64) -> Option<usize> {
+    let t = turn * 100_000_000;
+    let start = [turn, t, t].map(u64::to_le_bytes).concat();
+    let at = record.windows(start.len()).position(|bytes| bytes == start)? + start.len();
+    // Pose, velocity, switches, battery, its flags, kind of the compass.
+    let fresh = at + 24 + 16 + 4 + 8 + 1 + 1;
+    let has_range = record[fresh..fresh + 4] != [0; 4] && record[fresh + 4] & 2 != 0;
+    has_range.then_some(fresh + 5)
+}
+
+#[test]
+fn a_bit_of_a_range_is_missed_in_its_turn() {
+    let folder = folder("bit");
+    recorded(&folder, &["--seed", "5"]);
+    let record = fs::read(folder.join("run.mcap")).unwrap();
+    for from in [1, 123, 456] {
+        let (turn, at) = (from..from + 100).find_map(|turn| Some((turn, range_of(&record, turn)?))).unwrap();
+        let mut changed = record.clone();
+        changed[at] ^= 1;
+        fs::write(folder.join("changed.mcap"), changed).unwrap();
+        let (out, _, status) = replay(&folder, &["changed.mcap"]);
+        let expected =
+            format!("the same to the bit, {turn} turns; then turn {turn} was changed after it had been written\n");
+        assert_eq!((out, status), (expected, Some(1)));
+    }
+}
+
+#[test]
+fn a_record_that_is_cut_short_replays_to_its_last_second() {
+    let folder = folder("cut");
+    recorded(&folder, &["--seed", "5"]);
+    let record = fs::read(folder.join("run.mcap")).unwrap();
+    let whole = assert_same(&folder, &["run.mcap"]);
+    let mut last = 0;
+    for part in 1..20 {
+        fs::write(folder.join("cut.mcap"), &record[..record.len() * part / 20]).unwrap();
+        let (out, err, status) = replay(&folder, &["cut.mcap"]);
+        if status == Some(2) {
+            assert!(err.contains("it is no record of a run"), "{err}");
+            continue;
+        }
+        let turns = out
+            .strip_prefix("the same to the bit, ")
+            .and_then(|rest| rest.strip_suffix(" turns; the record has no end\n"));
+        let turns: u64 = turns.expect(&out).parse().unwrap();
+        assert!(turns >= last && turns <= whole && status == Some(0), "{part}: {out}");
+        last = turns;
+    }
+    assert!(whole - last <= whole / 10, "{last} of {whole}");
+}
+
+#[test]
+fn what_is_no_record_is_refused() {
+    let folder = folder("none");
+    fs::write(folder.join("empty.mcap"), "").unwrap();
+    fs::write(folder.join("plan.mcap"), PLAN).unwrap();
+    let messages = ["missing.mcap", "empty.mcap", "plan.mcap", "."].map(|log| {
+        let (out, err, status) = replay(&folder, &[log]);
+        assert_eq!((out.as_str(), status), ("", Some(2)));
+        err
+    });
+    insta::assert_snapshot!(messages.concat());
+}
+
+/// A record that a rule or a session changed cannot be replayed, and says so.
+#[test]
+fn a_run_under_safety_rules_is_recorded_but_not_replayed() {
+    let folder = folder("safety");
+    fs::write(folder.join("rules.toml"), "[limits]\nspeed = \"10cm/s\"\n").unwrap();
+    recorded(&folder, &["--safety", "rules.toml"]);
+    let (_, err, status) = replay(&folder, &["run.mcap"]);
+    let expected = "error: the record run.mcap cannot be replayed: the run depended on safety rules as well, which a record \
+                    does not have\n";
+    assert_eq!((err.as_str(), status), (expected, Some(2)));
+}
+
+#[test]
+fn a_full_disk_ends_the_run() {
+    let folder = folder("full");
+    fs::write(folder.join("rounds.mdle"), PLAN).unwrap();
+    symlink("/dev/full", folder.join("full.mcap")).unwrap();
+    let output = run(&folder, &["run", "rounds.mdle", "--target", "sim", "--speed", "max", "--log", "full.mcap"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    let expected =
+        "error: the run log cannot be written, so the robot was stopped: No space left on device (os error 28)\n";
+    assert_eq!(message, expected);
+}
+
+/// As a run in real time writes it: each second reaches the file at once.
+#[test]
+fn the_record_of_a_killed_run_can_be_read() {
+    let folder = folder("killed");
+    fs::write(folder.join("rounds.mdle"), PLAN).unwrap();
+    let options = ["run", "rounds.mdle", "--target", "sim", "--speed", "20", "--log", "run.mcap"];
+    let mut child = Command::new(mdle()).args(options).current_dir(&folder).stdout(Stdio::null()).spawn().unwrap();
+    let length = || fs::metadata(folder.join("run.mcap")).map_or(0, |metadata| metadata.len());
+    while length() < 60_000 && child.try_wait().unwrap().is_none() {
+        thread::sleep(Duration::from_millis(10));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let (out, err, status) = replay(&folder, &["run.mcap"]);
+    assert!(out.ends_with(" turns; the record has no end\n") && status == Some(0), "{out}{err}");
+}
+
+#[test]
+fn two_runs_of_one_seed_have_the_same_record() {
+    let folder = folder("twice");
+    let record = || {
+        recorded(&folder, &["--body", "atrv", "--seed", "9"]);
+        fs::read(folder.join("run.mcap")).unwrap()
+    };
+    assert!(record() == record());
+}
