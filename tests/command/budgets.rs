@@ -183,6 +183,38 @@ fn loops_multiply_conditions_within_limits() {
     assert_ends("loops", &plan, &[ANALYZE, RUST]);
 }
 
+#[test]
+fn limits_are_asked_before_a_plan_is_lowered() {
+    // What the machine of a plan shows is not reported of a plan that has none.
+    let never = "(Atom (bumper AND NOT bumper OR wait 1) stop)";
+    let assert_is_asked = |test: &str, plan: &str, commands: &[&[&str]], limit: &str| {
+        let folder = with_plan(test, plan);
+        let (status, warnings) = judged(&folder, &["check", "plan.mdle"]);
+        assert!(status == Some(0) && warnings.contains("warning["), "{warnings}");
+        for command in commands {
+            let (status, messages) = judged(&folder, &[command, &["plan.mdle"][..]].concat());
+            assert!(status == Some(1) && messages.contains(limit), "{command:?}: {messages}");
+            assert!(!messages.contains("warning["), "{command:?}: {messages}");
+        }
+    };
+    let atoms = vec!["(Atom (wait 1) stop)"; 1000].join(" ");
+    let plan = format!("{{ P ExecPlan 100 {{ {never} {atoms} }} }}\n");
+    let pictures: [&[&str]; 3] = [&["draw"], &["--emit", "dot"], &["--emit", "mermaid"]];
+    assert_is_asked("pictures", &plan, &pictures, "this plan has 1001 atoms; a picture shows 1000 at most");
+    let expanded = ["expanded", "fsm", "matrices", "scxml"].map(|kind| ["--emit", kind]);
+    let traces = ["table", "matrix"].map(|machine| ["trace", "--script", "script.jsonl", "--machine", machine]);
+    let forms: Vec<&[&str]> =
+        expanded.iter().map(|form| &form[..]).chain(traces.iter().map(|form| &form[..])).collect();
+    assert_is_asked(
+        "states",
+        &plan,
+        &forms,
+        "expanded, this plan has 100101 states; an expanded form has at most 100000",
+    );
+    let long = format!("{{ P {never} {} }}\n{{ L (Atom ({}) stop) }}\n", vec!["L"; 270].join(" "), operands(1000));
+    assert_is_asked("rust", &long, &[RUST], "Rust is emitted for 262144 in all");
+}
+
 /// Returns an image of this size, black where `stands` returns `true`.
 fn image(width: usize, height: usize, stands: impl Fn(usize, usize) -> bool) -> Vec<u8> {
     let mut bytes = format!("P5\n{width} {height}\n255\n").into_bytes();

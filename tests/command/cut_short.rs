@@ -16,7 +16,7 @@ use mdle_tests::executable::{cache, command, folder, mdlec, run_mdlec, without_w
 const PLAN: &str = "plan.mdle";
 
 /// A cargo that reports that it is at work, with a child of its own, and never ends by itself.
-const CARGO: &str = "#!/bin/sh\nexec 3> \"$AT_WORK\"\necho at work >&3\nsleep 120 &\nwait\necho survived >&3\n";
+const CARGO: &str = "#!/bin/sh\nexec 3> \"$AT_WORK\"\necho at work >&3\nsleep 900 &\nwait\necho survived >&3\n";
 
 fn with_plan(test: &str) -> PathBuf {
     let folder = folder(test);

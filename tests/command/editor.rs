@@ -1,15 +1,16 @@
-//! `mdlec lsp`: the real binary on its standard input and output. The features are tested in `editors/server`.
+//! `mdlec lsp` and `mdlec dap`: the real binary on its standard input and output. The features are tested in
+//! `editors/server` and `editors/debugger`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
+use std::ops::Range;
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 
-use mdle_compiler::check_with;
-use mdle_compiler::diagnostic::{SourceId, Sources, most_shown};
-use mdle_compiler::syntax::NoFiles;
+use mdle_compiler::diagnostic::Diagnostic;
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{command, folder};
-use mdle_tests::pipeline::scripted;
+use mdle_tests::pipeline::{LIBRARY, LIBRARY_FILE, diagnostics};
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::repository::root;
 use serde_json::{Value, json};
@@ -23,7 +24,12 @@ struct Server {
 
 impl Server {
     fn started(test: &str) -> Self {
-        let mut command = command(&folder(test), &["lsp"]);
+        Self::of(test, "lsp")
+    }
+
+    /// Starts a command that serves an editor.
+    fn of(test: &str, name: &str) -> Self {
+        let mut command = command(&folder(test), &[name]);
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
         let (input, output) = (child.stdin.take(), BufReader::new(child.stdout.take().unwrap()));
@@ -131,20 +137,36 @@ fn bytes_that_are_no_message_are_refused() {
     }
 }
 
+#[test]
+fn a_debugger_ends_with_its_client() {
+    let mut debugger = Server::of("debugger_asked", "dap");
+    debugger.send(&json!({ "seq": 1, "type": "request", "command": "initialize", "arguments": {} }));
+    assert_eq!(debugger.receive()["body"]["supportsStepBack"], true);
+    debugger.send(&json!({ "seq": 2, "type": "request", "command": "disconnect" }));
+    assert_eq!(debugger.receive()["command"], "disconnect");
+    assert_eq!(debugger.end(), (Some(0), String::new()));
+    let (status, message) = Server::of("debugger_vanished", "dap").end();
+    assert_eq!(
+        (status, message.as_str()),
+        (Some(1), "error: the client is gone: it closed the connection without `disconnect`\n")
+    );
+    let mut debugger = Server::of("debugger_bytes", "dap");
+    debugger.write(b"hello\r\n\r\n");
+    let (status, message) = debugger.end();
+    assert_eq!(status, Some(2));
+    assert!(message.starts_with("error: the client does not speak the Debug Adapter Protocol: `hello`"), "{message}");
+}
+
 /// Diagnostics of the compiler: code, severity and start of each, in UTF-16.
 fn expected(text: &str) -> Vec<(String, u64, u64, u64)> {
-    let mut sources = Sources::default();
-    let source: SourceId = sources.add("plan.mdle", text);
-    let found = check_with(source, text, scripted(), &mut NoFiles);
-    let shown = found.iter().take(most_shown(&found));
-    let one = |found: &mdle_compiler::diagnostic::Diagnostic| {
-        let before = &text[..found.span().unwrap().within(source).start];
+    let one = |(found, range): (Diagnostic, Range<usize>)| {
+        let before = &text[..range.start];
         let line = before.split('\n').count() - 1;
         let column = before.rsplit('\n').next().unwrap_or("").encode_utf16().count();
         let severity = if found.code.name().starts_with('E') { 1 } else { 2 };
         (found.code.name().to_owned(), severity, line as u64, column as u64)
     };
-    shown.map(one).collect()
+    diagnostics(text).into_iter().map(one).collect()
 }
 
 /// Texts that an edit inserts.
@@ -171,16 +193,16 @@ fn edited(text: &mut String, chance: &mut Chance) -> Value {
 #[test]
 fn random_edits_leave_the_compilers_diagnostics() {
     let target = root().join("tests/scripted");
+    let folder = folder("random_edits_of_files");
+    fs::write(folder.join(LIBRARY_FILE), LIBRARY).unwrap();
     let mut server = Server::with_options("random_edits", &json!({ "target": target }));
-    let mut version = 0;
-    for seed in 0..repeated(100) {
+    let (mut version, mut with_library) = (0, 0);
+    for seed in 0..repeated(250) {
         let mut chance = Chance::new(seed);
         let mut text = RandomPlan::new(&mut chance, 12, false).with_commas(&mut chance);
-        if text.contains("use ") {
-            continue;
-        }
+        with_library += u32::from(text.contains("use "));
         version += 1;
-        let uri = format!("untitled:{seed}");
+        let uri = format!("file://{}/{seed}.mdle", folder.display());
         let document = json!({ "uri": uri, "languageId": "mdle", "version": version, "text": text });
         server.notify("textDocument/didOpen", &json!({ "textDocument": document }));
         assert_eq!(server.diagnostics(version), expected(&text), "{text}");
@@ -193,4 +215,5 @@ fn random_edits_leave_the_compilers_diagnostics() {
         }
         server.notify("textDocument/didClose", &json!({ "textDocument": { "uri": uri } }));
     }
+    assert!(with_library > 10, "{with_library} plans use the library");
 }

@@ -9,7 +9,7 @@ use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::root;
 
 /// The commands of `mdlec`; the first is the bare form, which builds.
-const COMMANDS: [&str; 19] = [
+const COMMANDS: [&str; 20] = [
     "",
     "build",
     "run",
@@ -26,6 +26,7 @@ const COMMANDS: [&str; 19] = [
     "new-target",
     "emulator",
     "lsp",
+    "dap",
     "clean",
     "completions",
     "man",

@@ -56,7 +56,9 @@ fn failures_to_run_have_a_help() {
 #[test]
 fn help_names_every_option() {
     let folder = with_plan("help");
-    insta::assert_snapshot!(["--help", "run --help", "shell --help"].map(|line| report(&folder, line)).join("\n"));
+    insta::assert_snapshot!(
+        ["--help", "run --help", "shell --help", "new-module --help"].map(|line| report(&folder, line)).join("\n")
+    );
     let help = report(&folder, "run plan.mdle --target sim --help");
     assert!(help.contains("Usage: mdle run plan.mdle --target sim [OPTIONS]\n"), "{help}");
     assert!(help.contains("--start-noise") && help.ends_with("[0]\n"), "{help}");
@@ -122,6 +124,18 @@ fn safety_rules_stand_between_plan_and_robot() {
     let runs = files.map(|file| report(&folder, &format!("run plan.mdle {fast} --safety {file}.toml")));
     let written = report(&folder, &format!("run plan.mdle {fast} --safety back.toml --log plans/back.mdle"));
     insta::assert_snapshot!(format!("{}\n{written}", runs.join("\n")));
+}
+
+#[test]
+fn names_that_no_new_module_can_have() {
+    let folder = with_plan("new_module");
+    fs::create_dir(folder.join("there")).unwrap();
+    let names = ["there", "plan.mdle", "sensors", "mdle", "match", "My-Ears", "../ears", "2ears", ""];
+    let refused = names.map(|name| report(&folder, &format!("new-module {name}")));
+    let others = ["new-module", "new-module ears --checkout .", "new-module ears --checkout missing", "new-module a b"];
+    let others = others.map(|line| report(&folder, line));
+    insta::assert_snapshot!([refused.as_slice(), others.as_slice()].concat().join("\n"));
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "nothing is written");
 }
 
 #[test]

@@ -2,10 +2,11 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
-use std::io::{Read as _, Write as _};
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
+use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{folder, mdle};
 use rustix::process::{Pid, Signal, kill_process};
 
@@ -15,10 +16,10 @@ const RULES: &str = "[limits]\nspeed = \"40cm/s\"\n\n[guards.far]\nwhen = \"x > 
 
 /// What a session left.
 #[derive(Debug, PartialEq, Eq)]
-struct Left {
-    out: String,
-    err: String,
-    status: Option<i32>,
+pub(crate) struct Left {
+    pub(crate) out: String,
+    pub(crate) err: String,
+    pub(crate) status: Option<i32>,
 }
 
 fn with_plan(test: &str) -> PathBuf {
@@ -37,7 +38,7 @@ fn started(folder: &Path, options: &[&str]) -> Child {
 }
 
 /// Lets a session take these bytes as its standard input.
-fn piped(folder: &Path, options: &[&str], input: &[u8]) -> Left {
+pub(crate) fn piped(folder: &Path, options: &[&str], input: &[u8]) -> Left {
     let mut child = started(folder, options);
     // A session may end before it has read everything.
     let _ = child.stdin.take().unwrap().write_all(input);
@@ -47,7 +48,7 @@ fn piped(folder: &Path, options: &[&str], input: &[u8]) -> Left {
 }
 
 /// The dialogue, what standard error has, and the exit status.
-fn dialogue(folder: &Path, options: &[&str], commands: &str) -> String {
+pub(crate) fn dialogue(folder: &Path, options: &[&str], commands: &str) -> String {
     let Left { out, err, status } = piped(folder, &[&["-x"], options].concat(), commands.as_bytes());
     format!("{out}---\n{err}[{}]\n", status.unwrap())
 }
@@ -56,7 +57,7 @@ fn dialogue(folder: &Path, options: &[&str], commands: &str) -> String {
 fn a_session_reads_and_changes_what_runs() {
     let folder = with_plan("shell_dialogue");
     let commands = "# The paper's shell\nls\nls /usr/mdle\ncd usr/robot\npwd\nget x\nstep 6\nget x\nget input/v\n\
-                    get /usr/mdle/plan\nget /usr/mdle/atom\nget /usr/mdle/place\nget /usr/mdle/scopes\n\
+                    get /usr/mdle/main\nget /usr/mdle/atom\nget /usr/mdle/place\nget /usr/mdle/scopes\n\
                     set /safety/limits/speed 20cm/s\nstep\nget input/v\nget /safety/rules/speed/count\n\
                     help /clock/step\npace 10\nget /clock/pace\nstep 20\nget /usr/mdle/since\nget ranges/r0\npace max\n\
                     step 100\nget /clock/now\nget /usr/mdle/atom\n";
@@ -70,6 +71,17 @@ fn a_file_of_commands_waits_for_the_end_of_the_plan() {
     let Left { out, err, status } = piped(&folder, &["-c", "session"], b"");
     assert_eq!((out.lines().last(), status), (Some("22.912004deg"), Some(0)), "{out}{err}");
     assert!(err.ends_with("3.0 s  plan over: wait 1s (plan.mdle:3)\n"), "{err}");
+}
+
+#[test]
+fn a_watched_value_is_printed_when_it_changes() {
+    let folder = with_plan("shell_watch");
+    let commands = "watch /usr/robot/x\nwatch /usr/mdle/atom\nwatch /usr/robot/x\nstep 6\nunwatch /usr/robot/x\nstep 16\n\
+                    watch /nowhere\nwatch /clock/step\nwatch /clock\nunwatch /clock/now\nwatch\nwatch a b\n";
+    insta::assert_snapshot!(dialogue(&folder, &["--log", "log"], commands));
+    let log = fs::read_to_string(folder.join("log")).unwrap();
+    assert!(!log.contains("requests\":[\"watch"), "to look changes nothing");
+    assert!(log.lines().nth(6).unwrap().ends_with(r#","requests":["call /clock/step 16"]}"#), "{log}");
 }
 
 #[test]
@@ -160,4 +172,64 @@ fn a_signal_ends_a_session_whose_clock_stands() {
         (output.status.code(), String::from_utf8(output.stderr).unwrap()),
         (Some(143), "stopped by SIGTERM\n".to_owned())
     );
+}
+
+#[test]
+fn random_bytes_end_the_session() {
+    let folder = with_plan("shell_random");
+    let words = [
+        "ls",
+        "get",
+        "set",
+        "call",
+        "watch",
+        "step",
+        "wait 1s",
+        "swap",
+        "/usr/mdle/main",
+        "/clock/pace",
+        "{",
+        "\\",
+        "\n",
+        "\0",
+    ];
+    for seed in 0..repeated(6) {
+        let mut chance = Chance::new(seed);
+        let mut input = Vec::new();
+        while input.len() < 3000 {
+            if chance.percent(50) {
+                input.extend(words[chance.below(words.len())].bytes());
+                input.push(b' ');
+            } else {
+                input.push(chance.below(256) as u8);
+            }
+        }
+        let left = piped(&folder, &["--timeout", "60"], &input);
+        assert!([Some(0), Some(1), Some(4)].contains(&left.status), "{seed}: {left:?}");
+    }
+}
+
+#[test]
+fn a_signal_ends_a_session_in_every_phase() {
+    let folder = with_plan("shell_signals");
+    fs::write(folder.join("go.mdle"), "{ Go (wait 1000s) (Atom (null) (go 10 0)) }\n").unwrap();
+    let phases = [
+        ("load_plan go.mdle\nstep\nswap Go\n", "Go takes over in the next turn"),
+        ("load_plan go.mdle\nstep\nswap Go atom\nstep\n", "2 turns, 0.1s"),
+        ("load_plan go.mdle\nswap Go\nstep 5\n", "5 turns, 0.4s"),
+        ("load_plan go.mdle\nswap Go\nstep 5\nrollback\nstep\n", "6 turns, 0.5s"),
+        ("load_plan go.mdle\nswap Go\npace 1\nwatch /clock/turns\nwait 1000s\n", "0.0 s  /clock/turns 0"),
+    ];
+    for (commands, last) in phases {
+        let mut child = started(&folder, &[]);
+        let mut input = child.stdin.take().unwrap();
+        input.write_all(commands.as_bytes()).unwrap();
+        let mut answers = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
+        assert!(answers.any(|answer| answer == last), "{commands}");
+        kill_process(Pid::from_child(&child), Signal::TERM).unwrap();
+        let output = child.wait_with_output().unwrap();
+        let err = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(143), "{commands}{err}");
+        assert!(err.contains("stopped by SIGTERM\n"), "{commands}{err}");
+    }
 }

@@ -1,5 +1,5 @@
-//! No path that panics: the executables of `tests/bare` link although there is no function that a panic could call, and
-//! run.
+//! Emitted code has no path that panics: the executables of `tests/bare` link and run, though they define nothing that
+//! a panic could call.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -3,11 +3,12 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 use std::sync::{Mutex, PoisonError};
 
 use mdle_tests::book::{Fence, fences, name, pages};
-use mdle_tests::executable::{folder, target};
+use mdle_tests::executable::folder;
+use mdle_tests::outside;
 use mdle_tests::repository::root;
 
 /// Only one test at a time builds the application: its folder and its executable are the same for all.
@@ -32,19 +33,17 @@ fn written(test: &str, chapter: &str) -> (PathBuf, Vec<Fence>) {
     let elsewhere = format!("path = \"{}/", root().to_str().unwrap());
     change(&folder.join("Cargo.toml"), "path = \"../mdle/", &elsewhere);
     change(&folder.join("Cargo.toml"), "\n[dependencies]", "\n[workspace]\n\n[dependencies]");
-    fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
+    outside::adopt(&folder);
     (folder, fences)
 }
 
-/// Builds and runs it; what others have built for this workspace need not be built again.
+/// Builds and runs it.
 fn run(folder: &Path) -> Output {
     cargo_run(folder, "--quiet", &["--speed", "max"])
 }
 
 fn cargo_run(folder: &Path, loudness: &str, arguments: &[&str]) -> Output {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.args(["run", "--offline", loudness, "--target-dir"]).arg(target()).arg("--").args(arguments);
-    command.current_dir(folder).output().expect("cargo runs")
+    outside::cargo(folder, &["run", loudness, "--"]).args(arguments).output().expect("cargo runs")
 }
 
 /// Returns the output of the program, which was built without messages.

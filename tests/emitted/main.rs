@@ -7,5 +7,6 @@ mod cargo_configuration;
 mod embed;
 mod machines;
 mod names;
+mod own_module;
 mod own_target;
 mod text;

@@ -6,17 +6,31 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use mdle_tests::chance::sized;
 use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::outside;
 use mdle_tests::repository::{files, root};
 
-/// The sentence above the messages of rustc.
-const SENTENCE: &str =
-    "error: the target crate `mdle_sim` does not compile; this is not a fault of your plan:\nerror[E0425]: ";
+/// Returns the sentence above the messages of rustc about the rover's crate.
+fn sentence() -> String {
+    let name = crate_name();
+    format!("error: the target crate `{name}` does not compile; this is not a fault of your plan:\nerror[E0425]: ")
+}
 
-/// The folder of a plan, with a copy of the simulator as a robot of one's own in `rover`.
+/// The crate of the rover.
+fn crate_name() -> &'static str {
+    sized("rover_target", "mdle_sim")
+}
+
+/// The folder of a plan, with a robot of one's own in `rover`: the template, on the libraries of the cache. In the long
+/// form it is a copy of the simulator, in a workspace of its own, on the libraries of the repository.
 fn with_rover(test: &str) -> PathBuf {
     let folder = folder(test);
     fs::write(folder.join("plan.mdle"), "{ Rest (Atom (wait 1ms) stop) }\n").unwrap();
+    if sized(true, false) {
+        assert_eq!(run_mdlec(&folder, &["new-target", "rover"]).status.code(), Some(0));
+        return folder;
+    }
     for file in files(&[".rs", ".toml", ".mdle", ".js"]) {
         let Some(name) = file.path.strip_prefix("targets/sim/") else { continue };
         let path = folder.join("rover").join(name);
@@ -55,7 +69,7 @@ fn a_crate_that_does_not_compile_is_quoted_whole_and_serves_when_mended() {
     let bad = "\npub(crate) fn first() {\n    whistle();\n}\n\npub(crate) const SECOND: u8 = \"bell\";\n";
     fs::write(&library, format!("{good}{bad}")).unwrap();
     let message = refused(&folder);
-    assert!(message.starts_with(SENTENCE), "{message}");
+    assert!(message.starts_with(&sentence()), "{message}");
     for quoted in ["    whistle();\n", "error[E0308]: mismatched types", "pub(crate) const SECOND: u8 = \"bell\";\n"] {
         assert!(message.contains(quoted), "{quoted:?} is missing in:\n{message}");
     }
@@ -106,12 +120,7 @@ fn a_new_target_drives_and_feels_contact_once_it_can() {
 
 /// Returns `true` if the robot in this folder passes the conformance suite, and cargo's output.
 fn conformance(robot: &Path) -> (bool, String) {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(cargo);
-    command.args(["test", "--offline", "--quiet", "--test", "conformance"]).current_dir(robot);
-    // What is built of the same sources stays from run to run.
-    let built = robot.parent().unwrap().with_file_name("new_target_built");
-    let output = command.env("CARGO_TARGET_DIR", built).output().unwrap();
+    let output = outside::cargo(robot, &["test", "--quiet", "--test", "conformance"]).output().unwrap();
     let message = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     (output.status.success(), message.concat())
 }
@@ -122,12 +131,7 @@ fn a_new_target_conforms_until_a_sign_is_wrong() {
     assert_eq!(run_mdlec(&folder, &["new-target", "rover"]).status.code(), Some(0));
     let robot = folder.join("rover");
     // As the book says, for cargo by itself.
-    let manifest = fs::read_to_string(robot.join("Cargo.toml")).unwrap();
-    let manifest = manifest.replace("# [patch", "[patch").replace("# mdle-", "mdle-");
-    let here = format!("path = \"{}/", root().to_str().unwrap());
-    fs::write(robot.join("Cargo.toml"), manifest.replace("path = \"../mdle/", &here)).unwrap();
-    // No network is needed.
-    fs::copy(root().join("Cargo.lock"), robot.join("Cargo.lock")).unwrap();
+    outside::patch(&robot);
     let (passed, message) = conformance(&robot);
     assert!(passed, "{message}");
 
@@ -158,8 +162,8 @@ fn a_build_script_that_fails_is_quoted() {
     let folder = with_rover("own_build_script");
     fs::write(folder.join("rover/build.rs"), "fn main() {\n    panic!(\"no library of the whistle\");\n}\n").unwrap();
     let message = refused(&folder);
-    let (sentence, quoted) = message.split_once('\n').unwrap();
-    assert!(SENTENCE.starts_with(sentence), "{message}");
+    let (first, quoted) = message.split_once('\n').unwrap();
+    assert!(sentence().starts_with(first), "{message}");
     assert!(quoted.contains("no library of the whistle"), "{message}");
 }
 
@@ -170,6 +174,7 @@ fn a_manifest_that_cargo_refuses_is_no_fault_of_the_plan() {
     let good = fs::read_to_string(&manifest).unwrap();
     fs::write(&manifest, format!("{good}\n[dependencies.whistle]\npath = \"../whistle\"\n")).unwrap();
     let message = refused(&folder);
-    let sentence = "error: cargo cannot use the target crate `mdle_sim`; this is not a fault of your plan:\n";
-    assert!(message.starts_with(sentence) && message.contains("whistle"), "{message}");
+    let name = crate_name();
+    let sentence = format!("error: cargo cannot use the target crate `{name}`; this is not a fault of your plan:\n");
+    assert!(message.starts_with(&sentence) && message.contains("whistle"), "{message}");
 }

@@ -5,6 +5,9 @@
 
 use std::fs;
 
+use mdle_benchmarks::front_end::{one_megabyte, plans};
+use mdle_compiler::diagnostic::SourceId;
+use mdle_compiler::syntax::{Arena, parse};
 use mdle_tests::repository::root;
 use mdle_tests::{any_bytes, any_file, any_text, texts};
 
@@ -41,6 +44,16 @@ fn their_rust_is_rust() {
 #[test]
 fn all_machines_do_the_same() {
     assert_holds(any_text::run);
+}
+
+#[test]
+fn texts_of_the_benchmarks_have_no_errors() {
+    for (name, texts) in [plans(), one_megabyte()] {
+        assert!(!texts.is_empty(), "{name}");
+        for text in texts {
+            assert_eq!(parse(SourceId(0), &text, &Arena::new()).1, []);
+        }
+    }
 }
 
 /// Returns the inputs of robots' lines that fuzzing found, and inputs that make a reader keep more than it needs.

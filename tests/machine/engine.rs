@@ -6,9 +6,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use mdle_compiler::load::{self, Loaded};
-use mdle_engine::{Engine, Library, NoTrial, PlanEvent, Plans, When};
+use mdle_engine::{CompiledPlans, Engine, Library, NoTrial, PlanEvent, PlanSource, Plans, StoredPlan, When};
 use mdle_host::{Moment, Pace, Pilot, RunTerms, StopRequest, Time, Transitions};
-use mdle_runtime::{Nanos, Turn};
+use mdle_runtime::{Nanometers, Nanos, Turn};
 use mdle_scripted::alphabet::Alphabet;
 use mdle_scripted::{INTERRUPTS, LAWS, Output};
 use mdle_tests::pipeline::{compile, scripted, sources};
@@ -23,6 +23,8 @@ fn loaded(text: &str) -> Result<Arc<Loaded<Alphabet>>, String> {
 struct Run {
     engine: Engine<Alphabet>,
     turns: u64,
+    /// Reading of the robot's odometer.
+    way: Nanometers,
     journal: Vec<PlanEvent>,
 }
 
@@ -37,23 +39,23 @@ impl Run {
             request: StopRequest::default(),
         };
         let engine = Engine::new(loaded(text).unwrap().plan(), &Library::new(), &terms).unwrap();
-        Self { engine, turns: 0, journal: Vec::new() }
+        Self { engine, turns: 0, way: Nanometers::ZERO, journal: Vec::new() }
     }
 
     fn plans(&mut self) -> &mut Plans<Alphabet> {
-        self.engine.plans()
+        self.engine.plans_mut()
     }
 
     /// Makes a turn in which this interrupt fires, and returns the law that is applied: the time at which its atom
     /// began by the clock of its plan, and the number of inputs that it has computed.
     fn turn(&mut self, interrupt: &str) -> String {
         let bit = INTERRUPTS.iter().position(|known| *known == interrupt);
-        let y = Output { fired: bit.map_or(0, |bit| 1 << bit), ..Output::default() };
+        let y = Output { fired: bit.map_or(0, |bit| 1 << bit), way: self.way, ..Output::default() };
         let t = Nanos(self.turns * 100_000_000);
         let moment = Moment { y: &y, t, number: self.turns };
         let turn = self.engine.turn(moment, &mut Transitions::default()).unwrap();
         self.turns += 1;
-        self.journal.extend(self.engine.plans().take_events());
+        self.journal.extend(self.engine.plans_mut().take_events());
         match turn {
             Turn::Law(input) => {
                 let law = LAWS[input.law.unwrap()];
@@ -62,6 +64,12 @@ impl Run {
             Turn::Cut => "cut".to_owned(),
             Turn::Over => "over".to_owned(),
         }
+    }
+
+    /// Makes a turn after the robot has driven this far.
+    fn drive(&mut self, millimetres: u64) -> String {
+        self.way = Nanometers(self.way.0 + millimetres * 1_000_000);
+        self.turn("")
     }
 
     /// Makes turns in which nothing fires.
@@ -106,15 +114,27 @@ fn a_plan_that_is_rolled_back_to_has_lost_no_time() {
     assert_eq!(run.turns(3), "1 climb since 0 input 4");
     run.plans().replace(loaded(SECOND).unwrap().plan(), When::Now);
     assert_eq!(run.turns(20), "2 drift since 0 input 20");
-    run.plans().rollback("asked for").unwrap();
+    run.engine.rollback("asked for").unwrap();
     // The turn that it would have made at 0.4 s, with its law made anew.
     assert_eq!(run.turn(""), "1 climb since 0.4 input 1");
     assert_eq!(run.turns(5), "1 climb since 0.4 input 6");
     // Its atom ends 1 s after it began.
     assert_eq!(run.turn(""), "1 idle since 1 input 1");
-    assert_eq!(run.plans().rollback("again"), Err(NoTrial));
+    assert_eq!(run.engine.rollback("again"), Err(NoTrial));
     let back = PlanEvent::RolledBack { from: 2, to: 1, why: "asked for".to_owned() };
     assert_eq!(run.journal, [PlanEvent::Armed(2), PlanEvent::Began(2), back]);
+}
+
+#[test]
+fn the_way_of_another_plan_does_not_count() {
+    let mut run = Run::of("{ Main (b) (Atom (way >= 1m) seek) (Atom (null) climb) }");
+    assert_eq!([run.drive(0), run.drive(300)], ["1 seek since 0 input 1", "1 seek since 0 input 2"]);
+    run.plans().replace(loaded(SECOND).unwrap().plan(), When::Now);
+    // The last input of the plan leads to the first output of the other one.
+    assert_eq!([run.drive(300), run.drive(5000)], ["2 drift since 0 input 1", "2 drift since 0 input 2"]);
+    run.engine.rollback("asked for").unwrap();
+    assert_eq!([run.drive(5000), run.drive(399)], ["1 seek since 0.2 input 1", "1 seek since 0.2 input 2"]);
+    assert_eq!(run.drive(1), "1 climb since 0.4 input 1");
 }
 
 #[test]
@@ -127,7 +147,7 @@ fn a_trial_ends_after_its_time() {
     assert_eq!(run.journal, [PlanEvent::Armed(2), PlanEvent::Began(2)]);
     run.turn("");
     assert_eq!(run.journal.last(), Some(&PlanEvent::Accepted(2)));
-    assert_eq!(run.plans().rollback("too late"), Err(NoTrial));
+    assert_eq!(run.engine.rollback("too late"), Err(NoTrial));
 }
 
 #[test]
@@ -138,6 +158,17 @@ fn a_plan_can_replace_itself_in_every_turn() {
         run.plans().replace(plan.plan(), When::Now);
         assert_eq!(run.turn(""), format!("{number} drift since 0 input 1"));
     }
+}
+
+/// Compiles the plan `Main` of a text.
+fn compiled(source: &PlanSource) -> Result<CompiledPlans<Alphabet>, String> {
+    let PlanSource::Text(text) = source else { return Err("there is no such file".to_owned()) };
+    let plan = StoredPlan { name: "Main".into(), text: text.as_str().into(), loaded: loaded(text)? };
+    Ok(CompiledPlans { plans: vec![plan], warnings: String::new() })
+}
+
+fn typed(text: &str) -> PlanSource {
+    PlanSource::Text(text.to_owned())
 }
 
 /// Makes turns until the compiler has answered.
@@ -154,15 +185,16 @@ fn answer(run: &mut Run) -> PlanEvent {
 #[test]
 fn a_text_is_compiled_beside_the_turns() {
     let mut run = Run::of(FIRST);
-    run.plans().compile_with(Box::new(loaded)).unwrap();
-    let number = run.plans().swap("{ Main (a) (Atom (wiat 1) seek) }", When::Now);
+    run.plans().compile_with(Box::new(compiled)).unwrap();
+    let number = run.plans().swap(typed("{ Main (a) (Atom (wiat 1) seek) }"), When::Now);
     let PlanEvent::Refused(2, diagnostics) = answer(&mut run) else { panic!("{:?}", run.journal) };
     assert!(number == 2 && diagnostics.contains("there is no interrupt called `wiat`"), "{diagnostics}");
     let now = Nanos(run.turns * 100_000_000).seconds();
     assert_eq!(run.turn("a"), format!("1 climb since {now} input 1"), "the plan before goes on");
-    run.plans().swap(SECOND, When::Now);
+    run.plans().swap(typed(SECOND), When::Now);
     assert_eq!(answer(&mut run), PlanEvent::Armed(3));
-    assert_eq!(run.turn(""), "3 drift since 0 input 1");
+    assert_eq!(run.turn(""), "2 drift since 0 input 1");
+    assert_eq!(run.plans().stored().map(|plan| &*plan.name).collect::<Vec<_>>(), ["Main"], "and it is stored");
 }
 
 #[test]
@@ -176,5 +208,5 @@ fn a_request_can_be_cancelled() {
     // A newer request replaces an older one.
     run.plans().replace(loaded(SECOND).unwrap().plan(), When::PlanEnds);
     run.plans().replace(loaded(SECOND).unwrap().plan(), When::Now);
-    assert_eq!(run.turn(""), "4 drift since 0 input 1");
+    assert_eq!(run.turn(""), "2 drift since 0 input 1");
 }

@@ -92,7 +92,10 @@ fn read_market(text: &str) -> Vec<usize> {
     )
 }
 
-/// The row of the one in each column, of the places of all ones; a column that is no standard basis vector is an error.
+/// Returns the row of the one in each column. `ones` are rows and columns of all ones.
+///
+/// # Panics
+/// A column does not hold exactly one.
 fn columns(states: usize, ones: impl Iterator<Item = (usize, usize)>) -> Vec<usize> {
     let mut rows = vec![0; states];
     for (row, column) in ones {

@@ -8,6 +8,7 @@ use std::process::{Command, Output};
 
 use mdle_tests::book::{Fence, anchors, fences, leads_to, links, messages, name, pages};
 use mdle_tests::executable::{folder, mdle, run_mdlec};
+use mdle_tests::outside;
 use mdle_tests::repository::{TextFile, root};
 use serde_json::Value;
 
@@ -84,7 +85,7 @@ impl Walk<'_> {
             "text" => self.compare(fence),
             // Later commands of the page use these files; those of the two pages on applications,
             // tests/emitted/embed.rs builds.
-            "commands" | "csv" | "json" | "rust" | "toml" => drop(self.write(fence.file().unwrap(), fence)),
+            "commands" | "csv" | "json" | "python" | "rust" | "toml" => drop(self.write(fence.file().unwrap(), fence)),
             "sh" => {}
             other => panic!("{}: what is `{other}`?", self.page.path),
         }
@@ -137,10 +138,16 @@ impl Walk<'_> {
     /// success.
     fn run(&self, command: &str) {
         let (command, expected) = command.split_once('\n').unwrap();
-        let words: Vec<_> = command.split(' ').collect();
+        let words = words(command);
         let output = match words[0] {
             "mdlec" => run_mdlec(&self.folder, &words[1..]),
             "mdle" => Command::new(mdle()).args(&words[1..]).current_dir(&self.folder).output().unwrap(),
+            "cargo" => {
+                // In the package of a robot, which its manifest has to lead to this checkout.
+                let manifest = Path::new(words.last().unwrap());
+                outside::patch(&self.folder.join(manifest.parent().unwrap()));
+                outside::cargo(&self.folder, &words[1..]).output().unwrap()
+            }
             // By the name that is typed, which the program may print.
             program => Command::new(program).args(&words[1..]).current_dir(&self.folder).output().unwrap(),
         };
@@ -167,6 +174,16 @@ impl Walk<'_> {
             assert!(fs::read(&shown).is_ok_and(|shown| shown == drawn), "INSTA_UPDATE=always writes {shown:?}");
         }
     }
+}
+
+/// The words of a command, as a shell takes them: quotes hold a word together.
+fn words(command: &str) -> Vec<&str> {
+    let mut is_quoted = false;
+    let ends = command.split(|letter: char| {
+        is_quoted ^= letter == '\'';
+        letter == ' ' && !is_quoted
+    });
+    ends.map(|word| word.strip_prefix('\'').and_then(|word| word.strip_suffix('\'')).unwrap_or(word)).collect()
 }
 
 fn answer(output: &Output) -> String {

@@ -23,19 +23,25 @@ pub fn mdle() -> &'static Path {
     MDLE.get_or_init(|| built("mdle"))
 }
 
-/// Builds the binary of this package.
-fn built(package: &str) -> PathBuf {
+/// Builds this binary.
+///
+/// Cargo chooses the features of all libraries for the whole workspace and its tests, as in `cargo test --workspace`,
+/// because the command names the workspace and a test: what that command has compiled is not compiled again.
+fn built(binary: &str) -> PathBuf {
     let target = target();
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let built = Command::new(cargo)
-        .args(["build", "--quiet", "--package", package, "--bin", package, "--target-dir"])
+        .args(["build", "--quiet", "--workspace", "--test", SMALL_TEST, "--bin", binary, "--target-dir"])
         .arg(&target)
         .current_dir(root())
         .status()
         .expect("cargo runs");
-    assert!(built.success(), "{package} does not build");
-    target.join("debug").join(package)
+    assert!(built.success(), "{binary} does not build");
+    target.join("debug").join(binary)
 }
+
+/// A test that cargo has built soon: that of `runtime/core`.
+const SMALL_TEST: &str = "alphabet";
 
 /// The target folder of the build that this test belongs to, wherever `CARGO_TARGET_DIR` put it.
 #[must_use]

@@ -18,6 +18,7 @@ pub mod golden;
 pub mod grammar;
 pub mod graphs;
 pub mod outputs;
+pub mod outside;
 pub mod pipeline;
 pub mod productions;
 pub mod random_condition;

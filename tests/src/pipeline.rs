@@ -1,10 +1,11 @@
 //! From the text of a plan for the target `scripted` to the traces of the machines.
 
+use std::ops::Range;
 use std::sync::LazyLock;
 
 use mdle_compiler::Compiled;
 use mdle_compiler::alphabet::{self, Alphabet};
-use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
+use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, has_errors, most_shown};
 use mdle_compiler::fsm::{Machine, expand, lower};
 use mdle_compiler::syntax::Loader;
 use mdle_compiler::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tree, run};
@@ -12,9 +13,10 @@ use mdle_compiler::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tre
 /// Maximum number of states of a plan whose expanded form is run as well.
 const EXPANDED: u64 = 2000;
 
-/// The one file that plans may use here, and its text.
+/// Name of the one file that plans may use here.
 pub const LIBRARY_FILE: &str = "library.mdle";
-const LIBRARY: &str =
+/// Text of [`LIBRARY_FILE`].
+pub const LIBRARY: &str =
     "{ Stroll (T: time) (b OR wait T) (Atom (a) seek) (drift, c, T) }\n{ Pause (Atom (wait 0.1) idle) }\n";
 
 const SCRIPTED_FILE: &str = include_str!("../scripted/alphabet.mdle");
@@ -60,6 +62,20 @@ pub fn compile_plan(text: &str, name: &str) -> Result<Compiled, String> {
 #[must_use]
 pub fn sources(text: &str) -> Sources {
     placed(text).0
+}
+
+/// Returns the diagnostics of a text that people are shown, each with its byte range there: those in the text itself,
+/// not in the library.
+#[must_use]
+pub fn diagnostics(text: &str) -> Vec<(Diagnostic, Range<usize>)> {
+    let (sources, library, source) = placed(text);
+    let found = mdle_compiler::check_with(source, text, scripted(), &mut Library(library));
+    let most = most_shown(&found);
+    let placed = found.into_iter().take(most).filter_map(|diagnostic| {
+        let (file, range) = sources.range(diagnostic.span()?);
+        (file == source).then_some((diagnostic, range))
+    });
+    placed.collect()
 }
 
 /// The files, and which are the library and the plan.

@@ -5,5 +5,3 @@
 
 pub mod front_end;
 pub mod plan_text;
-#[cfg(test)]
-mod tests;

@@ -19,6 +19,7 @@ use mdle_scout_emulator::scout::Scout;
 use mdle_tests::executable::folder;
 
 use self::run::{AT_REST, LOCKSTEP, Ran, Robot, drove, ran, send};
+use super::at_once;
 
 /// The signals that end a program by default and can be caught, without SIGUSR1, SIGPIPE and SIGXFSZ, and a real-time
 /// signal.
@@ -125,8 +126,7 @@ fn by_the_clock<R: Robot>() {
 
 #[test]
 fn a_signal_stops_both_robots_by_the_clock() {
-    by_the_clock::<Scout>();
-    by_the_clock::<Atrv>();
+    at_once(&[by_the_clock::<Scout>, by_the_clock::<Atrv>]);
 }
 
 #[test]

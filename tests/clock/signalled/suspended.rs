@@ -9,6 +9,8 @@ use mdle_runtime::Pose;
 use mdle_scout_emulator::scout::Scout;
 use mdle_tests::executable::folder;
 
+use crate::at_once;
+
 use super::run::{AT_REST, Ran, Robot, distance, drove, ran, send};
 
 /// The robot drives once it has gone this far, in metres.
@@ -52,8 +54,7 @@ fn is_not_driven_off_again<R: Robot>() {
 
 #[test]
 fn a_robot_is_not_driven_off_again_after_a_suspension() {
-    is_not_driven_off_again::<Scout>();
-    is_not_driven_off_again::<Atrv>();
+    at_once(&[is_not_driven_off_again::<Scout>, is_not_driven_off_again::<Atrv>]);
 }
 
 /// Suspends the program after its first motion command, which is to stop.
@@ -67,6 +68,8 @@ fn is_not_driven<R: Robot>(words: &str) {
 
 #[test]
 fn a_robot_is_not_driven_after_a_suspended_start() {
-    is_not_driven::<Scout>("the Scout has stopped itself, as no command came for 1 s:");
-    is_not_driven::<Atrv>("the ATRV was stopped, as no command came for 500 ms:");
+    at_once(&[
+        || is_not_driven::<Scout>("the Scout has stopped itself, as no command came for 1 s:"),
+        || is_not_driven::<Atrv>("the ATRV was stopped, as no command came for 500 ms:"),
+    ]);
 }

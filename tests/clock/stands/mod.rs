@@ -16,20 +16,46 @@ use mdle_scout_emulator::scout::Scout;
 use rustix::process::{Pid, Signal, kill_process};
 
 use self::run::{BEGINS, Ran, Robot, Way, executable, ran};
+use super::at_once;
 
 fn alone<R: Robot>(faults: &[&str]) -> Ran<R> {
     ran(faults, &[], Way::Terminal, |_, _| {})
 }
 
 #[test]
+fn robots_stand_at_every_end_of_a_run() {
+    at_once(&[
+        a_robot_without_a_fault_ends_as_the_plan_says,
+        an_atrv_that_receives_nothing_ends_the_plan,
+        an_atrv_that_is_not_braked_is_reported,
+        a_scout_that_receives_nothing_ends_the_plan,
+        a_robot_that_does_not_obey_ends_the_plan,
+        a_stop_without_rest_is_reported,
+        each_kind_of_report_of_an_atrv_that_stops_ends_the_plan,
+        a_scout_that_answers_late_ends_as_the_plan_says,
+        an_atrv_that_falls_silent_stands_before_it_is_braked,
+        a_robot_that_only_receives_stands_before_it_is_let_go,
+        noise_on_the_line_of_a_scout_is_borne,
+        a_robot_is_not_driven_off_after_a_suspension,
+    ]);
+}
+
+/// Returns the results of these runs on both robots, which go on at the same time.
+fn both(scout: impl FnOnce() -> Ran<Scout> + Send, atrv: impl FnOnce() -> Ran<Atrv> + Send) -> (Ran<Scout>, Ran<Atrv>) {
+    thread::scope(|scope| {
+        let scout = scope.spawn(scout);
+        let atrv = atrv();
+        (scout.join().unwrap(), atrv)
+    })
+}
+
 fn a_robot_without_a_fault_ends_as_the_plan_says() {
-    let (scout, atrv) = (alone::<Scout>(&[]), alone::<Atrv>(&[]));
+    let (scout, atrv) = both(|| alone(&[]), || alone(&[]));
     scout.assert(0, &["plan over"], &[Order::Drive, Order::Stand, Order::LetGo]);
     atrv.assert(0, &["plan over"], &[Order::Drive, Order::Stand, Order::Brake]);
     assert!(scout.robot.stands() && atrv.robot.stands() && atrv.robot.is_braked());
 }
 
-#[test]
 fn an_atrv_that_receives_nothing_ends_the_plan() {
     // One that stops by itself after a second, and one that does not; over a serial line and TCP.
     let ran_out = alone::<Atrv>(&["deaf"]);
@@ -40,7 +66,6 @@ fn an_atrv_that_receives_nothing_ends_the_plan() {
     assert!(!drives_on.robot.stands());
 }
 
-#[test]
 fn an_atrv_that_is_not_braked_is_reported() {
     // The run ends before an unanswered question is a fault; the robot stops by itself meanwhile.
     let ran = ran::<Atrv>(&["deaf"], &["--timeout", "3.6"], Way::Terminal, |_, _| {});
@@ -48,7 +73,6 @@ fn an_atrv_that_is_not_braked_is_reported() {
     assert!(ran.robot.stands() && !ran.robot.is_braked());
 }
 
-#[test]
 fn a_scout_that_receives_nothing_ends_the_plan() {
     let ran = alone::<Scout>(&["deaf"]);
     ran.assert(3, &["may not have stopped", "does not answer"], &[Order::Drive]);
@@ -56,26 +80,25 @@ fn a_scout_that_receives_nothing_ends_the_plan() {
     assert!(ran.robot.stands());
 }
 
-#[test]
 fn a_robot_that_does_not_obey_ends_the_plan() {
     let message = ["may not have stopped", "does not obey"];
-    let (scout, atrv) = (alone::<Scout>(&["runaway"]), alone::<Atrv>(&["runaway"]));
+    let (scout, atrv) = both(|| alone(&["runaway"]), || alone(&["runaway"]));
     scout.assert(3, &message, &[Order::Drive, Order::Stand, Order::LetGo]);
     atrv.assert(3, &message, &[Order::Drive, Order::Stand, Order::Brake]);
 }
 
-#[test]
 fn a_stop_without_rest_is_reported() {
     // The limit comes while it still does what it is told.
     let arguments = ["--timeout", "3.5"];
-    let scout = ran::<Scout>(&["runaway"], &arguments, Way::Terminal, |_, _| {});
-    let atrv = ran::<Atrv>(&["runaway"], &arguments, Way::Terminal, |_, _| {});
+    let (scout, atrv) = both(
+        || ran(&["runaway"], &arguments, Way::Terminal, |_, _| {}),
+        || ran(&["runaway"], &arguments, Way::Terminal, |_, _| {}),
+    );
     let message = ["--timeout", "still moved", "may not have stopped"];
     scout.assert(3, &message, &[Order::Drive, Order::Stand, Order::LetGo]);
     atrv.assert(3, &message, &[Order::Drive, Order::Stand, Order::Brake]);
 }
 
-#[test]
 fn each_kind_of_report_of_an_atrv_that_stops_ends_the_plan() {
     let kinds = [
         ("no-bumpers", "bumper"),
@@ -96,7 +119,6 @@ fn each_kind_of_report_of_an_atrv_that_stops_ends_the_plan() {
     });
 }
 
-#[test]
 fn a_scout_that_answers_late_ends_as_the_plan_says() {
     let file = executable::<Scout>().with_file_name("late.toml");
     // Of the 400 ms that an answer may take, a busy machine has 200.
@@ -107,7 +129,6 @@ fn a_scout_that_answers_late_ends_as_the_plan_says() {
     assert!(ran.robot.stands());
 }
 
-#[test]
 fn an_atrv_that_falls_silent_stands_before_it_is_braked() {
     let ran = alone::<Atrv>(&["silence"]);
     ran.assert(3, &["may not have stopped", "does not answer"], &[Order::Drive, Order::Stand, Order::Brake]);
@@ -117,11 +138,10 @@ fn an_atrv_that_falls_silent_stands_before_it_is_braked() {
     assert!(last.0 - first.0 >= Duration::from_millis(700), "{first:?} {last:?}");
 }
 
-#[test]
 fn a_robot_that_only_receives_stands_before_it_is_let_go() {
-    let atrv = ran::<Atrv>(&[], &[], Way::HalfClosed, |_, _| {});
+    let (scout, atrv) =
+        both(|| ran(&[], &[], Way::HalfClosed, |_, _| {}), || ran(&[], &[], Way::HalfClosed, |_, _| {}));
     atrv.assert(3, &["may not have stopped", "cut"], &[Order::Drive, Order::Stand, Order::Brake]);
-    let scout = ran::<Scout>(&[], &[], Way::HalfClosed, |_, _| {});
     scout.assert(3, &["may not have stopped", "cut"], &[Order::Drive, Order::Stand, Order::LetGo]);
     for orders in [atrv.robot.orders(), scout.robot.orders()] {
         let orders: Vec<_> = orders.iter().collect();
@@ -131,7 +151,6 @@ fn a_robot_that_only_receives_stands_before_it_is_let_go() {
     }
 }
 
-#[test]
 fn noise_on_the_line_of_a_scout_is_borne() {
     let ran = alone::<Scout>(&["noise=40"]);
     ran.assert(0, &["plan over"], &[Order::Drive, Order::Stand, Order::LetGo]);
@@ -146,11 +165,9 @@ fn suspended(child: &Child, begun: Instant) {
     signal(Signal::CONT);
 }
 
-#[test]
 fn a_robot_is_not_driven_off_after_a_suspension() {
-    let scout = ran::<Scout>(&[], &[], Way::Terminal, suspended);
+    let (scout, atrv) = both(|| ran(&[], &[], Way::Terminal, suspended), || ran(&[], &[], Way::Terminal, suspended));
     scout.assert(3, &["a fault stopped the robot"], &[Order::Drive, Order::Stand, Order::LetGo]);
-    let atrv = ran::<Atrv>(&[], &[], Way::Terminal, suspended);
     atrv.assert(3, &["a fault stopped the robot"], &[Order::Drive, Order::Stand, Order::Brake]);
     // No order to drive came after the pause.
     let drove = |orders: &Orders| orders.iter().rfind(|(_, order)| *order == Order::Drive).unwrap().0;

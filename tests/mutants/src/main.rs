@@ -48,7 +48,7 @@ struct Options {
     /// Text that the printed line of a mutant has to contain.
     #[arg(long, default_value = "")]
     only: String,
-    /// Try the faults of `drivers.toml` in the drivers of robots, on the robots' conformance.
+    /// Try the faults of `drivers.toml` in the robots' drivers; conformance tests must find them.
     #[arg(long, conflicts_with_all = ["all", "equivalent", "count", "seed", "only", "list"])]
     drivers: bool,
     /// Print the mutants and try none.

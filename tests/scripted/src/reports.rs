@@ -108,7 +108,7 @@ pub struct Input {
     pub began: Nanos,
     /// The frame in which it began.
     pub frame: Radians,
-    /// Number of inputs that the law has computed since then, this one included.
+    /// Number of inputs that the law has computed since the atom began, this one included.
     pub computed: u32,
 }
 

@@ -59,7 +59,7 @@ impl Element {
     }
 }
 
-/// Makes every [`AFTER`] of a condition ask one of these labels, with or without a cause.
+/// Replaces each placeholder [`AFTER`] of a condition by an `after` of one of these labels, with or without a cause.
 fn fill(condition: &mut String, chance: &mut Chance, labels: &Labels) {
     while let Some(at) = condition.find(AFTER) {
         let after = if labels.is_empty() { "a".to_owned() } else { asked(chance, labels) };

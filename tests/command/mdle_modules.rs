@@ -1,0 +1,53 @@
+//! Modules in `mdle shell`: their attributes and settings, and how they are stopped, unloaded and loaded.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::io::Write as _;
+use std::process::{Command, Stdio};
+
+use mdle_tests::executable::folder;
+
+/// The dialogue with the program that has modules, what standard error has, and the exit status.
+fn dialogue(test: &str, options: &[&str], commands: &str) -> String {
+    let folder = folder(test);
+    fs::write(folder.join("plan.mdle"), "{ Ahead (wait 60s)\n  (Atom (range(heading module) < 1m) (go 60 0))\n}\n")
+        .unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_modular"));
+    command.args(["shell", "plan.mdle", "--target", "sim", "--world", "hall", "--speed", "max", "--paused", "-x"]);
+    command.args(options).current_dir(folder);
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(commands.as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    format!("{out}---\n{err}[{}]\n", output.status.code().unwrap())
+}
+
+#[test]
+fn settings_are_read_and_set_in_their_units() {
+    let commands = "ls /usr\nls /usr/heading\nget /usr/heading/range\nstep\nget /usr/heading/range\ncd /usr/heading\n\
+                    get ahead\nset ahead 4m\nget ahead\nstep 2\nget range\nget bearing\nset gain 2\nset is_on false\n\
+                    set count 12\nset name x  y\nset place 1m -50cm 90deg\nset delay 20ms\nset weights 3 4 5\nset key 0aff\n\
+                    step\nget copy\nget place\nget weights\nget key\nget delay\nhelp ahead\nhelp key\nhelp copy\n\
+                    set ahead 3\nset ahead 3s\nset ahead NaN\nset gain inf\nset gain 1m\nset is_on yes\nset count 1.5\n\
+                    set place 1m\nset delay -1s\nset weights 1 b\nset key 0\nset range 3m\nset .state stopped\nset nothing 3\n";
+    insta::assert_snapshot!(dialogue("modules_set", &[], commands));
+}
+
+#[test]
+fn modules_are_stopped_unloaded_and_loaded() {
+    let commands = "step 3\nget /usr/counter/count\nget /usr/counter/.state\ncall /usr/heading/.stop\n\
+                    get /usr/heading/.state\nget /usr/heading/copy\nset /usr/heading/ahead 9m\nstep 3\n\
+                    get /usr/heading/range\ncall /usr/heading/.start\nstep 2\nget /usr/heading/.state\n\
+                    get /usr/heading/range\nls /lib\ncall /lib/heading\ncall /usr/heading/.unload\nls /usr\n\
+                    get /usr/heading/range\nstep\ncall /lib/heading\nget /usr/heading/range\nstep 2\n\
+                    get /usr/heading/range\ncall /usr/counter/.unload now\ncall /usr/counter/.unload\n\
+                    call /usr/counter/.unload\ncall /lib/nothing\nstep\nls /usr\n";
+    insta::assert_snapshot!(dialogue("modules_load", &[], commands));
+}
+
+#[test]
+fn a_role_decides_what_may_be_done_with_modules() {
+    let commands = "step\nset /usr/heading/ahead 4m\ncall /usr/heading/.stop\ncall /lib/heading\n";
+    let all = ["view", "tune", "swap"].map(|role| dialogue(&format!("modules_{role}"), &["--role", role], commands));
+    insta::assert_snapshot!(all.join("\n"));
+}
