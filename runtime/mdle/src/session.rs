@@ -18,7 +18,7 @@ use crate::failure::Failure;
 use crate::terminal::{HeldTerminal, Printing};
 
 /// Maximum wait after a run for the last answer of the front end.
-const LAST_ANSWER: Duration = Duration::from_millis(500);
+const LAST_ANSWER: Duration = Duration::from_secs(1);
 /// Exit status of a session in which a command was refused.
 const REFUSED: u8 = 1;
 
@@ -58,8 +58,9 @@ pub(crate) fn held(
         terminal.give_back();
         return Ok(status);
     }
-    let is_refused = status == ExitCode::SUCCESS && !outcome.recv_timeout(LAST_ANSWER).unwrap_or(true);
-    Ok(if is_refused { ExitCode::from(REFUSED) } else { status })
+    // Also after a fault: the last answers name the commands that were not carried out.
+    let is_well = outcome.recv_timeout(LAST_ANSWER).unwrap_or(true);
+    Ok(if !is_well && status == ExitCode::SUCCESS { ExitCode::from(REFUSED) } else { status })
 }
 
 /// Starts the front end on a thread of its own, at a terminal if it has one for `printing`; it sends `true` when every
