@@ -150,14 +150,6 @@ fn rendered(sources: &Sources, found: &[Diagnostic]) -> String {
 /// Returns the message of a file that cannot be read, with the diagnostics of a faulty one.
 fn words(error: InputError) -> String {
     let own = error.to_string();
-    let found = match error.cause() {
-        InputError::Faulty { sources, diagnostics, .. } => Some(rendered(&sources, &diagnostics)),
-        InputError::Unusable(_)
-        | InputError::NoTarget
-        | InputError::UnknownTarget(_)
-        | InputError::InSettings { .. }
-        | InputError::UnknownPlan { .. }
-        | InputError::NotOnePlan { .. } => None,
-    };
+    let found = error.faulty_file().map(|file| rendered(&file.sources, &file.diagnostics));
     found.into_iter().chain(Some(own).filter(|own| !own.is_empty())).collect::<Vec<_>>().join("\n")
 }

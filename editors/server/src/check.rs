@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use mdle_compiler::alphabet;
 use mdle_compiler::diagnostic::Sources;
-use mdle_files::InputError;
+use mdle_files::{FaultyFile, InputError};
 use serde_json::Value;
 
 use crate::convert::{self, Converter};
@@ -63,17 +63,10 @@ fn of_alphabet(document: &Document) -> Vec<Value> {
 /// Words for an input that cannot be checked: those of `mdlec check`, with the first defect of the file at fault.
 fn words(error: InputError) -> String {
     let own = Some(error.to_string()).filter(|own| !own.is_empty());
-    let first = match error.cause() {
-        InputError::Faulty { sources, diagnostics, .. } => diagnostics.first().map(|first| {
-            let (file, line) = first.span().map_or(("", 0), |span| sources.line(span));
-            format!("{file}:{line}: {}", first.message)
-        }),
-        InputError::Unusable(_)
-        | InputError::NoTarget
-        | InputError::UnknownTarget(_)
-        | InputError::InSettings { .. }
-        | InputError::UnknownPlan { .. }
-        | InputError::NotOnePlan { .. } => None,
-    };
+    let first = error.faulty_file().and_then(|FaultyFile { sources, diagnostics, .. }| {
+        let first = diagnostics.first()?;
+        let (file, line) = first.span().map_or(("", 0), |span| sources.line(span));
+        Some(format!("{file}:{line}: {}", first.message))
+    });
     own.into_iter().chain(first).collect::<Vec<_>>().join("\n")
 }

@@ -5,7 +5,7 @@ use std::io;
 use std::path::PathBuf;
 
 use mdle_compiler::diagnostic::{Diagnostic, Severity, Sources, most_shown};
-use mdle_files::{InputError, Spelling};
+use mdle_files::{FaultyFile, InputError, Spelling};
 
 /// Reason why no plan was embedded.
 ///
@@ -55,15 +55,8 @@ impl fmt::Debug for EmbedError {
 
 impl From<InputError> for EmbedError {
     fn from(error: InputError) -> Self {
-        match error {
-            InputError::Faulty { sources, diagnostics, .. } => Self::Plan { sources: Box::new(sources), diagnostics },
-            InputError::Unusable(_)
-            | InputError::InSettings { .. }
-            | InputError::NoTarget
-            | InputError::UnknownTarget(_)
-            | InputError::UnknownPlan { .. }
-            | InputError::NotOnePlan { .. } => Self::Input(error),
-        }
+        let InputError::Faulty(FaultyFile { sources, diagnostics, .. }) = error else { return Self::Input(error) };
+        Self::Plan { sources: Box::new(sources), diagnostics }
     }
 }
 

@@ -23,14 +23,7 @@ pub enum InputError {
         error: Box<InputError>,
     },
     /// A file has errors.
-    Faulty {
-        /// Files to which the diagnostics refer.
-        sources: Sources,
-        /// Errors of the file, perhaps with warnings.
-        diagnostics: Vec<Diagnostic>,
-        /// Name of the target if the file is an alphabet.
-        target: Option<String>,
-    },
+    Faulty(FaultyFile),
     /// The file has no plan of the name asked for.
     UnknownPlan {
         /// Name of the file.
@@ -48,6 +41,17 @@ pub enum InputError {
         /// Names of the plans that no other plan uses.
         plans: Vec<String>,
     },
+}
+
+/// A file with errors, as diagnostics.
+#[derive(Debug)]
+pub struct FaultyFile {
+    /// Files to which the diagnostics refer.
+    pub sources: Sources,
+    /// Errors of the file, perhaps with warnings.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Name of the target if the file is an alphabet.
+    pub target: Option<String>,
 }
 
 /// The way in which a user names targets and plans.
@@ -70,10 +74,18 @@ impl Spelling {
 }
 
 impl InputError {
-    /// Returns the error itself, without the line of an `mdle.toml` that leads to it.
+    /// Returns the file with errors, if that is the reason, also where a line of an `mdle.toml` leads to it.
     #[must_use]
-    pub fn cause(self) -> Self {
-        if let Self::InSettings { error, .. } = self { error.cause() } else { self }
+    pub fn faulty_file(self) -> Option<FaultyFile> {
+        match self {
+            Self::Faulty(file) => Some(file),
+            Self::InSettings { error, .. } => error.faulty_file(),
+            Self::Unusable(_)
+            | Self::NoTarget
+            | Self::UnknownTarget(_)
+            | Self::UnknownPlan { .. }
+            | Self::NotOnePlan { .. } => None,
+        }
     }
 
     /// Returns the message, in which options are spelled for this user. The diagnostics of [`InputError::Faulty`] are
@@ -91,8 +103,10 @@ impl InputError {
                 message if message.is_empty() => message,
                 message => format!("{place}: {message}"),
             },
-            Self::Faulty { target: Some(name), .. } => format!("the alphabet of target `{name}` has errors"),
-            Self::Faulty { target: None, .. } => String::new(),
+            Self::Faulty(FaultyFile { target: Some(name), .. }) => {
+                format!("the alphabet of target `{name}` has errors")
+            }
+            Self::Faulty(FaultyFile { target: None, .. }) => String::new(),
             Self::UnknownPlan { file, name, plans } => {
                 let known: Vec<_> = plans.iter().map(String::as_str).collect();
                 let near = did_you_mean(name, &known);

@@ -12,7 +12,7 @@ mod target;
 mod text;
 mod unsaved;
 
-pub use error::{InputError, Spelling};
+pub use error::{FaultyFile, InputError, Spelling};
 pub use input::{Input, add, plan, read_plan};
 pub use settings::{Known, RunOption, Settings, file_beside};
 pub use target::{Target, alphabet, bound, out_of_date, target};

@@ -8,7 +8,7 @@ use mdle_compiler::{builtin, rust};
 
 use crate::read::LARGEST_PLAN;
 use crate::text::read_text;
-use crate::{InputError, read};
+use crate::{FaultyFile, InputError, read};
 
 /// The robot that plans are checked against.
 #[derive(Debug)]
@@ -134,7 +134,7 @@ fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, I
         }
         Some(_) | None => {
             let Reading { sources, found, .. } = reading;
-            Err(InputError::Faulty { sources, diagnostics: found, target: Some(name.to_owned()) })
+            Err(InputError::Faulty(FaultyFile { sources, diagnostics: found, target: Some(name.to_owned()) }))
         }
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use mdle_compiler::diagnostic::{Code, Diagnostic, Sources, Span};
 
-use crate::{InputError, read};
+use crate::{FaultyFile, InputError, read};
 
 /// Reads a text file of at most `most` bytes, or standard input for `-`.
 ///
@@ -46,7 +46,7 @@ fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> InputError {
     let span = Span::new(source, valid, valid + 3);
     let found = Diagnostic::new(Code::E0109, "this file is not UTF-8 text", span, "no character of UTF-8")
         .help("save it as UTF-8 in your editor, or convert it: `iconv -f latin1 -t utf-8`");
-    InputError::Faulty { sources, diagnostics: vec![found], target: None }
+    InputError::Faulty(FaultyFile { sources, diagnostics: vec![found], target: None })
 }
 
 /// Hint for a path without the extension `.mdle`.

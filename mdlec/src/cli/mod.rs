@@ -38,7 +38,7 @@ use arguments::{
 use clap::{CommandFactory as _, FromArgMatches as _, ValueEnum as _};
 use emit::{Emit, EmitKind};
 use mdle_compiler::diagnostic::{Diagnostic, Sources};
-use mdle_files::InputError;
+use mdle_files::{FaultyFile, InputError};
 
 use crate::link::LinkError;
 
@@ -56,16 +56,11 @@ impl From<InputError> for Failure {
     /// A plan with errors ends with exit status 1, everything else with 2.
     fn from(error: InputError) -> Self {
         let message = Some(error.to_string()).filter(|message| !message.is_empty());
-        let (status, found) = match error.cause() {
-            InputError::Faulty { sources, diagnostics, target } => {
+        let (status, found) = match error.faulty_file() {
+            Some(FaultyFile { sources, diagnostics, target }) => {
                 (if target.is_none() { 1 } else { 2 }, Some(Box::new((sources, diagnostics))))
             }
-            InputError::Unusable(_)
-            | InputError::NoTarget
-            | InputError::UnknownTarget(_)
-            | InputError::InSettings { .. }
-            | InputError::UnknownPlan { .. }
-            | InputError::NotOnePlan { .. } => (2, None),
+            None => (2, None),
         };
         Self { status, found, message }
     }

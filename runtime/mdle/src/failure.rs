@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use mdle_compiler::diagnostic::{Diagnostic, Sources};
 use mdle_compiler::load::LoadError;
-use mdle_files::InputError;
+use mdle_files::{FaultyFile, InputError};
 use mdle_runtime::PrintableLines;
 
 /// Exit status of a plan with errors.
@@ -54,17 +54,12 @@ impl Failure {
             }
             Self::Input(reason) => {
                 let message = reason.to_string();
-                let status = match reason.cause() {
-                    InputError::Faulty { sources, diagnostics, target } => {
+                let status = match reason.faulty_file() {
+                    Some(FaultyFile { sources, diagnostics, target }) => {
                         print(&sources, &diagnostics);
                         if target.is_none() { PLAN } else { USAGE }
                     }
-                    InputError::Unusable(_)
-                    | InputError::NoTarget
-                    | InputError::UnknownTarget(_)
-                    | InputError::InSettings { .. }
-                    | InputError::UnknownPlan { .. }
-                    | InputError::NotOnePlan { .. } => USAGE,
+                    None => USAGE,
                 };
                 if message.is_empty() {
                     error("1 error");

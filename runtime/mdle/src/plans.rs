@@ -7,7 +7,7 @@ use codespan_reporting::term::termcolor::NoColor;
 use mdle_compiler::diagnostic::{Diagnostic, Sources, judged};
 use mdle_compiler::load;
 use mdle_engine::{CompiledPlans, EngineAlphabet, PlanSource, Plans, StoredPlan};
-use mdle_files::{Input, InputError, Target, plan, read_plan};
+use mdle_files::{FaultyFile, Input, InputError, Target, plan, read_plan};
 use mdle_host::Refusal;
 use mdle_runtime::Alphabet;
 
@@ -67,9 +67,9 @@ fn stored<A: Alphabet + EngineAlphabet>(
 
 /// The message about a text that cannot be read.
 fn unread(error: InputError) -> String {
-    let error = error.cause();
-    let InputError::Faulty { sources, diagnostics, .. } = &error else { return error.to_string() };
-    faulty(&judged(diagnostics, false).err().unwrap_or_default(), &rendered(sources, diagnostics))
+    let message = error.to_string();
+    let Some(FaultyFile { sources, diagnostics, .. }) = error.faulty_file() else { return message };
+    faulty(&judged(&diagnostics, false).err().unwrap_or_default(), &rendered(&sources, &diagnostics))
 }
 
 fn faulty(count: &str, diagnostics: &str) -> String {
