@@ -84,7 +84,7 @@ impl Walk<'_> {
             "console" => fence.text.split("$ ").skip(1).for_each(|command| self.run(command)),
             "text" => self.compare(fence),
             // Later commands of the page use these files; those of the two pages on applications,
-            // tests/emitted/embed.rs builds.
+            // tests/compiled/embed.rs builds.
             "commands" | "csv" | "json" | "python" | "rust" | "toml" => drop(self.write(fence.file().unwrap(), fence)),
             "sh" => {}
             other => panic!("{}: what is `{other}`?", self.page.path),

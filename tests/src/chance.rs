@@ -6,14 +6,14 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 /// Returns `count` times the number in the variable `MDLE_LONG`: how often a test repeats something with other random
 /// choices.
 ///
-/// Without the variable it is `count`. `.ci/thorough` sets it.
+/// Without the variable it is half of `count`. `.ci/thorough` sets it.
 ///
 /// # Panics
 ///
 /// If the variable is not a whole number from 1 on.
 #[must_use]
 pub fn repeated(count: u64) -> u64 {
-    count * factor()
+    factor().map_or(count.div_ceil(2), |factor| count * factor)
 }
 
 /// Returns `most` if the variable `MDLE_LONG` is more than 1, and `less` otherwise: the size of an input that takes an
@@ -24,14 +24,14 @@ pub fn repeated(count: u64) -> u64 {
 /// If the variable is not a whole number from 1 on.
 #[must_use]
 pub fn sized<T>(less: T, most: T) -> T {
-    if factor() > 1 { most } else { less }
+    if factor().is_some_and(|factor| factor > 1) { most } else { less }
 }
 
-/// Returns the number in the variable `MDLE_LONG`, or 1 without it.
-fn factor() -> u64 {
-    let Ok(factor) = std::env::var("MDLE_LONG") else { return 1 };
+/// Returns the number in the variable `MDLE_LONG`, if it is set.
+fn factor() -> Option<u64> {
+    let factor = std::env::var("MDLE_LONG").ok()?;
     let factor = factor.parse().ok().filter(|factor: &u64| *factor >= 1);
-    factor.expect("MDLE_LONG is a whole number from 1 on")
+    Some(factor.expect("MDLE_LONG is a whole number from 1 on"))
 }
 
 /// A source of choices.

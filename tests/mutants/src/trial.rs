@@ -19,7 +19,7 @@ pub(crate) const TESTS: &[(Packages, &[&str])] = &[
     (COMPILER, RULES),
     (COMPILER, &["--lib", "--", "fsm::", "plan::", "rust::"]),
     (COMPILER, &["--test", "machine", "--", "differential::"]),
-    (COMPILER, &["--test", "emitted", "--", "machines::"]),
+    (COMPILER, &["--test", "compiled", "--", "machines::"]),
 ];
 
 /// The tests of the rules of plans, each by its smallest plan.

@@ -4,7 +4,7 @@
 
 use core::ffi::c_int;
 
-/// The emitted plan, which `tests/emitted/bare.rs` writes to the folder `PLANS`.
+/// The emitted plan, which `tests/compiled/bare.rs` writes to the folder `PLANS`.
 mod plan {
     include!(concat!(env!("PLANS"), "/recall.rs"));
 }

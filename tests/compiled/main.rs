@@ -1,0 +1,9 @@
+//! Packages around plans: what `mdlec` writes compiles and does what the plan means, and cargo builds it anywhere.
+
+mod bare;
+mod cache;
+mod cargo_configuration;
+mod embed;
+mod machines;
+mod own_module;
+mod own_target;
