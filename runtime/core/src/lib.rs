@@ -68,7 +68,7 @@ pub use printable::{Printable, PrintableLines, is_printable};
 pub use published::{ModuleRead, PUBLISHED, Published, PublishedNumber};
 pub use quark::{Begin, Completes, Control, Interrupt, Law};
 pub use robot::{Output, Robot};
-pub use rows::InRows;
+pub use rows::{Examined, InRows};
 pub use sensed::{Sensed, Supply};
 pub use shape::Shape;
 pub use signal::{Comparison, NoSignal, Operand, Signal};

@@ -5,7 +5,7 @@
 
 use crate::condition::Reading;
 use crate::fsm::Kind;
-use crate::{Condition, Cursor, Entries, Fsm, Interrupt, Measured, Memory, Nanos, Slots};
+use crate::{Condition, Cursor, Entries, Examined, Fsm, Interrupt, Measured, Memory, Nanos, Slots};
 
 /// The conditions of a plan that is code, as rows: read only where a scope has ended and an observer is attached.
 pub struct Conditions<'a, I> {
@@ -50,6 +50,24 @@ impl<I> Condition<I> {
             }
             number = number.saturating_add(1);
         });
+    }
+
+    /// Calls `tell` with the value of the condition and of all its parts, a part before its own operands.
+    pub(crate) fn examine<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32, tell: &mut dyn FnMut(Examined))
+    where
+        I: Interrupt<Y>,
+    {
+        tell(Examined { fired: self.fired(at, from), measured: self.measured(at, from) });
+        let inside = match self {
+            Self::Null | Self::Quark(_) | Self::Wait(_) | Self::Lasting(..) => return,
+            Self::Elapsed(..) | Self::Driven(..) | Self::After(..) => return,
+            Self::Or(first, count) | Self::And(first, count) => *first..first.saturating_add(*count),
+            Self::Not(number) | Self::Rising(_, number) => *number..number.saturating_add(1),
+        };
+        for number in inside {
+            let Some(operand) = at.operands.get(number as usize).filter(|_| number >= from) else { continue };
+            operand.examine(at, number.saturating_add(1), tell);
+        }
     }
 
     /// Visits its operands, each with the number from which its own operands are.

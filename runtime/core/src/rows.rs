@@ -1,11 +1,15 @@
 //! A plan as rows of tables, which the machine looks up.
 
+mod examined;
+
 use crate::condition::Reading;
 use crate::fsm::Kind;
 use crate::{
     Alphabet, Begin, Cause, Completes, Condition, Control, Cursor, Ending, Entries, Fsm, Guard, Interrupt, Law, LawRow,
     MarkRow, Measured, Memory, ModuleRead, Nanos, Plan, Radians, Slots, Table, Words,
 };
+
+pub use examined::Examined;
 
 /// A plan in rows that a [`Machine`](crate::Machine) runs.
 pub struct InRows<T: Table, E, P, M = ()> {

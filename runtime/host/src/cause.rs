@@ -18,10 +18,13 @@ const DECIMALS: usize = 2;
 const DECIMALS_MOST: usize = 9;
 
 /// Cause of a scope's end in a report: `r1 = 0.38 m < 40cm (wall.mdle:7)`.
-pub(crate) struct CauseText<'a> {
-    pub(crate) plan: &'a dyn Texts,
-    pub(crate) transition: &'a Transition,
-    pub(crate) operands: &'a [Operand],
+pub struct CauseText<'a> {
+    /// The plan.
+    pub plan: &'a dyn Texts,
+    /// The end of the scope.
+    pub transition: &'a Transition,
+    /// The operands that had fired.
+    pub operands: &'a [Operand],
 }
 
 impl fmt::Display for CauseText<'_> {
@@ -59,7 +62,8 @@ impl fmt::Display for CauseText<'_> {
 }
 
 /// Returns the place of an atom in a report: its line, the names of its enclosing scopes and the passes of loops.
-pub(crate) fn place(plan: &dyn Texts, passes: &Passes, atom: u32) -> String {
+#[must_use]
+pub fn place(plan: &dyn Texts, passes: &Passes, atom: u32) -> String {
     let (fsm, source) = (plan.fsm(), plan.source());
     let Some(own) = fsm.atoms.get(atom as usize).map(|atom| atom.scope) else { return String::new() };
     let around = outwards(fsm, own).filter_map(|(number, bracket)| match bracket.kind {
@@ -83,8 +87,15 @@ impl fmt::Display for FileLine<'_> {
     }
 }
 
-/// The words of an operand with its values: `r1 = 0.38 m < 40cm`.
+/// Returns the words of an operand that has fired, with its values: `r1 = 0.38 m < 40cm`.
 fn measured_words(operand: &OperandWords<'_>, measured: Measured) -> String {
+    operand_words(operand, measured, true)
+}
+
+/// Returns the words of an operand with its values: `r1 = 0.38 m < 40cm` if what was measured `holds`, and
+/// `r1 = 0.5 m, not < 40cm` otherwise.
+#[must_use]
+pub fn operand_words(operand: &OperandWords<'_>, measured: Measured, holds: bool) -> String {
     let values = match measured {
         Measured::Nothing => [None, None],
         Measured::Elapsed(t) => [Some(rounded(t.0)), None],
@@ -97,8 +108,14 @@ fn measured_words(operand: &OperandWords<'_>, measured: Measured) -> String {
         let after = *after as usize;
         words += operand.written.get(written..after).unwrap_or("");
         let between = if unit.is_empty() { "" } else { " " };
+        let is_first = written == 0;
         let _ = write!(words, " = {value}{between}{unit}");
         written = after;
+        if is_first && !holds {
+            let rest = operand.written.get(after..).unwrap_or("");
+            words += ", not ";
+            written += rest.len() - rest.trim_start().len();
+        }
     }
     words + operand.written.get(written..).unwrap_or("")
 }
@@ -158,6 +175,18 @@ mod tests {
         assert_eq!(words("t > 3s", &time, Measured::Elapsed(Nanos(3_050_000_000))), "t = 3.05 s > 3s");
         let way = [ValueWords { after: 3, ..METRES }];
         assert_eq!(words("way > 2m", &way, Measured::Driven(Nanometers(2_013_400_000))), "way = 2.013 m > 2m");
+    }
+
+    #[test]
+    fn what_does_not_hold_says_so() {
+        let unfired = |written: &'static str, values: &[ValueWords<'_>], measured| {
+            operand_words(&OperandWords { text: "", written, at: AT, values }, measured, false)
+        };
+        assert_eq!(unfired("r1 < 40cm", &[METRES], less(0.5, 0.4)), "r1 = 0.5 m, not < 40cm");
+        assert_eq!(unfired("r1<40cm", &[METRES], less(0.5, 0.4)), "r1 = 0.5 m, not <40cm");
+        let both = [METRES, ValueWords { after: 7, ..METRES }];
+        assert_eq!(unfired("r3 < r5", &both, less(1.0, 0.25)), "r3 = 1 m, not < r5 = 0.25 m");
+        assert_eq!(unfired("bumper", &[], Measured::Nothing), "bumper");
     }
 
     #[test]

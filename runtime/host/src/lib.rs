@@ -74,6 +74,7 @@ use std::process::ExitCode;
 use background_writer::{Keeps, Outlet};
 pub use batch::Batch;
 pub use call::{Call, RecordedPlan};
+pub use cause::{CauseText, operand_words, place};
 pub use clap;
 use executable::{Executable, PlanOnTarget};
 pub use files::{read_file, read_text};
@@ -83,14 +84,17 @@ pub use named_file::NamedFile;
 pub use observation::{Observation, SeveralRuns};
 pub use observer::{Around, Ended, Judgement, Observer, PlanPosition};
 pub use output_format::output_format;
+pub use passes::{Passes, outwards};
 pub use paths::setpoints;
 use patience::Patience;
 use pilot::PlanAlone;
 pub use pilot::{Moment, Pilot, PilotFault, RunTerms};
+pub use position::Texts;
 pub use program::Program;
 pub use refusal::Refusal;
 pub use replays::Replays;
 pub use robot_settings::{RobotSettings, SettingsOf, sonar_order};
+pub use rounded::{Clocked, rounded};
 pub use scheduling::claim_for_worker;
 pub use stop_request::StopRequest;
 pub use supervisor::{
@@ -98,7 +102,7 @@ pub use supervisor::{
 };
 pub use target::Target;
 pub use time::{Pace, Time};
-pub use transitions::Transitions;
+pub use transitions::{Operand, Transitions};
 
 /// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: the `main` of an
 /// executable that mdlec builds calls this function. `program` is the plan's name, for `--help`, whose usage names the

@@ -6,16 +6,17 @@ use mdle_runtime::{Fsm, Transition};
 
 /// The number of the current pass of each loop, from 1, by its bracket.
 #[derive(Debug, Default)]
-pub(crate) struct Passes(Vec<u64>);
+pub struct Passes(Vec<u64>);
 
 impl Passes {
     /// Returns the number of the current pass of a loop.
-    pub(crate) fn of(&self, bracket: u32) -> u64 {
+    #[must_use]
+    pub fn of(&self, bracket: u32) -> u64 {
         self.0.get(bracket as usize).copied().unwrap_or(1)
     }
 
     /// Counts the passes of the loops that begin with a transition.
-    pub(crate) fn step(&mut self, fsm: Fsm<'_>, transition: &Transition) {
+    pub fn step(&mut self, fsm: Fsm<'_>, transition: &Transition) {
         self.0.resize(fsm.brackets.len(), 1);
         let own = transition.atom.and_then(|atom| fsm.atoms.get(atom as usize));
         let (Some(own), Some(ended)) = (own, fsm.brackets.get(transition.scope as usize)) else { return };
@@ -49,7 +50,7 @@ impl Passes {
 }
 
 /// Returns a bracket and its enclosing brackets, outwards, each with its number.
-pub(crate) fn outwards(fsm: Fsm<'_>, bracket: u32) -> impl Iterator<Item = (u32, &Bracket)> {
+pub fn outwards(fsm: Fsm<'_>, bracket: u32) -> impl Iterator<Item = (u32, &Bracket)> {
     let at = move |number: u32| fsm.brackets.get(number as usize).map(|bracket| (number, bracket));
     std::iter::successors(at(bracket), move |(number, bracket)| {
         at(bracket.parent).filter(|(around, _)| around < number)

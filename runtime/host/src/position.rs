@@ -3,7 +3,7 @@
 use mdle_runtime::{Frame, Fsm, Machine, Nanos, Plan, Words};
 
 /// Texts and tables of a plan, for reports: [`Plan`] without the types of its robot.
-pub(crate) trait Texts {
+pub trait Texts {
     /// The machine's tables.
     fn fsm(&self) -> Fsm<'_>;
     /// The quark text of an atom's law.

@@ -5,7 +5,8 @@ use std::fmt;
 use mdle_runtime::Nanos;
 
 /// Nanoseconds as seconds, or nanometres as metres: to the thousandth, with at least one decimal.
-pub(crate) fn rounded(nanos: u64) -> String {
+#[must_use]
+pub fn rounded(nanos: u64) -> String {
     let thousandths = nanos / 1_000_000 + u64::from(nanos % 1_000_000 >= 500_000);
     let text = format!("{}.{:03}", thousandths / 1000, thousandths % 1000);
     let short = text.trim_end_matches('0');
@@ -13,7 +14,10 @@ pub(crate) fn rounded(nanos: u64) -> String {
 }
 
 /// A time to the millisecond.
-pub(crate) struct Clocked(pub(crate) Nanos);
+pub struct Clocked(
+    /// The time.
+    pub Nanos,
+);
 
 impl fmt::Display for Clocked {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

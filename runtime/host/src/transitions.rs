@@ -11,7 +11,7 @@ pub struct Transitions {
 }
 
 /// An operand that has fired: its number in the interrupt of the scope that ended, and its values.
-pub(crate) type Operand = (u32, Measured);
+pub type Operand = (u32, Measured);
 
 impl Transitions {
     /// Removes the transitions of the previous turn.
@@ -27,7 +27,7 @@ impl Transitions {
     }
 
     /// Returns the transitions in order, each with the operands that had fired.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = (&Transition, &[Operand])> + Clone {
+    pub fn iter(&self) -> impl Iterator<Item = (&Transition, &[Operand])> + Clone {
         let begins = std::iter::once(0).chain(self.made.iter().map(|(_, end)| *end));
         let operands = |first, end| self.operands.get(first..end).unwrap_or(&[]);
         self.made.iter().zip(begins).map(move |((transition, end), first)| (transition, operands(first, *end)))

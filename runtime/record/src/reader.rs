@@ -48,8 +48,10 @@ impl std::error::Error for ReadError {}
 pub struct Records<R> {
     source: R,
     reader: LinearReader,
-    /// Channels of `/exact/begin` and `/exact/turn`.
-    channels: [Option<u16>; 2],
+    /// Channels of `/exact/begin`, `/exact/turn` and `/engine/events`.
+    channels: [Option<u16>; 3],
+    /// The event that was read last, as JSON.
+    event: String,
     turns: Option<Turns>,
     count: u64,
     /// `true` once the end of the record was read: it was not cut short.
@@ -64,7 +66,8 @@ impl<R: Read> Records<R> {
     pub fn open(source: R) -> Result<(Begin, Self), ReadError> {
         let options = LinearReaderOptions::default().with_record_length_limit(LARGEST);
         let reader = LinearReader::new_with_options(options);
-        let mut records = Self { source, reader, channels: [None; 2], turns: None, count: 0, is_whole: false };
+        let mut records =
+            Self { source, reader, channels: [None; 3], event: String::new(), turns: None, count: 0, is_whole: false };
         match records.message() {
             Ok(Some((0, content))) => {
                 let turns = Turns::of(&content).ok_or(ReadError::NotARecord)?;
@@ -83,6 +86,13 @@ impl<R: Read> Records<R> {
         self.is_whole
     }
 
+    /// Returns the last event of the turns that were read, as a JSON object with `turn`, `t`, `kind` and `text`; empty
+    /// before the first. The events of a turn come after it, so those of the last turn that was read are not known yet.
+    #[must_use]
+    pub fn event(&self) -> &str {
+        &self.event
+    }
+
     /// Returns the next message of `/exact/begin`, which is 0, or of `/exact/turn`, which is 1; `None` at the end.
     fn message(&mut self) -> Result<Option<(usize, Vec<u8>)>, ReadError> {
         let damaged = |count: u64| move |error: mcap::McapError| ReadError::Damaged(count, error.to_string());
@@ -98,13 +108,16 @@ impl<R: Read> Records<R> {
                         match (channel.topic.as_str(), channel.message_encoding) {
                             ("/exact/begin", encoding) if encoding == BEGIN => self.channels[0] = Some(channel.id),
                             ("/exact/turn", encoding) if encoding == TURN => self.channels[1] = Some(channel.id),
+                            ("/engine/events", _) => self.channels[2] = Some(channel.id),
                             ("/exact/begin" | "/exact/turn", other) => return Err(ReadError::OtherVersion(other)),
                             _ => {}
                         }
                     } else if let Record::Message { header, data } = record {
                         let kind = self.channels.iter().position(|known| *known == Some(header.channel_id));
-                        if let Some(kind) = kind {
-                            return Ok(Some((kind, data.into_owned())));
+                        match kind {
+                            Some(2) => self.event = String::from_utf8_lossy(&data).into_owned(),
+                            Some(kind) => return Ok(Some((kind, data.into_owned()))),
+                            None => {}
                         }
                     } else {
                         self.is_whole |= matches!(record, Record::Footer(_));

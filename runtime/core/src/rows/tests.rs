@@ -5,9 +5,9 @@ use std::vec::Vec;
 use super::{InRows, Reading};
 use crate::fsm::{Atom, Bracket};
 use crate::{
-    Alphabet, Argument, Begin, Cause, Comparison, Completes, Condition, Control, Cursor, Fact, Follows, Frame, Fsm,
-    Guard, Interrupt, Law, LawRow, Limit, MarkRow, Measured, Memories, Memory, Nanometers, Nanos, NoSignal, Output,
-    Plan, Radians, Rows, Texts,
+    Alphabet, Argument, Begin, Cause, Comparison, Completes, Condition, Control, Cursor, Examined, Fact, Follows,
+    Frame, Fsm, Guard, Interrupt, Law, LawRow, Limit, MarkRow, Measured, Memories, Memory, Nanometers, Nanos, NoSignal,
+    Output, Plan, Radians, Rows, Texts,
 };
 
 /// The numbers of the interrupts that fire.
@@ -350,4 +350,29 @@ fn the_first_operand_of_all_can_end_a_scope() {
     let next = |plan: &mut Remembers<'_>, cursor: &mut At| plan.next(cursor, &y, Nanos::ZERO);
     let (next, _) = ends_by_either().after([false; WIDTH * LEVELS], next);
     assert!(matches!(next, Some(ending) if ending.cause == Cause::Fired(2)), "{next:?}");
+}
+
+#[test]
+fn every_part_of_a_condition_is_examined_in_order() {
+    let operands = [
+        Condition::And(2, 2),
+        Condition::Wait(Nanos(3)),
+        Condition::Not(4),
+        Condition::Rising(0, 5),
+        Condition::Quark(Fires(0)),
+        Condition::Elapsed(Nanos(9), Nanos(12)),
+    ];
+    let examined = |numbers: &'static [u8]| {
+        let mut fired = Vec::new();
+        let tell = &mut |part: Examined| fired.push(part.fired);
+        Condition::Or(0, 2).examine(&at(&operands, &Sensed(numbers), &()), 0, tell);
+        fired
+    };
+    // OR, AND, NOT, its quark, RISING, its time, the timer.
+    assert_eq!(examined(&[]), [true, false, true, false, false, false, true]);
+    assert_eq!(examined(&[0]), [true, false, false, true, false, false, true]);
+    let itself: [Condition<Fires>; 1] = [Condition::Or(0, 1)];
+    let mut count = 0;
+    Condition::Or(0, 1).examine(&at(&itself, &Sensed(&[]), &()), 0, &mut |_| count += 1);
+    assert_eq!(count, 2);
 }
