@@ -12,6 +12,7 @@ use mdle_quantity::Quantity;
 
 use crate::Failure;
 use crate::new_module::NewModule;
+use crate::why::{self, Why};
 
 /// The command that was given.
 #[derive(Debug, PartialEq)]
@@ -22,6 +23,8 @@ pub(crate) enum Asked {
     NewModule(NewModule),
     /// `mdle replay`.
     Replay(Replay),
+    /// `mdle why`.
+    Why(Why),
 }
 
 /// The arguments of `mdle replay`.
@@ -99,6 +102,7 @@ pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
             log: replay.get_one("log").cloned().unwrap_or_default(),
             plan: replay.get_one("plan").cloned(),
         })),
+        Some(("why", matches)) => Ok(Asked::Why(Why::of(matches))),
         Some(_) | None => Err(Failure::Usage("no command was given\nhelp: `mdle run PLAN` runs a plan".to_owned())),
     }
 }
@@ -176,6 +180,7 @@ fn command() -> Command {
         .subcommand(shell())
         .subcommand(new_module())
         .subcommand(replay())
+        .subcommand(why::command())
 }
 
 fn new_module() -> Command {
@@ -351,6 +356,7 @@ mod tests {
             Asked::Run(run) => *run,
             Asked::NewModule(new) => panic!("{new:?}"),
             Asked::Replay(replay) => panic!("{replay:?}"),
+            Asked::Why(why) => panic!("{why:?}"),
         }
     }
 

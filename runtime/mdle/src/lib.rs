@@ -16,6 +16,7 @@ mod safety;
 mod session;
 mod targets;
 mod terminal;
+mod why;
 
 use std::process::ExitCode;
 
@@ -47,6 +48,7 @@ pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
         }
         Asked::NewModule(arguments) => new_module::new_module(&arguments),
         Asked::Replay(arguments) => replay::replay(&arguments),
+        Asked::Why(arguments) => why::why(&arguments),
     };
     arguments::parse(arguments).and_then(run).unwrap_or_else(Failure::tell)
 }

@@ -17,7 +17,7 @@ use mdle_runtime::Printable;
 
 use crate::arguments::Replay;
 use crate::failure::{self, Failure};
-use crate::replayed::{Difference, Outcome};
+use crate::replayed::{Difference, Outcome, Record};
 use crate::targets;
 
 /// Exit status of a run that is not that of the record.
@@ -29,9 +29,7 @@ const DIFFERS: u8 = 1;
 /// The record or the plan cannot be read.
 pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
     let name = arguments.log.display();
-    let unread = |error: &dyn std::fmt::Display| Failure::Usage(format!("the record {name} cannot be read: {error}"));
-    let file = opened(&arguments.log).map_err(|error| unread(&error))?;
-    let (begin, records) = Records::open(BufReader::new(file)).map_err(|error| unread(&error))?;
+    let (begin, records) = record(&arguments.log)?;
     if !begin.beside.is_empty() {
         return Err(Failure::Usage(format!(
             "the record {name} cannot be replayed: the run depended on {} as well, which a record does not have",
@@ -40,14 +38,27 @@ pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
     }
     let linked = targets::linked(&begin.target).map_err(Failure::Usage)?;
     let target = mdle_files::target(Some(&begin.target))?;
-    let (machine, sources) = plan(arguments, &begin, &target)?;
+    let (machine, sources) = plan(&arguments.log, arguments.plan.as_deref(), &begin, &target)?;
     let outcome = (linked.replay)(&machine, &sources, &target, records)?;
     tell(&outcome).map_err(|error| Failure::Usage(format!("standard output cannot be written: {error}")))?;
     match outcome {
-        Outcome::Unread(_, error @ ReadError::System(_)) => Err(unread(&error)),
+        Outcome::Unread(_, error @ ReadError::System(_)) => Err(unread(&arguments.log, &error)),
         Outcome::Same { .. } => Ok(ExitCode::SUCCESS),
         Outcome::Differs(_) | Outcome::Unread(..) => Ok(ExitCode::from(DIFFERS)),
     }
+}
+
+/// Opens a record and reads its begin.
+///
+/// # Errors
+/// The file cannot be read, or is no record.
+pub(crate) fn record(log: &Path) -> Result<(Begin, Record), Failure> {
+    let file = opened(log).map_err(|error| unread(log, &error))?;
+    Records::open(BufReader::new(file)).map_err(|error| unread(log, &error))
+}
+
+fn unread(log: &Path, error: &dyn std::fmt::Display) -> Failure {
+    Failure::Usage(format!("the record {} cannot be read: {error}", log.display()))
 }
 
 /// Opens a record, which may be a pipe; `-` is standard input.
@@ -63,9 +74,17 @@ fn opened(path: &Path) -> io::Result<Box<dyn Read>> {
     Err(io::Error::other("expected a file or a pipe"))
 }
 
-/// Compiles the plan of a record, or the plan that the arguments name.
-fn plan(arguments: &Replay, begin: &Begin, target: &Target) -> Result<(Machine, Sources), Failure> {
-    let (plans, diagnostics, sources) = match (&arguments.plan, begin.files.split_first()) {
+/// Compiles the plan of a record, or the plan of the same name in `file`.
+///
+/// # Errors
+/// The plan cannot be read or has errors, or the record has no text of it.
+pub(crate) fn plan(
+    log: &Path,
+    file: Option<&Path>,
+    begin: &Begin,
+    target: &Target,
+) -> Result<(Machine, Sources), Failure> {
+    let (plans, diagnostics, sources) = match (file, begin.files.split_first()) {
         (Some(path), _) => {
             let mut input = read_plan(path, target)?;
             input.must_have(&begin.plan)?;
@@ -81,7 +100,7 @@ fn plan(arguments: &Replay, begin: &Begin, target: &Target) -> Result<(Machine, 
             return Err(Failure::Usage(format!(
                 "the record of an executable does not have the text of its plan\nhelp: name its file, as in `mdle replay \
                  {} --plan PLAN.mdle`",
-                arguments.log.display()
+                log.display()
             )));
         }
     };

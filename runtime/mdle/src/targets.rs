@@ -20,6 +20,7 @@ use crate::plans;
 use crate::replayed::{Outcome, Record, replayed};
 use crate::safety::{Guarded, SafetyFile};
 use crate::session::Seat;
+use crate::why::{Rerun, rerun};
 
 /// A robot whose driver is part of this program.
 #[derive(Clone, Copy)]
@@ -30,6 +31,8 @@ pub(crate) struct LinkedTarget {
     pub(crate) load: Load,
     /// Runs a plan on the outputs of a record.
     pub(crate) replay: ReplayRecord,
+    /// Loads a plan, to make the turns of a record again.
+    pub(crate) rerun: RerunRecord,
     /// Returns the message if a run has no such options.
     pub(crate) check: fn(Program<'_>, &Call) -> Result<(), String>,
 }
@@ -39,6 +42,9 @@ type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Bo
 
 /// Runs the plan of a machine on the outputs of a record.
 type ReplayRecord = fn(&Machine, &Sources, &Target, Record) -> Result<Outcome, Failure>;
+
+/// Loads the plan of a machine, to make the turns of a record again, with all laws or with those alone that complete.
+type RerunRecord = fn(&Machine, &Sources, &Target, Record, bool) -> Result<Box<dyn Rerun>, Failure>;
 
 /// A plan that is ready to run.
 pub(crate) trait Ready {
@@ -82,7 +88,13 @@ impl LinkedTarget {
         T: mdle_host::Target<Robot: Robot<Output = Sensed, Input = Twist>> + 'static,
         A: EngineAlphabet<Output = Sensed, Input = Twist>,
     {
-        Self { name: T::NAME, load: load::<T, A>, replay: replay::<A>, check: mdle_host::check_options::<T> }
+        Self {
+            name: T::NAME,
+            load: load::<T, A>,
+            replay: replay::<A>,
+            rerun: rerun::<A>,
+            check: mdle_host::check_options::<T>,
+        }
     }
 }
 

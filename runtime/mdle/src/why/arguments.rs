@@ -1,0 +1,81 @@
+//! The arguments of `mdle why`.
+
+use std::path::PathBuf;
+
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+
+/// The arguments of `mdle why`.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Why {
+    /// The record; `-` is standard input.
+    pub(crate) log: PathBuf,
+    /// File of the plan; `None` for that of the record.
+    pub(crate) plan: Option<PathBuf>,
+    /// The question.
+    pub(crate) question: Question,
+    /// `true` if the answer is JSON.
+    pub(crate) is_json: bool,
+}
+
+/// A question about a record.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Question {
+    /// Why this ran at a time, as it was typed.
+    At(String),
+    /// Why this atom did not begin.
+    Not(String),
+}
+
+impl Why {
+    /// Takes the arguments that were parsed.
+    pub(crate) fn of(matches: &ArgMatches) -> Self {
+        let text = |name: &str| matches.get_one::<String>(name).cloned();
+        Self {
+            log: matches.get_one("log").cloned().unwrap_or_default(),
+            plan: matches.get_one("plan").cloned(),
+            question: text("not").map_or_else(|| Question::At(text("time").unwrap_or_default()), Question::Not),
+            is_json: matches.get_flag("json"),
+        }
+    }
+}
+
+/// Returns the command line of `mdle why`.
+pub(crate) fn why() -> Command {
+    Command::new("why")
+        .about("Explain what a recorded run did at a time, or why it did not do something")
+        .long_about(
+            "Explain what a recorded run did at a time, or why it did not do something\n\nThe plan makes its turns again \
+             with the recorded outputs of the robot. The answer has the condition of every scope around the atom with the \
+             values of its operands, what each lacked, and the transition that came next.",
+        )
+        .arg(
+            Arg::new("log")
+                .value_name("LOG")
+                .help("Record that `--log FILE.mcap` has written; `-` reads standard input")
+                .required(true)
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            Arg::new("time")
+                .value_name("TIME")
+                .help("Time of the run, in seconds or with a unit, as in 12.3 or 2min")
+                .required_unless_present("not")
+                .allow_hyphen_values(true)
+                .conflicts_with("not"),
+        )
+        .arg(Arg::new("not").long("not").value_name("ATOM").help(
+            "Explain why this atom did not begin: its law, as in 'go 20 0', its line, or the name of a scope around it",
+        ))
+        .arg(
+            Arg::new("plan")
+                .long("plan")
+                .value_name("PLAN")
+                .help("File of the plan that ran, for the record of an executable [default: the text in the record]")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print a JSON object"))
+        .after_help(
+            "Exit status: 0; 1 if the record was changed or the plan is not that of the record; 2 for wrong usage, a time \
+             outside the record, or a file that cannot be read",
+        )
+}

@@ -1,0 +1,144 @@
+//! Explanations as JSON, for programs.
+
+use mdle_runtime::{Measured, Nanos, Twist};
+use serde_json::{Value, json};
+
+use super::explanation::{AtomWords, Ended, Explanation, Part, Runs, Scope};
+use super::never::{Chance, Never, Stay, Turned};
+use super::operands::Operand;
+use super::{Answer, Next};
+
+/// Returns an answer as a JSON object.
+pub(super) fn object(answer: &Answer) -> Value {
+    let Answer { explanation, asked, next, safety } = answer;
+    let Explanation { turn, t, ended, runs, is_cut, output_age, sent, computed } = explanation;
+    json!({
+        "asked": asked.seconds(),
+        "turn": turn,
+        "t": t.seconds(),
+        "ended": ended.iter().map(end).collect::<Vec<_>>(),
+        "runs": runs.as_ref().map(|runs| run(runs, *t)),
+        "cut": is_cut,
+        "output_age": output_age.seconds(),
+        "sent": input(*sent),
+        "computed": computed.map(input),
+        "safety": safety,
+        "next": following(next),
+    })
+}
+
+fn end(ended: &Ended) -> Value {
+    let Ended { atom, is_skipped, cause, was_done, scopes, to } = ended;
+    json!({
+        "atom": words(atom),
+        "skipped": is_skipped,
+        "cause": cause,
+        "done": was_done,
+        "scopes": scopes.iter().map(scope).collect::<Vec<_>>(),
+        "to": to.as_ref().map(words),
+    })
+}
+
+fn run(runs: &Runs, t: Nanos) -> Value {
+    let Runs { atom, since, began, completes, scopes } = runs;
+    json!({
+        "atom": words(atom),
+        "since": t.since(*since).seconds(),
+        "began": began,
+        "completes": completes,
+        "scopes": scopes.iter().map(scope).collect::<Vec<_>>(),
+    })
+}
+
+fn words(atom: &AtomWords) -> Value {
+    json!({ "law": atom.law, "place": atom.place })
+}
+
+fn scope(scope: &Scope) -> Value {
+    let Scope { name, is_atom, line, condition, since, part, examination, leads_to } = scope;
+    let part = match part {
+        Part::Ended => "ended",
+        Part::Completed => "completed",
+        Part::Shadowed => "shadowed",
+        Part::Waits => "waits",
+        Part::NoInterrupt => "no interrupt",
+        Part::Removed => "removed",
+    };
+    json!({
+        "name": name,
+        "atom": is_atom,
+        "line": line,
+        "condition": condition,
+        "for": since.seconds(),
+        "part": part,
+        "fired": examination.fired,
+        "operands": examination.operands.iter().map(operand).collect::<Vec<_>>(),
+        "missing": examination.missing,
+        "leads_to": leads_to,
+    })
+}
+
+fn operand(operand: &Operand) -> Value {
+    let Operand { written, words, fired, decides, measured, lack, stale, inside } = operand;
+    json!({
+        "operand": written,
+        "words": words,
+        "fired": fired,
+        "decides": decides,
+        "value": match measured {
+            Measured::Nothing => Value::Null,
+            Measured::Compared { left, .. } => json!(left),
+            Measured::Elapsed(t) => json!(t.seconds()),
+            Measured::Driven(way) => json!(way.0 as f64 / 1e9),
+        },
+        "with": match measured {
+            Measured::Compared { right, .. } => json!(right),
+            Measured::Nothing | Measured::Elapsed(_) | Measured::Driven(_) => Value::Null,
+        },
+        "lacks": lack,
+        "stale": stale,
+        "inside": inside.iter().map(self::operand).collect::<Vec<_>>(),
+    })
+}
+
+fn input(input: Twist) -> Value {
+    json!({ "v": input.v.0, "omega": input.omega.0 })
+}
+
+/// Returns the answer why an atom did not begin as a JSON object.
+pub(super) fn never(never: &Never) -> Value {
+    let Never { atom, ran, skipped, chance, end, last } = never;
+    let turned = |(turn, t): &Turned| json!({ "turn": turn, "t": t.seconds() });
+    json!({
+        "atom": atom,
+        "ran": ran.as_ref().map(|(turn, cause)| json!({ "turn": turn.0, "t": turn.1.seconds(), "cause": cause })),
+        "skipped": skipped.as_ref().map(stay),
+        "chance": chance.as_ref().map(|Chance { begins, scope, first, last }| {
+            json!({ "begins": begins, "scope": scope, "first": stay(first), "last": stay(last) })
+        }),
+        "end": turned(end),
+        "last": last.as_ref().map(words),
+    })
+}
+
+fn stay(stay: &Stay) -> Value {
+    let Stay { turned: (turn, t), atom, scopes, cause } = stay;
+    json!({
+        "turn": turn,
+        "t": t.seconds(),
+        "atom": words(atom),
+        "scopes": scopes.iter().map(scope).collect::<Vec<_>>(),
+        "cause": cause,
+    })
+}
+
+fn following(next: &Next) -> Value {
+    match next {
+        Next::Turn { turn, t, steps } => {
+            let step =
+                |(cause, to): &(String, Option<AtomWords>)| json!({ "cause": cause, "to": to.as_ref().map(words) });
+            json!({ "turn": turn, "t": t.seconds(), "steps": steps.iter().map(step).collect::<Vec<_>>() })
+        }
+        Next::End { .. } => Value::Null,
+    }
+}

@@ -1,0 +1,246 @@
+//! The operands of a condition in a turn: their values, which of them decide, and what each lacks.
+
+use std::iter::Peekable;
+use std::slice::Iter;
+
+use mdle_compiler::fsm::{Element, Machine};
+use mdle_compiler::plan::{Compared, Condition, QuarkId, Value, condition_text};
+use mdle_host::operand_words;
+use mdle_runtime::{Examined, Measured, Nanos, OperandWords, SONARS, Words};
+
+use super::examining::ScopeMoment;
+use super::lack::{Values, lack, short};
+
+/// Age from which the last ping of a sonar is stale.
+const STALE: Nanos = Nanos(1_000_000_000);
+
+/// An operand of a condition in a turn.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Operand {
+    /// The operand as it is written.
+    pub(crate) written: String,
+    /// The operand with its values.
+    pub(crate) words: String,
+    /// `true` if it has fired.
+    pub(crate) fired: bool,
+    /// `true` if its condition would have the other value if this operand alone had.
+    pub(crate) decides: bool,
+    /// The values from which it was evaluated.
+    pub(crate) measured: Measured,
+    /// Time or value that is missing until it fires, or reason why it has not; empty if nothing can be said.
+    pub(crate) lack: String,
+    /// Remarks about stale data; empty if there are none.
+    pub(crate) stale: Vec<String>,
+    /// The parts of an operand that NOT or RISING makes of several conditions.
+    pub(crate) inside: Vec<Operand>,
+}
+
+/// The facts of a turn that operands read beside their own values.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Facts {
+    /// Time since each sonar has pinged; `None` before the first ping.
+    pub(crate) ages: [Option<Nanos>; SONARS],
+    /// Time for which the law of the turn before has made no progress; `None` if it has no goal.
+    pub(crate) stalled: Option<Nanos>,
+}
+
+/// The condition of a scope in a turn.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Examination {
+    /// `true` if the condition has fired.
+    pub(crate) fired: bool,
+    /// The parts that AND and OR join, in order.
+    pub(crate) operands: Vec<Operand>,
+    /// The operands that are missing, joined as the condition joins them; empty if the condition has fired, or has one
+    /// operand.
+    pub(crate) missing: String,
+}
+
+/// Explains the condition of a scope of a machine.
+pub(crate) fn examination(
+    machine: &Machine,
+    element: Element<'_>,
+    scope: &ScopeMoment,
+    facts: &Facts,
+    words: &dyn Words,
+) -> Examination {
+    let condition = element.condition();
+    let mut parts = scope.parts.iter().peekable();
+    let node = Node::of(condition, &mut parts, &mut 0);
+    let (Some(node), false) = (node, *condition == Condition::Null) else { return Examination::default() };
+    let source: Vec<_> = words.operands_of(element.number()).collect();
+    let explaining = Explaining { machine, scope, facts };
+    let mut joined = Vec::new();
+    node.joined(&mut joined);
+    let operands = joined.iter().map(|part| {
+        let decides = node.value(None) != node.value(part.number);
+        let words = part.number.and_then(|number| source.get(number as usize));
+        explaining.operand(part, words, decides)
+    });
+    let operands: Vec<_> = operands.collect();
+    let fired = node.part.fired;
+    let name = |number: u32| source.get(number as usize).map_or("", |words| words.written);
+    let missing = if fired || operands.len() < 2 { String::new() } else { node.missing(&name, Join::None) };
+    Examination { fired, operands, missing }
+}
+
+/// A part of a condition with its value.
+struct Node<'c> {
+    condition: &'c Condition,
+    part: Examined,
+    /// Number among the parts that AND and OR join, counted apart inside each NOT and RISING; `None` for AND and OR.
+    number: Option<u32>,
+    parts: Vec<Node<'c>>,
+}
+
+/// An operator that joins operands in a text.
+#[derive(Clone, Copy, PartialEq)]
+enum Join {
+    None,
+    And,
+    Or,
+}
+
+impl<'c> Node<'c> {
+    /// Pairs a condition with the parts that were examined, which are in the same order.
+    fn of(condition: &'c Condition, parts: &mut Peekable<Iter<'_, Examined>>, next: &mut u32) -> Option<Self> {
+        let part = *parts.next()?;
+        let is_joining = condition.lasting().is_none() && matches!(condition, Condition::Or(_) | Condition::And(_));
+        let number = (!is_joining).then_some(*next);
+        let inside = if condition.lasting().is_some() { &[] } else { condition.children() };
+        let mut apart = 0;
+        if !is_joining {
+            *next = next.saturating_add(1);
+        }
+        let next = if is_joining { next } else { &mut apart };
+        let inside = inside.iter().map(|condition| Node::of(condition, parts, next)).collect::<Option<_>>()?;
+        Some(Self { condition, part, number, parts: inside })
+    }
+
+    /// Collects the parts that AND and OR join.
+    fn joined<'n>(&'n self, to: &mut Vec<&'n Self>) {
+        if self.number.is_some() {
+            to.push(self);
+        } else {
+            self.parts.iter().for_each(|part| part.joined(to));
+        }
+    }
+
+    /// Returns the value of the condition if the value of the part of this number were the other one.
+    fn value(&self, other: Option<u32>) -> bool {
+        match self.condition {
+            _ if self.number.is_some() => self.part.fired != (self.number == other),
+            Condition::And(_) => self.parts.iter().all(|part| part.value(other)),
+            Condition::Or(_) => self.parts.iter().any(|part| part.value(other)),
+            Condition::Null
+            | Condition::Quark(_)
+            | Condition::Wait { .. }
+            | Condition::Elapsed { .. }
+            | Condition::Driven { .. }
+            | Condition::Not(_)
+            | Condition::Rising { .. }
+            | Condition::After(_) => self.part.fired,
+        }
+    }
+
+    /// Returns the texts of the parts that are missing, joined by `and` and `or`.
+    fn missing<'w>(&self, name: &impl Fn(u32) -> &'w str, around: Join) -> String {
+        if let Some(number) = self.number {
+            return name(number).to_owned();
+        }
+        let join = if matches!(self.condition, Condition::And(_)) { Join::And } else { Join::Or };
+        let missing: Vec<_> = self.parts.iter().filter(|part| !part.part.fired).collect();
+        let inner = if missing.len() > 1 { join } else { around };
+        let texts: Vec<_> = missing.iter().map(|part| part.missing(name, inner)).collect();
+        let text = texts.join(if join == Join::And { " and " } else { " or " });
+        if missing.len() > 1 && around != Join::None && around != join { format!("({text})") } else { text }
+    }
+}
+
+/// Explains operands of one scope.
+struct Explaining<'e> {
+    machine: &'e Machine,
+    scope: &'e ScopeMoment,
+    facts: &'e Facts,
+}
+
+impl Explaining<'_> {
+    fn operand(&self, node: &Node<'_>, words: Option<&OperandWords<'_>>, decides: bool) -> Operand {
+        let Examined { fired, measured } = node.part;
+        let is_about_another = matches!(node.condition, Condition::Not(_) | Condition::Rising { .. });
+        let inner = node.parts.first().filter(|_| is_about_another);
+        let text = || condition_text(node.condition, &|id| self.machine.quark(id).text.clone());
+        let written = words.map_or_else(text, |words| words.written.to_owned());
+        // The comparison of which the values are shown is that inside NOT and RISING.
+        let holds = inner.map_or(fired, |inner| innermost(inner).part.fired);
+        let alone = || match measured {
+            Measured::Compared { left, .. } => format!("{written} ({})", short(left)),
+            Measured::Nothing | Measured::Elapsed(_) | Measured::Driven(_) => written.clone(),
+        };
+        let shown = words.map_or_else(alone, |words| operand_words(words, measured, holds));
+        // Its own values are shown unless it is joined of several.
+        let joined = inner.map_or(&[][..], |inner| if inner.number.is_none() { &inner.parts } else { &[] });
+        let inside = joined.iter().map(|part| self.operand(part, None, false)).collect();
+        let unit = words.and_then(|words| words.values.first()).map(|value| (value.unit, value.scale));
+        let values = Values {
+            since: self.scope.since,
+            way: self.scope.way,
+            stalled: self.facts.stalled,
+            unit,
+            is_range: self.sonars(node.condition).0,
+        };
+        let lack = lack(node.condition, node.part, inner.map(|inner| (inner.condition, inner.part)), &values);
+        let stale = self.stale(node.condition);
+        Operand { written, words: shown, fired, decides, measured, lack, stale, inside }
+    }
+
+    /// Returns remarks about the sonars that a condition reads and that have not pinged for long.
+    fn stale(&self, condition: &Condition) -> Vec<String> {
+        let remark = |sonar: usize| match self.facts.ages.get(sonar)? {
+            None => Some(format!("sonar {sonar} has not pinged yet")),
+            Some(age) if *age >= STALE => {
+                Some(format!("stale: sonar {sonar} pinged {} s ago", mdle_host::rounded(age.0)))
+            }
+            Some(_) => None,
+        };
+        self.sonars(condition).1.into_iter().filter_map(remark).collect()
+    }
+
+    /// Returns `true` if the first signal of a condition is a range, and the sonars that the condition reads.
+    fn sonars(&self, condition: &Condition) -> (bool, Vec<usize>) {
+        let (mut is_range, mut sonars) = (false, Vec::new());
+        condition.each_quark(&mut |id| {
+            let quark = self.machine.quark(id);
+            let Some(comparison) = &quark.comparison else { return self.read_by(id, &mut sonars) };
+            is_range |= self.machine.quark(comparison.signal).name == "r";
+            self.read_by(comparison.signal, &mut sonars);
+            match comparison.with {
+                Compared::Signal(other) => self.read_by(other, &mut sonars),
+                Compared::Value(_) => {}
+            }
+        });
+        (is_range, sonars)
+    }
+
+    fn read_by(&self, id: QuarkId, sonars: &mut Vec<usize>) {
+        for argument in &self.machine.quark(id).args {
+            match argument {
+                Value::Sonar(sonar) if !sonars.contains(&usize::from(*sonar)) => sonars.push(usize::from(*sonar)),
+                Value::Sonar(_)
+                | Value::Quantity { .. }
+                | Value::Infinity(_)
+                | Value::Bits(_)
+                | Value::Integer(_)
+                | Value::Name(..) => {}
+            }
+        }
+    }
+}
+
+/// Returns what several NOT and RISING are about.
+fn innermost<'n, 'c>(node: &'n Node<'c>) -> &'n Node<'c> {
+    match (node.condition, node.parts.first()) {
+        (Condition::Not(_) | Condition::Rising { .. }, Some(inner)) => innermost(inner),
+        _ => node,
+    }
+}

@@ -1,0 +1,126 @@
+//! The turns of a record, made again by its plan and looked at.
+
+use std::sync::Arc;
+
+use mdle_compiler::diagnostic::Sources;
+use mdle_compiler::fsm;
+use mdle_compiler::load::{self, Entered, Loaded, LoadedPlan};
+use mdle_compiler::plan::Condition;
+use mdle_files::Target;
+use mdle_host::{Texts, Transitions};
+use mdle_record::{ReadError, RecordedTurn, Step};
+use mdle_runtime::{Alphabet, Machine, Nanos, Sensed, Stamp, Stamps, Turn, Twist};
+
+use super::examining::{Examining, Moment};
+use crate::failure::Failure;
+use crate::replayed::Record;
+
+/// A turn of a record that was made again.
+#[derive(Debug)]
+pub(crate) struct RerunTurn {
+    /// The turn in the record.
+    pub(crate) recorded: RecordedTurn,
+    /// The transitions, with their operands.
+    pub(crate) transitions: Transitions,
+    /// The plan before each transition and at the end of the turn; empty unless the turn was looked at.
+    pub(crate) moments: Vec<Moment>,
+    /// The plan's input; not that of the law if laws are not run.
+    pub(crate) computed: Turn<Twist>,
+    /// The event that the record has last up to this turn, as JSON; empty before the first.
+    pub(crate) event: String,
+    /// Time of the next turn; `None` at the end of the record.
+    pub(crate) next: Option<Nanos>,
+}
+
+/// Reason why the turns of a record are not made again.
+#[derive(Debug)]
+pub(crate) enum Stop {
+    /// The record cannot be read.
+    Unread(ReadError),
+    /// The transitions of this turn are not those of the record.
+    Differs(u64),
+    /// From this time on another plan ran.
+    OtherPlan(Nanos),
+}
+
+/// The record of a run whose turns are made again, on any robot.
+pub(crate) trait Rerun {
+    /// Makes the next turn; `looks` decides whether it is looked at. Returns `None` at the end of the record.
+    fn turn(&mut self, looks: &mut dyn FnMut(&RecordedTurn, Option<Nanos>) -> bool) -> Option<Result<RerunTurn, Stop>>;
+
+    /// Returns the texts of the plan.
+    fn texts(&self) -> &dyn Texts;
+
+    /// Returns `true` once the end of the record was read; a run that was killed leaves a record without an end.
+    fn is_whole(&self) -> bool;
+}
+
+/// Loads the plan of a machine, to make the turns of a record again. All laws are run if `with_laws`.
+///
+/// # Errors
+/// The robot of the bound alphabet has other quarks.
+pub(crate) fn rerun<A>(
+    machine: &fsm::Machine,
+    sources: &Sources,
+    target: &Target,
+    record: Record,
+    with_laws: bool,
+) -> Result<Box<dyn Rerun>, Failure>
+where
+    A: Alphabet<Output = Sensed, Input = Twist> + 'static,
+{
+    let loaded = Arc::new(load::load::<A>(machine, sources, &target.alphabet)?);
+    // `stuck` reads the progress of laws.
+    let lasts = machine.elements().any(|element| element.condition().any(&|part: &Condition| part.lasting().is_some()));
+    let runs = machine.atoms().map(|atom| with_laws || lasts || atom.law().completes).collect();
+    let texts = loaded.plan();
+    let entered = Entered::Stamps(Stamps::new(vec![Stamp::START; machine.depth()].into(), machine.frames().into()));
+    Ok(Box::new(RerunOf { loaded, texts, entered, runs, record, machine: None, peeked: None }))
+}
+
+struct RerunOf<A: Alphabet> {
+    loaded: Arc<Loaded<A>>,
+    texts: LoadedPlan<A>,
+    entered: Entered,
+    runs: Vec<bool>,
+    record: Record,
+    machine: Option<Machine<Examining<A>>>,
+    /// The turn after the one that was made last.
+    peeked: Option<Result<RecordedTurn, ReadError>>,
+}
+
+impl<A: Alphabet<Output = Sensed, Input = Twist>> Rerun for RerunOf<A> {
+    fn turn(&mut self, looks: &mut dyn FnMut(&RecordedTurn, Option<Nanos>) -> bool) -> Option<Result<RerunTurn, Stop>> {
+        let recorded = match self.peeked.take().or_else(|| self.record.next())? {
+            Ok(recorded) => recorded,
+            Err(error) => return Some(Err(Stop::Unread(error))),
+        };
+        self.peeked = self.record.next();
+        let next = self.peeked.as_ref().and_then(|next| next.as_ref().ok()).map(|next| next.t);
+        if recorded.plan != 1 {
+            return Some(Err(Stop::OtherPlan(recorded.t)));
+        }
+        let RecordedTurn { t, y, .. } = &recorded;
+        let begin =
+            || Machine::begin(Examining::new(self.loaded.plan(), self.entered.clone(), self.runs.clone()), y, *t);
+        let machine = self.machine.get_or_insert_with(begin);
+        machine.plan().look(looks(&recorded, next));
+        let mut transitions = Transitions::default();
+        let computed = machine.turn(y, *t, &mut transitions);
+        let steps = transitions.iter().map(|(made, fired)| Step::new(made, fired.iter().map(|(number, _)| *number)));
+        if recorded.state != machine.state() || !steps.eq(recorded.steps.iter().cloned()) {
+            return Some(Err(Stop::Differs(recorded.number)));
+        }
+        let moments = machine.plan().moments();
+        let event = self.record.event().to_owned();
+        Some(Ok(RerunTurn { recorded, transitions, moments, computed, event, next }))
+    }
+
+    fn texts(&self) -> &dyn Texts {
+        &self.texts
+    }
+
+    fn is_whole(&self) -> bool {
+        self.record.is_whole()
+    }
+}

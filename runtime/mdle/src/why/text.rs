@@ -1,0 +1,194 @@
+//! Explanations for people.
+
+use std::fmt::Write as _;
+
+use mdle_host::{Clocked, rounded};
+use mdle_runtime::{Nanos, Twist};
+
+use super::explanation::{AtomWords, Ended, Explanation, Part, Runs, Scope};
+use super::never::{Chance, Never, Stay, Turned};
+use super::operands::Operand;
+use super::{Answer, Next};
+
+/// Returns the text of an answer.
+pub(super) fn text(answer: &Answer) -> String {
+    let Answer { explanation, asked, next, safety } = answer;
+    let Explanation { turn, t, ended, runs, is_cut, output_age, .. } = explanation;
+    let mut text = format!("turn {turn} at {}", Clocked(*t));
+    if asked != t {
+        let _ = write!(text, ", the last one before {}", Clocked(*asked));
+    }
+    text += "\n";
+    if *output_age > Nanos::ZERO {
+        let _ = writeln!(text, "the robot's output was {} old", Clocked(*output_age));
+    }
+    ended.iter().for_each(|ended| end(&mut text, ended));
+    match runs {
+        Some(runs) => run(&mut text, runs, *t),
+        None if *is_cut => text += "\nno law was applied: the turn had too many transitions\n",
+        None => text += "\nthe plan is over\n",
+    }
+    if runs.is_some() || *is_cut {
+        sent(&mut text, explanation, safety.as_deref());
+        text += "\n";
+        following(&mut text, next, *t);
+    }
+    text
+}
+
+/// Writes a transition and the conditions around the atom that it left.
+fn end(text: &mut String, ended: &Ended) {
+    let Ended { atom, is_skipped, cause, was_done, scopes, to } = ended;
+    let since = scopes.last().map_or(Nanos::ZERO, |own| own.since);
+    let what = if *is_skipped { "was skipped".to_owned() } else { format!("ended after {}", Clocked(since)) };
+    let _ = writeln!(text, "\n{} {what}  <- {cause}", named(atom));
+    scopes.iter().for_each(|around| scope(text, around));
+    if *was_done {
+        *text += "    its law was done as well\n";
+    }
+    let next = to.as_ref().map_or_else(|| "the plan was over".to_owned(), |to| format!("{} followed", named(to)));
+    let _ = writeln!(text, "  {next}");
+}
+
+/// Writes the atom that ran and the conditions around it.
+fn run(text: &mut String, runs: &Runs, t: Nanos) {
+    let Runs { atom, since, began, completes, scopes } = runs;
+    let _ = write!(text, "\n{} ran", named(atom));
+    let began = if began.is_empty() { "the start of the plan" } else { began };
+    let entered = Clocked(t.since(*since));
+    let _ = if *since == Nanos::ZERO {
+        writeln!(text, " from this turn on  <- {began}")
+    } else {
+        writeln!(text, " for {}, since {entered}  <- {began}", Clocked(*since))
+    };
+    scopes.iter().for_each(|around| scope(text, around));
+    let _ = writeln!(text, "    law {}: {}", atom.law, if *completes { "not done yet" } else { "never done" });
+}
+
+/// Writes a scope and the operands of its condition.
+fn scope(text: &mut String, scope: &Scope) {
+    let Scope { name, is_atom, line, condition, since, part, examination, .. } = scope;
+    let name = name.as_deref().unwrap_or(if *is_atom { "atom" } else { "scope" });
+    let _ = write!(text, "  {name} ({line}), for {}", Clocked(*since));
+    let operands = &examination.operands;
+    if operands.len() > 1 {
+        let _ = write!(text, ": {condition}");
+    }
+    let _ = match part {
+        Part::Ended => writeln!(text, "  -> ended"),
+        Part::Completed => writeln!(text, "  -> ended: its law was done"),
+        Part::Shadowed => writeln!(text, "  -> had fired as well, but an enclosing scope ended first"),
+        Part::Waits => writeln!(text),
+        Part::NoInterrupt => writeln!(text, ": no interrupt"),
+        Part::Removed => writeln!(text, ": {condition}, removed, because an enclosing scope has the same interrupt"),
+    };
+    if *part == Part::Removed {
+        return;
+    }
+    let fired = operands.iter().filter(|operand| operand.fired).count();
+    let is_any = operands.iter().all(|operand| operand.fired || operand.decides);
+    let marks = operands.len() > 1 && (examination.fired || !is_any);
+    operands.iter().for_each(|shown| operand(text, shown, 4, marks));
+    if examination.fired && fired > 1 && !operands.iter().any(|operand| operand.decides) {
+        *text += "    none of them decided alone\n";
+    }
+    if !examination.missing.is_empty() && !is_any {
+        let _ = writeln!(text, "    missing: {}", examination.missing);
+    }
+}
+
+/// Writes an operand; `marks` if that which decides is marked.
+fn operand(text: &mut String, operand: &Operand, indent: usize, marks: bool) {
+    let Operand { words, fired, decides, lack, stale, inside, .. } = operand;
+    let _ = write!(text, "{:indent$}{}  {words}", "", if *fired { "yes" } else { "no " });
+    if !lack.is_empty() {
+        let _ = write!(text, ": {lack}");
+    }
+    stale.iter().for_each(|remark| *text += &format!(" [{remark}]"));
+    if marks && *decides {
+        *text += if *fired { "  <- decided alone" } else { "  <- alone missing" };
+    }
+    *text += "\n";
+    inside.iter().for_each(|part| self::operand(text, part, indent + 5, false));
+}
+
+/// Writes the input that was sent, if the plan did not ask for the same.
+fn sent(text: &mut String, explanation: &Explanation, safety: Option<&str>) {
+    let Explanation { sent, computed, .. } = explanation;
+    if let Some(asked) = computed.filter(|asked| asked != sent) {
+        let why = safety.map_or_else(String::new, |safety| format!("  <- safety {safety}"));
+        let _ = writeln!(text, "  the plan asked for {}, and {} was sent{why}", input(asked), input(*sent));
+    } else {
+        let _ = writeln!(text, "  sent {}", input(*sent));
+    }
+}
+
+fn input(input: Twist) -> String {
+    let number = |value: f64| {
+        let text = format!("{value:.3}");
+        let text = text.trim_end_matches('0').trim_end_matches('.');
+        (if text == "-0" { "0" } else { text }).to_owned()
+    };
+    format!("{} m/s, {} rad/s", number(input.v.0), number(input.omega.0))
+}
+
+/// Writes what came next.
+fn following(text: &mut String, next: &Next, now: Nanos) {
+    match next {
+        Next::Turn { turn, t, steps } => {
+            let _ = writeln!(text, "next: turn {turn} at {}, {} s later", Clocked(*t), rounded(t.since(now).0));
+            for (cause, to) in steps {
+                let to = to.as_ref().map_or_else(|| "plan over".to_owned(), named);
+                let _ = writeln!(text, "  {to}  <- {cause}");
+            }
+        }
+        Next::End { t, why } => {
+            let _ = writeln!(text, "next: no transition up to the end of the record at {}{why}", Clocked(*t));
+        }
+    }
+}
+
+/// Returns the text of the answer why an atom did not begin, in the record of this name.
+pub(super) fn never(never: &Never, log: &str) -> String {
+    let Never { atom, ran, skipped, chance, end, last } = never;
+    let turned = |(turn, t): &Turned| format!("turn {turn} at {}", Clocked(*t));
+    if let Some((turn, cause)) = ran {
+        let cause = if cause.is_empty() { "the start of the plan" } else { cause };
+        let time = rounded(turn.1.0);
+        return format!(
+            "`{atom}` did begin, first in {}  <- {cause}\nhelp: `mdle why {log} {time}` explains that turn\n",
+            turned(turn)
+        );
+    }
+    let mut text = format!("`{atom}` did not begin\n");
+    if let Some(Stay { turned: turn, atom, scopes, cause }) = skipped {
+        let _ = writeln!(text, "\n{} was entered in {} and skipped  <- {cause}", named(atom), turned(turn));
+        scopes.iter().for_each(|around| scope(&mut text, around));
+        return text;
+    }
+    let Some(Chance { begins, scope: number, first, last: latest }) = chance else {
+        let last = last.as_ref().map_or_else(|| "the plan was over".to_owned(), |last| format!("{} ran", named(last)));
+        let _ = writeln!(text, "\nno atom ran that it could have followed; at the end, in {}, {last}", turned(end));
+        return text;
+    };
+    let begins = begins.as_ref().map_or_else(String::new, |name| match name.as_str() {
+        "" => ", as the first atom of the scope around it".to_owned(),
+        name => format!(", with `{name}`"),
+    });
+    let _ =
+        writeln!(text, "\nit could first have begun in {}{begins}, if this scope had ended:", turned(&first.turned));
+    first.scopes.iter().skip(*number).take(1).for_each(|around| scope(&mut text, around));
+    let _ = writeln!(text, "\nthe last such turn was {}: {}", turned(&latest.turned), named(&latest.atom));
+    latest.scopes.iter().for_each(|around| scope(&mut text, around));
+    if latest.cause.is_empty() {
+        let _ = writeln!(text, "  then the record ended");
+    } else {
+        let _ = writeln!(text, "  then another scope ended  <- {}", latest.cause);
+    }
+    text
+}
+
+/// Returns an atom with its place.
+pub(super) fn named(atom: &AtomWords) -> String {
+    if atom.place.is_empty() { atom.law.clone() } else { format!("{} ({})", atom.law, atom.place) }
+}
