@@ -179,7 +179,7 @@ pub const fn range(arguments: &[runtime::Argument<'_>]) -> Option<Range> {
     Some(Range::new(of))
 }
 
-/// `age <module>`: How long ago a module published its bearing; infinite before the first time.
+/// `age <module>`: How long ago a module published what the plan reads of it, the oldest of these; infinite before the first time.
 #[must_use]
 pub const fn age2(arguments: &[runtime::Argument<'_>]) -> Option<Age2> {
     let &[runtime::Argument::Name(of)] = arguments else { return None };

@@ -9,6 +9,8 @@ use crate::go_avoid::{GoAvoid, GoingRound};
 const BEARING: &str = "bearing";
 /// Attribute of a module with the distance to something, in metres.
 const RANGE: &str = "range";
+/// Number that every module has: the time since it published what the plan reads of it, in seconds.
+const AGE: &str = "age";
 /// Age from which a direction counts no more.
 const STALE: Nanos = Nanos(2_000_000_000);
 /// Distance to a goal whose module publishes no range.
@@ -46,8 +48,8 @@ signals! {
         |y, module| y.published(module, BEARING).map_or(f64::NAN, |number| number.value);
     Range "The distance that a module publishes, in metres; NaN before the first."
         |y, module| y.published(module, RANGE).map_or(f64::NAN, |number| number.value);
-    Age2 "Time since a module published its bearing, in seconds; infinite before the first."
-        |y, module| y.published(module, BEARING).map_or(f64::INFINITY, |number| number.age.seconds());
+    Age2 "Time since a module published what the plan reads of it, in seconds; infinite before the first."
+        |y, module| y.published(module, AGE).map_or(f64::INFINITY, |number| number.value);
 }
 
 /// Drives towards the goal that a module publishes, wherever it moves to, round obstacles.
@@ -106,7 +108,8 @@ mod tests {
     use super::*;
     use crate::trial::Sensed;
 
-    static NAMES: [ModuleRead; 2] = [
+    static NAMES: [ModuleRead; 3] = [
+        ModuleRead { module: "heading", attribute: AGE, unit: None },
         ModuleRead { module: "heading", attribute: BEARING, unit: None },
         ModuleRead { module: "heading", attribute: RANGE, unit: None },
     ];
@@ -114,7 +117,7 @@ mod tests {
     /// Returns an output in which the module `heading` has published these numbers.
     fn heard(bearing: f64, range: f64, at: Nanos, age: Nanos) -> Sensed {
         let mut published = Published::new(&NAMES);
-        for (place, value) in [bearing, range].into_iter().enumerate() {
+        for (place, value) in [age.seconds(), bearing, range].into_iter().enumerate() {
             published.set(place, Some(PublishedNumber { value, at, age }));
         }
         Sensed { published, ..Sensed::default() }

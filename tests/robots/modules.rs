@@ -8,13 +8,13 @@ use std::time::Duration;
 
 use mdle_compiler::compile;
 use mdle_compiler::diagnostic::Sources;
-use mdle_compiler::load::{self, Loaded};
+use mdle_compiler::load::{self, Loaded, LoadedPlan};
 use mdle_engine::{
-    Background, Declare, Engine, Exchange, Fault, In, Library, Module, Modules, Out, PlanEvent, Relevance, Standing,
-    Turn, When,
+    Background, Declare, Engine, EngineAlphabet, Exchange, Fault, In, Library, Module, Modules, Out, PlanEvent,
+    Relevance, Standing, Turn, When,
 };
 use mdle_host::{Moment, Pace, Pilot, PilotFault, Refusal, RunTerms, StopRequest, Time, Transitions};
-use mdle_runtime::{Meters, Nanos, Pose, Radians, Robot, Sensed, Turn as PlanTurn, Twist};
+use mdle_runtime::{self as runtime, Meters, Nanos, Pose, Radians, Robot, Sensed, Turn as PlanTurn, Twist};
 use mdle_sim::alphabet::Alphabet;
 use mdle_sim::{Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
@@ -101,7 +101,8 @@ fn followers() -> Library<Sensed> {
     library
 }
 
-fn loaded(text: &str) -> Arc<Loaded<Alphabet>> {
+/// Compiles and loads the only plan of a text.
+pub(super) fn loaded<A: runtime::Alphabet>(text: &str) -> Arc<Loaded<A>> {
     let alphabet = golden::alphabet(Some("sim"));
     let mut sources = Sources::default();
     let (mut compiled, found) = compile(sources.add("plan.mdle", text), text, &alphabet, None);
@@ -110,9 +111,9 @@ fn loaded(text: &str) -> Arc<Loaded<Alphabet>> {
 }
 
 /// A simulated robot in the hall, and the engine that drives it.
-pub(super) struct Run {
+pub(super) struct Run<A: EngineAlphabet = Alphabet> {
     robot: Simulated,
-    pub(super) engine: Engine<Alphabet>,
+    pub(super) engine: Engine<A>,
     pub(super) input: Twist,
     /// Place of the robot by odometry.
     place: Pose,
@@ -123,12 +124,14 @@ impl Run {
     fn of(text: &str, library: &Library<Sensed>) -> Self {
         Self::begin(text, library, Time::Stepped(Pace::Max)).unwrap()
     }
+}
 
+impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> Run<A> {
     pub(super) fn begin(text: &str, library: &Library<Sensed>, time: Time) -> Result<Self, Refusal> {
         let world = World::named("hall").unwrap().unwrap();
         let robot = Simulated::new(&world, world.start, Some(3), PERIOD).unwrap();
         let terms = RunTerms { time, period: PERIOD, request: StopRequest::default() };
-        let engine = Engine::new(loaded(text).plan(), library, &terms)?;
+        let engine = Engine::new(loaded::<A>(text).plan(), library, &terms)?;
         Ok(Self { robot, engine, input: Twist::default(), place: Pose::ORIGIN, turns: 0 })
     }
 
@@ -141,6 +144,13 @@ impl Run {
         self.turns += 1;
         self.input = turn.input();
         Ok(turn)
+    }
+
+    /// Lets another plan drive at once, as a safety rule does.
+    pub(super) fn divert(&mut self, plan: LoadedPlan<A>) {
+        let y = self.robot.exchange(&self.input).unwrap();
+        let t = Nanos(self.turns * 100_000_000);
+        self.engine.divert(plan, Moment { y: &y, t, number: self.turns });
     }
 
     /// Drives until the plan is over, for at most a minute; returns the inputs.
@@ -177,9 +187,70 @@ fn a_robot_follows_what_a_module_publishes() {
 fn a_plan_that_waits_in_vain_never_begins() {
     let mut run = Run::of(FOLLOW, &Library::new());
     let fault = std::iter::repeat_with(|| run.turn()).find_map(Result::err).unwrap();
-    let sentence =
-        "the plan reads /usr/heading/bearing and /usr/heading/range, which no module has published within 2 s";
+    let sentence = "the plan reads /usr/heading/bearing and /usr/heading/range, which no module has published within 2 s\n\
+                    help: no module publishes anything";
     assert_eq!((fault, run.turns, run.input), (PilotFault::Stopped(sentence.into()), 20, Twist::default()));
+}
+
+/// Publishes a range before a turn, and a bearing always.
+struct Echo {
+    range: Out<Meters>,
+    bearing: Out<Radians>,
+    until: u64,
+}
+
+impl Module<Sensed> for Echo {
+    fn turn(&mut self, turn: &mut Turn<'_, Sensed>) -> Result<(), Fault> {
+        if turn.number < self.until {
+            turn.publish(self.range, Meters(1.0));
+        }
+        turn.publish(self.bearing, Radians(0.0));
+        Ok(())
+    }
+}
+
+/// A library with a module `echo`, which publishes no range from a turn on.
+fn echo(until: u64) -> Library<Sensed> {
+    let mut library = Library::new();
+    let make = move |declare: &mut Declare| Echo {
+        range: declare.publishes("range"),
+        bearing: declare.publishes("bearing"),
+        until,
+    };
+    library.registered("echo", make);
+    library
+}
+
+#[test]
+fn an_age_is_that_of_what_the_plan_reads() {
+    let over = |interrupt: &str| {
+        let plan = format!("{{ Listen ({interrupt}) (Atom (null) (go 1 0)) }}");
+        let mut run = Run::of(&plan, &echo(20));
+        (0..60).find(|_| run.turn().unwrap() == PlanTurn::Over).map(|_| run.turns)
+    };
+    // The last range is published at the break of turn 19.
+    assert_eq!(over("age(echo module) > 500ms OR range(echo module) < 1cm"), Some(26));
+    assert_eq!(over("age(echo module) > 500ms OR bearing(echo module) > 90deg"), None);
+    assert_eq!(over("age(echo module) > 500ms"), None, "the module still publishes");
+}
+
+#[test]
+fn a_plan_that_waits_in_vain_names_the_modules() {
+    let fault = |plan: &str| {
+        let mut run = Run::of(&format!("{{ Wait ({plan}) (Atom (null) stop) }}"), &echo(0));
+        match std::iter::repeat_with(|| run.turn()).find_map(Result::err).unwrap() {
+            PilotFault::Stopped(sentence) => sentence,
+            PilotFault::Panicked(message) => panic!("{message}"),
+        }
+    };
+    let faults = ["range(ecko module) < 1m", "range(echo module) < 1m", "age(nose module) > 1s"].map(fault);
+    insta::assert_snapshot!(faults.join("\n"), @"
+    the plan reads /usr/ecko/range, which no module has published within 2 s; did you mean `echo`?
+    help: `echo` publishes range, bearing
+    the plan reads /usr/echo/range, which no module has published within 2 s
+    the plan reads /usr/nose/age, which no module has published within 2 s
+    help: `echo` publishes range, bearing
+    ");
 }
 
 /// A module `heading` whose bearing is no angle.

@@ -108,6 +108,7 @@ fn what_a_process_does_wrong_ends_its_module() {
         ("closes_its_output", "os.close(1); time.sleep(60)"),
         ("closes_its_input", "os.close(0); say(); time.sleep(60)"),
         ("hangs", "time.sleep(60)"),
+        ("kills_its_group", "os.killpg(0, signal.SIGKILL)"),
         ("publishes_nan", "say(bearing=float('nan')); continue"),
         ("publishes_text", "say(bearing='left'); continue"),
         ("publishes_what_is_undeclared", "say(bering=1); continue"),
@@ -199,6 +200,7 @@ fn safety_rules_watch_what_modules_publish() {
     write("kind.toml", "[guards.far]\nwhen = \"range(nose module) > 1m\"\nthen = \"end\"\n");
     let ears = "ears=exec python3 ears.py";
     let nose = "nose=echo '{\"publishes\": {\"range\": \"deg\"}}'; cat > /dev/null";
+    let silent = "nose=echo '{\"publishes\": {\"range\": \"m\"}}'; cat > /dev/null";
     let runs = [
         ("drive.mdle", "hold.toml", ["--module", ears]),
         ("listen.mdle", "hold.toml", ["--module", ears]),
@@ -206,6 +208,7 @@ fn safety_rules_watch_what_modules_publish() {
         ("drive.mdle", "near.toml", ["--point", "1.5,0"]),
         ("drive.mdle", "silent.toml", ["--module", ears]),
         ("drive.mdle", "nobody.toml", ["--module", ears]),
+        ("drive.mdle", "nobody.toml", ["--module", silent]),
         ("drive.mdle", "kind.toml", ["--module", nose]),
     ];
     let reports = runs.map(|(plan, rules, options)| {

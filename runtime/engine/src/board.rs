@@ -1,9 +1,9 @@
 //! The board: every attribute of every module with its last value, changed at turn breaks only. Readers are wired to
 //! places on it when a module is loaded or unloaded, so that a turn looks up no names.
 
-use mdle_runtime::Nanos;
+use mdle_runtime::{ModuleRead, Nanos};
 
-use crate::attribute::{AttributeName, Reading, Value};
+use crate::attribute::{AGE, AttributeName, Reading, Value};
 use crate::module::{About, Declared, Ports, Refusal, Source};
 
 /// All attributes of the loaded modules, in the order in which the modules were loaded.
@@ -51,6 +51,14 @@ impl Board {
     /// Returns the place of an attribute.
     pub(crate) fn place(&self, module: &str, attribute: &str) -> Option<usize> {
         self.posts.iter().position(|post| &*post.name.module == module && &*post.name.attribute == attribute)
+    }
+
+    /// Returns the place of an attribute that a plan reads; for the age of a module, that of one of its attributes.
+    pub(crate) fn place_of(&self, read: &ModuleRead) -> Option<usize> {
+        if read.attribute == AGE {
+            return self.posts.iter().position(|post| &*post.name.module == read.module);
+        }
+        self.place(read.module, read.attribute)
     }
 
     /// Adds the attributes of a module.

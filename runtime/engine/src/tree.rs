@@ -7,6 +7,7 @@
 mod desk;
 mod hub;
 mod node;
+mod proposal;
 mod request;
 mod shared;
 mod value;

@@ -98,7 +98,8 @@ pub use rounded::{Clocked, rounded};
 pub use scheduling::claim_for_worker;
 pub use stop_request::StopRequest;
 pub use supervisor::{
-    Break, Intervention, MakeSupervisor, Orders, PilotInput, PilotOutput, Supervision, Supervisor, Verdict,
+    Break, Intervention, LimitedQuantity, MakeSupervisor, Orders, PilotInput, PilotOutput, Supervision, Supervisor,
+    Verdict,
 };
 pub use target::Target;
 pub use time::{Pace, Time};

@@ -51,7 +51,7 @@ impl Entry<'_> {
     /// Returns the keys of the turn that a plan without a supervisor has not, each with a comma before it.
     fn more(&self) -> Option<String> {
         let plan = (self.plan_number > 1).then(|| format!(",\"plan\":{}", self.plan_number));
-        let safety = self.supervised.intervention().map(|Intervention { verdict, rule }| {
+        let safety = self.supervised.intervention().map(|Intervention { verdict, rule, .. }| {
             format!(",\"safety\":{{\"verdict\":\"{}\",\"rule\":{}}}", verdict.word(), Json(rule))
         });
         let requests: Vec<_> = self.supervised.requests.iter().map(|request| Json(request).to_string()).collect();

@@ -110,7 +110,8 @@ impl Record {
     /// Writes an event if the supervisor's part differs from that of the turn before.
     fn intervention(&mut self, entry: &Entry<'_>) {
         let now = entry.supervised.intervention();
-        let now = now.map_or_else(String::new, |Intervention { verdict, rule }| format!("{}: {rule}", verdict.word()));
+        let now =
+            now.map_or_else(String::new, |Intervention { verdict, rule, .. }| format!("{}: {rule}", verdict.word()));
         if now != self.intervention {
             self.event(entry.turn, entry.t, "safety", &now);
             self.intervention = now;

@@ -12,7 +12,7 @@ use crate::rounded::Clocked;
 use crate::standing::Course;
 use crate::supervised::Supervised;
 use crate::transitions::{Operand, Transitions};
-use crate::{Intervention, Judgement, Verdict};
+use crate::{Judgement, Verdict};
 
 /// The report of a run; it stops writing when its reader has gone.
 pub(crate) struct Report<'a> {
@@ -124,13 +124,14 @@ impl<'a> Report<'a> {
             self.line(t, &format!("safety: {limit}"));
         }
         let intervention = intervention.filter(|it| it.verdict > Verdict::Limited);
-        if intervention == self.held.as_ref().map(|(verdict, rule)| Intervention { verdict: *verdict, rule }) {
+        let held = self.held.as_ref().map(|(verdict, rule)| (*verdict, rule.as_str()));
+        if intervention.map(|it| (it.verdict, it.rule)) == held {
             return;
         }
         self.held = intervention.map(|it| (it.verdict, it.rule.to_owned()));
         match intervention {
             Some(intervention) => self.line(t, &format!("safety: {intervention}")),
-            None if supervised.begins.is_some() => {}
+            None if supervised.begins.is_some() || self.over.is_some() => {}
             None => self.line(t, "safety: the plan goes on"),
         }
     }

@@ -1,6 +1,6 @@
 //! The part of a supervisor in a turn, for reports.
 
-use crate::{Intervention, Verdict};
+use crate::{Intervention, LimitedQuantity, Verdict};
 
 /// The intervention of a turn, and the plan that a diversion has begun.
 #[derive(Debug, Default)]
@@ -9,6 +9,8 @@ pub(crate) struct Supervised {
     pub(crate) verdict: Option<Verdict>,
     /// The rule that asked for it.
     pub(crate) rule: String,
+    /// The quantity that the rule limited.
+    limited: Option<LimitedQuantity>,
     /// Reason why another plan has replaced the plan in this turn, if one has.
     pub(crate) begins: Option<String>,
     /// The requests that were carried out before the turn.
@@ -30,6 +32,7 @@ impl Supervised {
             None => None,
         };
         self.verdict = intervention.map(|intervention| intervention.verdict);
+        self.limited = intervention.and_then(|intervention| intervention.limited);
         self.rule.clear();
         self.rule.push_str(intervention.map_or("", |intervention| intervention.rule));
         if let Some(Verdict::Diverted(_)) = self.verdict {
@@ -39,6 +42,6 @@ impl Supervised {
 
     /// Returns the intervention, if there was one.
     pub(crate) fn intervention(&self) -> Option<Intervention<'_>> {
-        self.verdict.map(|verdict| Intervention { verdict, rule: &self.rule })
+        self.verdict.map(|verdict| Intervention { verdict, rule: &self.rule, limited: self.limited })
     }
 }

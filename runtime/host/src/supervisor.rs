@@ -43,12 +43,27 @@ pub type PilotOutput<B> = <<B as Pilot>::Plan as Plan>::Output;
 pub type PilotInput<B> = <<B as Pilot>::Plan as Plan>::Input;
 
 /// A change that a supervisor made to the input of a turn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Intervention<'a> {
     /// Strength of the change.
     pub verdict: Verdict,
     /// Name of the rule that asked for it.
     pub rule: &'a str,
+    /// The quantity that the rule limited, for reports of [`Verdict::Limited`].
+    pub limited: Option<LimitedQuantity>,
+}
+
+/// A quantity of an input that a rule limited.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LimitedQuantity {
+    /// Name of the quantity, such as `speed`.
+    pub name: &'static str,
+    /// Unit of the values.
+    pub unit: &'static str,
+    /// Value that the plan asked for.
+    pub asked: f64,
+    /// Value that the robot is sent.
+    pub sent: f64,
 }
 
 /// The strengths of an intervention, the weakest first.
@@ -78,14 +93,28 @@ impl Verdict {
 
 impl fmt::Display for Intervention<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let what = match self.verdict {
-            Verdict::Limited => "limits the input",
-            Verdict::Held => "holds the robot",
-            Verdict::Diverted(_) => "replaces the plan",
-            Verdict::Ended => "ends the plan",
-        };
-        write!(f, "{} {what}", self.rule)
+        let rule = self.rule;
+        match (self.verdict, self.limited) {
+            (Verdict::Limited, Some(LimitedQuantity { name, unit, asked, sent })) => {
+                let [asked, sent] = [asked, sent].map(shown);
+                if rule == name {
+                    write!(f, "{name} {asked} {unit} limited to {sent} {unit}")
+                } else {
+                    write!(f, "{rule} limits {name} {asked} {unit} to {sent} {unit}")
+                }
+            }
+            (Verdict::Limited, None) => write!(f, "{rule} limits the input"),
+            (Verdict::Held, _) => write!(f, "{rule} holds the robot"),
+            (Verdict::Diverted(_), _) => write!(f, "{rule} replaces the plan"),
+            (Verdict::Ended, _) => write!(f, "{rule} ends the plan"),
+        }
     }
+}
+
+/// Rounds a value to a thousandth, for people.
+fn shown(value: f64) -> f64 {
+    // Adding zero turns -0 into 0.
+    (value * 1000.0).round() / 1000.0 + 0.0
 }
 
 /// The moment between two turns.

@@ -10,6 +10,9 @@ use std::sync::Arc;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Volts};
 pub use value::{AttributeKind, Reading, Value};
 
+/// Number that every module has: the time since it published, in seconds. No attribute has this name.
+pub(crate) const AGE: &str = "age";
+
 /// A Rust type that an attribute can have.
 pub trait Attribute: Sized {
     /// Kind of the attributes of this type.

@@ -57,7 +57,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// reads.
     pub fn prepare(&mut self) {
         if std::mem::take(&mut self.has_changed) {
-            let places = self.plan_reads.iter().filter_map(|read| self.board.place(read.module, read.attribute));
+            let places = self.plan_reads.iter().filter_map(|read| self.board.place_of(read));
             let relevant = relevant(&self.loaded, places);
             for (module, is_relevant) in self.loaded.iter_mut().zip(relevant) {
                 let is_wanted = is_relevant && !module.is_held;

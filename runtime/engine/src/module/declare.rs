@@ -7,7 +7,7 @@ use std::time::Duration;
 use mdle_compiler::alphabet::Unit;
 use mdle_runtime::Nanos;
 
-use crate::attribute::{Attribute, AttributeKind, AttributeName, In, Out, Reading, Value, is_name};
+use crate::attribute::{AGE, Attribute, AttributeKind, AttributeName, In, Out, Reading, Value, is_name};
 
 /// Registers the attributes of a module while it is made.
 #[derive(Debug, Default)]
@@ -188,6 +188,9 @@ impl Declare {
         self.check_name(name);
         if self.declared.abouts().any(|about| &*about.name == name) {
             self.refuse(format!("`{name}` is declared twice"));
+        }
+        if name == AGE {
+            self.refuse(format!("`{AGE}` is the time since a module published, which every module has"));
         }
         let unit = kind.quantity().and_then(mdle_compiler::alphabet::Kind::base_unit);
         About { name: name.into(), kind, unit, doc: "" }

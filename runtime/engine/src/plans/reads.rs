@@ -1,9 +1,10 @@
 //! Attributes of modules that a plan reads: their numbers for a turn, and what is missing before the plan can begin
 //! (docs/src/reference/semantics.md, 2.5).
 
+use mdle_compiler::alphabet::did_you_mean;
 use mdle_runtime::{ModuleRead, Nanos, PUBLISHED, Published, PublishedNumber};
 
-use crate::attribute::{AttributeName, Reading};
+use crate::attribute::{AGE, AttributeName, Reading};
 use crate::board::{Board, Post};
 
 /// Time for which a plan waits for what it reads.
@@ -12,8 +13,8 @@ pub(super) const PATIENCE: Nanos = Nanos(2_000_000_000);
 /// Reason why a plan cannot begin in this turn.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Unready {
-    /// These attributes have not been published yet: their paths.
-    Missing(String),
+    /// These attributes have not been published yet.
+    Missing(Vec<&'static ModuleRead>),
     /// An attribute has another kind than the plan reads: a sentence.
     OtherKind(String),
 }
@@ -26,16 +27,50 @@ pub(super) fn published(reads: &'static [ModuleRead], board: &Board, now: Nanos)
     let mut numbers = Published::new(reads);
     let mut missing = Vec::new();
     for (place, read) in reads.iter().enumerate().take(PUBLISHED) {
-        let post = board.post(read.module, read.attribute);
-        if let Some(post) = post {
+        if let Some(post) = board.post(read.module, read.attribute) {
             check_kind(read, post).map_err(|sentence| Unready::OtherKind(format!("the plan {sentence}")))?;
         }
-        match post.and_then(|post| number(post.reading.as_ref()?, now)) {
+        match number(read, reads, board, now) {
             Some(number) => numbers.set(place, Some(number)),
-            None => missing.push(AttributeName::new(read.module, read.attribute).to_string()),
+            None => missing.push(read),
         }
     }
-    if missing.is_empty() { Ok(numbers) } else { Err(Unready::Missing(missing.join(" and "))) }
+    if missing.is_empty() { Ok(numbers) } else { Err(Unready::Missing(missing)) }
+}
+
+/// Returns the sentence about a plan that reads attributes which have not been published in time.
+pub(super) fn in_vain(missing: &[&ModuleRead], board: &Board) -> String {
+    let is_other = |read: &&&ModuleRead| read.attribute != AGE || others(read.module, missing).next().is_none();
+    let missing: Vec<_> = missing.iter().filter(is_other).collect();
+    let paths: Vec<_> =
+        missing.iter().map(|read| AttributeName::new(read.module, read.attribute).to_string()).collect();
+    let paths = paths.join(" and ");
+    let seconds = PATIENCE.seconds();
+    if missing.iter().all(|read| board.place_of(read).is_some()) {
+        return format!("the plan reads {paths}, which no module has published within {seconds} s");
+    }
+    let module = missing.iter().find(|read| board.place_of(read).is_none()).map_or("", |read| read.module);
+    let there_are = publishers(module, board);
+    format!("the plan reads {paths}, which no module has published within {seconds} s{there_are}")
+}
+
+/// Maximum number of attributes of a module in a sentence.
+const NAMED: usize = 12;
+
+/// Returns the end of a sentence about a module or an attribute of it that does not exist: a similar name, and the
+/// modules with what they publish.
+fn publishers(module: &str, board: &Board) -> String {
+    let mut modules: Vec<&str> = board.posts().iter().map(|post| &*post.name.module).collect();
+    modules.dedup();
+    let near = if modules.contains(&module) { String::new() } else { did_you_mean(module, &modules) };
+    let lists = modules.iter().map(|module| {
+        let names: Vec<_> = board.of(module).map(|post| &*post.name.attribute).collect();
+        let more = if names.len() > NAMED { ", …" } else { "" };
+        format!("`{module}` publishes {}{more}", names.get(..NAMED).unwrap_or(&names).join(", "))
+    });
+    let lists: Vec<_> = lists.collect();
+    let lists = if lists.is_empty() { "no module publishes anything".to_owned() } else { lists.join("; ") };
+    format!("{near}\nhelp: {lists}")
 }
 
 /// Returns the numbers that a plan which runs reads at time `now`. A module may have vanished meanwhile.
@@ -43,28 +78,38 @@ pub(crate) fn current(reads: &'static [ModuleRead], board: &Board, now: Nanos) -
     let mut numbers = Published::new(reads);
     for (place, read) in reads.iter().enumerate().take(PUBLISHED) {
         let post = board.post(read.module, read.attribute);
-        let post = post.filter(|post| check_kind(read, post).is_ok());
-        numbers.set(place, post.and_then(|post| number(post.reading.as_ref()?, now)));
+        let is_fit = post.is_none_or(|post| check_kind(read, post).is_ok());
+        numbers.set(place, number(read, reads, board, now).filter(|_| is_fit));
     }
     numbers
 }
 
-/// Compares the kinds of attributes with the units in which safety rules read them.
+/// Checks that modules publish the attributes that safety rules read, and in the kinds in which they are read.
 ///
 /// # Errors
-/// They differ: a sentence.
+/// They do not: a sentence.
 pub(crate) fn check(reads: &[ModuleRead], board: &Board) -> Result<(), String> {
-    let posts = reads.iter().filter_map(|read| Some((read, board.post(read.module, read.attribute)?)));
-    let mut checked = posts.map(|(read, post)| check_kind(read, post));
-    checked.try_for_each(|checked| checked.map_err(|sentence| format!("a safety rule {sentence}")))
+    let check = |read: &ModuleRead| match board.post(read.module, read.attribute) {
+        Some(post) => check_kind(read, post).map_err(|sentence| format!("a safety rule {sentence}")),
+        None if board.place_of(read).is_some() => Ok(()),
+        None => {
+            let name = AttributeName::new(read.module, read.attribute);
+            let there_are = publishers(read.module, board);
+            Err(format!("a safety rule reads {name}, which no module publishes{there_are}"))
+        }
+    };
+    reads.iter().try_for_each(check)
 }
 
 /// Returns the age at time `now` of the oldest of these attributes; one that no module has published is as old as the
 /// run.
 pub(crate) fn oldest<'r>(reads: impl Iterator<Item = &'r ModuleRead>, board: &Board, now: Nanos) -> Nanos {
     let age = |read: &ModuleRead| {
-        let reading = board.post(read.module, read.attribute).and_then(|post| post.reading.as_ref());
-        now.since(reading.map_or(Nanos::ZERO, |reading| reading.at))
+        let at = match read.attribute {
+            AGE => newest_of(read.module, board),
+            attribute => published_at(read.module, attribute, board),
+        };
+        now.since(at.unwrap_or(Nanos::ZERO))
     };
     reads.map(age).max().unwrap_or(Nanos::ZERO)
 }
@@ -84,6 +129,40 @@ fn check_kind(read: &ModuleRead, post: &Post) -> Result<(), String> {
     Ok(())
 }
 
-fn number(Reading { value, at }: &Reading, now: Nanos) -> Option<PublishedNumber> {
+/// Returns the number of an attribute at time `now`, which is one of `reads`; `None` if it has not been published.
+fn number(read: &ModuleRead, reads: &[ModuleRead], board: &Board, now: Nanos) -> Option<PublishedNumber> {
+    if read.attribute == AGE {
+        let at = oldest_of(read.module, reads, board)?;
+        return Some(PublishedNumber { value: now.since(at).seconds(), at, age: now.since(at) });
+    }
+    let Reading { value, at } = board.post(read.module, read.attribute)?.reading.as_ref()?;
     value.number().map(|value| PublishedNumber { value, at: *at, age: now.since(*at) })
+}
+
+/// Returns the time at which a module published the oldest value that is read of it; if only its age is read, the
+/// newest value.
+fn oldest_of(module: &str, reads: &[ModuleRead], board: &Board) -> Option<Nanos> {
+    let mut attributes = others(module, reads).peekable();
+    if attributes.peek().is_none() {
+        return newest_of(module, board);
+    }
+    // Without one of them there is no age.
+    attributes.try_fold(Nanos(u64::MAX), |oldest, attribute| Some(oldest.min(published_at(module, attribute, board)?)))
+}
+
+/// Returns the attributes of a module among `reads`, without its age.
+fn others<'r, R: std::borrow::Borrow<ModuleRead>>(
+    module: &'r str,
+    reads: &'r [R],
+) -> impl Iterator<Item = &'static str> {
+    let reads = reads.iter().map(std::borrow::Borrow::borrow);
+    reads.filter(move |read| read.module == module && read.attribute != AGE).map(|read| read.attribute)
+}
+
+fn newest_of(module: &str, board: &Board) -> Option<Nanos> {
+    board.of(module).filter_map(|post| post.reading.as_ref()).map(|reading| reading.at).max()
+}
+
+fn published_at(module: &str, attribute: &str, board: &Board) -> Option<Nanos> {
+    board.post(module, attribute)?.reading.as_ref().map(|reading| reading.at)
 }

@@ -82,10 +82,7 @@ impl<A: Alphabet> Running<A> {
             Ok(published) => Ok(Some(published)),
             Err(Unready::OtherKind(sentence)) => Err(sentence),
             Err(Unready::Missing(_)) if now.since(since) < reads::PATIENCE => Ok(None),
-            Err(Unready::Missing(missing)) => {
-                let seconds = reads::PATIENCE.seconds();
-                Err(format!("the plan reads {missing}, which no module has published within {seconds} s"))
-            }
+            Err(Unready::Missing(missing)) => Err(reads::in_vain(&missing, board)),
         }
     }
 

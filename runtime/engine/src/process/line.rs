@@ -145,7 +145,13 @@ fn pose(numbers: &[f64]) -> Option<Pose> {
 /// # Errors
 /// A sentence.
 pub(super) fn object(line: &[u8]) -> Result<Map<String, Json>, String> {
-    let refused = |reason: String| format!("its process printed {}, which is no object of JSON: {reason}", shown(line));
+    let refused = |reason: String| {
+        format!(
+            "its process printed {}, which is no object of JSON: {reason}\nhelp: print messages to standard error, as \
+             standard output is for answers",
+            shown(line)
+        )
+    };
     let text = std::str::from_utf8(line).map_err(|_| refused("it is not UTF-8 text".to_owned()))?;
     let read = serde_json::from_str(text);
     let read = read.or_else(|error| serde_json::from_str(&quoted(text)).map_err(|_| error));

@@ -3,11 +3,11 @@
 
 use std::time::Duration;
 
-use mdle_host::{Intervention, Verdict};
+use mdle_host::{Intervention, LimitedQuantity, Verdict};
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Nanos, RadiansPerSecond, Twist};
 
-use super::{Fence, Rules, Then};
+use super::{Fence, Measure, Rules, Then};
 
 /// The speed below which a fence counts as a hold, in metres per second: 1 cm/s.
 const CREEP: f64 = 0.01;
@@ -30,6 +30,8 @@ pub struct Envelope {
     spent: Vec<RuleId>,
     /// Verdict of the last turn, and its rule.
     verdict: Option<(Verdict, RuleId)>,
+    /// The quantity that the last turn limited.
+    limited: Option<LimitedQuantity>,
     /// Number of turns in which each rule has decided, in the order of [`Envelope::names`].
     counts: Vec<(RuleId, u64)>,
 }
@@ -71,6 +73,7 @@ impl Envelope {
             late: 0,
             spent: Vec::new(),
             verdict: None,
+            limited: None,
             counts: Vec::new(),
         };
         envelope.counts = envelope.ids().map(|id| (id, 0)).collect();
@@ -85,6 +88,7 @@ impl Envelope {
     {
         self.observe(now);
         let demand = self.demand(asked, y, now, fired);
+        self.limited = None;
         let (sent, verdict) = match demand {
             Some((Then::End, id)) => (Twist::default(), Some((Verdict::Ended, id))),
             Some((Then::Divert(plan), id)) => {
@@ -93,10 +97,10 @@ impl Envelope {
             }
             Some((Then::Hold, id)) => (Twist::default(), Some((Verdict::Held, id))),
             Some((Then::HoldForward, id)) if asked.v.0 > 0.0 => {
-                let (sent, _) = self.limited(Twist { v: MetersPerSecond(0.0), ..asked }, y);
+                let (sent, _) = self.within_limits(Twist { v: MetersPerSecond(0.0), ..asked }, y);
                 (sent, Some((Verdict::Held, id)))
             }
-            Some((Then::HoldForward, _)) | None => self.limited(asked, y),
+            Some((Then::HoldForward, _)) | None => self.within_limits(asked, y),
         };
         self.last = sent;
         self.verdict = verdict;
@@ -135,7 +139,7 @@ impl Envelope {
     }
 
     /// Returns the input within limits and fences, and the rule that had the last word.
-    fn limited<Y: Odometry + DiffDrive>(&self, asked: Twist, y: &Y) -> (Twist, Option<(Verdict, RuleId)>) {
+    fn within_limits<Y: Odometry + DiffDrive>(&mut self, asked: Twist, y: &Y) -> (Twist, Option<(Verdict, RuleId)>) {
         let limits = self.rules.limits;
         let mut input = Limited { v: asked.v.0, omega: asked.omega.0, by: None };
         input.turn_within(limits.turn_rate, RuleId::TurnRate);
@@ -152,7 +156,8 @@ impl Envelope {
             input.drive_within(fastest(input.omega).min(fastest(turns)), id);
         }
         let is_held = input.v.abs() < CREEP && asked.v.0.abs() >= CREEP;
-        let verdict = input.by.map(|id| {
+        self.limited = input.by.map(|(_, measure)| of_measure(measure, asked, &input));
+        let verdict = input.by.map(|(id, _)| {
             let is_fence = matches!(id, RuleId::Fence(_));
             (if is_fence && is_held { Verdict::Held } else { Verdict::Limited }, id)
         });
@@ -181,7 +186,8 @@ impl Envelope {
     /// Returns what the last [`Envelope::filter`] did.
     #[must_use]
     pub fn intervention(&self) -> Option<Intervention<'_>> {
-        self.verdict.map(|(verdict, id)| Intervention { verdict, rule: self.name(id) })
+        let Self { verdict, limited, .. } = self;
+        verdict.map(|(verdict, id)| Intervention { verdict, rule: self.name(id), limited: *limited })
     }
 
     /// Returns the rules.
@@ -240,7 +246,7 @@ impl Envelope {
 struct Limited {
     v: f64,
     omega: f64,
-    by: Option<RuleId>,
+    by: Option<(RuleId, Measure)>,
 }
 
 impl Limited {
@@ -250,16 +256,26 @@ impl Limited {
 
     fn turn(&mut self, omega: f64, rule: RuleId) {
         if self.omega != omega {
-            (self.omega, self.by) = (omega, Some(rule));
+            (self.omega, self.by) = (omega, Some((rule, Measure::TurnRate)));
         }
     }
 
     fn drive_within(&mut self, most: f64, rule: RuleId) {
         let v = within(self.v, most);
         if self.v != v {
-            (self.v, self.by) = (v, Some(rule));
+            (self.v, self.by) = (v, Some((rule, Measure::Speed)));
         }
     }
+}
+
+/// Returns this quantity of the input that a plan asked for, and of the input within limits.
+fn of_measure(measure: Measure, asked: Twist, input: &Limited) -> LimitedQuantity {
+    let (asked, sent) = match measure {
+        Measure::TurnRate => (asked.omega.0, input.omega),
+        Measure::Speed | Measure::Acceleration => (asked.v.0, input.v),
+    };
+    let (_, unit) = measure.quantity();
+    LimitedQuantity { name: measure.key(), unit, asked: measure.in_its_unit(asked), sent: measure.in_its_unit(sent) }
 }
 
 /// Returns the value, or the nearest one that is at most `most` away from 0.

@@ -143,6 +143,10 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
         };
         match result {
             Ok(Some(ticket)) => self.waiting.push(Waiting { ticket, warnings: String::new(), reply }),
+            // The name of the plan that drives is known once the request is carried out.
+            Ok(None) if path == "/usr/mdle/rollback" => {
+                reply.answer(Answer::Done(format!("{} goes on", moment.pilot.plans().name())));
+            }
             Ok(None) => reply.answer(Answer::Done(String::new())),
             Err(sentence) => reply.answer(Answer::Refused(sentence)),
         }

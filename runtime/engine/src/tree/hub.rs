@@ -6,8 +6,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, chan
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use mdle_compiler::alphabet::nearest;
-
+use super::proposal::proposal;
 use super::shared::{NO_VALUE, Pending, Shared, Snapshot};
 use super::{Access, Answer, Change, Node, Operation, Request, Tree};
 
@@ -149,7 +148,7 @@ impl Hub {
 }
 
 /// The names in a folder; those of folders end with `/`.
-fn names(tree: &Tree, folder: &str) -> Vec<String> {
+pub(super) fn names(tree: &Tree, folder: &str) -> Vec<String> {
     let inside = format!("{folder}/");
     let names = tree.keys().filter_map(|path| path.strip_prefix(&inside));
     let names = names.map(|rest| rest.split_once('/').map_or(rest.to_owned(), |(folder, _)| format!("{folder}/")));
@@ -164,10 +163,9 @@ fn nothing(tree: &Tree, path: &str) -> Answer {
     if tree.contains_key(path) {
         return Answer::Refused(format!("`{path}` is no folder"));
     }
-    let near = nearest(path, tree.keys().map(String::as_str));
-    let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    let proposal = proposal(tree, path);
     let path = if path.is_empty() { "/" } else { path };
-    Answer::Refused(format!("there is nothing at `{path}`{near}"))
+    Answer::Refused(format!("there is nothing at `{path}`{proposal}"))
 }
 
 /// Returns why a node does not take a change, as far as the node itself decides it.

@@ -4,7 +4,7 @@ use mdle_runtime::Cause::Fired;
 use mdle_runtime::Nanos;
 
 use super::toy::{Act, Alone, Makes, Run, Sensed, Stage};
-use crate::{Break, Intervention, Orders, Pace, RunTerms, Supervisor, Time, Verdict};
+use crate::{Break, Intervention, LimitedQuantity, Orders, Pace, RunTerms, Supervisor, Time, Verdict};
 
 /// A supervisor that halves inputs, intervenes in one turn, and ends the run at a break.
 #[derive(Default)]
@@ -24,7 +24,7 @@ impl Supervisor<Alone> for Strict {
 
     fn intervention(&self) -> Option<Intervention<'_>> {
         let (turn, verdict) = self.verdict?;
-        (turn == self.turn).then_some(Intervention { verdict, rule: "rule" })
+        (turn == self.turn).then_some(Intervention { verdict, rule: "rule", limited: None })
     }
 
     fn at_break(&mut self, moment: &mut Break<'_, Alone>) -> Orders {
@@ -74,6 +74,27 @@ fn a_hold_is_reported_when_it_begins_and_ends() {
     0.3 s  plan over: bumper (Lab)
     status 0
     ");
+}
+
+#[test]
+fn a_plan_that_is_over_does_not_go_on() {
+    let held = |_: &RunTerms| -> Box<dyn Supervisor<Alone>> {
+        Box::new(Strict { verdict: Some((2, Verdict::Held)), ..Strict::default() })
+    };
+    insta::assert_snapshot!(shown(&run(held, &[])), @"
+    exchange 0, began 1 go 20 0 at 0, exchange 11, exchange 11, exchange 0, exchange 10, stop, finish
+    0.2 s  safety: rule holds the robot
+    0.3 s  plan over: bumper (Lab)
+    status 0
+    ");
+}
+
+#[test]
+fn a_limit_is_reported_with_its_values() {
+    let limited = LimitedQuantity { name: "speed", unit: "m/s", asked: 0.600_04, sent: -0.000_1 };
+    let reported = |rule| Intervention { verdict: Verdict::Limited, rule, limited: Some(limited) }.to_string();
+    assert_eq!(reported("speed"), "speed 0.6 m/s limited to 0 m/s");
+    assert_eq!(reported("acceleration"), "acceleration limits speed 0.6 m/s to 0 m/s");
 }
 
 #[test]

@@ -1,0 +1,68 @@
+//! The path that people may have meant by one that leads nowhere.
+
+use mdle_compiler::alphabet::nearest;
+
+use super::Tree;
+use super::hub::names;
+
+/// Maximum number of names of a folder in a sentence.
+const NAMED: usize = 12;
+
+/// Returns the end of a sentence about a path that leads nowhere: a path that ends alike, a similar one, or else the
+/// names in the last folder of the path that exists.
+pub(super) fn proposal(tree: &Tree, path: &str) -> String {
+    let mean = |path: &str| format!("; did you mean `{path}`?");
+    let mut alike = tree.keys().filter(|known| path.len() > 1 && known.ends_with(path));
+    if let (Some(only), None) = (alike.next(), alike.next()) {
+        return mean(only);
+    }
+    let mut known = String::new();
+    let mut is_changed = false;
+    for name in path.split('/').filter(|name| !name.is_empty()) {
+        let inside = names(tree, &known);
+        let mut inside_names = inside.iter().map(|name| name.trim_end_matches('/'));
+        let next = if inside_names.clone().any(|known| known == name) { Some(name) } else { None };
+        let Some(next) = next.or_else(|| nearest(name, &mut inside_names)) else {
+            return if is_changed { mean(&known) } else { listed(&known, &inside) };
+        };
+        is_changed |= next != name;
+        known = format!("{known}/{next}");
+    }
+    if is_changed { mean(&known) } else { String::new() }
+}
+
+/// Lists the names in a folder.
+fn listed(folder: &str, names: &[String]) -> String {
+    let folder = if folder.is_empty() { "/" } else { folder };
+    match names {
+        [] => format!(": `{folder}` is no folder"),
+        _ => {
+            let more = if names.len() > NAMED { ", …" } else { "" };
+            format!(": `{folder}` has {}{more}", names.get(..NAMED).unwrap_or(names).join(", "))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tree::{Kind, Node};
+
+    #[test]
+    fn a_wrong_path_gets_a_proposal() {
+        let paths = ["/clock/now", "/safety/limits/speed", "/usr/ears/bearing", "/usr/robot/v", "/usr/robot/x"];
+        let tree: Tree = paths.map(|path| (path.to_owned(), Node::reading(Kind::Number, "a number"))).into();
+        let wrong = [
+            "/usr/robt",
+            "/usr/robt/x",
+            "/usr/robt/speed",
+            "/usr/robot/y2",
+            "/robot/x",
+            "/speed",
+            "/lib/ears",
+            "/clock/now/x",
+        ];
+        let proposals = wrong.map(|path| format!("{path}{}", proposal(&tree, path)));
+        insta::assert_snapshot!(proposals.join("\n"));
+    }
+}
