@@ -46,6 +46,17 @@ fn modules_are_stopped_unloaded_and_loaded() {
 }
 
 #[test]
+fn a_child_process_is_loaded_as_a_module() {
+    let nose = "echo '{\"publishes\": {\"smell\": \"number\"}}'; while read line; do echo '{\"smell\": 7}'; done";
+    let commands = format!(
+        "ls /lib\nhelp /lib/process\ncall /lib/process\ncall /lib/process nose\ncall /lib/process heading true\n\
+         call /lib/process 2 true\ncall /lib/process nose exit 7\ncall /lib/process nose {nose}\nstep 2\nls /usr/nose\n\
+         get /usr/nose/smell\ncall /usr/nose/.unload\nstep\nls /usr\ncall /lib/heading now\n"
+    );
+    insta::assert_snapshot!(dialogue("modules_process", &[], &commands));
+}
+
+#[test]
 fn a_role_decides_what_may_be_done_with_modules() {
     let commands = "step\nset /usr/heading/ahead 4m\ncall /usr/heading/.stop\ncall /lib/heading\n";
     let all = ["view", "tune", "swap"].map(|role| dialogue(&format!("modules_{role}"), &["--role", role], commands));

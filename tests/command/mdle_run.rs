@@ -103,6 +103,27 @@ fn the_settings_beside_a_plan_hold_for_its_run() {
 }
 
 #[test]
+fn the_settings_beside_a_plan_name_its_modules() {
+    let folder = with_plan("settings_modules");
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+    write("near.mdle", "{ Near (range(ears module) < 1m) (Atom (null) stop) }\n");
+    let ears = "echo '{\"publishes\": {\"range\": \"m\"}}'; while read line; do echo '{\"range\": 0.25}'; done";
+    write("near.sh", ears);
+    let settings = "target = \"sim\"\n\n[options]\nspeed = \"max\"\n\n[modules]\n";
+    write("mdle.toml", &format!("{settings}ears = \"exec sh near.sh\"\n"));
+    let own = report(&folder, "run near.mdle");
+    assert!(own.contains("range(ears module) = 0.25 m < 1m") && own.ends_with("[0]\n"), "{own}");
+    let replaced = report(&folder, "run near.mdle --module ears=true");
+    assert!(replaced.contains("module `ears` cannot be loaded: its process has ended"), "{replaced}");
+    let wrong = ["ears = 7\n", "2 = \"true\"\n"].map(|line| {
+        write("mdle.toml", &format!("{settings}{line}"));
+        report(&folder, "run near.mdle")
+    });
+    write("mdle.toml", "target = \"sim\"\nmodules = \"ears\"\n");
+    insta::assert_snapshot!(format!("{}{}", wrong.concat(), report(&folder, "run near.mdle")));
+}
+
+#[test]
 fn safety_rules_stand_between_plan_and_robot() {
     let folder = with_plan("safety");
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();

@@ -225,6 +225,15 @@ fn the_book_shows_every_plan_to_learn_from() {
 }
 
 #[test]
+fn the_book_shows_the_template_of_a_module() {
+    let page = pages().into_iter().find(|page| name(page) == "own_module.md").unwrap();
+    for file in ["lib.rs", "main.rs"] {
+        let shown = fences(&page).into_iter().find(|fence| fence.words == ["rust", file]).unwrap();
+        assert_eq!(shown.text, fs::read_to_string(root().join("runtime/template/src").join(file)).unwrap(), "{file}");
+    }
+}
+
+#[test]
 fn the_page_on_worlds_names_every_key() {
     let page = pages().into_iter().find(|page| name(page) == "worlds.md").unwrap().text;
     let format = fs::read_to_string(root().join("targets/sim/simulator/src/world_file/text.rs")).unwrap();

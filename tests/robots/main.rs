@@ -11,6 +11,7 @@ mod loaded;
 mod module_faults;
 mod modules;
 mod movement;
+mod odd_plans;
 mod operands;
 mod paths;
 mod power;

@@ -104,6 +104,11 @@ impl Settings {
         option.is_some() || self.text.target.is_some()
     }
 
+    /// Returns the child processes that a run of `mdle` loads as modules: the name of each, and its command line.
+    pub fn modules(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.text.modules.iter().map(|(name, command)| (&**name, &*command.value))
+    }
+
     /// Returns the options of the file for a run, except those that are also in `given`, the arguments of the command
     /// line. The options are for the target of the file: if the command line names another one with `target`, there are
     /// none. `known` returns what is known of a target; the run itself judges the rest.

@@ -42,10 +42,7 @@ pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
     add(&mut library);
     let arguments = std::env::args_os().collect();
     let run = |asked| match asked {
-        Asked::Run(arguments) => {
-            modules::of_options(&arguments, &mut library);
-            run::run(*arguments, &library)
-        }
+        Asked::Run(arguments) => run::run(*arguments, &mut library),
         Asked::NewModule(arguments) => new_module::new_module(&arguments),
         Asked::Replay(arguments) => replay::replay(&arguments),
         Asked::Why(arguments) => why::why(&arguments),

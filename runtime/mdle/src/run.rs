@@ -12,16 +12,18 @@ use mdle_runtime::Sensed;
 
 use crate::arguments::Run;
 use crate::failure::{self, Failure};
+use crate::modules;
 use crate::safety::SafetyFile;
 use crate::session;
 use crate::targets::{self, LinkedTarget, Ready};
 
-/// Runs a plan with these modules; returns the exit status of the run.
+/// Runs a plan with these modules, and those that its settings name; returns the exit status of the run.
 ///
 /// # Errors
 /// The plan does not run.
-pub(crate) fn run(arguments: Run, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
+pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitCode, Failure> {
     let settings = Settings::beside(&arguments.file)?;
+    modules::of_settings(&settings, &arguments, library);
     let name = settings.name_of_target(arguments.target.as_deref()).ok_or(InputError::NoTarget)?;
     let linked = targets::linked(&name).map_err(Failure::Usage)?;
     let target = Arc::new(settings.target(arguments.target.as_deref())?);

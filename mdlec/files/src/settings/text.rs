@@ -8,8 +8,8 @@ use toml::de::{DeTable, DeValue};
 
 use mdle_compiler::alphabet::did_you_mean;
 
-/// The keys outside `[options]`.
-const KEYS: [&str; 3] = ["target", "world", "options"];
+/// The keys outside the tables.
+const KEYS: [&str; 4] = ["target", "world", "options", "modules"];
 
 /// The values of an `mdle.toml`.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -17,6 +17,8 @@ pub(super) struct SettingsText {
     pub(super) target: Option<Setting>,
     pub(super) world: Option<Setting>,
     pub(super) options: Vec<OptionText>,
+    /// Names and command lines of child processes that a run of `mdle` loads as modules.
+    pub(super) modules: Vec<(String, Setting)>,
 }
 
 /// A value, and the number of its line from 1.
@@ -84,6 +86,7 @@ pub(super) fn read(text: &str) -> Result<SettingsText, SettingsError> {
             "target" => settings.target = Some(reading.text(key, value, "target = \"sim\"")?),
             "world" => settings.world = Some(reading.text(key, value, "world = \"hall\"")?),
             "options" => settings.options = reading.options(key, value)?,
+            "modules" => settings.modules = reading.modules(key, value)?,
             unknown => {
                 let near = did_you_mean(unknown, &KEYS);
                 let message = format!(
@@ -122,6 +125,19 @@ impl Reading<'_> {
                 Err(self.error(value, message))
             }
         }
+    }
+
+    /// Reads the entries of `[modules]`.
+    fn modules(&self, key: &Key<'_>, value: &Spanned<DeValue<'_>>) -> Result<Vec<(String, Setting)>, SettingsError> {
+        let example = "ears = \"python3 ears.py\"";
+        let Some(table) = value.get_ref().as_table() else {
+            let found = kind(value.get_ref());
+            let message = format!("`modules` has to be a table, as in `modules = {{ {example} }}`; found: {found}");
+            return Err(self.error(key, message));
+        };
+        let module =
+            |(key, value): (&Key<'_>, _)| Ok((key.get_ref().clone().into_owned(), self.text(key, value, example)?));
+        in_order(table).into_iter().map(module).collect()
     }
 
     /// Reads the entries of `[options]`.

@@ -1,4 +1,7 @@
 //! Modules that are made while the robot drives: each on a thread of its own, as its code may take long.
+//!
+//! The thread that starts these threads is started with the engine, before the control thread is scheduled in real time:
+//! a thread has the scheduling of the one that starts it, and so have child processes.
 
 use std::io;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -15,9 +18,8 @@ const AT_ONCE: usize = 4;
 /// The modules that are being made, and those that can be loaded at the next break.
 pub(crate) struct Loading<Y> {
     library: Library<Y>,
-    request: StopRequest,
+    orders: Sender<(u32, NewModule)>,
     done: Receiver<Made<Y>>,
-    sender: Sender<Made<Y>>,
     /// Number of the last request.
     last: u32,
     /// Number of modules that are being made.
@@ -27,11 +29,30 @@ pub(crate) struct Loading<Y> {
 /// A module that was made, or the reason why it was not, with the number of the request.
 type Made<Y> = (u32, Result<Candidate<Y>, Refusal>);
 
+/// A module that is to be made.
+#[derive(Debug, Clone)]
+pub(crate) enum NewModule {
+    /// The module of this name in the library.
+    OfLibrary(String),
+    /// A child process: the name of its module, and its command line.
+    Process(String, String),
+}
+
 impl<Y: 'static> Loading<Y> {
     /// Returns what loads modules of this library.
-    pub(crate) fn new(library: Library<Y>, request: StopRequest) -> Self {
-        let (sender, done) = channel();
-        Self { library, request, done, sender, last: 0, begun: 0 }
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub(crate) fn new(library: Library<Y>, request: StopRequest) -> io::Result<Self> {
+        let ((orders, waiting), (sender, done)) = (channel(), channel());
+        let own = library.clone();
+        let start_all = move || {
+            for (number, module) in waiting {
+                start(number, module, &own, &request, &sender);
+            }
+        };
+        thread::Builder::new().name("mdle loader".to_owned()).spawn(start_all)?;
+        Ok(Self { library, orders, done, last: 0, begun: 0 })
     }
 
     /// Returns the library.
@@ -43,21 +64,14 @@ impl<Y: 'static> Loading<Y> {
     ///
     /// # Errors
     /// No module can be made at present: a sentence.
-    pub(crate) fn begin(&mut self, name: &str) -> Result<u32, String> {
+    pub(crate) fn begin(&mut self, module: NewModule) -> Result<u32, String> {
         if self.begun >= AT_ONCE {
             return Err(format!("{AT_ONCE} modules are being made already: try again later"));
         }
         self.last = self.last.saturating_add(1);
-        let (library, request, sender) = (self.library.clone(), self.request.clone(), self.sender.clone());
-        let (own, number) = (name.to_owned(), self.last);
-        let make = move || {
-            // The run may have ended meanwhile.
-            let _ = sender.send((number, library.candidate(&own, &request)));
-        };
-        let started = thread::Builder::new().name("mdle loader".to_owned()).spawn(make);
-        started.map_err(|error: io::Error| format!("the system gives no thread for module `{name}`: {error}"))?;
+        self.orders.send((self.last, module)).map_err(|_| "the thread that makes modules has ended".to_owned())?;
         self.begun = self.begun.saturating_add(1);
-        Ok(number)
+        Ok(self.last)
     }
 
     /// Returns the next module that is made; never waits.
@@ -65,5 +79,37 @@ impl<Y: 'static> Loading<Y> {
         let made = self.done.try_recv().ok()?;
         self.begun = self.begun.saturating_sub(1);
         Some(made)
+    }
+}
+
+impl NewModule {
+    /// Returns the name of the module.
+    pub(crate) fn name(&self) -> &str {
+        match self {
+            Self::OfLibrary(name) | Self::Process(name, _) => name,
+        }
+    }
+}
+
+/// Starts the thread that makes a module.
+fn start<Y: 'static>(
+    number: u32,
+    module: NewModule,
+    library: &Library<Y>,
+    request: &StopRequest,
+    sender: &Sender<Made<Y>>,
+) {
+    let name = module.name().to_owned();
+    let (library, request, own) = (library.clone(), request.clone(), sender.clone());
+    let make = move || {
+        let candidate = match module {
+            NewModule::OfLibrary(name) => library.candidate(&name, &request),
+            NewModule::Process(name, command) => Candidate::process(&name, &command, &request),
+        };
+        // The run may have ended meanwhile.
+        let _ = own.send((number, candidate));
+    };
+    if let Err(error) = thread::Builder::new().name("mdle maker".to_owned()).spawn(make) {
+        let _ = sender.send((number, Err(Refusal::NoThread(name, error.to_string()))));
     }
 }

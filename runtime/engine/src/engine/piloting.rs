@@ -7,7 +7,7 @@ use mdle_host::{Moment, Pilot, PilotFault, RunTerms, Time, Transitions, claim_fo
 use mdle_runtime::{Machine, ModuleRead, Nanos, Output as _, Turn};
 
 use super::event::Event;
-use super::loading::Loading;
+use super::loading::{Loading, NewModule};
 use super::modules::{Modules, Service};
 use crate::fork::Threads;
 use crate::library::Library;
@@ -48,7 +48,7 @@ impl<A: EngineAlphabet> Engine<A> {
         };
         let no_threads = |error| mdle_host::Refusal::Fault(format!("the system gives no threads: {error}"));
         let (plans, modules) = (Plans::new(plan), Modules::new(threads, service).map_err(no_threads)?);
-        let loading = Loading::new(library.clone(), terms.request.clone());
+        let loading = Loading::new(library.clone(), terms.request.clone()).map_err(no_threads)?;
         let mut engine = Self { plans, modules, loading, patience, rules_read: None, messages: Vec::new() };
         engine.load_plan_module();
         for candidate in library.candidates(&terms.request) {
@@ -110,10 +110,23 @@ impl<A: EngineAlphabet> Engine<A> {
     /// # Errors
     /// It cannot be loaded at present: a sentence.
     pub fn load(&mut self, name: &str) -> Result<u32, String> {
-        if self.modules.names().any(|(loaded, _)| loaded == name) {
-            return Err(Refusal::NameTaken(name.to_owned()).to_string());
+        self.begin_loading(NewModule::OfLibrary(name.to_owned()))
+    }
+
+    /// Begins to load a child process as a module of this name, as [`Engine::load`] does; `/bin/sh` reads the command
+    /// line.
+    ///
+    /// # Errors
+    /// It cannot be loaded at present: a sentence.
+    pub fn load_process(&mut self, name: &str, command: &str) -> Result<u32, String> {
+        self.begin_loading(NewModule::Process(name.to_owned(), command.to_owned()))
+    }
+
+    fn begin_loading(&mut self, module: NewModule) -> Result<u32, String> {
+        if self.modules.names().any(|(loaded, _)| loaded == module.name()) {
+            return Err(Refusal::NameTaken(module.name().to_owned()).to_string());
         }
-        self.loading.begin(name)
+        self.loading.begin(module)
     }
 
     /// Reports a message to the operator with the next turn.

@@ -176,7 +176,10 @@ impl<A: EngineAlphabet> Plans<A> {
     /// not cancelled.
     pub fn cancel(&mut self) {
         let waiting = self.compiler.as_ref().and_then(Compiler::take_back);
-        self.events.extend(waiting.map(|order| PlanEvent::Cancelled(order.ticket)));
+        if let Some(order) = waiting {
+            self.events.push(PlanEvent::Cancelled(order.ticket));
+            self.spent.push(Box::new(order));
+        }
         if let Some((plan, _)) = self.armed.take() {
             self.events.push(PlanEvent::Cancelled(plan.ticket));
             self.discard(plan);
@@ -250,7 +253,11 @@ impl<A: EngineAlphabet> Plans<A> {
             None => Err("this engine has no compiler".to_owned()),
         };
         match given {
-            Ok(superseded) => self.events.extend(superseded.map(|order| PlanEvent::Superseded(order.ticket))),
+            Ok(Some(superseded)) => {
+                self.events.push(PlanEvent::Superseded(superseded.ticket));
+                self.spent.push(Box::new(superseded));
+            }
+            Ok(None) => {}
             Err(sentence) => self.events.push(PlanEvent::Refused(ticket, sentence)),
         }
         ticket

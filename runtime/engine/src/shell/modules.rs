@@ -24,6 +24,9 @@ const OWN: [(&str, Node); 4] = [
     (".unload", Node::method(Role::Admin, "unloads the module; its attributes vanish")),
 ];
 
+/// Name in `/lib` of child processes; a module of the library that has this name comes first.
+const PROCESS: &str = "process";
+
 /// The modules, and the requests to load some that have not been answered.
 #[derive(Debug, Default)]
 pub(super) struct ModulesPart {
@@ -60,6 +63,10 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for ModulesPart {
         }
         let load = Node::method(Role::Admin, "loads the module, which is then in /usr");
         nodes.extend(moment.pilot.library().map(|name| (format!("/lib/{name}"), load)));
+        if !moment.pilot.library().any(|name| name == PROCESS) {
+            let load = "loads a child process as a module: its name, and its command line";
+            nodes.push((format!("/lib/{PROCESS}"), Node::method(Role::Admin, load)));
+        }
         nodes
     }
 
@@ -72,11 +79,21 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for ModulesPart {
             to.extend([Some(Value::text(state(standing))), None, None, None]);
         }
         to.extend(moment.pilot.library().map(|_| None));
+        to.extend((!moment.pilot.library().any(|name| name == PROCESS)).then_some(None));
     }
 
     fn change(&mut self, path: &str, change: &Change, moment: &mut Break<'_, Engine<A>>, reply: Reply) {
         if let Some(name) = path.strip_prefix("/lib/") {
-            return match moment.pilot.load(name) {
+            let is_process = name == PROCESS && !moment.pilot.library().any(|name| name == PROCESS);
+            let begun = match (is_process, change) {
+                (false, Change::Call(arguments)) if !arguments.is_empty() => {
+                    Err(format!("`{path}` takes no arguments"))
+                }
+                (false, _) => moment.pilot.load(name),
+                (true, Change::Call(arguments)) => load_process(moment.pilot, arguments),
+                (true, Change::Set(_)) => Err(format!("`{path}` is a method: call it")),
+            };
+            return match begun {
                 Ok(number) => self.waiting.push((number, reply)),
                 Err(sentence) => reply.answer(Answer::Refused(sentence)),
             };
@@ -101,6 +118,16 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for ModulesPart {
             }
         };
         reply.answer(done(result));
+    }
+}
+
+/// Begins to load the child process that the arguments name; returns the number of the request.
+fn load_process<A: EngineAlphabet>(engine: &mut Engine<A>, arguments: &[String]) -> Result<u32, String> {
+    match arguments {
+        [name, command @ ..] if !command.is_empty() => engine.load_process(name, &command.join(" ")),
+        _ => Err(format!(
+            "`/lib/{PROCESS}` takes the name of a module and a command line, as in `call /lib/{PROCESS} ears python3 ears.py`"
+        )),
     }
 }
 
