@@ -5,7 +5,7 @@ use std::fmt::{self, Write as _};
 
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::trace::COMPLETED;
-use mdle_runtime::{Cause, Measured, OperandWords, Operator, SourceLine, Transition, ValueWords};
+use mdle_runtime::{Cause, Measured, OperandWords, Operator, Plan, SourceLine, Transition, ValueWords};
 
 use crate::passes::{Passes, outwards};
 use crate::position::Texts;
@@ -59,6 +59,13 @@ impl fmt::Display for CauseText<'_> {
         }
         f.write_char(')')
     }
+}
+
+/// Returns the cause of a transition of `plan` with the values of the operands that had fired, as a report has it:
+/// `r1 = 0.38 m < 40cm (wall.mdle:7)`.
+#[must_use]
+pub fn cause_words(plan: &impl Plan, transition: &Transition, operands: &[Operand]) -> String {
+    CauseText { plan, transition, operands }.to_string()
 }
 
 /// Returns the place of an atom in a report: its line, the names of its enclosing scopes and the passes of loops.

@@ -62,6 +62,7 @@ mod tests;
 mod time;
 mod timing;
 mod transitions;
+mod trials;
 mod turns;
 mod unwinding;
 mod way_out;
@@ -73,8 +74,8 @@ use std::process::ExitCode;
 
 use background_writer::{Keeps, Outlet};
 pub use batch::Batch;
-pub use call::{Call, RecordedPlan};
-pub use cause::{CauseText, operand_words, place};
+pub use call::{Call, RecordedPlan, quoted};
+pub use cause::{CauseText, cause_words, operand_words, place};
 pub use clap;
 use executable::{Executable, PlanOnTarget};
 pub use files::{read_file, read_text};
@@ -83,6 +84,7 @@ use mdle_runtime::{Plan, Robot};
 pub use named_file::NamedFile;
 pub use observation::{Observation, SeveralRuns};
 pub use observer::{Around, Ended, Judgement, Observer, PlanPosition};
+pub use operand_text::{is_condition, is_operand};
 pub use output_format::output_format;
 pub use passes::{Passes, outwards};
 pub use paths::setpoints;
@@ -91,6 +93,7 @@ use pilot::PlanAlone;
 pub use pilot::{Moment, Pilot, PilotFault, RunTerms};
 pub use position::Texts;
 pub use program::Program;
+pub use progress::Progress;
 pub use refusal::Refusal;
 pub use replays::Replays;
 pub use robot_settings::{RobotSettings, SettingsOf, sonar_order};
@@ -104,6 +107,7 @@ pub use supervisor::{
 pub use target::Target;
 pub use time::{Pace, Time};
 pub use transitions::{Operand, Transitions};
+pub use trials::{Trials, trials};
 
 /// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: the `main` of an
 /// executable that mdlec builds calls this function. `program` is the plan's name, for `--help`, whose usage names the

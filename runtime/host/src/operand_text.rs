@@ -18,7 +18,8 @@ enum Token<'a> {
 
 /// Returns `true` if `text` is this operand: in its canonical form, as written in the plan, or with other units and
 /// spaces.
-pub(crate) fn is_operand(text: &str, operand: &OperandWords<'_>) -> bool {
+#[must_use]
+pub fn is_operand(text: &str, operand: &OperandWords<'_>) -> bool {
     let unit = operand.values.first().map_or("", |signal| signal.unit);
     let asked = tokens(text, unit);
     [operand.text, operand.written].into_iter().any(|known| {
@@ -28,7 +29,8 @@ pub(crate) fn is_operand(text: &str, operand: &OperandWords<'_>) -> bool {
 }
 
 /// Returns `true` if two texts differ in spaces and the form of numbers only.
-pub(crate) fn is_condition(text: &str, condition: &str) -> bool {
+#[must_use]
+pub fn is_condition(text: &str, condition: &str) -> bool {
     is_operand(text, &OperandWords { text: condition, written: condition, ..NO_OPERAND })
 }
 

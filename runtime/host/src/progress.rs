@@ -1,5 +1,6 @@
 //! The line on standard error by which a fast run shows that it goes on: only on a terminal, and erased at the end.
 
+use std::fmt;
 use std::io::Write;
 use std::time::Duration;
 
@@ -15,8 +16,8 @@ const LETTERS: usize = 76;
 /// The letters of a bar.
 const BAR: usize = 30;
 
-/// A line that is updated in place, and erased when it is dropped.
-pub(crate) struct Progress<'e> {
+/// A line on standard error that is updated in place, and erased when it is dropped.
+pub struct Progress<'e> {
     err: &'e mut dyn Write,
     /// The time since it began.
     now: Box<dyn FnMut() -> Duration + 'e>,
@@ -24,9 +25,15 @@ pub(crate) struct Progress<'e> {
     shown: bool,
 }
 
+impl fmt::Debug for Progress<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Progress").field("next", &self.next).field("shown", &self.shown).finish_non_exhaustive()
+    }
+}
+
 impl<'e> Progress<'e> {
-    /// A line on `err`, by this clock.
-    pub(crate) fn new(err: &'e mut dyn Write, now: Box<dyn FnMut() -> Duration + 'e>) -> Self {
+    /// Returns a line on `err`; `now` returns the time since the work began.
+    pub fn new(err: &'e mut dyn Write, now: Box<dyn FnMut() -> Duration + 'e>) -> Self {
         Self { err, now, next: EVERY, shown: false }
     }
 
@@ -47,7 +54,7 @@ impl<'e> Progress<'e> {
     }
 
     /// Shows that `done` of `all` runs are done.
-    pub(crate) fn runs(&mut self, done: u64, all: u64) {
+    pub fn runs(&mut self, done: u64, all: u64) {
         let Some(now) = self.due() else { return };
         let full = (BAR as f64 * done as f64 / all.max(1) as f64) as usize;
         let (full, empty) = ("#".repeat(full), ".".repeat(BAR.saturating_sub(full)));

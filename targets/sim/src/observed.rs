@@ -59,6 +59,24 @@ impl Observed {
         self.robot.pose()
     }
 
+    /// Returns the distance between the robot's body and the nearest obstacle, in metres, or `reach` if that is less;
+    /// negative where they overlap.
+    #[must_use]
+    pub fn gap(&self, reach: f64) -> f64 {
+        self.robot.gap(reach)
+    }
+
+    /// Returns `true` if the robot touches an obstacle, by the bumper of its last exchange.
+    #[must_use]
+    pub fn touches(&self) -> bool {
+        self.touches
+    }
+
+    /// Sets the charge of the robot's battery from now on, from 0 to 1.
+    pub fn set_charge(&mut self, charge: f64) {
+        self.robot.set_charge(charge);
+    }
+
     /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its world.
     pub fn supply(&mut self, charge: f64, charger: Option<Charger>) {
         self.robot.supply(charge, charger);

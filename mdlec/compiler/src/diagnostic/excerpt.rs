@@ -77,6 +77,27 @@ impl Sources {
         failed.map_or(Ok(()), Err)
     }
 
+    /// Writes a report that is no diagnostic of a plan to a terminal with colours; its labels have byte ranges in these
+    /// files.
+    ///
+    /// # Errors
+    /// Fails if writing to the terminal fails.
+    pub fn write_report(
+        &self,
+        mut report: report::Diagnostic<SourceId>,
+        out: &mut impl WriteColor,
+    ) -> Result<(), FilesError> {
+        report.message = PrintableLines(&report.message).to_string();
+        for label in &mut report.labels {
+            let [start, end] = [label.range.start, label.range.end].map(|byte| self.shown_place(label.file_id, byte));
+            label.range = start..end;
+            label.message = PrintableLines(&label.message).to_string();
+        }
+        report.notes.iter_mut().for_each(|note| *note = PrintableLines(&*note).to_string());
+        let excerpt = Excerpt::of(self, report)?;
+        term::emit_to_write_style(out, &term::Config::default(), &excerpt, &excerpt.report)
+    }
+
     /// Converts the diagnostic, with its places in the files as they are shown.
     fn report(&self, diagnostic: &Diagnostic) -> report::Diagnostic<SourceId> {
         let severity = match diagnostic.code.severity() {
@@ -100,7 +121,11 @@ impl Sources {
 impl<'s> Excerpt<'s> {
     /// Extracts the lines that `diagnostic` shows from their files.
     fn new(sources: &'s Sources, diagnostic: &Diagnostic) -> Result<Self, FilesError> {
-        let mut report = sources.report(diagnostic);
+        Self::of(sources, sources.report(diagnostic))
+    }
+
+    /// Extracts the lines that `report` shows, whose places are those of the files as they are shown.
+    fn of(sources: &'s Sources, mut report: report::Diagnostic<SourceId>) -> Result<Self, FilesError> {
         let mut places: BTreeMap<SourceId, BTreeMap<usize, Vec<usize>>> = BTreeMap::new();
         for label in &report.labels {
             let file = sources.shown_file(label.file_id)?;

@@ -23,6 +23,28 @@ impl<'p> Counted<'p> {
     pub fn new(plan_machine: &'p fsm::Machine) -> Self {
         Self { plan_machine, machine: None }
     }
+
+    /// Runs one turn, which `watch` observes; not called again after the plan is over.
+    pub fn watched(&mut self, reports: &Reports, watch: &mut impl Watch) -> Turn<()> {
+        let begin = || mdle_runtime::Machine::begin(Scripted::new(self.plan_machine), reports, reports.t);
+        self.machine.get_or_insert_with(begin).turn(reports, reports.t, watch)
+    }
+
+    /// Returns the number of the current atom, as written, from 0; `None` before the first turn and when the plan is
+    /// over.
+    #[must_use]
+    pub fn atom(&self) -> Option<u32> {
+        self.machine.as_ref()?.atom()
+    }
+
+    /// Calls `tell` with the number of each operand that has fired of the interrupt of `scope`, which encloses the
+    /// current atom.
+    pub fn operands(&self, scope: u32, reports: &Reports, tell: &mut dyn FnMut(u32)) {
+        if let Some(machine) = &self.machine {
+            let tell = &mut |number, _| tell(number);
+            mdle_runtime::Plan::operands(machine.plan(), machine.cursor(), scope, reports, reports.t, tell);
+        }
+    }
 }
 
 impl<'p> Machine<'p> for Counted<'p> {

@@ -129,6 +129,11 @@ impl Simulated {
         self
     }
 
+    /// Sets the charge of its battery from now on, from 0 to 1.
+    pub fn set_charge(&mut self, charge: f64) {
+        self.battery.charge(charge);
+    }
+
     /// Sees to its supply from now on: the charge of its battery, from 0 to 1, and the charger of its world.
     pub fn supply(&mut self, charge: f64, charger: Option<Charger>) {
         self.battery.charge(charge);
@@ -149,6 +154,13 @@ impl Simulated {
     #[must_use]
     pub fn footprint(&self) -> Footprint {
         self.body.footprint()
+    }
+
+    /// Returns the distance between the body and the nearest obstacle, in metres, or `reach` if that is less; negative
+    /// where they overlap.
+    #[must_use]
+    pub fn gap(&self, reach: f64) -> f64 {
+        self.walls.gap(&self.footprint(), reach)
     }
 
     /// Sets the places of the other robots in the world: the robot hears them and cannot pass through them.

@@ -1,0 +1,95 @@
+//! Robots for runs that another program makes and judges, as `mdle test` does.
+
+use std::fmt;
+use std::time::Duration;
+
+use mdle_runtime::PathStore;
+
+use crate::call::Call;
+use crate::target_options::TargetOptions;
+use crate::{Program, Refusal, StopRequest, Target, arguments, paths};
+
+/// The option that asks a target for robots that differ in a seed.
+const SEVERAL: &str = "--runs=1";
+
+/// The robots that the options of a run describe, and the limits of such a run.
+pub struct Trials<R> {
+    /// Period of a turn.
+    pub period: Duration,
+    /// Time of the run at which it ends, if an option limits it.
+    pub timeout: Option<Duration>,
+    robot: MakeRobot<R>,
+}
+
+/// Makes the robot of a seed, or the robot without random errors.
+type MakeRobot<R> = Box<dyn Fn(Option<u64>) -> Result<R, String> + Send + Sync>;
+
+impl<R> fmt::Debug for Trials<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { period, timeout, .. } = self;
+        write!(f, "Trials {{ period: {period:?}, timeout: {timeout:?} }}")
+    }
+}
+
+impl<R> Trials<R> {
+    /// Returns the robot of a seed, before its first exchange; without a seed it has no random errors.
+    ///
+    /// # Errors
+    /// The robot cannot be made: a sentence.
+    pub fn robot(&self, seed: Option<u64>) -> Result<R, String> {
+        (self.robot)(seed)
+    }
+}
+
+/// Returns the robots of the target `T` that the options of `call` describe, which have the paths of these names to
+/// replay.
+///
+/// # Errors
+/// An option, a world or a path is no good, or the robots of the target cannot be started over: a sentence.
+pub fn trials<T: Target>(
+    program: Program<'_>,
+    call: &Call,
+    names: &[&'static str],
+) -> Result<Trials<T::Robot>, String> {
+    let target = TargetOptions::of::<T>();
+    let parsed = |more: Option<&'static str>| {
+        let command = arguments::command(&target, program, call);
+        let words = call.arguments().cloned().chain(more.map(Into::into));
+        command.try_get_matches_from(words).map_err(|error| error.render().to_string())
+    };
+    let matches = parsed(None)?;
+    let options = arguments::options(&target, &matches);
+    let store = paths::load(&target, &matches, names).map_err(sentence)?;
+    let Some(observation) = T::OBSERVATION else { return Err(not_simulated(T::NAME)) };
+    let several = parsed(Some(SEVERAL))?;
+    let batch = (observation.batch)(&several, options.period).map_err(sentence)?;
+    let batch = batch.ok_or_else(|| not_simulated(T::NAME))?;
+    let period = options.period;
+    let robot = move |seed| {
+        let robot = match seed {
+            Some(seed) => (batch.robot)(seed),
+            None => T::connect(&matches, period, &StopRequest::default()).map_err(sentence),
+        };
+        robot.map(|robot| with_paths::<T>(robot, store))
+    };
+    Ok(Trials { period, timeout: options.timeout, robot: Box::new(robot) })
+}
+
+/// Gives a robot the paths that its plan replays.
+fn with_paths<T: Target>(mut robot: T::Robot, store: PathStore) -> T::Robot {
+    if let Some(replays) = T::PATHS {
+        (replays.take)(&mut robot, store);
+    }
+    robot
+}
+
+fn not_simulated(name: &str) -> String {
+    format!("the robot {name} cannot be started over")
+}
+
+fn sentence(refusal: Refusal) -> String {
+    match refusal {
+        Refusal::Usage(sentence) | Refusal::Fault(sentence) | Refusal::Ended(Err(sentence)) => sentence,
+        Refusal::Ended(Ok(())) => "the run was asked to end before it began".to_owned(),
+    }
+}
