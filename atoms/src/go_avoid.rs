@@ -165,8 +165,8 @@ impl GoingRound {
             Side::Left => Radians(goal.0 + ASIDE.0),
             Side::Right => Radians(goal.0 - ASIDE.0),
         };
-        let wish = Wish { goal: aside, look_ahead, previous: self.previous, side: None, along: false };
-        let chosen = Radians(aside.0 + obstacles.close().best(&wish).0).wrapped();
+        let wish = Wish { goal: aside, look_ahead, previous: self.previous, side: None, along: false, close: true };
+        let chosen = Radians(aside.0 + obstacles.best(&wish).0).wrapped();
         self.previous = Some(chosen);
         chosen
     }
@@ -193,7 +193,8 @@ impl GoingRound {
             Some(Side::Right) => Radians(here.theta.0 + ALONG.0),
             None => goal,
         };
-        let offset = obstacles.best(&Wish { goal: towards, look_ahead, previous: self.previous, side, along });
+        let wish = Wish { goal: towards, look_ahead, previous: self.previous, side, along, close: false };
+        let offset = obstacles.best(&wish);
         if self.detour.is_none() && offset.0.abs() > DETOUR.0 {
             let side = if offset.0 > 0.0 { Side::Left } else { Side::Right };
             self.detour = Some(Detour { side, from: Meters(distance), since: t });
@@ -204,16 +205,49 @@ impl GoingRound {
     }
 }
 
+/// The direction that the tangent rule has chosen, and the ways that are free.
+struct Chosen {
+    direction: Radians,
+    /// Length of the way that is free where the robot heads.
+    ahead: Meters,
+    /// Length of the way to the goal that is free; `None` on a detour.
+    to_goal: Option<Meters>,
+}
+
 impl GoingRound {
+    /// Looks at what the sonars see, and chooses a direction; `None` while the robot stands, since somebody crosses its
+    /// way.
+    ///
+    /// Not inlined: the obstacles have left the stack before [`Self::squeeze`] puts a map there.
+    #[inline(never)]
+    fn look<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose, t: Nanos) -> Option<Chosen> {
+        let mut obstacles = Obstacles::seen(y, here);
+        self.look_out(y, &obstacles, here, t);
+        self.notice(&obstacles, here, t);
+        let crosses = self.gives_way.is_none() && crosses(y, here, self.speed.0);
+        self.crossed = if crosses { self.crossed.saturating_add(1) } else { 0 };
+        if self.gives_way.is_some() {
+            self.stands_until = Nanos::ZERO;
+        } else if self.crossed >= SURE {
+            self.stands_until = Nanos(t.0.saturating_add(STANDS.0));
+        }
+        if t < self.stands_until {
+            return None;
+        }
+        let direction = if self.goes_along(t) {
+            let seen = obstacles.remember(&self.memory, here, t);
+            let direction = self.choose(&obstacles, here, t);
+            obstacles.forget(seen);
+            direction
+        } else {
+            self.choose(&obstacles, here, t)
+        };
+        let to_goal = self.detour.is_none().then(|| obstacles.free(self.direction(here)));
+        Some(Chosen { direction, ahead: obstacles.free(here.theta), to_goal })
+    }
+
     /// The input in a narrow place, or before one; `None` elsewhere.
-    fn squeeze<Y: DiffDrive>(
-        &mut self,
-        y: &Y,
-        here: Pose,
-        t: Nanos,
-        seen: &Obstacles,
-        chosen: Radians,
-    ) -> Option<Twist> {
+    fn squeeze<Y: DiffDrive>(&mut self, y: &Y, here: Pose, t: Nanos, chosen: &Chosen) -> Option<Twist> {
         let stalled = self.progress.stalled(here, &self.goal, t);
         if stalled < HELD_UP && !self.narrow.follows() {
             return None;
@@ -224,10 +258,9 @@ impl GoingRound {
         }
         let distance = here.distance(&self.goal);
         let asked = Meters(self.look_ahead.0.min(distance.0));
-        let (from, free) = match self.detour {
-            Some(detour) => (Meters(detour.from.0.min(distance.0)), None),
-            None => (distance, Some((seen.free(self.direction(here)), asked))),
-        };
+        let from = self.detour.map_or(distance, |detour| Meters(detour.from.0.min(distance.0)));
+        let free = chosen.to_goal.map(|free| (free, asked));
+        let chosen = chosen.direction;
         let ahead = Ahead { goal: self.goal, from, chosen, free, speed: self.speed, before: None };
         self.narrow.input(y, here, t, ahead)
     }
@@ -242,6 +275,8 @@ fn freer(obstacles: &Obstacles, goal: Radians) -> Side {
 impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
     type Law = GoingRound;
 
+    // Not inlined, so that the law is written once, where it is to be.
+    #[inline(never)]
     fn begin(&self, y: &Y, begin: Begin) -> GoingRound {
         let (here, bearing) = (y.pose(), begin.frame.outward(self.bearing));
         let goal = here.towards(bearing, self.range);
@@ -278,26 +313,12 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
         self.progress.take(here, &self.goal, t);
         self.memory.take(y);
         self.narrow.take(y, here);
-        let seen = Obstacles::seen(y, here);
-        let obstacles = if self.goes_along(t) { seen.with(&self.memory, here, t) } else { seen };
-        self.look_out(y, &seen, here, t);
-        self.notice(&seen, here, t);
-        let crosses = self.gives_way.is_none() && crosses(y, here, self.speed.0);
-        self.crossed = if crosses { self.crossed.saturating_add(1) } else { 0 };
-        if self.gives_way.is_some() {
-            self.stands_until = Nanos::ZERO;
-        } else if self.crossed >= SURE {
-            self.stands_until = Nanos(t.0.saturating_add(STANDS.0));
-        }
-        if t < self.stands_until {
-            return Twist::default();
-        }
-        let chosen = self.choose(&obstacles, here, t);
-        if let Some(twist) = self.squeeze(y, here, t, &seen, chosen) {
+        let Some(chosen) = self.look(y, here, t) else { return Twist::default() };
+        if let Some(twist) = self.squeeze(y, here, t, &chosen) {
             return twist;
         }
-        let Radians(off) = Radians(chosen.0 - here.theta.0).wrapped();
-        let Meters(ahead) = seen.free(here.theta);
+        let Radians(off) = Radians(chosen.direction.0 - here.theta.0).wrapped();
+        let Meters(ahead) = chosen.ahead;
         let Meters(distance) = here.distance(&self.goal);
         let v = (self.speed.0 * (1.0 - off.abs() / ON_THE_SPOT.0)).min(0.9 * (ahead - 0.03)).min(0.8 * distance + 0.03);
         let omega = (y.steering().avoid * off).clamp(-FASTEST, FASTEST);

@@ -23,11 +23,13 @@ struct Echo {
 /// Places of echoes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Memory {
-    places: [Option<Echo>; PLACES],
+    echoes: [Echo; PLACES],
+    /// Number of places kept, from the first one on.
+    count: usize,
 }
 
 impl Memory {
-    pub(crate) const EMPTY: Self = Self { places: [None; PLACES] };
+    pub(crate) const EMPTY: Self = Self { echoes: [Echo { x: 0.0, y: 0.0, at: Nanos::ZERO }; PLACES], count: 0 };
 
     /// Takes in the newest ping of each sonar.
     pub(crate) fn take<Y: SonarRing>(&mut self, y: &Y) {
@@ -45,28 +47,25 @@ impl Memory {
 
     /// Keeps a place in the stead of the same one, of a free one, or of the oldest.
     fn keep(&mut self, heard: Echo) {
-        let same = |place: &Option<Echo>| {
-            place.is_some_and(|place| {
-                let (x, y) = (place.x - heard.x, place.y - heard.y);
-                // One axis alone tells most places apart.
-                x.abs() < ONE_PLACE && y.abs() < ONE_PLACE && libm::hypot(x, y) < ONE_PLACE
-            })
+        let same = |place: &Echo| {
+            let (x, y) = (place.x - heard.x, place.y - heard.y);
+            // One axis alone tells most places apart.
+            x.abs() < ONE_PLACE && y.abs() < ONE_PLACE && libm::hypot(x, y) < ONE_PLACE
         };
-        if let Some(place) = self.places.iter_mut().find(|place| same(place)).and_then(Option::as_mut) {
+        if let Some(place) = self.echoes.iter_mut().take(self.count).find(|place| same(place)) {
             place.at = place.at.max(heard.at);
-            return;
-        }
-        if let Some(place) = self.places.iter_mut().min_by_key(|place| place.map(|place| place.at)) {
-            *place = Some(heard);
+        } else if let Some(free) = self.echoes.get_mut(self.count) {
+            *free = heard;
+            self.count += 1;
+        } else if let Some(oldest) = self.echoes.iter_mut().min_by_key(|place| place.at) {
+            *oldest = heard;
         }
     }
 
     /// The places not yet forgotten at this time, from `here`, in the odometry's axes.
-    pub(crate) fn around(&self, here: Pose, now: Nanos) -> [Option<(f64, f64)>; PLACES] {
-        self.places.map(|place| {
-            let place = place.filter(|place| now.since(place.at) < KEPT)?;
-            Some((place.x - here.x.0, place.y - here.y.0))
-        })
+    pub(crate) fn around(&self, here: Pose, now: Nanos) -> impl Iterator<Item = (f64, f64)> {
+        let kept = self.echoes.iter().take(self.count).filter(move |place| now.since(place.at) < KEPT);
+        kept.map(move |place| (place.x - here.x.0, place.y - here.y.0))
     }
 }
 
@@ -84,7 +83,7 @@ mod tests {
             y.ping(SonarId::new(0), Some(*range));
             memory.take(&y);
         }
-        memory.around(y.pose, Nanos(now)).iter().flatten().count()
+        memory.around(y.pose, Nanos(now)).count()
     }
 
     #[test]

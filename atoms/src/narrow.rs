@@ -62,10 +62,9 @@ impl Narrow {
 
     /// The input of a robot at `here`; `None` where the tangent rule is enough.
     pub(crate) fn input<Y: DiffDrive>(&mut self, y: &Y, here: Pose, t: Nanos, mut ahead: Ahead) -> Option<Twist> {
-        let surroundings = Surroundings::of(y, &self.map, here);
         let more = if self.way.is_some() { LEAVES } else { Meters(0.0) };
         let is_free = ahead.free.is_some_and(|(free, asked)| free.0 >= asked.0 + more.0);
-        if is_free && surroundings.now() > ROOM {
+        if is_free && self.has_room(y, here) {
             self.leave();
             return None;
         }
@@ -80,13 +79,35 @@ impl Narrow {
         let is_disc = y.body_radius() <= y.half_length();
         let there = here.towards(ahead.chosen, AHEAD);
         let anyhow = Next { x: there.x.0, y: there.y.0, is_straight: false };
-        let Next { x, y, is_straight } = self.way.or((!is_disc).then_some(anyhow))?;
-        let (sin, cos) = libm::sincos(here.theta.0);
-        let (dx, dy) = (x - here.x.0, y - here.y.0);
-        let speed = MetersPerSecond(ahead.speed.0.min(FASTEST));
+        let next = self.way.or((!is_disc).then_some(anyhow))?;
         let is_bold = self.stands.is_some_and(|since| t.since(since) > STANDS);
-        let twist = surroundings.towards(dx * cos + dy * sin, dy * cos - dx * sin, speed, is_straight, is_bold)?;
+        let twist = self.towards(y, here, next, ahead.speed, is_bold)?;
         self.stands = self.stands.or(Some(t)).filter(|_| twist.v.0 == 0.0);
         Some(twist)
+    }
+
+    /// The input that brings the body nearest to a place; `None` if every movement would touch.
+    ///
+    /// Not inlined, like [`Self::has_room`]: the surroundings are not on the stack beside the map of [`way`].
+    #[inline(never)]
+    fn towards<Y: DiffDrive>(
+        &self,
+        y: &Y,
+        here: Pose,
+        next: Next,
+        speed: MetersPerSecond,
+        is_bold: bool,
+    ) -> Option<Twist> {
+        let (sin, cos) = libm::sincos(here.theta.0);
+        let (dx, dy) = (next.x - here.x.0, next.y - here.y.0);
+        let (ahead, left) = (dx * cos + dy * sin, dy * cos - dx * sin);
+        let speed = MetersPerSecond(speed.0.min(FASTEST));
+        Surroundings::of(y, &self.map, here).towards(ahead, left, speed, next.is_straight, is_bold)
+    }
+
+    /// Returns `true` if nothing on the map is near the body.
+    #[inline(never)]
+    fn has_room<Y: DiffDrive>(&self, y: &Y, here: Pose) -> bool {
+        Surroundings::of(y, &self.map, here).now() > ROOM
     }
 }

@@ -78,6 +78,8 @@ pub(crate) struct Wish {
     pub(crate) side: Option<Side>,
     /// `true` if the law goes along an obstacle rather than to the goal.
     pub(crate) along: bool,
+    /// `true` if the robot may go along walls as close as it can.
+    pub(crate) close: bool,
 }
 
 impl Wish {
@@ -112,6 +114,7 @@ impl Side {
 
 impl Obstacles {
     /// The points that the sonars of `y` saw, around the body at `here`.
+    #[inline(never)]
     pub(crate) fn seen<Y: DiffDrive + SonarRing>(y: &Y, here: Pose) -> Self {
         let (half_length, half_width) = (y.half_length().0, y.half_width().0);
         let gains = Gains::of(y);
@@ -119,9 +122,8 @@ impl Obstacles {
         let half_width = (half_width + y.body_radius().0) / 2.0;
         let (hard, close, soft) = (half_width + hard_margin, half_width + MARGIN, half_width + soft_margin);
         let ring = y.ring_radius();
-        let points = [Point { x: 0.0, y: 0.0 }; POINTS];
         let nose = half_length - half_width;
-        let mut seen = Self { points, count: 0, hard, close, soft, nose, gains };
+        let mut seen = Self { points: [Point { x: 0.0, y: 0.0 }; POINTS], count: 0, hard, close, soft, nose, gains };
         for sonar in (0..SONARS as u8).map(SonarId::new) {
             if let Some((ping, range)) = heard(y, sonar) {
                 let may_be_nearer = range.0 < least_range;
@@ -144,16 +146,16 @@ impl Obstacles {
         }
     }
 
-    /// Adds the places that `memory` keeps.
-    pub(crate) fn with(mut self, memory: &Memory, here: Pose, now: Nanos) -> Self {
-        let remembered = memory.around(here, now).into_iter().flatten();
-        remembered.for_each(|(x, y)| self.push(Point { x, y }));
-        self
+    /// Adds the places that `memory` keeps; returns the number of points before.
+    pub(crate) fn remember(&mut self, memory: &Memory, here: Pose, now: Nanos) -> usize {
+        let seen = self.count;
+        memory.around(here, now).for_each(|(x, y)| self.push(Point { x, y }));
+        seen
     }
 
-    /// Drops the soft margin, for a robot that may go along walls as close as it can.
-    pub(crate) fn close(self) -> Self {
-        Self { soft: 0.0, ..self }
+    /// Removes all points but the first `seen`.
+    pub(crate) fn forget(&mut self, seen: usize) {
+        self.count = self.count.min(seen);
     }
 
     /// Returns the distance in metres, at most 3, that the body, with its margin, can go in this direction before it
@@ -216,8 +218,9 @@ impl Obstacles {
             cost += BLOCKED_COSTS * (look_ahead - free.0) / look_ahead;
         }
         let beside = self.beside(direction, free);
-        if beside < self.soft {
-            cost += CLOSE_COSTS * (self.soft - beside) / (self.soft - self.close);
+        let soft = if wish.close { 0.0 } else { self.soft };
+        if beside < soft {
+            cost += CLOSE_COSTS * (soft - beside) / (soft - self.close);
         }
         cost + turns
     }
@@ -281,7 +284,7 @@ mod tests {
     use crate::trial::Sensed;
 
     fn wish(side: Option<Side>) -> Wish {
-        Wish { goal: Radians(0.0), look_ahead: Meters(0.4), previous: None, side, along: false }
+        Wish { goal: Radians(0.0), look_ahead: Meters(0.4), previous: None, side, along: false, close: false }
     }
 
     #[test]

@@ -52,13 +52,14 @@ fn factor(value: u16) -> u16 {
 }
 
 impl Wave {
-    /// Returns the wave from a goal, or from where it is nearer than `from` by a while, over the way of this body.
-    pub(crate) fn over<Y: DiffDrive>(map: &Map, goal: &Pose, from: Meters, base: f64, y: &Y) -> Self {
-        let mut wave = Self { cells: [DISTANCE; SIDE * SIDE] };
-        wave.measure(map, y);
-        wave.seed(map, goal, from.0, base);
-        wave.spread();
-        wave
+    /// The wave before it starts.
+    pub(crate) const NONE: Self = Self { cells: [DISTANCE; SIDE * SIDE] };
+
+    /// Lets a wave start from a goal, or from where it is nearer than `from` by a while, over the way of this body.
+    pub(crate) fn start<Y: DiffDrive>(&mut self, map: &Map, goal: &Pose, from: Meters, base: f64, y: &Y) {
+        self.measure(map, y);
+        self.seed(map, goal, from.0, base);
+        self.spread();
     }
 
     /// Returns the centimetres, by cost, from a cell to the goal, less those from which distances count; `None` if no

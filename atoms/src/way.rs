@@ -51,10 +51,16 @@ pub(crate) struct Next {
 
 /// Returns the place at which the body of `y`, at `here`, next has to be on its way to the goal; `None` if the map has
 /// no way that leads nearer.
+///
+/// Not inlined: the wave is the largest thing that a law puts on the stack, and leaves it with the result.
+#[inline(never)]
 pub(crate) fn way<Y: DiffDrive>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> Option<Next> {
     let (goal, straight) = (&ahead.goal, here.distance(&ahead.goal).0);
     let base = (straight - EDGE).max(0.0);
-    let way = Way { wave: Wave::over(map, goal, ahead.from, base, y), here: index(CELLS / 2, CELLS / 2) };
+    // Made where it stays: a copy would take as much of the stack again.
+    let mut wave = Wave::NONE;
+    wave.start(map, goal, ahead.from, base, y);
+    let way = Way { wave: &wave, here: index(CELLS / 2, CELLS / 2) };
     if way.wave.left(way.here)? > libm::round(100.0 * (straight - base)) as i32 + LONGER {
         return None;
     }
@@ -71,12 +77,12 @@ pub(crate) fn way<Y: DiffDrive>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> 
 }
 
 /// The wave, and the cell of the robot.
-struct Way {
-    wave: Wave,
+struct Way<'w> {
+    wave: &'w Wave,
     here: usize,
 }
 
-impl Way {
+impl Way<'_> {
     /// Returns the cell of the place that the last way led to, if that way is still good.
     fn kept(&self, map: &Map, before: &Next) -> Option<usize> {
         let at = Cell::of(before.x, before.y);

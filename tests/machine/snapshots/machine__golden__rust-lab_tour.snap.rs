@@ -153,73 +153,96 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             ([Nanos::ZERO; 3], [0; 0])
         }
+        #[cfg_attr(target_os = "none", inline(never))]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-            self.running = match atom {
+            match atom {
                 0 => {
-                    Running::Atom1(runtime::Control::begin(&GO_AVOID_90_40_20, y, begin))
+                    self.running = Running::Atom1(
+                        runtime::Control::begin(&GO_AVOID_90_40_20, y, begin),
+                    );
                 }
-                1 => Running::Atom2(runtime::Control::begin(&GO_0_0_36, y, begin)),
-                2 => Running::Atom3(runtime::Control::begin(&ALIGN_7_9, y, begin)),
-                3 => Running::Atom4(runtime::Control::begin(&GO_AVOID_0_40_20, y, begin)),
-                4 => Running::Atom5(runtime::Control::begin(&GO_0_0_36, y, begin)),
-                5 => Running::Atom6(runtime::Control::begin(&ALIGN_3_5, y, begin)),
+                1 => {
+                    self.running = Running::Atom2(
+                        runtime::Control::begin(&GO_0_0_36, y, begin),
+                    );
+                }
+                2 => {
+                    self.running = Running::Atom3(
+                        runtime::Control::begin(&ALIGN_7_9, y, begin),
+                    );
+                }
+                3 => {
+                    self.running = Running::Atom4(
+                        runtime::Control::begin(&GO_AVOID_0_40_20, y, begin),
+                    );
+                }
+                4 => {
+                    self.running = Running::Atom5(
+                        runtime::Control::begin(&GO_0_0_36, y, begin),
+                    );
+                }
+                5 => {
+                    self.running = Running::Atom6(
+                        runtime::Control::begin(&ALIGN_3_5, y, begin),
+                    );
+                }
                 6 => {
-                    Running::Atom7(
+                    self.running = Running::Atom7(
                         runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
-                    )
+                    );
                 }
                 7 => {
-                    Running::Atom8(
+                    self.running = Running::Atom8(
                         runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
-                    )
+                    );
                 }
                 8 => {
-                    Running::Atom9(
+                    self.running = Running::Atom9(
                         runtime::Control::begin(
                             &GO_AVOID_90_40_20,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
-                    )
+                    );
                 }
                 9 => {
-                    Running::Atom10(
+                    self.running = Running::Atom10(
                         runtime::Control::begin(
                             &GO_0_0_36,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
-                    )
+                    );
                 }
                 10 => {
-                    Running::Atom11(
+                    self.running = Running::Atom11(
                         runtime::Control::begin(
                             &ALIGN_11_13,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
-                    )
+                    );
                 }
                 11 => {
-                    Running::Atom12(
+                    self.running = Running::Atom12(
                         runtime::Control::begin(
                             &GO_AVOID_180_40_20,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
-                    )
+                    );
                 }
                 12 => {
-                    Running::Atom13(
+                    self.running = Running::Atom13(
                         runtime::Control::begin(
                             &ROTATE_90,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
-                    )
+                    );
                 }
-                _ => Running::Idle,
-            };
+                _ => self.running = Running::Idle,
+            }
         }
         #[inline(always)]
         fn next(&self, cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {

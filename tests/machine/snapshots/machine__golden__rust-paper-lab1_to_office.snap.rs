@@ -107,21 +107,36 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             ([Nanos::ZERO; 2], [0; 0])
         }
+        #[cfg_attr(target_os = "none", inline(never))]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-            self.running = match atom {
+            match atom {
                 0 => {
-                    Running::Atom1(runtime::Control::begin(&GO_AVOID_90_40_20, y, begin))
+                    self.running = Running::Atom1(
+                        runtime::Control::begin(&GO_AVOID_90_40_20, y, begin),
+                    );
                 }
-                1 => Running::Atom2(runtime::Control::begin(&GO_0_0_36, y, begin)),
-                2 => Running::Atom3(runtime::Control::begin(&ALIGN_11_13, y, begin)),
+                1 => {
+                    self.running = Running::Atom2(
+                        runtime::Control::begin(&GO_0_0_36, y, begin),
+                    );
+                }
+                2 => {
+                    self.running = Running::Atom3(
+                        runtime::Control::begin(&ALIGN_11_13, y, begin),
+                    );
+                }
                 3 => {
-                    Running::Atom4(
+                    self.running = Running::Atom4(
                         runtime::Control::begin(&GO_AVOID_180_40_20, y, begin),
-                    )
+                    );
                 }
-                4 => Running::Atom5(runtime::Control::begin(&ROTATE_90, y, begin)),
-                _ => Running::Idle,
-            };
+                4 => {
+                    self.running = Running::Atom5(
+                        runtime::Control::begin(&ROTATE_90, y, begin),
+                    );
+                }
+                _ => self.running = Running::Idle,
+            }
         }
         #[inline(always)]
         fn next(&self, cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {

@@ -63,15 +63,16 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             ([Nanos::ZERO; 0], [0; 0])
         }
+        #[cfg_attr(target_os = "none", inline(never))]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-            self.running = match atom {
+            match atom {
                 0 => {
-                    Running::Atom1(
+                    self.running = Running::Atom1(
                         runtime::Control::begin(&GO_AVOID_HEADING_MODULE, y, begin),
-                    )
+                    );
                 }
-                _ => Running::Idle,
-            };
+                _ => self.running = Running::Idle,
+            }
         }
         #[inline(always)]
         fn next(&self, cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {

@@ -83,16 +83,31 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             ([Nanos::ZERO; 3], [0; 2])
         }
+        #[cfg_attr(target_os = "none", inline(never))]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-            self.running = match atom {
-                0 => Running::Atom1(runtime::Control::begin(&GO_AVOID_0_3_20, y, begin)),
-                1 => Running::Atom2(runtime::Control::begin(&TURN_90, y, begin)),
-                2 => Running::Atom3(runtime::Control::begin(&STOP, y, begin)),
-                3 => {
-                    Running::Atom4(runtime::Control::begin(&GO_AVOID_180_3_40, y, begin))
+            match atom {
+                0 => {
+                    self.running = Running::Atom1(
+                        runtime::Control::begin(&GO_AVOID_0_3_20, y, begin),
+                    );
                 }
-                _ => Running::Idle,
-            };
+                1 => {
+                    self.running = Running::Atom2(
+                        runtime::Control::begin(&TURN_90, y, begin),
+                    );
+                }
+                2 => {
+                    self.running = Running::Atom3(
+                        runtime::Control::begin(&STOP, y, begin),
+                    );
+                }
+                3 => {
+                    self.running = Running::Atom4(
+                        runtime::Control::begin(&GO_AVOID_180_3_40, y, begin),
+                    );
+                }
+                _ => self.running = Running::Idle,
+            }
         }
         #[inline(always)]
         fn next(&self, cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {

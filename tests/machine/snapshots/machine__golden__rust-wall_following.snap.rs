@@ -92,29 +92,30 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             ([Nanos::ZERO; 1], [0; 1])
         }
+        #[cfg_attr(target_os = "none", inline(never))]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-            self.running = match atom {
+            match atom {
                 0 => {
-                    Running::Atom1(
+                    self.running = Running::Atom1(
                         runtime::Control::begin(&GO_0_MINUS_0_5235987755982988, y, begin),
-                    )
+                    );
                 }
                 1 => {
-                    Running::Atom2(
+                    self.running = Running::Atom2(
                         runtime::Control::begin(&GO_20_0_3490658503988659, y, begin),
-                    )
+                    );
                 }
                 2 => {
-                    Running::Atom3(
+                    self.running = Running::Atom3(
                         runtime::Control::begin(
                             &GO_20_MINUS_0_3490658503988659,
                             y,
                             begin,
                         ),
-                    )
+                    );
                 }
-                _ => Running::Idle,
-            };
+                _ => self.running = Running::Idle,
+            }
         }
         #[inline(always)]
         fn next(&self, cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {

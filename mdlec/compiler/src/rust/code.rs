@@ -154,21 +154,23 @@ impl Meaning<'_> {
         }
     }
 
-    /// Emits `fn enter`, which makes the law of the atom that is entered.
+    /// Emits `fn enter`, which makes the law of the atom that is entered. A law may take kilobytes: each arm assigns its
+    /// own, which puts it on the stack once, and on a microcontroller, whose stack is small, only while it is made.
     pub(super) fn enter(&self) -> TokenStream {
         let arms = self.machine.atoms().map(|atom| {
             let number = Literal::usize_unsuffixed(atom.index());
             let variant = atom_variant(atom.index());
             let constant = &self.constants[atom.law_id().0 as usize];
             let begin = turned(atom.turned());
-            quote!(#number => Running::#variant(runtime::Control::begin(&#constant, y, #begin)))
+            quote!(#number => self.running = Running::#variant(runtime::Control::begin(&#constant, y, #begin)))
         });
         quote! {
+            #[cfg_attr(target_os = "none", inline(never))]
             fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-                self.running = match atom {
+                match atom {
                     #(#arms,)*
-                    _ => Running::Idle,
-                };
+                    _ => self.running = Running::Idle,
+                }
             }
         }
     }
