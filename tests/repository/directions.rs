@@ -94,6 +94,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ),
     ("tests/benchmarks/turn", &["mdle-runtime", "mdle-compiler"]),
     ("tests/bare", &["mdle-runtime", "mdle-atoms"]),
+    ("tests/board", &["mdle-runtime", "mdle-atoms", "mdle-simulator"]),
     ("tests/application", &["mdle-runtime", "mdle-host", "mdle-sim", "mdle-embed"]),
     ("tests/mutants", &[]),
     ("tests/fuzz", &["mdle-tests"]),

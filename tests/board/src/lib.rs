@@ -1,0 +1,12 @@
+//! A robot whose controller is a microcontroller: no operating system, no allocator.
+//!
+//! The test runs the lab tour twice: `desk` drives the simulated robot, and records what it senses; `board` runs on
+//! the microcontroller, senses what was recorded, and has to print the same.
+#![no_std]
+
+pub mod alphabet;
+pub mod record;
+mod turns;
+
+pub use mdle_runtime::{Sensed as Output, Twist as Input};
+pub use turns::{Robot, at_rest, run};

@@ -1,0 +1,100 @@
+//! The bytes in which `desk` records what a robot senses, for `board`: the shape of its body, then for each turn the
+//! new pings and the rest. Numbers are little-endian, in SI units.
+
+use mdle_runtime::capability::Steering;
+use mdle_runtime::{
+    Meters, MetersPerSecond, Mount, Nanos, Pose, Radians, RadiansPerSecond, Sensed, Shape, SonarId, Supply, Twist,
+    Volts,
+};
+
+/// The numbers of a record, one after the other.
+struct Numbers<'r>(&'r [u8]);
+
+impl Numbers<'_> {
+    fn take<const N: usize>(&mut self) -> [u8; N] {
+        match self.0.split_first_chunk() {
+            Some((bytes, rest)) => {
+                self.0 = rest;
+                *bytes
+            }
+            None => [0; N],
+        }
+    }
+
+    fn whole(&mut self) -> u64 {
+        u64::from_le_bytes(self.take())
+    }
+
+    fn real(&mut self) -> f64 {
+        f64::from_bits(self.whole())
+    }
+
+    fn pose(&mut self) -> Pose {
+        Pose { x: Meters(self.real()), y: Meters(self.real()), theta: Radians(self.real()) }
+    }
+}
+
+/// Number of bytes of the shape of a body.
+pub const BEGIN: usize = 56;
+/// Number of bytes of a turn, before its pings.
+pub const TURN: usize = 80;
+/// Number of bytes of a ping.
+pub const PING: usize = 56;
+
+/// The record of a body.
+pub type Begin = [u8; BEGIN];
+/// The record of a turn: the time, the pose, the velocity, the switches, the supply, the number of pings.
+pub type Turn = [u8; TURN];
+/// The record of a ping: its sonar, its range (NaN without an echo), its time, its pose, its mount.
+pub type Ping = [u8; PING];
+
+/// Reads the shape of a body.
+#[must_use]
+pub fn shape(record: &Begin) -> Shape {
+    let mut numbers = Numbers(record);
+    let mut metres = || Meters(numbers.real());
+    let (body_radius, half_length, half_width, wheel_base) = (metres(), metres(), metres(), metres());
+    let (ring_radius, apart) = (metres(), metres());
+    Shape {
+        body_radius,
+        half_length,
+        half_width,
+        wheel_base,
+        sonars_apart: Some(apart).filter(|apart| apart.0 >= 0.0),
+        ring_radius,
+        confirmation: numbers.whole() as usize,
+        steering: Steering::USUAL,
+    }
+}
+
+/// Reads a turn; returns its time, and the number of pings that follow.
+pub fn turn(record: &Turn, y: &mut Sensed) -> (Nanos, u64) {
+    let mut numbers = Numbers(record);
+    y.at = Nanos(numbers.whole());
+    y.odometry = numbers.pose();
+    y.velocity = Twist { v: MetersPerSecond(numbers.real()), omega: RadiansPerSecond(numbers.real()) };
+    y.switches = numbers.whole() as u32;
+    y.supply.battery = Volts(numbers.real());
+    let flags = numbers.whole();
+    y.supply = Supply { is_low: flags & 1 != 0, is_plugged: flags & 2 != 0, ..y.supply };
+    (y.at, numbers.whole())
+}
+
+/// Reads a ping.
+pub fn ping(record: &Ping, y: &mut Sensed) {
+    let mut numbers = Numbers(record);
+    let sonar = SonarId::new(numbers.whole() as u8);
+    let range = numbers.real();
+    let (at, pose) = (Nanos(numbers.whole()), numbers.pose());
+    let mount = Mount { left: f32::from_le_bytes(numbers.take()), turned: f32::from_le_bytes(numbers.take()) };
+    let ping = mdle_runtime::Ping { range: (!range.is_nan()).then_some(Meters(range)), at, pose, mount };
+    if let Some(pings) = y.pings.get_mut(sonar.number()) {
+        pings.push(ping);
+    }
+}
+
+/// Takes in the pings of a turn, once all are read.
+pub fn hear(y: &mut Sensed) {
+    let Sensed { compass, pings, odometry, shape, .. } = y;
+    compass.take(pings, *odometry, shape);
+}
