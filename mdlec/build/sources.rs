@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use crate::targets::targets;
+use crate::targets::{checkout, manifest, targets};
 
 /// The packages that targets share; the targets come on top.
 const SHARED: [&str; 8] = [
@@ -30,20 +30,19 @@ const EMULATOR: &str = "emulator";
 /// Writes `$OUT_DIR/sources.rs`: the files with their contents, a hash of them all, the targets, and their
 /// emulators.
 pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
-    let root = Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("..").canonicalize()?;
+    let root = checkout("..")?;
     let out = PathBuf::from(env::var("OUT_DIR")?);
     let targets = targets(&root)?;
-    let emulated =
-        targets.iter().filter(|name| root.join("targets").join(name).join(EMULATOR).join("Cargo.toml").is_file());
+    let emulated = targets.iter().filter(|name| manifest(&root.join("targets").join(name).join(EMULATOR)).is_some());
     let emulated: Vec<_> = emulated.cloned().collect();
     let mut packages: Vec<_> = SHARED.into_iter().map(str::to_owned).collect();
     packages.extend(targets.iter().map(|name| format!("targets/{name}")));
     packages.push(format!("targets/{EMULATOR}"));
     packages.extend(emulated.iter().map(|name| format!("targets/{name}/{EMULATOR}")));
 
-    let manifest = out.join("workspace.toml");
-    fs::write(&manifest, workspace(&root, &packages)?)?;
-    let mut files = vec![("Cargo.toml".to_owned(), manifest), ("Cargo.lock".to_owned(), root.join("Cargo.lock"))];
+    let reduced = out.join("workspace.toml");
+    fs::write(&reduced, workspace(&root, &packages)?)?;
+    let mut files = vec![("Cargo.toml".to_owned(), reduced), ("Cargo.lock".to_owned(), root.join("Cargo.lock"))];
     for package in &packages {
         println!("cargo::rerun-if-changed={}", root.join(package).display());
         collect(&root.join(package), package, &mut files)?;
@@ -65,7 +64,7 @@ pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
 
 /// The root manifest, reduced to `packages`.
 fn workspace(root: &Path, packages: &[String]) -> Result<String, Box<dyn Error>> {
-    let mut manifest: toml::Table = fs::read_to_string(root.join("Cargo.toml"))?.parse()?;
+    let mut manifest: toml::Table = read_manifest(root)?.parse()?;
     let workspace = table_in(&mut manifest, "workspace")?;
     workspace.remove("default-members");
     workspace.insert("members".to_owned(), packages.to_vec().into());
@@ -86,6 +85,11 @@ fn manifest_of(text: &str) -> Result<String, Box<dyn Error>> {
     Ok(toml::to_string(&manifest)?)
 }
 
+/// The text of the manifest in `folder`.
+fn read_manifest(folder: &Path) -> Result<String, Box<dyn Error>> {
+    Ok(fs::read_to_string(manifest(folder).ok_or_else(|| format!("{} has no manifest", folder.display()))?)?)
+}
+
 /// The table `name` in `table`.
 fn table_in<'a>(table: &'a mut toml::Table, name: &str) -> Result<&'a mut toml::Table, String> {
     table.get_mut(name).and_then(toml::Value::as_table_mut).ok_or_else(|| format!("Cargo.toml has no table `{name}`"))
@@ -96,9 +100,10 @@ fn collect(folder: &Path, name: &str, files: &mut Vec<(String, PathBuf)>) -> Res
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
         let own = text(path.file_name())?;
-        let below = format!("{name}/{own}");
+        let is_manifest = manifest(folder).is_some_and(|manifest| manifest == path);
+        let below = format!("{name}/{}", if is_manifest { "Cargo.toml" } else { own });
         if path.is_dir() {
-            if !LEFT_OUT.contains(&own) && !path.join("Cargo.toml").exists() {
+            if !LEFT_OUT.contains(&own) && manifest(&path).is_none() {
                 collect(&path, &below, files)?;
             }
         } else if own != "tests.rs" && !own.starts_with('.') && !own.ends_with('~') {
@@ -140,7 +145,7 @@ fn table(
 
 /// The name in the manifest of the package in `folder`.
 fn package_name(folder: &Path) -> Result<String, Box<dyn Error>> {
-    let manifest: toml::Table = fs::read_to_string(folder.join("Cargo.toml"))?.parse()?;
+    let manifest: toml::Table = read_manifest(folder)?.parse()?;
     let name = manifest.get("package").and_then(|package| package.get("name")).and_then(toml::Value::as_str);
     Ok(name.ok_or_else(|| format!("{} has no package name", folder.display()))?.to_owned())
 }

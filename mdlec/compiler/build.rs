@@ -2,17 +2,17 @@
 
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 
-#[path = "../build/targets.rs"]
+#[path = "build/targets.rs"]
 mod targets;
 
 use std::error::Error;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::{env, fs};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Cargo watches the package by itself only as long as a build script names nothing, and `alphabets` does.
-    for watched in ["src", "build.rs", "../build/targets.rs"] {
+    for watched in ["src", "build.rs", "build/targets.rs"] {
         println!("cargo::rerun-if-changed={watched}");
     }
     lalrpop::process_src()?;
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Writes `$OUT_DIR/alphabets.rs` for `src/builtin.rs`: the shared alphabets first, then those of the targets.
 fn alphabets() -> Result<(), Box<dyn Error>> {
-    let root = Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("../..").canonicalize()?;
+    let root = targets::checkout("../..")?;
     println!("cargo::rerun-if-changed={}", root.join("targets").display());
     let names = targets::targets(&root)?.into_iter().map(|name| (format!("targets/{name}/alphabet.mdle"), name, true));
     let shared = ("atoms/alphabet.mdle".to_owned(), "atoms".to_owned(), false);

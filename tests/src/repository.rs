@@ -18,7 +18,8 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
 }
 
-/// Returns every file with one of these endings, in the order of their paths, without build folders and hidden ones.
+/// Returns every file with one of these endings, in the order of their paths, without build folders, links and hidden
+/// ones.
 #[must_use]
 pub fn files(endings: &[&str]) -> Vec<TextFile> {
     let mut found = Vec::new();
@@ -27,6 +28,10 @@ pub fn files(endings: &[&str]) -> Vec<TextFile> {
         for entry in fs::read_dir(&folder).unwrap() {
             let path = entry.unwrap().path();
             let name = path.file_name().unwrap().to_str().unwrap();
+            if path.is_symlink() {
+                // A file of another package, which is read there.
+                continue;
+            }
             if path.is_dir() {
                 let is_build = name.starts_with("target") && path.join("CACHEDIR.TAG").exists();
                 if !name.starts_with('.') && !is_build {

@@ -15,12 +15,12 @@ const LONGEST: usize = 32;
 
 /// Files of the template, except `src/alphabet.rs`, which `bind` writes.
 const FILES: [(&str, &str); 6] = [
-    ("Cargo.toml", include_str!("../../../targets/template/Cargo.toml")),
-    ("alphabet.mdle", include_str!("../../../targets/template/alphabet.mdle")),
-    ("src/lib.rs", include_str!("../../../targets/template/src/lib.rs")),
-    ("src/hardware.rs", include_str!("../../../targets/template/src/hardware.rs")),
-    ("src/quarks.rs", include_str!("../../../targets/template/src/quarks.rs")),
-    ("tests/conformance.rs", include_str!("../../../targets/template/tests/conformance.rs")),
+    ("Cargo.toml", include_str!("../../template/package.toml")),
+    ("alphabet.mdle", include_str!("../../template/alphabet.txt")),
+    ("src/lib.rs", include_str!("../../template/lib.rs")),
+    ("src/hardware.rs", include_str!("../../template/hardware.rs")),
+    ("src/quarks.rs", include_str!("../../template/quarks.rs")),
+    ("tests/conformance.rs", include_str!("../../template/conformance.rs")),
 ];
 
 /// Writes the folder, whole or not at all, and prints the next steps.

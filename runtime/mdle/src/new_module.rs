@@ -26,11 +26,11 @@ const FURTHER: [&str; 12] =
 
 /// Files of the template.
 const FILES: [(&str, &str); 5] = [
-    ("Cargo.toml", include_str!("../../template/Cargo.toml")),
-    ("src/lib.rs", include_str!("../../template/src/lib.rs")),
-    ("src/main.rs", include_str!("../../template/src/main.rs")),
-    ("plan.mdle", include_str!("../../template/plan.mdle")),
-    ("tests/run.rs", include_str!("../../template/tests/run.rs")),
+    ("Cargo.toml", include_str!("../template/package.toml")),
+    ("src/lib.rs", include_str!("../template/lib.rs")),
+    ("src/main.rs", include_str!("../template/main.rs")),
+    ("plan.mdle", include_str!("../template/plan.mdle")),
+    ("tests/run.rs", include_str!("../template/run.rs")),
 ];
 
 /// The arguments of `mdle new-module`.

@@ -38,7 +38,7 @@ pub fn at_rest(shape: Shape) -> Sensed {
     }
 }
 
-/// Runs a plan on a robot until one of them ends; prints, for each turn, the line of a trace and the bits of the speeds.
+/// Runs a plan on a robot until one of them ends; prints the line of a trace and the bits of the speeds for each turn.
 ///
 /// # Errors
 /// `out` does not take the text.

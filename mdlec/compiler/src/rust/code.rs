@@ -155,7 +155,7 @@ impl Meaning<'_> {
     }
 
     /// Emits `fn enter`, which makes the law of the atom that is entered. A law may take kilobytes: each arm assigns its
-    /// own, which puts it on the stack once, and on a microcontroller, whose stack is small, only while it is made.
+    /// own, which puts it on the stack once, and on a microcontroller only while it is made.
     pub(super) fn enter(&self) -> TokenStream {
         let arms = self.machine.atoms().map(|atom| {
             let number = Literal::usize_unsuffixed(atom.index());

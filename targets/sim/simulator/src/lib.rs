@@ -5,7 +5,6 @@
 #![forbid(unsafe_code)]
 
 /// The alphabet of the target `sim`, which `mdlec bind` writes beside `alphabet.mdle`.
-#[path = "../../src/alphabet.rs"]
 pub mod alphabet;
 mod battery;
 mod body;

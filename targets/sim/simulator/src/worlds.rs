@@ -7,10 +7,10 @@ use crate::world_file;
 
 /// The worlds that come with the simulator: first the floor of the paper's tour, box in the hallway included.
 const WORLDS: [(&str, &str); 4] = [
-    ("office", include_str!("../../worlds/office.toml")),
-    ("maze", include_str!("../../worlds/maze.toml")),
-    ("hall", include_str!("../../worlds/hall.toml")),
-    ("room", include_str!("../../worlds/room.toml")),
+    ("office", include_str!("../worlds/office.toml")),
+    ("maze", include_str!("../worlds/maze.toml")),
+    ("hall", include_str!("../worlds/hall.toml")),
+    ("room", include_str!("../worlds/room.toml")),
 ];
 
 impl World {

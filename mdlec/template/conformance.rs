@@ -1,0 +1,1 @@
+../../targets/template/tests/conformance.rs

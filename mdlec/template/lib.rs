@@ -1,0 +1,1 @@
+../../targets/template/src/lib.rs
