@@ -7,8 +7,8 @@ use std::{env, fs};
 /// Folder below `targets` that contains no robot, but the template for `mdlec new-target`.
 const TEMPLATE: &str = "template";
 
-/// The folder of the sources in a published package, which `.ci/package` writes, and the name of a manifest there: cargo
-/// leaves a folder with a `Cargo.toml` out of a package.
+/// The folder of the sources in a published package, which `.ci/package` writes, and the name of a manifest there:
+/// cargo leaves a folder with a `Cargo.toml` out of a package.
 const PACKED: &str = "packed";
 const PACKED_MANIFEST: &str = "manifest.toml";
 

@@ -154,8 +154,8 @@ impl Meaning<'_> {
         }
     }
 
-    /// Emits `fn enter`, which makes the law of the atom that is entered. A law may take kilobytes: each arm assigns its
-    /// own, which puts it on the stack once, and on a microcontroller only while it is made.
+    /// Emits `fn enter`, which makes the law of the atom that is entered. A law may take kilobytes: each arm assigns
+    /// the one it makes, which puts it on the stack once, and on a microcontroller only while it is made.
     pub(super) fn enter(&self) -> TokenStream {
         let arms = self.machine.atoms().map(|atom| {
             let number = Literal::usize_unsuffixed(atom.index());
