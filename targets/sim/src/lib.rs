@@ -12,8 +12,9 @@ mod watch;
 mod whole_file;
 
 pub use mdle_simulator::{
-    Body, Charger, Fault, Footprint, Form, Goal, Heard, Input, Make, Outline, Output, Part, Place, Schedule, Sensed,
-    Simulated, Start, StartError, Stop, Thing, Walls, World, WorldError, Zone, alphabet,
+    Body, Charger, Drawing, Fault, Footprint, Form, Goal, Heard, Input, Make, Outline, Output, Part, Place, Schedule,
+    Sensed, SignalCurve, Simulated, Start, StartError, Stop, Thing, TimeChart, Walls, World, WorldError, Zone,
+    alphabet,
 };
 pub use observed::Observed;
 pub use target::Sim;

@@ -2,11 +2,14 @@
 
 use mdle_runtime::{Nanos, Sensed};
 
+use crate::footprint::{Footprint, Form};
 use crate::frames::Frames;
+use crate::place::Place;
 use crate::plot;
 use crate::robot::Simulated;
 use crate::trail::Trail;
 use crate::world::World;
+use crate::world_error::WorldError;
 
 /// The record of a run in a world, and the pictures of it.
 #[derive(Debug, Clone)]
@@ -25,6 +28,32 @@ impl Drawing {
         trail.about.setup = setup;
         trail.frames = animated.then(Frames::new);
         Self { world: world.clone(), trail }
+    }
+
+    /// Begins the picture of a recorded run, of which the world is not known: the way is that of the odometry. `setup`
+    /// names the run in titles.
+    ///
+    /// # Errors
+    /// Never: an empty text is a world without walls.
+    pub fn without_world(y: &Sensed, setup: String) -> Result<Self, WorldError> {
+        let (half_length, half_width) = (y.shape.half_length.0, y.shape.half_width.0);
+        let form = if y.shape.half_length == y.shape.half_width {
+            Form::Disc { radius: half_length }
+        } else {
+            Form::Rectangle { half_length, half_width }
+        };
+        let mut trail = Trail::from(&Footprint { pose: y.odometry, form });
+        trail.about.setup = setup;
+        Ok(Self { world: World::parse("the world of a record", "")?, trail })
+    }
+
+    /// Records an output of a recorded run at time `t`; `touches` is `true` if a contact begins with it.
+    pub fn sensed(&mut self, y: &Sensed, t: Nanos, touches: bool) {
+        self.trail.went(&y.odometry);
+        self.trail.sensed(y, t);
+        if touches {
+            self.trail.touched(Place::of(&y.odometry), t);
+        }
     }
 
     /// Records an exchange of `robot` at time `t`, which gave `sensed`; `touches` is `true` if a contact begins with
@@ -77,7 +106,6 @@ mod tests {
 
     use super::*;
     use crate::model::{Body, Part};
-    use crate::place::Place;
     use crate::robot::Make;
 
     /// Returns the trail of a robot that goes ahead at `speed`, in m/s, from the origin for `turns` periods, and the

@@ -47,6 +47,7 @@ pub use model::{Body, PARTS, Part};
 pub use moving::{Schedule, Stop, Thing};
 pub use outline::Outline;
 pub use place::Place;
+pub use plot::{SignalCurve, TimeChart};
 pub use robot::{Fault, Make, Simulated};
 pub use ros_map::Header as MapHeader;
 pub use sonar::Heard;

@@ -1,6 +1,7 @@
 //! The pictures of a run: of `--plot`, the floor, the way driven and where each atom began; of `--record`, one that
 //! moves.
 
+mod chart;
 mod colours;
 mod drawing;
 mod film;
@@ -19,5 +20,6 @@ mod things;
 mod title;
 mod view;
 
+pub use chart::{SignalCurve, TimeChart};
 pub(crate) use drawing::svg;
 pub(crate) use record::animated;

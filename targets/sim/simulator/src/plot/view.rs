@@ -20,7 +20,9 @@ pub(super) struct View {
 impl View {
     /// The way with the room around it, or the whole world where little of it would be left out.
     pub(super) fn of(world: &World, trail: &Trail) -> Self {
-        let places = || world.places().chain(trail.places());
+        // Without a world there is only what the robot has heard.
+        let heard = || trail.echoes.iter().copied().filter(|_| world.places().next().is_none());
+        let places = || world.places().chain(trail.places()).chain(heard());
         let all = Self { x: range(places().map(|place| place.x)), y: range(places().map(|place| place.y)) };
         let way = Self { x: range(trail.places().map(|place| place.x)), y: range(trail.places().map(|place| place.y)) };
         let all = Self { x: grown(all.x, AROUND), y: grown(all.y, AROUND) };
