@@ -43,6 +43,11 @@ impl PathStore {
         let place = self.0.binary_search_by(|path| path.name.cmp(name)).ok()?;
         self.0.get(place).map(|path| path.setpoints)
     }
+
+    /// Returns the names of the paths, in their order.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.0.iter().map(|path| path.name)
+    }
 }
 
 #[cfg(test)]
@@ -60,5 +65,6 @@ mod tests {
             [Some(1), Some(0), None, None, None]
         );
         assert_eq!(PathStore::EMPTY.path("hall"), None);
+        assert!(store.names().eq(["empty", "hall"]));
     }
 }

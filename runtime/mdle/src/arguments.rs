@@ -11,7 +11,9 @@ use mdle_engine::tree::Role;
 use mdle_quantity::Quantity;
 
 use crate::Failure;
+use crate::log::{self, Log};
 use crate::new_module::NewModule;
+use crate::plot::{self, Plot};
 use crate::why::{self, Why};
 
 /// The command that was given.
@@ -25,6 +27,10 @@ pub(crate) enum Asked {
     Replay(Replay),
     /// `mdle why`.
     Why(Why),
+    /// `mdle log`.
+    Log(Log),
+    /// `mdle plot`.
+    Plot(Plot),
 }
 
 /// The arguments of `mdle replay`.
@@ -34,6 +40,8 @@ pub(crate) struct Replay {
     pub(crate) log: PathBuf,
     /// File of the plan; `None` for that of the record.
     pub(crate) plan: Option<PathBuf>,
+    /// Time of the last turn, as it was typed; `None` for all turns.
+    pub(crate) until: Option<String>,
 }
 
 /// The arguments of `mdle run`.
@@ -101,8 +109,11 @@ pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
         Some(("replay", replay)) => Ok(Asked::Replay(Replay {
             log: replay.get_one("log").cloned().unwrap_or_default(),
             plan: replay.get_one("plan").cloned(),
+            until: replay.get_one("until").cloned(),
         })),
         Some(("why", matches)) => Ok(Asked::Why(Why::of(matches))),
+        Some(("log", matches)) => Ok(Asked::Log(Log::of(matches))),
+        Some(("plot", matches)) => Ok(Asked::Plot(Plot::of(matches))),
         Some(_) | None => Err(Failure::Usage("no command was given\nhelp: `mdle run PLAN` runs a plan".to_owned())),
     }
 }
@@ -181,6 +192,8 @@ fn command() -> Command {
         .subcommand(new_module())
         .subcommand(replay())
         .subcommand(why::command())
+        .subcommand(log::command())
+        .subcommand(plot::command())
 }
 
 fn new_module() -> Command {
@@ -222,6 +235,12 @@ fn replay() -> Command {
                 .value_name("PLAN")
                 .help("File of the plan to run [default: the text in the record]")
                 .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            Arg::new("until")
+                .long("until")
+                .value_name("TIME")
+                .help("Time of the last turn to make, in seconds or with a unit [default: that of the record]"),
         )
         .after_help(
             "Exit status: 0 if all turns are those of the record; 1 if a turn differs, the record was changed, or the plan has \
@@ -357,6 +376,8 @@ mod tests {
             Asked::NewModule(new) => panic!("{new:?}"),
             Asked::Replay(replay) => panic!("{replay:?}"),
             Asked::Why(why) => panic!("{why:?}"),
+            Asked::Log(log) => panic!("{log:?}"),
+            Asked::Plot(plot) => panic!("{plot:?}"),
         }
     }
 

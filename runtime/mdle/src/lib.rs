@@ -6,9 +6,11 @@
 
 mod arguments;
 mod failure;
+mod log;
 mod modules;
 mod new_module;
 mod plans;
+mod plot;
 mod replay;
 mod replayed;
 mod run;
@@ -46,6 +48,8 @@ pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
         Asked::NewModule(arguments) => new_module::new_module(&arguments),
         Asked::Replay(arguments) => replay::replay(&arguments),
         Asked::Why(arguments) => why::why(&arguments),
+        Asked::Log(arguments) => log::log(&arguments),
+        Asked::Plot(arguments) => plot::plot(&arguments),
     };
     arguments::parse(arguments).and_then(run).unwrap_or_else(Failure::tell)
 }

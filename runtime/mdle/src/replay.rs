@@ -12,16 +12,20 @@ use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, judged};
 use mdle_compiler::fsm::Machine;
 use mdle_compiler::syntax::Loader;
 use mdle_files::{InputError, Target, read_plan};
+use mdle_host::Clocked;
 use mdle_record::{Begin, ReadError, Records};
 use mdle_runtime::Printable;
 
 use crate::arguments::Replay;
 use crate::failure::{self, Failure};
-use crate::replayed::{Difference, Outcome, Record};
+use crate::log;
+use crate::replayed::{Difference, Outcome, Parting, Record, ReplayTerms};
 use crate::targets;
 
 /// Exit status of a run that is not that of the record.
 const DIFFERS: u8 = 1;
+/// Maximum number of turns that are printed after the first that differs.
+const ROWS: usize = 20;
 
 /// Re-executes a record; returns 0 if the run is that of the record, and 1 if it differs or the record was changed.
 ///
@@ -39,8 +43,12 @@ pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
     let linked = targets::linked(&begin.target).map_err(Failure::Usage)?;
     let target = mdle_files::target(Some(&begin.target))?;
     let (machine, sources) = plan(&arguments.log, arguments.plan.as_deref(), &begin, &target)?;
-    let outcome = (linked.replay)(&machine, &sources, &target, records)?;
-    tell(&outcome).map_err(|error| Failure::Usage(format!("standard output cannot be written: {error}")))?;
+    let until = arguments.until.as_deref().map(log::time).transpose()?;
+    let terms = ReplayTerms { until, goes_on: arguments.plan.is_some() };
+    let outcome = (linked.replay)(&machine, &sources, &target, records, terms)?;
+    let plan = arguments.plan.as_ref().and_then(|plan| plan.file_name()).map(|name| name.to_string_lossy());
+    tell(&outcome, plan.as_deref().unwrap_or_default())
+        .map_err(|error| Failure::Usage(format!("standard output cannot be written: {error}")))?;
     match outcome {
         Outcome::Unread(_, error @ ReadError::System(_)) => Err(unread(&arguments.log, &error)),
         Outcome::Same { .. } => Ok(ExitCode::SUCCESS),
@@ -157,21 +165,48 @@ impl Loader for RecordedFiles<'_> {
     }
 }
 
-/// Prints the outcome.
-fn tell(outcome: &Outcome) -> io::Result<()> {
+/// Prints the outcome for a plan of this name.
+fn tell(outcome: &Outcome, plan: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     match outcome {
         Outcome::Same { turns, is_whole } => {
             let end = if *is_whole { "" } else { "; the record has no end" };
             writeln!(out, "the same to the bit, {turns} turns{end}")
         }
-        Outcome::Differs(Difference { turn, t, parts }) => {
+        Outcome::Differs(Difference { turn, t, parts, after }) => {
             writeln!(out, "turn {turn} at {} s differs", mdle_runtime::trace::Seconds(*t))?;
             parts.iter().try_for_each(|part| {
                 let [name, recorded, replayed] = [&part.name, &part.recorded, &part.replayed].map(Printable);
                 writeln!(out, "{name}\n  recorded: {recorded}\n  replayed: {replayed}")
-            })
+            })?;
+            out.write_all(side_by_side(after, plan).as_bytes())
         }
         Outcome::Unread(turns, error) => writeln!(out, "the same to the bit, {turns} turns; then {error}"),
     }
+}
+
+/// Returns the transitions from the first turn that differs on, those of the record beside those of the other plan;
+/// empty if there are none.
+fn side_by_side(after: &[Parting], plan: &str) -> String {
+    if after.is_empty() {
+        return String::new();
+    }
+    let recorded = |row: &Parting| Printable(row.recorded.join(", ")).to_string();
+    let width = after.iter().take(ROWS).map(|row| recorded(row).chars().count()).max().unwrap_or(0).max(8);
+    let mut text =
+        "\nfrom here on the robot would have been somewhere else: its outputs stay those of the record\n\n".to_owned();
+    let mut row = |t: &str, recorded: &str, other: &str| {
+        let line = format!("{t:>9}  {recorded:<width$}  {other}");
+        text += line.trim_end();
+        text += "\n";
+    };
+    row("", "recorded", &Printable(plan).to_string());
+    for parting in after.iter().take(ROWS) {
+        let other = Printable(parting.replayed.join(", ")).to_string();
+        row(&Clocked(parting.t).to_string(), &recorded(parting), &other);
+    }
+    if after.len() > ROWS {
+        text += &format!("… and {} more turns with transitions\n", after.len() - ROWS);
+    }
+    text
 }

@@ -4,8 +4,11 @@ use std::io::{BufReader, Read};
 use std::sync::Arc;
 
 use mdle_compiler::load::Loaded;
-use mdle_record::{Applied, ReadError, RecordedTurn, Records, Step};
+use mdle_record::{Applied, Message, MessageKind, ReadError, RecordedTurn, Records, Step};
 use mdle_runtime::{Alphabet, Cause, Machine, Measured, Nanos, Plan, Sensed, Transition, Turn, Twist, Watch};
+
+/// The end of a plan, in place of a law.
+const OVER: &str = "plan over";
 
 /// A record that is being read.
 pub(crate) type Record = Records<BufReader<Box<dyn Read>>>;
@@ -17,7 +20,7 @@ pub(crate) enum Outcome {
     Same {
         /// Number of turns.
         turns: u64,
-        /// `true` if the record has an end.
+        /// `true` if the record has an end, or the replay ended before it as asked.
         is_whole: bool,
     },
     /// A turn differs from the record.
@@ -35,6 +38,28 @@ pub(crate) struct Difference {
     pub(crate) t: Nanos,
     /// The parts that differ.
     pub(crate) parts: Vec<Part>,
+    /// The turns with transitions from this one on; empty unless they were asked for.
+    pub(crate) after: Vec<Parting>,
+}
+
+/// The transitions of a turn in the record and in the replay, each by the law that began.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Parting {
+    /// Time of the turn.
+    pub(crate) t: Nanos,
+    /// Laws that began in the record; `plan over` at its end.
+    pub(crate) recorded: Vec<String>,
+    /// Laws that began in the replay.
+    pub(crate) replayed: Vec<String>,
+}
+
+/// The part of a record that is replayed, and what is wanted of it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ReplayTerms {
+    /// Time of the last turn; `None` for all.
+    pub(crate) until: Option<Nanos>,
+    /// `true` if the plan goes on after the first turn that differs.
+    pub(crate) goes_on: bool,
 }
 
 /// A part of a turn that differs.
@@ -54,6 +79,8 @@ struct Steps {
     steps: Vec<Step>,
     /// Operands of the next transition.
     operands: Vec<u32>,
+    /// The atoms that were entered; `None` for the end of the plan.
+    laws: Vec<Option<u32>>,
 }
 
 impl Watch for Steps {
@@ -63,31 +90,64 @@ impl Watch for Steps {
 
     fn transition(&mut self, transition: Transition) {
         self.steps.push(Step::new(&transition, std::mem::take(&mut self.operands)));
+        self.laws.push(transition.atom);
     }
 }
 
 /// Runs a plan on the outputs of a record.
 pub(crate) fn replayed<A: Alphabet<Output = Sensed, Input = Twist>>(
     loaded: &Arc<Loaded<A>>,
-    mut record: Record,
+    record: Record,
+    terms: ReplayTerms,
 ) -> Outcome {
-    let (mut machine, mut turns) = (None, 0);
+    let (mut machine, mut turns, mut difference) = (None, 0, None::<Difference>);
+    let mut record = record.with_messages();
     for recorded in &mut record {
-        let recorded = match recorded {
+        let (recorded, messages) = match recorded {
             Ok(recorded) => recorded,
-            Err(error) => return Outcome::Unread(turns, error),
+            Err(error) if difference.is_none() => return Outcome::Unread(turns, error),
+            Err(_) => break,
         };
         let RecordedTurn { t, y, .. } = &recorded;
+        if terms.until.is_some_and(|until| *t > until) {
+            return difference.map_or(Outcome::Same { turns, is_whole: true }, Outcome::Differs);
+        }
         let machine = machine.get_or_insert_with(|| Machine::begin(loaded.plan(), y, *t));
         let mut watch = Steps::default();
         let made = machine.turn(y, *t, &mut watch);
-        let parts = differing(machine.plan(), &recorded, made, &watch.steps, machine.state());
-        if !parts.is_empty() {
-            return Outcome::Differs(Difference { turn: recorded.number, t: *t, parts });
+        if difference.is_none() {
+            let parts = differing(machine.plan(), &recorded, made, &watch.steps, machine.state());
+            if parts.is_empty() {
+                turns += 1;
+                continue;
+            }
+            let (turn, t) = (recorded.number, *t);
+            difference = Some(Difference { turn, t, parts, after: Vec::new() });
         }
-        turns += 1;
+        if !terms.goes_on {
+            break;
+        }
+        let replayed: Vec<_> = watch.laws.iter().map(|atom| law(machine.plan(), *atom)).collect();
+        let recorded: Vec<_> = messages.iter().filter_map(law_of).collect();
+        if let Some(Difference { after, .. }) = &mut difference
+            && !(recorded.is_empty() && replayed.is_empty())
+        {
+            after.push(Parting { t: *t, recorded, replayed });
+        }
     }
-    Outcome::Same { turns, is_whole: record.is_whole() }
+    difference.map_or(Outcome::Same { turns, is_whole: record.is_whole() }, Outcome::Differs)
+}
+
+/// The law of an atom that began.
+fn law(plan: &impl Plan, atom: Option<u32>) -> String {
+    atom.map_or_else(|| OVER.to_owned(), |atom| plan.law(atom).to_owned())
+}
+
+/// The law that began with a transition of the record.
+fn law_of(message: &Message) -> Option<String> {
+    let transition: serde_json::Value = serde_json::from_str(&message.json).ok()?;
+    (message.kind == MessageKind::Transition)
+        .then(|| transition.get("law").and_then(serde_json::Value::as_str).unwrap_or(OVER).to_owned())
 }
 
 /// The parts of a turn that differ from the record.

@@ -17,7 +17,7 @@ use mdle_runtime::{Alphabet, Plan as _, Robot, Sensed, Twist};
 
 use crate::failure::Failure;
 use crate::plans;
-use crate::replayed::{Outcome, Record, replayed};
+use crate::replayed::{Outcome, Record, ReplayTerms, replayed};
 use crate::safety::{Guarded, SafetyFile};
 use crate::session::Seat;
 use crate::why::{Rerun, rerun};
@@ -41,7 +41,7 @@ pub(crate) struct LinkedTarget {
 type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Box<dyn Ready>, Failure>;
 
 /// Runs the plan of a machine on the outputs of a record.
-type ReplayRecord = fn(&Machine, &Sources, &Target, Record) -> Result<Outcome, Failure>;
+type ReplayRecord = fn(&Machine, &Sources, &Target, Record, ReplayTerms) -> Result<Outcome, Failure>;
 
 /// Loads the plan of a machine, to make the turns of a record again, with all laws or with those alone that complete.
 type RerunRecord = fn(&Machine, &Sources, &Target, Record, bool) -> Result<Box<dyn Rerun>, Failure>;
@@ -161,12 +161,18 @@ where
     }
 }
 
-fn replay<A>(machine: &Machine, sources: &Sources, target: &Target, record: Record) -> Result<Outcome, Failure>
+fn replay<A>(
+    machine: &Machine,
+    sources: &Sources,
+    target: &Target,
+    record: Record,
+    terms: ReplayTerms,
+) -> Result<Outcome, Failure>
 where
     A: Alphabet<Output = Sensed, Input = Twist>,
 {
     let loaded = Arc::new(load::load::<A>(machine, sources, &target.alphabet)?);
-    Ok(replayed(&loaded, record))
+    Ok(replayed(&loaded, record, terms))
 }
 
 fn load<T, A>(

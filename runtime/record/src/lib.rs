@@ -15,6 +15,6 @@ mod viewers;
 mod writer;
 
 pub use begin::{Begin, Constants};
-pub use reader::{ReadError, Records};
+pub use reader::{Message, MessageKind, ReadError, Records, TurnsWithMessages};
 pub use turn::{Applied, Chain, RecordedTurn, Step};
 pub use writer::RecordFile;

@@ -9,6 +9,7 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use crate::frames::{Turns, Undecoded};
 use crate::writer::{BEGIN, TURN};
 use crate::{Begin, RecordedTurn};
+use mdle_runtime::Nanos;
 
 /// Maximum size of a record's part, in bytes: more than a second of a robot.
 const LARGEST: usize = 64_000_000;
@@ -44,14 +45,66 @@ impl fmt::Display for ReadError {
 
 impl std::error::Error for ReadError {}
 
+/// A message of a record about a turn, for people and viewers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message {
+    /// The kind of the message.
+    pub kind: MessageKind,
+    /// A JSON object, under the schema of the kind's channel.
+    pub json: String,
+}
+
+/// The kind of a message.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MessageKind {
+    /// A transition: `/plan/transitions`.
+    Transition,
+    /// An event: `/engine/events`.
+    Event,
+}
+
+/// The turns of a record with the messages about them, which a record has after each turn.
+pub struct TurnsWithMessages<R> {
+    records: Records<R>,
+    /// The turn after the one that was returned last.
+    peeked: Option<Result<RecordedTurn, ReadError>>,
+}
+
+impl<R: Read> TurnsWithMessages<R> {
+    /// Returns `true` once the end of the record was read; a run that was killed leaves a record without an end.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.records.is_whole()
+    }
+
+    /// Returns the time of the next turn; `None` at the end of the record.
+    #[must_use]
+    pub fn next_time(&self) -> Option<Nanos> {
+        self.peeked.as_ref().and_then(|next| next.as_ref().ok()).map(|next| next.t)
+    }
+}
+
+impl<R: Read> Iterator for TurnsWithMessages<R> {
+    type Item = Result<(RecordedTurn, Vec<Message>), ReadError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let turn = match self.peeked.take().or_else(|| self.records.next())? {
+            Ok(turn) => turn,
+            Err(error) => return Some(Err(error)),
+        };
+        self.peeked = self.records.next();
+        Some(Ok((turn, std::mem::take(&mut self.records.messages))))
+    }
+}
+
 /// The turns of a record.
 pub struct Records<R> {
     source: R,
     reader: LinearReader,
-    /// Channels of `/exact/begin`, `/exact/turn` and `/engine/events`.
-    channels: [Option<u16>; 3],
-    /// The event that was read last, as JSON.
-    event: String,
+    /// Channels of `/exact/begin`, `/exact/turn`, `/plan/transitions` and `/engine/events`.
+    channels: [Option<u16>; 4],
+    /// The messages that were read since the last turn.
+    messages: Vec<Message>,
     turns: Option<Turns>,
     count: u64,
     /// `true` once the end of the record was read: it was not cut short.
@@ -67,7 +120,7 @@ impl<R: Read> Records<R> {
         let options = LinearReaderOptions::default().with_record_length_limit(LARGEST);
         let reader = LinearReader::new_with_options(options);
         let mut records =
-            Self { source, reader, channels: [None; 3], event: String::new(), turns: None, count: 0, is_whole: false };
+            Self { source, reader, channels: [None; 4], messages: Vec::new(), turns: None, count: 0, is_whole: false };
         match records.message() {
             Ok(Some((0, content))) => {
                 let turns = Turns::of(&content).ok_or(ReadError::NotARecord)?;
@@ -86,11 +139,9 @@ impl<R: Read> Records<R> {
         self.is_whole
     }
 
-    /// Returns the last event of the turns that were read, as a JSON object with `turn`, `t`, `kind` and `text`; empty
-    /// before the first. The events of a turn come after it, so those of the last turn that was read are not known yet.
-    #[must_use]
-    pub fn event(&self) -> &str {
-        &self.event
+    /// Returns the turns with the messages about them.
+    pub fn with_messages(self) -> TurnsWithMessages<R> {
+        TurnsWithMessages { records: self, peeked: None }
     }
 
     /// Returns the next message of `/exact/begin`, which is 0, or of `/exact/turn`, which is 1; `None` at the end.
@@ -108,14 +159,17 @@ impl<R: Read> Records<R> {
                         match (channel.topic.as_str(), channel.message_encoding) {
                             ("/exact/begin", encoding) if encoding == BEGIN => self.channels[0] = Some(channel.id),
                             ("/exact/turn", encoding) if encoding == TURN => self.channels[1] = Some(channel.id),
-                            ("/engine/events", _) => self.channels[2] = Some(channel.id),
+                            ("/plan/transitions", _) => self.channels[2] = Some(channel.id),
+                            ("/engine/events", _) => self.channels[3] = Some(channel.id),
                             ("/exact/begin" | "/exact/turn", other) => return Err(ReadError::OtherVersion(other)),
                             _ => {}
                         }
                     } else if let Record::Message { header, data } = record {
                         let kind = self.channels.iter().position(|known| *known == Some(header.channel_id));
+                        let text = || String::from_utf8_lossy(&data).into_owned();
                         match kind {
-                            Some(2) => self.event = String::from_utf8_lossy(&data).into_owned(),
+                            Some(2) => self.messages.push(Message { kind: MessageKind::Transition, json: text() }),
+                            Some(3) => self.messages.push(Message { kind: MessageKind::Event, json: text() }),
                             Some(kind) => return Ok(Some((kind, data.into_owned()))),
                             None => {}
                         }
@@ -136,6 +190,7 @@ impl<R: Read> Iterator for Records<R> {
     type Item = Result<RecordedTurn, ReadError>;
 
     fn next(&mut self) -> Option<Self::Item> {
+        self.messages.clear();
         let content = match self.message() {
             Ok(Some((1, content))) => content,
             Ok(Some(_)) => return Some(Err(ReadError::Damaged(self.count, "it begins twice".to_owned()))),

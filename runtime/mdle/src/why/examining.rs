@@ -28,6 +28,13 @@ pub(crate) struct Moment {
     pub(crate) scopes: Vec<ScopeMoment>,
 }
 
+impl Moment {
+    /// Returns `true` if the atom was entered in this turn.
+    pub(crate) fn is_new(&self) -> bool {
+        self.scopes.last().is_some_and(|own| own.since == Nanos::ZERO)
+    }
+}
+
 /// A scope at a moment.
 #[derive(Debug, Clone)]
 pub(crate) struct ScopeMoment {

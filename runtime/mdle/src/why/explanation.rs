@@ -180,7 +180,7 @@ impl<'m> Explainer<'m> {
             self.passes.step(plan.fsm(), transition);
             let to = transition.atom.map(|atom| self.atom(plan, atom));
             self.began.clone_from(&cause);
-            let (is_skipped, was_done) = (!ended.is_empty(), was_done(moment, transition));
+            let (is_skipped, was_done) = (moment.is_new(), was_done(moment, transition));
             ended.push(Ended { atom, is_skipped, cause, was_done, scopes, to });
         }
         let runs = moments.next().map(|moment| Runs {

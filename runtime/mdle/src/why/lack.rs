@@ -54,7 +54,7 @@ pub(crate) fn lack(
         },
         Condition::Quark(_) => compared(part.measured, values),
         Condition::Rising { .. } => match inner {
-            Some((_, inner)) if inner.fired => "RISING: it has not been false since its scope was entered".to_owned(),
+            Some((_, inner)) if inner.fired => "it has not been false since its scope was entered".to_owned(),
             Some((condition, part)) => lack(condition, part, None, values),
             None => String::new(),
         },
@@ -66,7 +66,7 @@ pub(crate) fn lack(
             },
             Some(_) | None => "it holds".to_owned(),
         },
-        Condition::After(_) => "it did not end last so".to_owned(),
+        Condition::After(_) => "that was not the last to end, or it ended otherwise".to_owned(),
         Condition::Null => "it never fires".to_owned(),
         Condition::Or(_) | Condition::And(_) => String::new(),
     }

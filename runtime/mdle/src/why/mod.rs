@@ -11,6 +11,7 @@ mod rerun;
 mod text;
 
 use std::io::{self, Write as _};
+use std::path::Path;
 use std::process::ExitCode;
 
 use mdle_compiler::fsm::Machine;
@@ -20,11 +21,12 @@ use mdle_runtime::{Nanos, Printable, PrintableLines};
 
 pub(crate) use arguments::{Question, Why, why as command};
 use explanation::{AtomWords, Explainer, Explanation};
-pub(crate) use rerun::{Rerun, rerun};
-use rerun::{RerunTurn, Stop};
+use rerun::Stop;
+pub(crate) use rerun::{Rerun, RerunTurn, rerun};
 
 use crate::failure::{self, Failure};
 use crate::replay;
+use crate::replayed::Record;
 use crate::targets;
 
 /// Exit status of a record that is not that of its plan.
@@ -57,17 +59,8 @@ enum Next {
 pub(crate) fn why(arguments: &Why) -> Result<ExitCode, Failure> {
     let (begin, record) = replay::record(&arguments.log)?;
     let name = arguments.log.display().to_string();
-    if begin.beside.contains("modules") {
-        return Err(Failure::Usage(format!(
-            "the record {name} cannot be explained: the run depended on modules as well, which a record does not have"
-        )));
-    }
-    let linked = targets::linked(&begin.target).map_err(Failure::Usage)?;
-    let target = mdle_files::target(Some(&begin.target))?;
-    let (machine, sources) = replay::plan(&arguments.log, arguments.plan.as_deref(), &begin, &target)?;
-    // Laws have no part in what runs next; only their inputs are wanted, where safety rules may have changed them.
+    let (machine, mut rerun) = reruns(&arguments.log, arguments.plan.as_deref(), &begin, record)?;
     let with_laws = !begin.beside.is_empty();
-    let mut rerun = (linked.rerun)(&machine, &sources, &target, record, with_laws)?;
     let asked = Asked { name: &name, begin: &begin, machine: &machine, with_laws };
     let answer = match &arguments.question {
         Question::At(time) => {
@@ -92,6 +85,30 @@ pub(crate) fn why(arguments: &Why) -> Result<ExitCode, Failure> {
         }
         Err(stop) => stopped(&stop, &name),
     }
+}
+
+/// Loads the plan of a record, or that of the same name in the file `plan`, to make the turns of the record again.
+///
+/// # Errors
+/// The plan cannot be read or has errors, or the run depended on more than the record has.
+pub(crate) fn reruns(
+    log: &Path,
+    plan: Option<&Path>,
+    begin: &Begin,
+    record: Record,
+) -> Result<(Machine, Box<dyn Rerun>), Failure> {
+    if begin.beside.contains("modules") {
+        return Err(Failure::Usage(format!(
+            "the record {} cannot be explained: the run depended on modules as well, which a record does not have",
+            log.display()
+        )));
+    }
+    let linked = targets::linked(&begin.target).map_err(Failure::Usage)?;
+    let target = mdle_files::target(Some(&begin.target))?;
+    let (machine, sources) = replay::plan(log, plan, begin, &target)?;
+    // Laws have no part in what runs next; only their inputs are wanted, where safety rules may have changed them.
+    let rerun = (linked.rerun)(&machine, &sources, &target, record, !begin.beside.is_empty())?;
+    Ok((machine, rerun))
 }
 
 /// A record that is asked about.
@@ -181,7 +198,11 @@ fn sentence(stop: &Stop) -> String {
     }
 }
 
-fn stopped(stop: &Stop, name: &str) -> Result<ExitCode, Failure> {
+/// Prints why the turns of the record of this name are not made again.
+///
+/// # Errors
+/// The record cannot be read.
+pub(crate) fn stopped(stop: &Stop, name: &str) -> Result<ExitCode, Failure> {
     let sentence = sentence(stop);
     match stop {
         Stop::Unread(ReadError::System(_)) => {

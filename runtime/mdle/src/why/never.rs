@@ -137,7 +137,7 @@ impl Search<'_> {
             let Some(moment) = turn.moments.get(number) else { continue };
             let place = RerunPlace { turned, facts: Explainer::facts(turn, moment) };
             self.chances(place, moment, &step.cause, plan);
-            if number > 0 && self.answer.skipped.is_none() && self.wanted.contains(&moment.atom) {
+            if moment.is_new() && self.answer.skipped.is_none() && self.wanted.contains(&moment.atom) {
                 self.answer.skipped = Some(self.stay(place, moment, &step.cause, plan));
             }
             self.explainer.step(&step.transition, plan);

@@ -1,5 +1,6 @@
 //! The turns of a record, made again by its plan and looked at.
 
+use std::io::{BufReader, Read};
 use std::sync::Arc;
 
 use mdle_compiler::diagnostic::Sources;
@@ -8,7 +9,7 @@ use mdle_compiler::load::{self, Entered, Loaded, LoadedPlan};
 use mdle_compiler::plan::Condition;
 use mdle_files::Target;
 use mdle_host::{Texts, Transitions};
-use mdle_record::{ReadError, RecordedTurn, Step};
+use mdle_record::{MessageKind, ReadError, RecordedTurn, Step, TurnsWithMessages};
 use mdle_runtime::{Alphabet, Machine, Nanos, Sensed, Stamp, Stamps, Turn, Twist};
 
 use super::examining::{Examining, Moment};
@@ -75,7 +76,15 @@ where
     let runs = machine.atoms().map(|atom| with_laws || lasts || atom.law().completes).collect();
     let texts = loaded.plan();
     let entered = Entered::Stamps(Stamps::new(vec![Stamp::START; machine.depth()].into(), machine.frames().into()));
-    Ok(Box::new(RerunOf { loaded, texts, entered, runs, record, machine: None, peeked: None }))
+    Ok(Box::new(RerunOf {
+        loaded,
+        texts,
+        entered,
+        runs,
+        record: record.with_messages(),
+        machine: None,
+        event: String::new(),
+    }))
 }
 
 struct RerunOf<A: Alphabet> {
@@ -83,20 +92,22 @@ struct RerunOf<A: Alphabet> {
     texts: LoadedPlan<A>,
     entered: Entered,
     runs: Vec<bool>,
-    record: Record,
+    record: TurnsWithMessages<BufReader<Box<dyn Read>>>,
     machine: Option<Machine<Examining<A>>>,
-    /// The turn after the one that was made last.
-    peeked: Option<Result<RecordedTurn, ReadError>>,
+    /// The last event of the turns that were made.
+    event: String,
 }
 
 impl<A: Alphabet<Output = Sensed, Input = Twist>> Rerun for RerunOf<A> {
     fn turn(&mut self, looks: &mut dyn FnMut(&RecordedTurn, Option<Nanos>) -> bool) -> Option<Result<RerunTurn, Stop>> {
-        let recorded = match self.peeked.take().or_else(|| self.record.next())? {
-            Ok(recorded) => recorded,
+        let (recorded, messages) = match self.record.next()? {
+            Ok(turn) => turn,
             Err(error) => return Some(Err(Stop::Unread(error))),
         };
-        self.peeked = self.record.next();
-        let next = self.peeked.as_ref().and_then(|next| next.as_ref().ok()).map(|next| next.t);
+        let next = self.record.next_time();
+        if let Some(event) = messages.into_iter().rfind(|message| message.kind == MessageKind::Event) {
+            self.event = event.json;
+        }
         if recorded.plan != 1 {
             return Some(Err(Stop::OtherPlan(recorded.t)));
         }
@@ -112,7 +123,7 @@ impl<A: Alphabet<Output = Sensed, Input = Twist>> Rerun for RerunOf<A> {
             return Some(Err(Stop::Differs(recorded.number)));
         }
         let moments = machine.plan().moments();
-        let event = self.record.event().to_owned();
+        let event = self.event.clone();
         Some(Ok(RerunTurn { recorded, transitions, moments, computed, event, next }))
     }
 

@@ -86,7 +86,7 @@ fn scope(text: &mut String, scope: &Scope) {
         return;
     }
     let fired = operands.iter().filter(|operand| operand.fired).count();
-    let is_any = operands.iter().all(|operand| operand.fired || operand.decides);
+    let is_any = operands.iter().all(|operand| !operand.fired && operand.decides);
     let marks = operands.len() > 1 && (examination.fired || !is_any);
     operands.iter().for_each(|shown| operand(text, shown, 4, marks));
     if examination.fired && fired > 1 && !operands.iter().any(|operand| operand.decides) {

@@ -1,0 +1,88 @@
+//! `mdle log export --csv`: the turns of a record as a table.
+
+use std::fmt::Write as _;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+use mdle_record::{Message, MessageKind, RecordedTurn};
+use mdle_runtime::SONARS;
+use mdle_runtime::trace::Seconds;
+
+use super::{created, damaged, unwritten};
+use crate::failure::Failure;
+use crate::replay;
+
+/// Writes the turns of a record as CSV to a file, or to standard output.
+///
+/// # Errors
+/// The record cannot be read, or the table cannot be written.
+pub(super) fn export(log: &Path, file: Option<&Path>) -> Result<ExitCode, Failure> {
+    let (_, records) = replay::record(log)?;
+    let mut out: Box<dyn Write> = match file {
+        Some(file) => Box::new(BufWriter::new(created(file)?)),
+        None => Box::new(BufWriter::new(io::stdout().lock())),
+    };
+    let name = file.map_or("standard output".to_owned(), |file| file.display().to_string());
+    let mut write = |line: &str| out.write_all(line.as_bytes()).map_err(|error| unwritten(&name, &error));
+    write(&head())?;
+    let mut outcome = Ok(ExitCode::SUCCESS);
+    for turn in records.with_messages() {
+        match turn {
+            Ok((turn, messages)) => write(&line(&turn, &messages))?,
+            Err(error) => {
+                outcome = damaged(log, &error);
+                break;
+            }
+        }
+    }
+    out.flush().map_err(|error| unwritten(&name, &error))?;
+    outcome
+}
+
+/// The names of the columns, in SI units.
+fn head() -> String {
+    let mut line = "turn,t,plan,state,x,y,theta,v,omega,bumpers,battery".to_owned();
+    for sonar in 0..SONARS {
+        let _ = write!(line, ",r{sonar}");
+    }
+    line + ",sent_v,sent_omega,transitions\n"
+}
+
+/// The line of a turn: the range of a sonar that has not pinged is empty, and `inf` without an echo.
+fn line(turn: &RecordedTurn, messages: &[Message]) -> String {
+    let RecordedTurn { number, t, y, sent, plan, state, .. } = turn;
+    let pose = y.odometry;
+    let mut line = format!(
+        "{number},{},{plan},{state},{},{},{},{},{},{},{}",
+        Seconds(*t),
+        pose.x.0,
+        pose.y.0,
+        pose.theta.0,
+        y.velocity.v.0,
+        y.velocity.omega.0,
+        y.switches,
+        y.supply.battery.0
+    );
+    for pings in &y.pings {
+        line += ",";
+        if let Some(ping) = pings.newest_first().next() {
+            line += &ping.range.map_or_else(|| "inf".to_owned(), |range| range.0.to_string());
+        }
+    }
+    let causes = messages.iter().filter(|message| message.kind == MessageKind::Transition).filter_map(cause);
+    let causes = causes.collect::<Vec<_>>().join("; ");
+    let _ = writeln!(line, ",{},{},{}", sent.v.0, sent.omega.0, quoted(&causes));
+    line
+}
+
+/// Returns the cause of a transition, with values and place.
+fn cause(message: &Message) -> Option<String> {
+    let transition: serde_json::Value = serde_json::from_str(&message.json).ok()?;
+    transition.get("cause")?.as_str().map(str::to_owned)
+}
+
+/// Returns a text as a field of CSV.
+fn quoted(text: &str) -> String {
+    if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}

@@ -1,0 +1,74 @@
+//! `mdle log`: what a record contains, its first part as a record, and its turns as a table.
+
+mod arguments;
+mod cut;
+mod export;
+mod info;
+
+use std::fs::File;
+use std::io;
+use std::path::Path;
+use std::process::ExitCode;
+
+use mdle_host::Quantity;
+use mdle_record::ReadError;
+use mdle_runtime::Nanos;
+
+pub(crate) use arguments::{Log, log as command};
+
+use crate::failure::{self, Failure};
+
+/// Exit status of a record that was changed or is damaged.
+const DAMAGED: u8 = 1;
+
+/// Carries out a command about a record.
+///
+/// # Errors
+/// A file cannot be read or written, or the usage is wrong.
+pub(crate) fn log(arguments: &Log) -> Result<ExitCode, Failure> {
+    match arguments {
+        Log::Info(log) => info::info(log),
+        Log::Cut(log, time, file) => cut::cut(log, self::time(time)?, file),
+        Log::Export(log, file) => export::export(log, file.as_deref()),
+    }
+}
+
+/// Reads a time of a run.
+///
+/// # Errors
+/// The text is no time, or a negative one.
+pub(crate) fn time(text: &str) -> Result<Nanos, Failure> {
+    let seconds = Quantity::Time.read(text, "s").map_err(Failure::Usage)?;
+    if seconds < 0.0 {
+        return Err(Failure::Usage(format!("`{text}` is before the start of the run")));
+    }
+    // Conversion to an integer saturates.
+    Ok(Nanos(libm::round(seconds * 1e9) as u64))
+}
+
+/// Creates a file that does not exist yet.
+///
+/// # Errors
+/// It exists, or the system's error.
+pub(crate) fn created(path: &Path) -> Result<File, Failure> {
+    File::create_new(path).map_err(|error| {
+        if error.kind() == io::ErrorKind::AlreadyExists {
+            return Failure::Usage(format!("{} exists already", path.display()));
+        }
+        unwritten(&path.display(), &error)
+    })
+}
+
+pub(crate) fn unwritten(name: &dyn std::fmt::Display, error: &io::Error) -> Failure {
+    Failure::Usage(format!("{name} cannot be written: {error}"))
+}
+
+/// The outcome of a record whose rest cannot be read.
+fn damaged(log: &Path, error: &ReadError) -> Result<ExitCode, Failure> {
+    let sentence = format!("the record {} cannot be read: {error}", log.display());
+    if matches!(error, ReadError::System(_)) {
+        return Err(Failure::Usage(sentence));
+    }
+    failure::error(&sentence);
+    Ok(ExitCode::from(DAMAGED))
+}
