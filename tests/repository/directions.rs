@@ -75,6 +75,8 @@ const PACKAGES: &[(&str, &[&str])] = &[
             "mdle-scripted",
             "mdle-compiler",
             "mdle-theory",
+            "mdle-files",
+            "mdle-record",
             "mdle-benchmarks",
         ],
     ),

@@ -1,0 +1,117 @@
+//! `mdle log`, `mdle plot` and `mdle replay --until` on the record of a run in the simulator.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use mdle_tests::executable::{folder, mdle};
+
+const PLAN: &str = "{ Square (wait 5min)
+  ((Atom (way >= 1m OR r0 < 40cm) (go 20 0)) (Atom (null) turn 90))^4
+}
+";
+
+/// Runs `mdle` with these arguments; returns its output, its messages and its exit status.
+fn run(folder: &Path, arguments: &str) -> (String, String, i32) {
+    let output = Command::new(mdle()).args(arguments.split(' ')).current_dir(folder).output().unwrap();
+    let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    (out, err, output.status.code().unwrap())
+}
+
+/// A folder with the record `square.mcap`.
+fn recorded(name: &str) -> PathBuf {
+    let folder = folder(&format!("record-tools-{name}"));
+    fs::write(folder.join("square.mdle"), PLAN).unwrap();
+    let options = "--speed max --body scout --seed 7 --world hall --log square.mcap";
+    let (_, err, status) = run(&folder, &format!("run square.mdle --target sim {options}"));
+    assert_eq!((err.as_str(), status), ("", 0));
+    folder
+}
+
+#[test]
+fn a_record_tells_what_it_contains() {
+    let folder = recorded("info");
+    let (out, err, status) = run(&folder, "log info square.mcap");
+    assert_eq!((err.as_str(), status), ("", 0));
+    let out: Vec<_> = out.lines().filter(|line| !line.starts_with("command")).collect();
+    insta::assert_snapshot!(out.join("\n"));
+    let record = fs::read(folder.join("square.mcap")).unwrap();
+    fs::write(folder.join("cut.mcap"), &record[..record.len() / 2]).unwrap();
+    let (out, _, status) = run(&folder, "log info cut.mcap");
+    assert!(out.contains("; the record has no end\n") && status == 0, "{out}");
+}
+
+/// A part is a record as well: it replays, and its turns have the same explanation.
+#[test]
+fn a_part_of_a_record_is_a_record() {
+    let folder = recorded("cut");
+    assert_eq!(run(&folder, "log cut square.mcap 10 part.mcap"), ("part.mcap: 101 turns\n".into(), String::new(), 0));
+    assert_eq!(run(&folder, "replay part.mcap").0, "the same to the bit, 101 turns\n");
+    let why = |log: &str| run(&folder, &format!("why {log} 5.2")).0;
+    assert_eq!(why("part.mcap"), why("square.mcap"));
+    assert_eq!(run(&folder, "replay square.mcap --until 10").0, "the same to the bit, 101 turns\n");
+    run(&folder, "log cut square.mcap 1h whole.mcap");
+    assert!(fs::read(folder.join("whole.mcap")).unwrap() == fs::read(folder.join("square.mcap")).unwrap());
+    let refused =
+        ["log cut square.mcap 10 part.mcap", "log cut square.mcap -1 new.mcap", "log cut none.mcap 1 new.mcap"];
+    let refused = refused.map(|arguments| run(&folder, arguments));
+    assert!(refused.iter().all(|(out, _, status)| out.is_empty() && *status == 2) && !folder.join("new.mcap").exists());
+    assert_eq!(refused[0].1, "error: part.mcap exists already\n");
+}
+
+#[test]
+fn a_damaged_record_is_not_cut() {
+    let folder = recorded("damaged");
+    let mut record = fs::read(folder.join("square.mcap")).unwrap();
+    // The pose of turn 100, after its number, its time, and the time of its output.
+    let start = [100, 10_000_000_000, 10_000_000_000].map(u64::to_le_bytes).concat();
+    let turn = record.windows(start.len()).position(|bytes| bytes == start).unwrap();
+    record[turn + start.len()] ^= 1;
+    fs::write(folder.join("changed.mcap"), record).unwrap();
+    for arguments in ["log cut changed.mcap 1h new.mcap", "log info changed.mcap", "log export --csv changed.mcap"] {
+        let (_, err, status) = run(&folder, arguments);
+        let expected =
+            "error: the record changed.mcap cannot be read: turn 100 was changed after it had been written\n";
+        assert_eq!((err.as_str(), status), (expected, 1), "{arguments}");
+    }
+    assert!(!folder.join("new.mcap").exists());
+}
+
+#[test]
+fn a_record_becomes_a_table() {
+    let folder = recorded("export");
+    let (out, err, status) = run(&folder, "log export --csv square.mcap");
+    assert_eq!((err.as_str(), status), ("", 0));
+    let lines: Vec<_> = out.lines().collect();
+    let columns = lines[0].split(',').count();
+    assert_eq!((lines.len(), columns), (334, 30));
+    assert_eq!(lines[53].split(',').take(2).collect::<Vec<_>>(), ["52", "5.2"]);
+    let cause = r#","way = 1.017 m >= 1m (square.mdle:2, of ""way >= 1m OR r0 < 40cm"")""#;
+    assert!(lines[53].ends_with(cause), "{}", lines[53]);
+    assert!(lines[52].split(',').count() == columns && lines[52].ends_with(','), "{}", lines[52]);
+    run(&folder, "log export --csv square.mcap -o table.csv");
+    assert_eq!(fs::read_to_string(folder.join("table.csv")).unwrap(), out);
+}
+
+#[test]
+fn a_record_is_drawn() {
+    let folder = recorded("plot");
+    for arguments in ["plot square.mcap path.svg", "plot square.mcap time.svg --signal r0,v --signal omega"] {
+        assert_eq!(run(&folder, arguments), (String::new(), String::new(), 0));
+    }
+    let [path, time] = ["path.svg", "time.svg"].map(|file| fs::read_to_string(folder.join(file)).unwrap());
+    for picture in [&path, &time] {
+        assert!(picture.contains("go 20 0") && picture.contains("turn 90"), "{picture}");
+    }
+    assert!(path.contains("class=\"way0\"") && path.contains("class=\"echo\""), "{path}");
+    // Four stays in each of the two atoms.
+    let stays = ["class=\"disc0\"", "class=\"disc1\""].map(|class| time.matches(class).count());
+    assert_eq!(stays, [4, 4]);
+    assert!(["r0 [m]", "v [cm/s]", "omega [rad/s]", "0 s", "30 s"].iter().all(|words| time.contains(words)), "{time}");
+    let (_, err, status) = run(&folder, "plot square.mcap other.svg --signal omgea");
+    let expected = "error: a record has no signal `omgea`; did you mean `omega`?\nhelp: its signals are v, omega, x, y, theta, \
+                    battery, and r0 to r15\n";
+    assert_eq!((err.as_str(), status), (expected, 2));
+    assert!(!folder.join("other.svg").exists());
+}

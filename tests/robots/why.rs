@@ -1,0 +1,19 @@
+//! `mdle why` answers questions about records that a test writes, and names the operands that decide.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod questions;
+mod random;
+mod scripted;
+
+use std::path::Path;
+use std::process::Command;
+
+use mdle_tests::executable::mdle;
+
+/// Runs `mdle` with these arguments; returns its output, its messages and its exit status as one text.
+fn asked(folder: &Path, arguments: &[&str]) -> String {
+    let output = Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap();
+    let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    let status = output.status.code().unwrap();
+    format!("$ mdle {}\n{out}{err}[{status}]\n", arguments.join(" "))
+}

@@ -1,0 +1,193 @@
+//! Forty questions, each on a record of a few seconds, with their answers as snapshots.
+
+use std::path::Path;
+
+use mdle_runtime::{MetersPerSecond, Sensed};
+use mdle_tests::executable::folder;
+
+use super::asked;
+use super::scripted::{outputs, ping, write};
+
+/// Writes a record and returns the answers to questions about it: a time, or `--not` and an atom.
+fn answers(name: &str, plan: &str, outputs: &[Sensed], questions: &[&str]) -> String {
+    let folder = folder(&format!("why-{name}"));
+    let target = mdle_files::target(Some("sim")).unwrap();
+    write(&folder, name, &target, plan, outputs);
+    questions.iter().map(|question| one(&folder, name, question)).collect::<Vec<_>>().join("\n")
+}
+
+fn one(folder: &Path, name: &str, question: &str) -> String {
+    let log = format!("{name}.mcap");
+    let mut arguments = vec!["why", &log];
+    match question.strip_prefix("--not ") {
+        Some(atom) => arguments.extend(["--not", atom]),
+        None => arguments.push(question),
+    }
+    asked(folder, &arguments)
+}
+
+/// A bumper is hit a tenth of a second before the timer.
+#[test]
+fn a_timer_was_short() {
+    let plan = "{ Timers (wait 10s)
+  { Leg (bumper)
+    (Atom (wait 3s) go 20 0)
+    (Atom (wait 1s) go 10 0)
+  }
+  (Atom (wait 2s OR t > 1s) stop)
+}
+";
+    let outputs = outputs(60, |turn, y| y.switches = u32::from(turn == 29));
+    let questions = ["0", "2.8", "2.9", "2.95", "4.0s", "4.1", "--not go 10 0", "--not 4", "-1", "6", "1m", "soon"];
+    insta::assert_snapshot!(answers("timers", plan, &outputs, &questions));
+}
+
+/// What has fired when it is entered is skipped.
+#[test]
+fn behaviors_were_skipped() {
+    let plan = "{ Skips (wait 4s)
+  (Atom (wait 1s) go 20 0)
+  { Near (r0 < 1m)
+    (Atom (wait 1s) go 10 0)
+    (Atom (wait 1s) go 5 0)
+  }
+  (Atom (NOT bumper) (go 4 0))
+  (Atom (wait 1s) stop)
+}
+";
+    let outputs = outputs(40, |_, y| ping(y, 0, 0.75));
+    let questions = ["1", "0.9", "--not go 10 0", "--not Near", "--not go 5 0", "2"];
+    insta::assert_snapshot!(answers("skips", plan, &outputs, &questions));
+}
+
+/// The outer interrupt wins, and the inner one and the law would have ended the atom as well.
+#[test]
+fn conditions_were_shadowed() {
+    let plan = "{ Outer (r0 < 50cm)
+  { Middle (bumper OR r8 < 1m)
+    (Atom (r4 < 2m) (turn 0))
+    (Atom (bumper OR wait 1s) go 10 0)
+  }
+}
+";
+    let outputs = outputs(20, |turn, y| {
+        let is_near = turn >= 10;
+        ping(y, 0, if is_near { 0.4 } else { 3.0 });
+        ping(y, 4, 3.0);
+        ping(y, 8, if is_near { 0.9 } else { 1.1 });
+        y.switches = u32::from(is_near);
+    });
+    let questions = ["0", "0.9", "1", "--not turn 0"];
+    insta::assert_snapshot!(answers("shadows", plan, &outputs, &questions));
+}
+
+/// Three operands fire in one turn: joined by OR, by AND, and by both.
+#[test]
+fn three_operands_fired_at_once() {
+    let plan = "{ Three (wait 1min)
+  (Atom (bumper OR r0 < 50cm OR r8 < 1m) go 20 0)
+  (Atom (bumper AND r0 < 50cm AND v > 1) go 10 0)
+  (Atom ((bumper OR r0 < 30cm) AND NOT lowBattery) stop)
+}
+";
+    let outputs = outputs(40, |turn, y| {
+        let now = turn == 10 || turn == 25 || turn == 35;
+        y.switches = u32::from(now);
+        ping(y, 0, if now || turn == 20 { 0.4 } else { 0.6 });
+        ping(y, 8, if now { 0.9 } else { 1.1 });
+        y.supply.is_low = turn < 30;
+        y.velocity.v = MetersPerSecond(if turn >= 25 { 0.02 } else { 0.0 });
+    });
+    let questions = ["0.9", "1", "2", "2.5", "3.4", "3.5"];
+    insta::assert_snapshot!(answers("three", plan, &outputs, &questions));
+}
+
+/// One sonar has failed after a second, another one never pinged, and two fire in turns.
+#[test]
+fn sensors_were_stale() {
+    let plan = "{ Stale (wait 5s)
+  (Atom (r0 < 50cm OR r3 < 50cm OR r5 < r6 OR age(4) > 3s) go 20 0)
+  (Atom (null) stop)
+}
+";
+    let outputs = outputs(55, |turn, y| {
+        if turn <= 10 {
+            ping(y, 0, 0.55);
+        }
+        if turn % 2 == 0 {
+            ping(y, 5, 2.0);
+        }
+        if turn % 2 == 1 || turn == 0 {
+            ping(y, 6, 1.5);
+        }
+        if turn <= 2 {
+            ping(y, 4, 1.0);
+        }
+    });
+    let questions = ["0", "1.9", "2.5", "3.3", "5.0"];
+    insta::assert_snapshot!(answers("stale", plan, &outputs, &questions));
+}
+
+/// NOT, RISING and `after`, alone and of several conditions.
+#[test]
+fn memories_kept_a_condition_from_firing() {
+    let plan = "{ Memories (wait 10s)
+  near: (Atom (RISING (r0 < 80cm) OR wait 4s) go 30 0)
+  (Atom (after near (wait 4s) OR wait 1s) stop)
+  (Atom (RISING (bumper OR r0 < 80cm) AND NOT (lowBattery OR r0 < 30cm)) go 10 0)
+  (Atom (null) go 5 0)
+}
+";
+    let outputs = outputs(60, |turn, y| {
+        ping(y, 0, if (10..20).contains(&turn) || (35..40).contains(&turn) { 0.9 } else { 0.7 });
+        y.supply.is_low = turn < 38;
+    });
+    let questions = ["0.5", "1.5", "2", "2.5", "3.7", "4.1", "--not go 5 0"];
+    insta::assert_snapshot!(answers("memories", plan, &outputs, &questions));
+}
+
+/// A law that has a goal makes no progress, an interrupt that an enclosing scope has is removed, and loops count.
+#[test]
+fn laws_and_loops_took_part() {
+    let plan = "{ Laws (bumper)
+  ((Atom (stuck 1s OR bumper) (goAvoid 0 3)) (Atom (way > 1m OR bumper) (turn 0)))^2
+  (Atom (wait 1s) stop)
+}
+";
+    let outputs = outputs(40, |_, y| (0..16).for_each(|sonar| ping(y, sonar, 2.0)));
+    let questions = ["0.5", "1", "2", "3.1", "--not stop", "--not 2"];
+    insta::assert_snapshot!(answers("laws", plan, &outputs, &questions));
+}
+
+/// An atom that nothing led to, and names that the plan does not have.
+#[test]
+fn an_atom_had_no_chance() {
+    let plan = "{ Far
+  (Atom (bumper) go 20 0)
+  { Second (wait 3s)
+    (Atom (wait 1s) stop)
+    (Atom (wait 1s) go 1 0)
+  }
+  (Atom (null) go 2 0)
+}
+";
+    let outputs = outputs(20, |_, y| ping(y, 0, 2.0));
+    let questions = ["--not stop", "--not go 1 0", "--not go 2 0", "--not Second", "--not Third", "--not go 20"];
+    insta::assert_snapshot!(answers("far", plan, &outputs, &questions));
+}
+
+/// Programs get all that people get.
+#[test]
+fn answers_are_objects_as_well() {
+    let plan = "{ Both (bumper)\n  (Atom (r0 < 50cm OR wait 1s) go 20 0)\n  (Atom (wait 1s) stop)\n}\n";
+    let (folder, target) = (folder("why-json"), mdle_files::target(Some("sim")).unwrap());
+    write(&folder, "both", &target, plan, &outputs(20, |turn, y| y.switches = u32::from(turn == 7)));
+    let object = |arguments: &[&str]| {
+        let text = asked(&folder, arguments);
+        let line = text.lines().nth(1).unwrap();
+        serde_json::to_string_pretty(&serde_json::from_str::<serde_json::Value>(line).unwrap()).unwrap()
+    };
+    let answers =
+        [object(&["why", "both.mcap", "0.7", "--json"]), object(&["why", "both.mcap", "--not", "stop", "--json"])];
+    insta::assert_snapshot!(answers.join("\n"));
+}

@@ -1,0 +1,118 @@
+//! On random runs the operands that `mdle why` names are those whose change alone changes the transition: each operand
+//! is changed in the output of that turn alone.
+
+use std::fs;
+use std::path::Path;
+
+use mdle_files::Target;
+use mdle_runtime::Sensed;
+use mdle_tests::chance::{Chance, repeated};
+use mdle_tests::executable::folder;
+use serde_json::Value;
+
+use super::asked;
+use super::scripted::{Scripted, outputs, ping, with_range};
+
+/// Number of random runs.
+const RUNS: u64 = 500;
+/// Number of turns of a run.
+const TURNS: u64 = 12;
+
+/// Returns a plan whose conditions read each sonar once.
+fn plan(chance: &mut Chance) -> String {
+    let mut sonars = 0..16;
+    let mut condition = |chance: &mut Chance| condition(chance, &mut sonars);
+    let outer = condition(chance);
+    let inner = condition(chance);
+    let atoms = [condition(chance), condition(chance)];
+    format!(
+        "{{ Outer ({outer})\n  {{ Inner ({inner})\n    (Atom ({}) go 20 0)\n    (Atom ({}) go 10 0)\n  }}\n  (Atom (null) \
+         stop)\n}}\n",
+        atoms[0], atoms[1]
+    )
+}
+
+/// Returns a condition of at most four operands, each of a sonar of its own.
+fn condition(chance: &mut Chance, sonars: &mut impl Iterator<Item = usize>) -> String {
+    let mut operand = |chance: &mut Chance| {
+        let not = if chance.percent(25) { "NOT " } else { "" };
+        let operator = chance.pick(&["<", ">"]);
+        format!("{not}r{} {operator} 1m", sonars.next().unwrap())
+    };
+    let one = operand(chance);
+    if chance.percent(30) {
+        return one;
+    }
+    let two = operand(chance);
+    let joined = format!("{one} {} {two}", chance.pick(&["AND", "OR"]));
+    if chance.percent(50) {
+        return joined;
+    }
+    format!("({joined}) {} {}", chance.pick(&["AND", "OR"]), operand(chance))
+}
+
+/// Returns the number of the sonar that an operand reads.
+fn sonar(operand: &str) -> usize {
+    let at = operand.find('r').unwrap();
+    operand[at + 1..].split(' ').next().unwrap().parse().unwrap()
+}
+
+/// Outputs in which ranges cross the limit now and then, and everything fires at once never.
+fn random_outputs(chance: &mut Chance) -> Vec<Sensed> {
+    let mut ranges = [1.5; 16].map(|range: f64| if chance.percent(50) { range } else { 0.5 });
+    outputs(TURNS, |_, y| {
+        for (sonar, range) in ranges.iter_mut().enumerate() {
+            if chance.percent(8) {
+                *range = 2.0 - *range;
+            }
+            ping(y, sonar, *range);
+        }
+    })
+}
+
+/// Compares the names with the changes in the first turn that has a transition and begins in an atom; returns the
+/// number of operands that were changed, and that of those that decided.
+fn compare(folder: &Path, target: &Target, seed: u64) -> (usize, usize) {
+    let mut chance = Chance::new(seed);
+    let (text, outputs) = (plan(&mut chance), random_outputs(&mut chance));
+    let plan = Scripted::new(&text, target);
+    let steps = |number: usize, changed: Option<Sensed>| {
+        let mut until = outputs[..=number].to_vec();
+        until[number] = changed.unwrap_or(until[number]);
+        plan.last_steps(&until)
+    };
+    let Some(number) = (0..outputs.len()).find(|number| !steps(*number, None).is_empty()) else { return (0, 0) };
+    let log = format!("{seed}.mcap");
+    plan.record(&outputs, &folder.join(&log));
+    let time = format!("{}.{}", number / 10, number % 10);
+    let answer = asked(folder, &["why", &log, &time, "--json"]);
+    fs::remove_file(folder.join(&log)).unwrap();
+    let answer: Value = serde_json::from_str(answer.lines().nth(1).unwrap()).unwrap();
+    let scopes = answer["ended"][0]["scopes"].as_array().unwrap();
+    let ended = scopes.iter().position(|scope| scope["part"] == "ended").unwrap();
+    let original = steps(number, None);
+    let (mut changed, mut deciding) = (0, 0);
+    for (place, scope) in scopes.iter().enumerate() {
+        for operand in scope["operands"].as_array().unwrap() {
+            let sonar = sonar(operand["operand"].as_str().unwrap());
+            let range = 2.0 - outputs[number].pings[sonar].newest_first().next().unwrap().range.unwrap().0;
+            let other = steps(number, Some(with_range(&outputs[number], sonar, range)));
+            // The first transition is what was explained: those after it read other operands.
+            let differs = original.first() != other.first();
+            let named = place <= ended && operand["decides"] == true;
+            assert_eq!(named, differs, "seed {seed}, turn {number}, {operand}\n{text}");
+            changed += 1;
+            deciding += usize::from(named);
+        }
+    }
+    (changed, deciding)
+}
+
+#[test]
+fn named_operands_alone_change_the_transition() {
+    let folder = folder("why-random");
+    let target = mdle_files::target(Some("sim")).unwrap();
+    let counts = (0..repeated(RUNS)).map(|seed| compare(&folder, &target, seed));
+    let (changed, deciding) = counts.fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1));
+    assert!(changed > 1000 && deciding > 300 && changed > 2 * deciding, "{changed} {deciding}");
+}
