@@ -17,7 +17,7 @@ mod xml;
 pub use dot::dot;
 pub use mermaid::mermaid;
 pub use scxml::scxml;
-pub use svg::svg;
+pub use svg::{counted_svg, svg};
 
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::Machine;

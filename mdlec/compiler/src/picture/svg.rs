@@ -29,13 +29,25 @@ const COLOURS: usize = 4;
 /// # Errors
 /// E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
 pub fn svg(machine: &Machine) -> Result<String, Diagnostic> {
+    drawn(machine, None)
+}
+
+/// The picture of a plan with the number of times that each atom began in some runs: atoms that never did are faint.
+///
+/// # Errors
+/// E0502 as for [`svg`].
+pub fn counted_svg(machine: &Machine, began: &[u64]) -> Result<String, Diagnostic> {
+    drawn(machine, Some(began))
+}
+
+fn drawn(machine: &Machine, began: Option<&[u64]>) -> Result<String, Diagnostic> {
     can_be_shown(machine)?;
     let mut all = places(machine);
     for placed in &mut all {
         placed.x += MARGIN;
         placed.y += TITLE;
     }
-    let mut picture = Picture { machine, all: &all, text: String::new() };
+    let mut picture = Picture { machine, all: &all, began, text: String::new() };
     picture.draw();
     Ok(picture.text)
 }
@@ -43,6 +55,8 @@ pub fn svg(machine: &Machine) -> Result<String, Diagnostic> {
 struct Picture<'p> {
     machine: &'p Machine,
     all: &'p [Placed],
+    /// The number of times that each atom began, if it is to be shown.
+    began: Option<&'p [u64]>,
     text: String,
 }
 
@@ -121,12 +135,18 @@ impl Picture<'_> {
                 ElementKind::Scope => (format!("scope s{}", placed.depth % COLOURS), 10),
             };
             self.line(&format!("<g><title>{}</title>", escaped(&tooltip(element))));
+            let faint = if self.count(element) == Some(0) { " style=\"opacity:.35;stroke-dasharray:4 3\"" } else { "" };
             self.line(&format!(
-                "<rect class=\"{class}\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"{round}\"/>"
+                "<rect class=\"{class}\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"{round}\"{faint}/>"
             ));
             self.words(element, placed);
             self.line("</g>");
         }
+    }
+
+    /// The number of times that an atom began, if it is shown.
+    fn count(&self, element: Element<'_>) -> Option<u64> {
+        self.began?.get(element.atom()?.index()).copied()
     }
 
     /// Draws the text in a box.
@@ -152,6 +172,10 @@ impl Picture<'_> {
                 x + wide / 2,
                 y + 12
             ));
+        }
+        if let Some(count) = self.count(element) {
+            let (x, y) = (placed.x + placed.width - 6, placed.y + placed.height - 6);
+            self.line(&format!("<text class=\"quiet\" x=\"{x}\" y=\"{y}\" text-anchor=\"end\">{count}×</text>"));
         }
     }
 
