@@ -1,0 +1,166 @@
+//! The course of a run: the atoms that began, the transitions, and how it ended.
+
+use mdle_compiler::fsm::{ElementKind, Machine};
+use mdle_host::{Operand, Transitions};
+use mdle_runtime::{Cause, Nanos, Pose, Transition, Words};
+
+/// The course of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Course {
+    /// The atoms whose law was applied, each when it began.
+    pub(super) began: Vec<Began>,
+    /// All transitions.
+    pub(super) steps: Vec<Step>,
+    /// Number of turns.
+    pub(super) turns: u64,
+    /// Time of the last turn.
+    pub(super) t: Nanos,
+    pub(super) ending: Ending,
+    /// The true pose at the end, where a robot was simulated.
+    pub(super) pose: Option<Pose>,
+    /// What never was to be and was: the number of the expectation, and when.
+    pub(super) breaches: Vec<Breach>,
+}
+
+/// The beginning of an atom.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Began {
+    /// The atom, as written, from 0.
+    pub(super) atom: u32,
+    pub(super) turn: u64,
+    pub(super) t: Nanos,
+}
+
+/// A transition.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Step {
+    pub(super) turn: u64,
+    pub(super) t: Nanos,
+    /// The atom that was left.
+    pub(super) from: Option<u32>,
+    /// The atom that was entered; `None` if the plan is over.
+    pub(super) to: Option<u32>,
+    /// The element that ended.
+    pub(super) scope: u32,
+    pub(super) has_completed: bool,
+    /// Numbers of the operands that had fired.
+    pub(super) operands: Vec<u32>,
+    /// The cause with values, as a report has it.
+    pub(super) words: String,
+}
+
+/// The end of a run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Ending {
+    /// The plan is over, by the last transition.
+    Over,
+    /// The plan was not over at the end of the script, or at the limit of the run.
+    Running,
+    /// A fault ended the run: a sentence.
+    Failed(String),
+}
+
+/// The first turn in which something was that never was to be.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Breach {
+    /// Number of the expectation.
+    pub(super) number: usize,
+    pub(super) turn: u64,
+    pub(super) t: Nanos,
+    /// The atom in that turn.
+    pub(super) atom: Option<u32>,
+    /// A measured distance, in metres.
+    pub(super) gap: Option<f64>,
+}
+
+/// Follows a run.
+#[derive(Debug)]
+pub(super) struct Recorder<'m> {
+    machine: &'m Machine,
+    pub(super) course: Course,
+    /// The current atom.
+    atom: Option<u32>,
+}
+
+impl<'m> Recorder<'m> {
+    /// Returns the recorder of a run of this machine, before its first turn.
+    pub(super) fn new(machine: &'m Machine) -> Self {
+        let course = Course {
+            began: Vec::new(),
+            steps: Vec::new(),
+            turns: 0,
+            t: Nanos::ZERO,
+            ending: Ending::Running,
+            pose: None,
+            breaches: Vec::new(),
+        };
+        Self { machine, course, atom: None }
+    }
+
+    /// Takes a turn at time `t`, after which `atom` is the current one; `words` returns the cause of a transition.
+    pub(super) fn turn(
+        &mut self,
+        t: Nanos,
+        atom: Option<u32>,
+        transitions: &Transitions,
+        words: impl Fn(&Transition, &[Operand]) -> String,
+    ) {
+        let turn = self.course.turns;
+        self.course.turns += 1;
+        self.course.t = t;
+        let first = self.machine.root().first().number();
+        let mut from = self.atom.or(Some(first));
+        for (transition, operands) in transitions.iter() {
+            self.course.steps.push(Step {
+                turn,
+                t,
+                from,
+                to: transition.atom,
+                scope: transition.scope,
+                has_completed: matches!(transition.cause, Cause::Completed(_)),
+                operands: operands.iter().map(|(number, _)| *number).collect(),
+                words: words(transition, operands),
+            });
+            from = transition.atom;
+        }
+        let begins = self.atom.is_none() || !transitions.is_empty();
+        if let Some(atom) = atom.filter(|_| begins) {
+            self.course.began.push(Began { atom, turn, t });
+        }
+        self.atom = atom;
+    }
+
+    /// Takes a turn at time `t` in which the plan has not begun.
+    pub(super) fn waits(&mut self, t: Nanos) {
+        self.course.turns += 1;
+        self.course.t = t;
+    }
+
+    /// Notes that something was in this turn that never was to be.
+    pub(super) fn breach(&mut self, number: usize, gap: Option<f64>) {
+        let turn = self.course.turns.saturating_sub(1);
+        let (t, atom) = (self.course.t, self.atom);
+        self.course.breaches.push(Breach { number, turn, t, atom, gap });
+    }
+}
+
+impl Course {
+    /// Returns the transition that ended the plan.
+    pub(super) fn last(&self) -> Option<&Step> {
+        self.steps.last().filter(|step| step.to.is_none())
+    }
+}
+
+/// Returns the law of an atom with its line, as in `go 20 0 (line 6)`; the end of the plan for `None`.
+pub(super) fn atom_words(machine: &Machine, words: &dyn Words, atom: Option<u32>) -> String {
+    let Some(atom) = atom else { return "the end of the plan".to_owned() };
+    let atom = machine.atom(atom);
+    let line = words.bracket(atom.element().number()).map_or(0, |bracket| bracket.at.line);
+    format!("{} (line {line})", atom.law().text)
+}
+
+/// Returns the names of the scopes around an atom, from the inside.
+pub(super) fn scope_names(machine: &Machine, atom: u32) -> impl Iterator<Item = &str> {
+    let around = machine.atom(atom).element().outwards();
+    around.filter(|element| matches!(element.kind(), ElementKind::Scope)).map(|element| element.name())
+}

@@ -1,0 +1,141 @@
+//! Faults of the simulated robot at times of a run.
+
+use mdle_host::Quantity;
+use mdle_runtime::{Meters, Nanos, Ping, Pings, SONARS, Sensed, Twist};
+use mdle_sim::Observed;
+
+use super::expected::time;
+use super::file::{At, FaultText, TestFileError};
+
+/// The names of the faults, for messages.
+const NAMES: &str = "`bumper`, `sonar`, `battery`, `blocked` and `robot`";
+/// Maximum range of a sonar, in metres.
+const FURTHEST: f64 = 100.0;
+
+/// A fault and the time in which it lasts.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct TimedFault {
+    from: Nanos,
+    until: Nanos,
+    fault: Fault,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Fault {
+    /// All bumper switches are in contact.
+    Bumper,
+    /// A sonar returns this range.
+    Sonar(usize, Meters),
+    /// The battery has this charge, from 0 to 1.
+    Battery(f64),
+    /// The wheels stand still.
+    Blocked,
+    /// The robot does not answer.
+    Robot,
+}
+
+/// Reads a fault.
+///
+/// # Errors
+/// There is no such fault, or a value of it is missing: a sentence.
+pub(super) fn read(text: &FaultText) -> Result<TimedFault, TestFileError> {
+    let FaultText { fault: name, from, until, sonar, range, percent } = text;
+    let needs = |key: &str, example: &str| {
+        let message = format!("the fault `{}` needs `{key}`", name.get_ref());
+        TestFileError::at(name.span(), message).help(format!("as in `{key} = {example}`"))
+    };
+    let fault = match name.get_ref().as_str() {
+        "bumper" => Fault::Bumper,
+        "blocked" => Fault::Blocked,
+        "robot" => Fault::Robot,
+        "battery" => {
+            let percent = percent.as_ref().ok_or_else(|| needs("percent", "10"))?;
+            if *percent.get_ref() > 100 {
+                return Err(TestFileError::at(percent.span(), "a charge is at most 100 percent"));
+            }
+            Fault::Battery(f64::from(*percent.get_ref()) / 100.0)
+        }
+        "sonar" => {
+            let sonar = sonar.as_ref().ok_or_else(|| needs("sonar", "0"))?;
+            let number = usize::from(*sonar.get_ref());
+            if number >= SONARS {
+                return Err(TestFileError::at(sonar.span(), format!("the sonars are 0 to {}", SONARS - 1)));
+            }
+            Fault::Sonar(number, Meters(range_of(range.as_ref().ok_or_else(|| needs("range", "\"30cm\""))?)?))
+        }
+        other => {
+            let near =
+                mdle_compiler::alphabet::did_you_mean(other, &["bumper", "sonar", "battery", "blocked", "robot"]);
+            let message = format!("there is no fault `{other}`{near}");
+            return Err(TestFileError::at(name.span(), message).help(format!("the faults are {NAMES}")));
+        }
+    };
+    let unused = [
+        sonar.as_ref().map(|at| (at.span(), "sonar", matches!(fault, Fault::Sonar(..)))),
+        range.as_ref().map(|at| (at.span(), "range", matches!(fault, Fault::Sonar(..)))),
+        percent.as_ref().map(|at| (at.span(), "percent", matches!(fault, Fault::Battery(_)))),
+    ];
+    if let Some((place, key, _)) = unused.into_iter().flatten().find(|(.., is_used)| !is_used) {
+        return Err(TestFileError::at(place, format!("the fault `{}` has no `{key}`", name.get_ref())));
+    }
+    let from = from.as_ref().map_or(Ok(Nanos::ZERO), time)?;
+    let end = until.as_ref().map_or(Ok(Nanos::MAX), time)?;
+    if let Some(until) = until.as_ref().filter(|_| end <= from) {
+        return Err(TestFileError::at(until.span(), "the fault ends before it begins"));
+    }
+    Ok(TimedFault { from, until: end, fault })
+}
+
+fn range_of(text: &At<String>) -> Result<f64, TestFileError> {
+    let read = Quantity::Length.read(text.get_ref(), "m");
+    let read = read.map_err(|sentence| TestFileError::at(text.span(), sentence))?;
+    if (0.0..=FURTHEST).contains(&read) {
+        return Ok(read);
+    }
+    Err(TestFileError::at(text.span(), format!("a range is from 0 to {FURTHEST} m")))
+}
+
+/// The faults that last at a time.
+fn lasting(faults: &[TimedFault], t: Nanos) -> impl Iterator<Item = &Fault> {
+    faults.iter().filter(move |fault| fault.from <= t && t < fault.until).map(|fault| &fault.fault)
+}
+
+/// Changes what the robot is sent and what supplies it before the exchange at time `t`.
+///
+/// # Errors
+/// The robot does not answer: a sentence.
+pub(super) fn before(faults: &[TimedFault], robot: &mut Observed, input: Twist, t: Nanos) -> Result<Twist, String> {
+    let mut input = input;
+    for fault in lasting(faults, t) {
+        match fault {
+            Fault::Robot => return Err("the robot does not answer, as the test asks".to_owned()),
+            Fault::Blocked => input = Twist::default(),
+            Fault::Battery(charge) => robot.set_charge(*charge),
+            Fault::Bumper | Fault::Sonar(..) => {}
+        }
+    }
+    Ok(input)
+}
+
+/// Changes the output of the exchange at time `t`.
+pub(super) fn after(faults: &[TimedFault], y: &mut Sensed, t: Nanos) {
+    for fault in lasting(faults, t) {
+        match fault {
+            Fault::Bumper => y.switches = u32::MAX,
+            Fault::Sonar(number, range) => {
+                if let Some(pings) = y.pings.get_mut(*number) {
+                    *pings = reading(pings, *range);
+                }
+            }
+            Fault::Battery(_) | Fault::Blocked | Fault::Robot => {}
+        }
+    }
+}
+
+/// Returns the pings of a sonar as if all of them had this range.
+fn reading(pings: &Pings, range: Meters) -> Pings {
+    let known: Vec<Ping> = pings.newest_first().copied().collect();
+    let mut faulty = Pings::default();
+    known.into_iter().rev().for_each(|ping| faulty.push(Ping { range: Some(range), ..ping }));
+    faulty
+}
