@@ -1,0 +1,234 @@
+//! The expectations of a test, as its plan understands them.
+
+use std::ops::Range;
+use std::time::Duration;
+
+use mdle_host::{Quantity, is_operand};
+use mdle_runtime::trace::COMPLETED;
+use mdle_runtime::{Nanos, Printable};
+use mdle_sim::Goal;
+
+use super::file::{At, ExpectText, TestFileError, TransitionText};
+use super::subject::{Subject, TestCondition};
+
+/// Maximum time in a test.
+const LONGEST: Duration = Duration::from_secs(1_000_000_000);
+/// Maximum distance in a test, in metres.
+const FURTHEST: f64 = 1000.0;
+
+/// Place of an expectation in the file of tests.
+pub(super) type Place = Range<usize>;
+
+/// The expectations of a test.
+pub(super) struct Expected {
+    pub(super) atoms: Option<(Place, Vec<AtomsNamed>)>,
+    pub(super) order: Option<(Place, Vec<AtomsNamed>)>,
+    pub(super) transitions: Vec<(Place, ExpectedTransition)>,
+    pub(super) never: Vec<(Place, Never)>,
+    pub(super) end: Option<(Place, End)>,
+    pub(super) pose: Option<(Place, String, Goal)>,
+    pub(super) most_turns: Option<(Place, u64)>,
+    pub(super) most_transitions: Option<(Place, u64)>,
+    pub(super) most_time: Option<(Place, Nanos)>,
+}
+
+/// Atoms that a text names.
+pub(super) struct AtomsNamed {
+    pub(super) place: Place,
+    pub(super) text: String,
+    /// `true` for each atom that is named.
+    atoms: Vec<bool>,
+}
+
+/// A cause that a text names.
+pub(super) enum Cause {
+    /// The completion of a law.
+    Completed,
+    /// Operands of interrupts: element and number of each.
+    Operands(Vec<(u32, u32)>),
+    /// The interrupts of these scopes.
+    Scopes(Vec<u32>),
+}
+
+/// A transition that has to be made.
+pub(super) struct ExpectedTransition {
+    pub(super) from: Option<AtomsNamed>,
+    /// The atoms of which one is entered; `Some(None)` for the end of the plan.
+    pub(super) to: Option<Option<AtomsNamed>>,
+    pub(super) by: Option<(String, Cause)>,
+    pub(super) after: Option<Nanos>,
+    pub(super) within: Option<Nanos>,
+}
+
+/// A state that must not occur.
+pub(super) enum Never {
+    /// The robot is nearer to an obstacle than this, in metres.
+    Closer(f64),
+    /// One of the atoms, if there are any, runs while the condition, if there is one, is true.
+    While { atoms: Option<AtomsNamed>, condition: Option<Box<TestCondition>> },
+}
+
+/// The end of a run.
+pub(super) enum End {
+    /// The plan is over by this cause.
+    By(String, Cause),
+    /// The plan is not over.
+    Running,
+    /// A fault ends the run.
+    Failed,
+}
+
+impl AtomsNamed {
+    /// Returns `true` if an atom is among those that are named.
+    pub(super) fn holds(&self, atom: u32) -> bool {
+        self.atoms.get(atom as usize).copied().unwrap_or(false)
+    }
+}
+
+impl Expected {
+    /// Reads the expectations of a test of the plan `subject`; `is_script` for a test without a simulated robot.
+    ///
+    /// # Errors
+    /// An expectation cannot be met by any run: a sentence with its place.
+    pub(super) fn read(text: &ExpectText, subject: &Subject, is_script: bool) -> Result<Self, TestFileError> {
+        let list = |list: &Option<At<Vec<At<String>>>>| {
+            let list = list.as_ref().map(|list| {
+                let named = list.get_ref().iter().map(|text| named(text, subject));
+                Ok((list.span(), named.collect::<Result<Vec<_>, _>>()?))
+            });
+            list.transpose()
+        };
+        let number = |most: &Option<At<u64>>| most.as_ref().map(|most| (most.span(), *most.get_ref()));
+        let transitions = text.transitions.iter().map(|at| Ok((at.span(), transition(at.get_ref(), subject)?)));
+        let never = text.never.iter().map(|text| Ok((text.span(), never(text, subject, is_script)?)));
+        let pose = text.pose.as_ref().map(|pose| {
+            if is_script {
+                let message = "`pose` needs a robot, which a script has not";
+                return Err(
+                    TestFileError::at(pose.span(), message).help("leave `script` out for a run in the simulator")
+                );
+            }
+            let goal = Goal::read(pose.get_ref());
+            let goal = goal.map_err(|sentence| TestFileError::at(pose.span(), sentence.replace("`world`, or ", "")))?;
+            Ok((pose.span(), pose.get_ref().clone(), goal))
+        });
+        Ok(Self {
+            atoms: list(&text.atoms)?,
+            order: list(&text.order)?,
+            transitions: transitions.collect::<Result<_, _>>()?,
+            never: never.collect::<Result<_, _>>()?,
+            end: text.end.as_ref().map(|text| Ok((text.span(), end(text, subject)?))).transpose()?,
+            pose: pose.transpose()?,
+            most_turns: number(&text.most_turns),
+            most_transitions: number(&text.most_transitions),
+            most_time: text.most_time.as_ref().map(|text| Ok((text.span(), time(text)?))).transpose()?,
+        })
+    }
+}
+
+/// Reads a time.
+pub(super) fn time(text: &At<String>) -> Result<Nanos, TestFileError> {
+    let read = Quantity::duration(text.get_ref(), "s", Duration::ZERO, LONGEST);
+    let read = read.map_err(|sentence| TestFileError::at(text.span(), sentence))?;
+    Ok(Nanos(u64::try_from(read.as_nanos()).unwrap_or(u64::MAX)))
+}
+
+fn named(text: &At<String>, subject: &Subject) -> Result<AtomsNamed, TestFileError> {
+    let atoms = subject.atoms(text.get_ref());
+    let atoms = atoms.map_err(|(sentence, help)| TestFileError::at(text.span(), sentence).help(help))?;
+    Ok(AtomsNamed { place: text.span(), text: text.get_ref().trim().to_owned(), atoms })
+}
+
+fn transition(text: &TransitionText, subject: &Subject) -> Result<ExpectedTransition, TestFileError> {
+    let from = text.from.as_ref().map(|from| named(from, subject)).transpose()?;
+    let to = text.to.as_ref().map(|to| match to.get_ref().as_str() {
+        "end" => Ok(None),
+        _ => named(to, subject).map(Some),
+    });
+    let by = text.by.as_ref().map(|by| Ok((by.get_ref().clone(), cause(by, subject)?))).transpose()?;
+    let (after, within) = (text.after.as_ref().map(time).transpose()?, text.within.as_ref().map(time).transpose()?);
+    if let (Some(text), Some(after), Some(within)) = (&text.within, after, within)
+        && within < after
+    {
+        let message = "nothing is both after the one time and within the other";
+        return Err(TestFileError::at(text.span(), message).help("`within` has to be later than `after`"));
+    }
+    Ok(ExpectedTransition { from, to: to.transpose()?, by, after, within })
+}
+
+/// Reads a cause: `completed`, an operand, or the name of a scope.
+fn cause(text: &At<String>, subject: &Subject) -> Result<Cause, TestFileError> {
+    let wanted = text.get_ref().trim();
+    if wanted == COMPLETED {
+        return Ok(Cause::Completed);
+    }
+    let operands = subject.operands().filter(|(.., operand)| is_operand(wanted, operand));
+    let operands: Vec<_> = operands.map(|(element, number, _)| (element, number)).collect();
+    if !operands.is_empty() {
+        return Ok(Cause::Operands(operands));
+    }
+    let scopes = subject.machine().elements().filter(|element| !wanted.is_empty() && element.name() == wanted);
+    let scopes: Vec<_> = scopes.map(|element| element.number()).collect();
+    if !scopes.is_empty() {
+        return Ok(Cause::Scopes(scopes));
+    }
+    let mut known: Vec<&str> = subject.operands().map(|(.., operand)| operand.written).collect();
+    known.retain(|operand| *operand != "null");
+    known.dedup();
+    let near = mdle_compiler::alphabet::did_you_mean(wanted, &known);
+    let listed = known.iter().map(|operand| format!("`{operand}`")).collect::<Vec<_>>().join(", ");
+    let message = format!("no interrupt of the plan has the operand `{}`{near}", Printable(wanted));
+    Err(TestFileError::at(text.span(), message).help(format!("its operands are {listed}; a law ends by `{COMPLETED}`")))
+}
+
+fn end(text: &At<String>, subject: &Subject) -> Result<End, TestFileError> {
+    Ok(match text.get_ref().trim() {
+        "running" => End::Running,
+        "failed" => End::Failed,
+        cause_text => End::By(cause_text.to_owned(), cause(text, subject)?),
+    })
+}
+
+fn never(text: &At<String>, subject: &Subject, is_script: bool) -> Result<Never, TestFileError> {
+    let words = text.get_ref().trim();
+    if let Some(distance) = words.strip_prefix("closer than ") {
+        return closer(text, distance, is_script);
+    }
+    let condition = |words: &str| {
+        let condition = subject.condition(words);
+        condition.map(Box::new).map_err(|sentence| TestFileError::at(text.span(), format!("`{words}`: {sentence}")))
+    };
+    let atoms = |words: &str| {
+        let atoms = subject.atoms(words);
+        atoms.map(|atoms| AtomsNamed { place: text.span(), text: words.trim().to_owned(), atoms })
+    };
+    let refused = |(sentence, help): (String, String)| TestFileError::at(text.span(), sentence).help(help);
+    if let Some((running, during)) = words.split_once(" while ") {
+        let atoms = Some(atoms(running).map_err(refused)?);
+        return Ok(Never::While { atoms, condition: Some(condition(during)?) });
+    }
+    match atoms(words) {
+        Ok(atoms) => Ok(Never::While { atoms: Some(atoms), condition: None }),
+        Err(no_atom) => match condition(words) {
+            Ok(condition) => Ok(Never::While { atoms: None, condition: Some(condition) }),
+            Err(TestFileError { message, .. }) => {
+                let help = "expected an atom, a condition, `ATOM while CONDITION`, or `closer than DISTANCE`";
+                Err(TestFileError::at(text.span(), format!("{}; {message}", no_atom.0)).help(help))
+            }
+        },
+    }
+}
+
+fn closer(text: &At<String>, distance: &str, is_script: bool) -> Result<Never, TestFileError> {
+    let refused = |message: String| TestFileError::at(text.span(), message);
+    if is_script {
+        let error = refused("a script has no obstacles".to_owned());
+        return Err(error.help("leave `script` out for a run in the simulator"));
+    }
+    let compact: String = distance.split_whitespace().collect();
+    let gap = Quantity::Length.read(&compact, "m").map_err(refused)?;
+    if gap > 0.0 && gap <= FURTHEST {
+        return Ok(Never::Closer(gap));
+    }
+    Err(refused(format!("`{distance}` has to be above 0 and at most {FURTHEST} m")))
+}

@@ -1,0 +1,280 @@
+//! Compares the course of a run with the expectations of its test.
+
+use mdle_compiler::fsm::Machine;
+use mdle_runtime::trace::Seconds;
+use mdle_runtime::{Nanos, Pose, Words};
+
+use super::course::{Course, Ending, Step, atom_words};
+use super::expected::{AtomsNamed, Cause, End, Expected, ExpectedTransition, Never, Place};
+use super::subject::Subject;
+
+/// An expectation that a run has not met.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Failure {
+    /// Place of the expectation in the file of tests.
+    pub(super) place: Place,
+    /// A sentence about the run.
+    pub(super) message: String,
+    /// Words at the place of the expectation.
+    pub(super) expected: String,
+    /// The fact that differs.
+    pub(super) got: String,
+    /// The atom at which the difference shows, with words about it.
+    pub(super) atom: Option<(u32, String)>,
+    /// Time of the run at which the difference shows.
+    pub(super) t: Nanos,
+}
+
+/// Returns the expectations that a run has not met.
+pub(super) fn judge(expected: &Expected, course: &Course, subject: &Subject) -> Vec<Failure> {
+    let judge = Judge { course, machine: subject.machine(), words: &subject.words };
+    let mut failures = Vec::new();
+    failures.extend(judge.fault(expected));
+    failures.extend(expected.atoms.as_ref().and_then(|(place, atoms)| judge.atoms(place, atoms)));
+    failures.extend(expected.order.as_ref().and_then(|(place, atoms)| judge.order(place, atoms)));
+    failures.extend(expected.transitions.iter().filter_map(|(place, wanted)| judge.transition(place, wanted)));
+    failures.extend(judge.never(expected));
+    failures.extend(expected.end.as_ref().and_then(|(place, end)| judge.end(place, end)));
+    failures.extend(judge.pose(expected));
+    failures.extend(judge.most(expected));
+    failures
+}
+
+struct Judge<'j> {
+    course: &'j Course,
+    machine: &'j Machine,
+    words: &'j dyn Words,
+}
+
+impl Judge<'_> {
+    fn failure(&self, place: &Place, message: String, expected: String, got: String) -> Failure {
+        Failure { place: place.clone(), message, expected, got, atom: self.last_atom(), t: self.course.t }
+    }
+
+    /// The last atom of the run, with words about its end.
+    fn last_atom(&self) -> Option<(u32, String)> {
+        let last = self.course.began.last()?;
+        let words = match self.course.ending {
+            Ending::Over => "the plan ended in this atom",
+            Ending::Running | Ending::Failed(_) => "the run ended in this atom",
+        };
+        Some((last.atom, format!("{words}, which began at {} s", Seconds(last.t))))
+    }
+
+    /// A fault that ended the run, unless the test expects that.
+    fn fault(&self, expected: &Expected) -> Option<Failure> {
+        let Ending::Failed(fault) = &self.course.ending else { return None };
+        let place = match &expected.end {
+            Some((_, End::Failed)) => return None,
+            Some((place, End::By(..) | End::Running)) => place.clone(),
+            None => 0..0,
+        };
+        let words = "the run was to go on without a fault".to_owned();
+        Some(self.failure(&place, format!("a fault ended the run: {fault}"), words, fault.clone()))
+    }
+
+    fn atoms(&self, place: &Place, atoms: &[AtomsNamed]) -> Option<Failure> {
+        let began = &self.course.began;
+        let differs =
+            (0..atoms.len().max(began.len())).find(|number| match (atoms.get(*number), began.get(*number)) {
+                (Some(named), Some(began)) => !named.holds(began.atom),
+                (Some(_), None) | (None, Some(_)) => true,
+                (None, None) => false,
+            })?;
+        let got = began.get(differs);
+        let (message, expected, place) = match (atoms.get(differs), got) {
+            (Some(named), Some(_)) => {
+                ("another atom began".to_owned(), format!("`{}` was to begin", named.text), &named.place)
+            }
+            (Some(named), None) => {
+                ("an atom did not begin".to_owned(), format!("`{}` was to begin", named.text), &named.place)
+            }
+            (None, _) => ("one more atom began".to_owned(), "these are all atoms that were to begin".to_owned(), place),
+        };
+        let got_words = got.map_or("no further atom began".to_owned(), |began| {
+            format!("{} began at {} s", atom_words(self.machine, self.words, Some(began.atom)), Seconds(began.t))
+        });
+        let failure = self.failure(place, message, expected, got_words);
+        Some(match got {
+            Some(began) => {
+                let words = format!("this atom began at {} s", Seconds(began.t));
+                Failure { atom: Some((began.atom, words)), t: began.t, ..failure }
+            }
+            None => failure,
+        })
+    }
+
+    fn order(&self, _: &Place, atoms: &[AtomsNamed]) -> Option<Failure> {
+        let mut began = self.course.began.iter();
+        let mut last: Option<(&AtomsNamed, Nanos)> = None;
+        for named in atoms {
+            match began.find(|began| named.holds(began.atom)) {
+                Some(found) => last = Some((named, found.t)),
+                None => {
+                    let after = last.map_or(String::new(), |(before, t)| {
+                        format!(" after `{}`, which began at {} s", before.text, Seconds(t))
+                    });
+                    let message = format!("`{}` did not begin", named.text);
+                    let got = self.began_after(last.map_or(Nanos::ZERO, |(_, t)| t));
+                    return Some(self.failure(&named.place, message, format!("was to begin{after}"), got));
+                }
+            }
+        }
+        None
+    }
+
+    /// Names the atoms that began from this time on.
+    fn began_after(&self, t: Nanos) -> String {
+        const MOST: usize = 6;
+        let began: Vec<_> = self.course.began.iter().filter(|began| began.t >= t).collect();
+        let words = |atom| atom_words(self.machine, self.words, Some(atom));
+        let mut shown: Vec<_> = began.iter().take(MOST).map(|began| words(began.atom)).collect();
+        if began.len() > MOST {
+            shown.push(format!("… and {} more", began.len() - MOST));
+        }
+        if shown.is_empty() { "nothing began".to_owned() } else { format!("{} began", shown.join(", ")) }
+    }
+
+    fn transition(&self, place: &Place, wanted: &ExpectedTransition) -> Option<Failure> {
+        let is_named = |named: &Option<AtomsNamed>, atom: Option<u32>| {
+            named.as_ref().is_none_or(|named| atom.is_some_and(|atom| named.holds(atom)))
+        };
+        let fits = |step: &&Step| {
+            let to = match &wanted.to {
+                None => true,
+                Some(None) => step.to.is_none(),
+                Some(named) => is_named(named, step.to),
+            };
+            let by = wanted.by.as_ref().is_none_or(|(_, cause)| self.is_by(step, cause));
+            is_named(&wanted.from, step.from) && to && by
+        };
+        let is_in_time = |step: &&Step| {
+            wanted.after.is_none_or(|after| step.t >= after) && wanted.within.is_none_or(|within| step.t <= within)
+        };
+        let candidates: Vec<_> = self.course.steps.iter().filter(fits).collect();
+        if candidates.iter().any(is_in_time) {
+            return None;
+        }
+        let words = transition_words(wanted);
+        let (message, got, step) = match candidates.first() {
+            Some(step) => ("a transition was made at another time", format!("at {} s", Seconds(step.t)), Some(*step)),
+            None => ("a transition was not made", "no such transition".to_owned(), None),
+        };
+        let failure = self.failure(place, message.to_owned(), words, got);
+        let Some(step) = step else { return Some(failure) };
+        let atom = step.from.map(|atom| (atom, format!("left at {} s by {}", Seconds(step.t), step.words)));
+        Some(Failure { atom, t: step.t, ..failure })
+    }
+
+    fn is_by(&self, step: &Step, cause: &Cause) -> bool {
+        match cause {
+            Cause::Completed => step.has_completed,
+            Cause::Operands(operands) => operands
+                .iter()
+                .any(|(scope, number)| !step.has_completed && step.scope == *scope && step.operands.contains(number)),
+            Cause::Scopes(scopes) => !step.has_completed && scopes.contains(&step.scope),
+        }
+    }
+
+    fn never(&self, expected: &Expected) -> Vec<Failure> {
+        let failures = self.course.breaches.iter().filter_map(|breach| {
+            let (place, never) = expected.never.get(breach.number)?;
+            let at = format!("at {} s", Seconds(breach.t));
+            let (message, got) = match never {
+                Never::Closer(_) => {
+                    let gap = breach.gap.unwrap_or(0.0).max(0.0) * 100.0;
+                    ("the robot came too close to an obstacle", format!("{gap:.1} cm {at}"))
+                }
+                Never::While { .. } => ("what was never to be was", format!("true {at}")),
+            };
+            let atom = breach.atom.map(|atom| (atom, format!("this atom ran {at}")));
+            let failure = self.failure(place, message.to_owned(), "never".to_owned(), got);
+            Some(Failure { atom, t: breach.t, ..failure })
+        });
+        failures.collect()
+    }
+
+    fn end(&self, place: &Place, end: &End) -> Option<Failure> {
+        let last = self.course.last();
+        let is_met = match end {
+            End::By(_, cause) => last.is_some_and(|step| self.is_by(step, cause)),
+            End::Running => self.course.ending == Ending::Running,
+            End::Failed => matches!(self.course.ending, Ending::Failed(_)),
+        };
+        // A fault is a failure of its own.
+        if is_met || (matches!(self.course.ending, Ending::Failed(_)) && !matches!(end, End::Failed)) {
+            return None;
+        }
+        let expected = match end {
+            End::By(text, _) => format!("the plan was to end by `{text}`"),
+            End::Running => "the plan was to go on".to_owned(),
+            End::Failed => "a fault was to end the run".to_owned(),
+        };
+        let got = match last {
+            Some(step) => format!("it ended at {} s by {}", Seconds(step.t), step.words),
+            None => format!("it was not over at {} s, when the run ended", Seconds(self.course.t)),
+        };
+        let message = match last {
+            Some(_) => "the plan ended otherwise",
+            None => "the plan was not over",
+        };
+        let failure = self.failure(place, message.to_owned(), expected, got);
+        let atom = last.and_then(|step| Some((step.from?, format!("the plan ended in this atom by {}", step.words))));
+        Some(Failure { atom: atom.or_else(|| failure.atom.clone()), ..failure })
+    }
+
+    fn pose(&self, expected: &Expected) -> Option<Failure> {
+        let ((place, _, goal), pose) = (expected.pose.as_ref()?, self.course.pose?);
+        if goal.holds(&pose) {
+            return None;
+        }
+        let words = "the robot was to end here".to_owned();
+        Some(self.failure(place, "the robot ended elsewhere".to_owned(), words, format!("at {}", pose_words(&pose))))
+    }
+
+    fn most(&self, expected: &Expected) -> Vec<Failure> {
+        let Course { turns, steps, t, .. } = self.course;
+        let transitions = steps.len() as u64;
+        let counts =
+            [(&expected.most_turns, *turns, "turns"), (&expected.most_transitions, transitions, "transitions")];
+        let counts = counts.into_iter().filter_map(|(most, count, what)| {
+            let (place, most) = most.as_ref().filter(|(_, most)| count > *most)?;
+            let got = format!("{count} {what}");
+            Some(self.failure(place, format!("the run had more {what}"), format!("at most {most}"), got))
+        });
+        let late = expected.most_time.as_ref().filter(|(_, most)| t > most).map(|(place, most)| {
+            let (expected, got) = (format!("at most {} s", Seconds(*most)), format!("{} s", Seconds(*t)));
+            self.failure(place, "the run was longer".to_owned(), expected, got)
+        });
+        counts.chain(late).collect()
+    }
+}
+
+fn transition_words(wanted: &ExpectedTransition) -> String {
+    let mut words = String::from("a transition");
+    if let Some(from) = &wanted.from {
+        words += &format!(" from `{}`", from.text);
+    }
+    match &wanted.to {
+        Some(Some(to)) => words += &format!(" to `{}`", to.text),
+        Some(None) => words += " to the end of the plan",
+        None => {}
+    }
+    if let Some((by, _)) = &wanted.by {
+        words += &format!(" by `{by}`");
+    }
+    if let Some(after) = wanted.after {
+        words += &format!(" not before {} s", Seconds(after));
+    }
+    if let Some(within) = wanted.within {
+        words += &format!(" within {} s", Seconds(within));
+    }
+    words
+}
+
+/// The place and the heading of a pose, as `--start` takes them.
+pub(super) fn pose_words(pose: &Pose) -> String {
+    // No zero has a sign.
+    let shown = |value: f64| format!("{:.2}", value + 0.0).replace("-0.00", "0.00");
+    format!("{},{},{:.0}", shown(pose.x.0), shown(pose.y.0), libm::round(pose.theta.degrees()) + 0.0)
+}

@@ -1,0 +1,85 @@
+//! Runs of a plan on the script of a test, without a robot.
+
+use mdle_compiler::fsm::Machine;
+use mdle_compiler::trace::{Counted, Reports, Script};
+use mdle_host::{Operand, Transitions};
+use mdle_runtime::{Transition, Turn};
+
+use super::course::{Course, Ending, Recorder};
+use super::coverage::Coverage;
+use super::expected::{Expected, Never};
+use super::file::{At, ScriptTurn, TestFileError};
+use super::subject::{Subject, TestCondition};
+
+/// Reads the script of a test, in the words of its plan.
+///
+/// # Errors
+/// The script has no turns, or one that cannot be: a sentence.
+pub(super) fn script(turns: &At<Vec<At<ScriptTurn>>>, subject: &Subject) -> Result<Script, TestFileError> {
+    let refused = |message: String| TestFileError::at(turns.span(), message);
+    let turn = |line: usize| turns.get_ref().get(line.saturating_sub(1)).map_or(turns.span(), |turn| turn.span());
+    if turns.get_ref().is_empty() {
+        return Err(refused("the script has no turn".to_owned()).help("write the first turn, as in `[{ t = 0 }]`"));
+    }
+    let lines = turns.get_ref().iter().map(|turn| serde_json::to_string(turn.get_ref()).unwrap_or_default());
+    let script = Script::read(&lines.collect::<Vec<_>>().join("\n"));
+    let script = script.and_then(|script| script.in_words_of(&subject.compiled.plan, &subject.target.alphabet));
+    script.map_err(|error| TestFileError::at(turn(error.line), error.message.replace("previous line", "previous turn")))
+}
+
+/// Runs the plan on a script.
+pub(super) fn run(subject: &Subject, expected: &Expected, script: &Script, coverage: &mut Coverage) -> Course {
+    let machine = subject.machine();
+    let mut recorder = Recorder::new(machine);
+    let mut counted = Counted::new(machine);
+    let mut transitions = Transitions::default();
+    for reports in script.turns() {
+        transitions.clear();
+        let turn = counted.watched(reports, &mut transitions);
+        let atom = counted.atom();
+        recorder.turn(reports.t, atom, &transitions, |transition, operands| cause(subject, transition, operands));
+        coverage.turn(machine, atom, &transitions, |scope, tell| counted.operands(scope, reports, tell));
+        breaches(expected, reports, atom, &mut recorder);
+        if turn == Turn::Over {
+            recorder.course.ending = Ending::Over;
+            break;
+        }
+    }
+    recorder.course
+}
+
+/// Notes what is in a turn that never was to be.
+fn breaches(expected: &Expected, reports: &Reports, atom: Option<u32>, recorder: &mut Recorder<'_>) {
+    for (number, (_, never)) in expected.never.iter().enumerate() {
+        let Never::While { atoms, condition } = never else { continue };
+        let is_known = recorder.course.breaches.iter().any(|breach| breach.number == number);
+        let runs = atoms.as_ref().is_none_or(|atoms| atom.is_some_and(|atom| atoms.holds(atom)));
+        let is_true = |TestCondition { machine, .. }: &TestCondition| fires(machine, reports);
+        if !is_known && runs && condition.as_deref().is_none_or(is_true) {
+            recorder.breach(number, None);
+        }
+    }
+}
+
+/// Returns `true` if the interrupt of a plan fires in its first turn.
+fn fires(machine: &Machine, reports: &Reports) -> bool {
+    let mut transitions = Transitions::default();
+    Counted::new(machine).watched(reports, &mut transitions);
+    // Its law may complete as well.
+    transitions.iter().any(|(transition, _)| matches!(transition.cause, mdle_runtime::Cause::Fired(_)))
+}
+
+/// The cause of a transition without values, as in `bumper (dock.mdle:4)`.
+fn cause(subject: &Subject, transition: &Transition, operands: &[Operand]) -> String {
+    use mdle_runtime::Words as _;
+
+    let words = &subject.words;
+    let Some(bracket) = words.bracket(transition.scope) else { return String::new() };
+    let operands = operands.iter().filter_map(|(number, _)| words.operand(transition.scope, *number));
+    let written: Vec<String> = operands.map(|operand| operand.written.to_owned()).collect();
+    let by = match transition.cause {
+        mdle_runtime::Cause::Completed(_) => mdle_runtime::trace::COMPLETED.to_owned(),
+        mdle_runtime::Cause::Fired(_) => written.join(" and "),
+    };
+    format!("{by} ({}:{})", words.file(bracket.at), bracket.at.line)
+}
