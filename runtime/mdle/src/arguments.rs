@@ -15,6 +15,7 @@ use crate::log::{self, Log};
 use crate::new_module::NewModule;
 use crate::plot::{self, Plot};
 use crate::why::{self, Why};
+use crate::test::arguments::{self as test, Test};
 
 /// The command that was given.
 #[derive(Debug, PartialEq)]
@@ -31,6 +32,8 @@ pub(crate) enum Asked {
     Log(Log),
     /// `mdle plot`.
     Plot(Plot),
+    /// `mdle test`.
+    Test(Test),
 }
 
 /// The arguments of `mdle replay`.
@@ -114,6 +117,7 @@ pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
         Some(("why", matches)) => Ok(Asked::Why(Why::of(matches))),
         Some(("log", matches)) => Ok(Asked::Log(Log::of(matches))),
         Some(("plot", matches)) => Ok(Asked::Plot(Plot::of(matches))),
+        Some(("test", matches)) => Ok(Asked::Test(test::read(matches))),
         Some(_) | None => Err(Failure::Usage("no command was given\nhelp: `mdle run PLAN` runs a plan".to_owned())),
     }
 }
@@ -194,6 +198,7 @@ fn command() -> Command {
         .subcommand(why::command())
         .subcommand(log::command())
         .subcommand(plot::command())
+        .subcommand(test::command())
 }
 
 fn new_module() -> Command {
@@ -378,6 +383,7 @@ mod tests {
             Asked::Why(why) => panic!("{why:?}"),
             Asked::Log(log) => panic!("{log:?}"),
             Asked::Plot(plot) => panic!("{plot:?}"),
+            Asked::Test(test) => panic!("{test:?}"),
         }
     }
 

@@ -25,6 +25,8 @@ pub(crate) enum Failure {
     Input(InputError),
     /// The plan has errors, whose diagnostics were printed.
     Plan,
+    /// A file of tests has errors, which were printed.
+    TestFile,
 }
 
 impl From<InputError> for Failure {
@@ -42,7 +44,12 @@ impl From<LoadError> for Failure {
 impl Failure {
     /// Prints the message, if there is one, and returns the exit status.
     pub(crate) fn tell(self) -> ExitCode {
-        let status = match self {
+        ExitCode::from(self.tell_status())
+    }
+
+    /// Prints the message, if there is one, and returns the number of the exit status.
+    pub(crate) fn tell_status(self) -> u8 {
+        match self {
             Self::Unparsed(answer) => {
                 // Nobody is left to be told when the stream is closed.
                 let _ = answer.print();
@@ -69,8 +76,8 @@ impl Failure {
                 status
             }
             Self::Plan => PLAN,
-        };
-        ExitCode::from(status)
+            Self::TestFile => USAGE,
+        }
     }
 }
 

@@ -18,6 +18,7 @@ mod safety;
 mod session;
 mod targets;
 mod terminal;
+mod test;
 mod why;
 
 use std::process::ExitCode;
@@ -50,6 +51,7 @@ pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
         Asked::Why(arguments) => why::why(&arguments),
         Asked::Log(arguments) => log::log(&arguments),
         Asked::Plot(arguments) => plot::plot(&arguments),
+        Asked::Test(arguments) => test::test(&arguments, &library),
     };
     arguments::parse(arguments).and_then(run).unwrap_or_else(Failure::tell)
 }

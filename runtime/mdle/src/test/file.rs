@@ -1,4 +1,4 @@
-//! A file of tests: its keys and values, as written.
+//! A file of tests: its keys and values, as written (docs/src/testing.md).
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};

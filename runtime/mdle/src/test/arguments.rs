@@ -1,0 +1,71 @@
+//! The command line of `mdle test`.
+
+use std::num::NonZeroU64;
+use std::path::PathBuf;
+
+use clap::{Arg, ArgMatches, Command, value_parser};
+
+/// The arguments of `mdle test`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Test {
+    /// Files of tests, plans, or folders.
+    pub(crate) files: Vec<PathBuf>,
+    /// Name of the only test to run.
+    pub(crate) only: Option<String>,
+    /// Number of runs of each test with a seed.
+    pub(crate) seeds: Option<NonZeroU64>,
+    /// First seed.
+    pub(crate) seed: Option<u64>,
+    /// Number of parallel runs.
+    pub(crate) jobs: Option<NonZeroU64>,
+}
+
+/// Returns the command line.
+pub(crate) fn command() -> Command {
+    let option = |name: &'static str, value: &'static str| Arg::new(name).long(name).value_name(value);
+    Command::new("test")
+        .about("Run the tests of plans")
+        .long_about(
+            "Run the tests of plans\n\nThe tests of `dock.mdle` are in `dock.test.toml` beside it. A test is a script \
+             of interrupts, or a run in the simulator, and what is expected of it. The page \"Testing a plan\" of the \
+             book has the format.",
+        )
+        .arg(
+            Arg::new("files")
+                .value_name("FILE")
+                .help("Files of tests, their plans, or folders with files of tests [default: the current folder]")
+                .num_args(0..)
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(option("test", "NAME").help("Run only the test of this name"))
+        .arg(
+            option("seeds", "N")
+                .help("Number of runs of each test with a seed, with consecutive seeds [default: that of the test]")
+                .value_parser(value_parser!(NonZeroU64)),
+        )
+        .arg(
+            option("seed", "N")
+                .help("First seed of each test with a seed [default: that of the test]")
+                .value_parser(value_parser!(u64)),
+        )
+        .arg(
+            option("jobs", "N")
+                .help("Number of parallel runs; results do not depend on it [default: number of processors]")
+                .value_parser(value_parser!(NonZeroU64)),
+        )
+        .after_help(
+            "Exit status: 0 if all tests pass; 1 if a test fails or a plan has errors; 2 for wrong usage, or a file of \
+             tests that cannot be read or has errors",
+        )
+}
+
+/// Reads the arguments.
+pub(crate) fn read(matches: &ArgMatches) -> Test {
+    Test {
+        files: matches.get_many("files").into_iter().flatten().cloned().collect(),
+        only: matches.get_one("test").cloned(),
+        seeds: matches.get_one("seeds").copied(),
+        seed: matches.get_one("seed").copied(),
+        jobs: matches.get_one("jobs").copied(),
+    }
+}

@@ -1,0 +1,200 @@
+//! The report of tests for people: a line for each test, and the failures with their places in test and plan.
+
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+
+use codespan_reporting::diagnostic::{Diagnostic, Label};
+use mdle_compiler::diagnostic::{SourceId, Sources};
+use mdle_files::Input;
+use mdle_host::quoted;
+use mdle_runtime::PrintableLines;
+use mdle_runtime::trace::Seconds;
+
+use super::course::{Course, Ending, Step, atom_words};
+use super::judge::Failure;
+use super::messages;
+use super::runner::{Job, Made, RunResult};
+use super::suite::{Case, RunsOn, Suite};
+
+/// Maximum number of transitions before a failure that are shown.
+const STEPS: usize = 5;
+/// Maximum number of seeds of a test whose commands are shown.
+const SEEDS: usize = 10;
+
+/// The runs of one test.
+pub(super) struct Tested<'m> {
+    pub(super) suite: &'m Suite,
+    pub(super) case: &'m Case,
+    /// The files of the plan and of the test.
+    pub(super) sources: &'m Sources,
+    /// Runs in the order of their seeds; at least one.
+    pub(super) runs: &'m [Made],
+}
+
+/// Returns the tests with their runs, which are in the order of the tests.
+pub(super) fn tested<'m>(suites: &'m [Suite], inputs: &'m [Input], made: &'m [Made]) -> Vec<Tested<'m>> {
+    let groups = made.chunk_by(|one, next| (one.job.suite, one.job.case) == (next.job.suite, next.job.case));
+    let tests = groups.filter_map(|runs| {
+        let Job { suite, case, .. } = runs.first()?.job;
+        let (suite, input) = (suites.get(suite)?, inputs.get(suite)?);
+        Some(Tested { suite, case: suite.cases.get(case)?, sources: &input.sources, runs })
+    });
+    tests.collect()
+}
+
+impl Tested<'_> {
+    /// Returns the runs that have failed.
+    pub(super) fn failed(&self) -> impl Iterator<Item = &Made> {
+        self.runs.iter().filter(|run| !run.result.is_good())
+    }
+
+    /// Returns `true` if all runs have passed.
+    pub(super) fn is_good(&self) -> bool {
+        self.failed().next().is_none()
+    }
+
+    /// Returns the outcome in a few words: of one run its turns and its end, of several how many have failed.
+    pub(super) fn outcome(&self) -> String {
+        match (self.runs, self.failed().count()) {
+            ([Made { result: RunResult::Judged(course, _), .. }], _) => course_words(course),
+            ([Made { result: RunResult::Crashed(_), .. }], _) => "crashed".to_owned(),
+            (runs, 0) => format!("{} seeds", runs.len()),
+            (runs, failed) => format!("{failed} of {} seeds failed", runs.len()),
+        }
+    }
+
+    /// Returns the command that repeats a run by itself.
+    pub(super) fn again(&self, job: Job) -> String {
+        let (file, name) = (quoted(&self.suite.path.display().to_string()), quoted(&self.case.name));
+        let seed = job.seed.map_or(String::new(), |seed| format!(" --seed {seed} --seeds 1"));
+        format!("mdle test {file} --test {name}{seed}")
+    }
+
+    /// Returns the commands that record a run and explain a turn of it, if `mdle run` can repeat the run.
+    pub(super) fn why(&self, job: Job, failure: &Failure) -> Option<[String; 2]> {
+        let RunsOn::Simulation(simulation) = &self.case.runs_on else { return None };
+        if simulation.has_faults() {
+            return None;
+        }
+        let mut run = format!("mdle run {} --target sim", quoted(&self.suite.subject.file.display().to_string()));
+        for option in &simulation.options {
+            let _ = write!(run, " {}", quoted(option));
+        }
+        let seed = job.seed.map_or(String::new(), |seed| format!(" --seed {seed}"));
+        let _ = write!(run, "{seed} --speed max --log failed.mcap");
+        Some([run, format!("mdle why failed.mcap {}", Seconds(failure.t))])
+    }
+}
+
+/// Prints the lines of all tests to standard output, and the failures to standard error.
+pub(super) fn tell(tests: &[Tested<'_>]) {
+    let mut out = String::new();
+    let mut file = None;
+    for test in tests {
+        if file.replace(&test.suite.path) != Some(&test.suite.path) {
+            let _ = writeln!(out, "{}", test.suite.path.display());
+        }
+        let mark = if test.is_good() { "ok  " } else { "FAIL" };
+        let _ = writeln!(out, "  {mark}  {} ({})", test.case.name, test.outcome());
+    }
+    said(&out);
+    tests.iter().filter(|test| !test.is_good()).for_each(failed);
+    let (good, all) = (tests.iter().filter(|test| test.is_good()).count(), tests.len());
+    let runs: usize = tests.iter().map(|test| test.runs.len()).sum();
+    let runs = if runs == all { String::new() } else { format!(", {runs} runs") };
+    if all == 0 {
+        return;
+    }
+    said(&match all - good {
+        0 => format!("{all} passed{runs}\n"),
+        bad => format!("{bad} failed, {good} passed{runs}\n"),
+    });
+}
+
+fn said(text: &str) {
+    // A reader that has gone is no reason to fail.
+    let _ = write!(io::stdout().lock(), "{}", PrintableLines(text)).and_then(|()| io::stdout().flush());
+}
+
+/// Prints the failures of the first run of a test that has failed, and the commands that repeat all failed runs.
+fn failed(test: &Tested<'_>) {
+    let Some(first) = test.failed().next() else { return };
+    let sources = test.sources;
+    match &first.result {
+        RunResult::Crashed(sentence) => {
+            let label = Label::primary(test.suite.source, test.case.text.name.span());
+            let message = format!("{}: the run could not be made: {sentence}", title(test, first.job));
+            let report = Diagnostic::error().with_message(message).with_labels(vec![label]);
+            messages::write(sources, report.with_notes(vec![format!("again: {}", test.again(first.job))]));
+        }
+        RunResult::Judged(course, failures) => {
+            for (number, failure) in (1..).zip(failures) {
+                let report = report(test, first.job, course, failure);
+                let commands = if number == failures.len() { commands(test, first.job, failures) } else { Vec::new() };
+                messages::write(sources, report.with_notes(commands));
+            }
+        }
+    }
+    let others: Vec<_> = test.failed().skip(1).collect();
+    let mut lines = String::new();
+    for run in others.iter().take(SEEDS) {
+        let _ = writeln!(lines, "also failed: {}", test.again(run.job));
+    }
+    if others.len() > SEEDS {
+        let _ = writeln!(lines, "… and {} more seeds", others.len() - SEEDS);
+    }
+    let _ = write!(io::stderr().lock(), "{}", PrintableLines(&lines));
+}
+
+fn title(test: &Tested<'_>, job: Job) -> String {
+    let seed = job.seed.map_or(String::new(), |seed| format!(", seed {seed}"));
+    format!("{}{seed}", test.case.name)
+}
+
+/// The report of a failure: the expectation, the place in the plan, the last transitions, and commands.
+fn report(test: &Tested<'_>, job: Job, course: &Course, failure: &Failure) -> Diagnostic<SourceId> {
+    let machine = test.suite.subject.machine();
+    let place = if failure.place.is_empty() { test.case.text.name.span() } else { failure.place.clone() };
+    let mut labels = vec![Label::primary(test.suite.source, place).with_message(&failure.expected)];
+    if let Some((atom, words)) = &failure.atom {
+        let (source, range) = test.sources.range(machine.atom(*atom).element().span());
+        labels.push(Label::secondary(source, range).with_message(words));
+    }
+    let mut notes = vec![format!("got: {}", failure.got)];
+    if course.steps.first().is_some_and(|step| step.t <= failure.t) {
+        notes.push(transitions(test, course, failure));
+    }
+    Diagnostic::error()
+        .with_message(format!("{}: {}", title(test, job), failure.message))
+        .with_labels(labels)
+        .with_notes(notes)
+}
+
+/// The commands that repeat a run, and that explain it at its first failure.
+fn commands(test: &Tested<'_>, job: Job, failures: &[Failure]) -> Vec<String> {
+    let first = failures.iter().min_by_key(|failure| failure.t);
+    let why = first.and_then(|first| test.why(job, first)).map(|[record, why]| format!("why: {record}\n     {why}"));
+    [format!("again: {}", test.again(job))].into_iter().chain(why).collect()
+}
+
+/// The last transitions up to a failure.
+fn transitions(test: &Tested<'_>, course: &Course, failure: &Failure) -> String {
+    let (machine, words) = (test.suite.subject.machine(), &test.suite.subject.words);
+    let until = course.steps.partition_point(|step| step.t <= failure.t);
+    let first = until.saturating_sub(STEPS);
+    let line = |Step { t, to, words: by, .. }: &Step| {
+        format!("\n  {:>7} s  {}  <- {by}", Seconds(*t).to_string(), atom_words(machine, words, *to))
+    };
+    let lines: String = course.steps.get(first..until).unwrap_or_default().iter().map(line).collect();
+    format!("last transitions:{lines}")
+}
+
+/// A run in a few words.
+fn course_words(course: &Course) -> String {
+    let turns = if course.turns == 1 { "1 turn".to_owned() } else { format!("{} turns", course.turns) };
+    match &course.ending {
+        Ending::Over => format!("{turns}, over at {} s", Seconds(course.t)),
+        Ending::Running => format!("{turns}, running at {} s", Seconds(course.t)),
+        Ending::Failed(_) => format!("{turns}, a fault at {} s", Seconds(course.t)),
+    }
+}

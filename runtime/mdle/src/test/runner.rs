@@ -1,0 +1,153 @@
+//! Runs tests, many at the same time; the outcome depends neither on their number nor on their order.
+
+use std::io::{self, IsTerminal as _};
+use std::num::NonZeroUsize;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::channel;
+use std::thread;
+use std::time::Instant;
+
+use mdle_engine::Library;
+use mdle_host::Progress;
+use mdle_runtime::Sensed;
+
+use super::course::Course;
+use super::coverage::Coverage;
+use super::judge::{Failure, judge};
+use super::scripted;
+use super::suite::{Case, RunsOn, Suite};
+
+/// A run to be made.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Job {
+    pub(super) suite: usize,
+    pub(super) case: usize,
+    pub(super) seed: Option<u64>,
+}
+
+/// A run that was made.
+#[derive(Debug)]
+pub(super) struct Made {
+    pub(super) job: Job,
+    pub(super) result: RunResult,
+}
+
+/// Result of a run.
+#[derive(Debug)]
+pub(super) enum RunResult {
+    /// The run has a course, and perhaps has not met expectations.
+    Judged(Box<Course>, Vec<Failure>),
+    /// The run could not begin, or its code panicked: a sentence.
+    Crashed(String),
+}
+
+impl RunResult {
+    /// Returns `true` if all expectations are met.
+    pub(super) fn is_good(&self) -> bool {
+        match self {
+            Self::Judged(_, failures) => failures.is_empty(),
+            Self::Crashed(_) => false,
+        }
+    }
+}
+
+/// Returns the runs of all tests, or of the tests of this name.
+pub(super) fn jobs(suites: &[Suite], only: Option<&str>, first: Option<u64>, count: Option<u64>) -> Vec<Job> {
+    let mut jobs = Vec::new();
+    for (suite, tests) in suites.iter().enumerate() {
+        for (case, test) in tests.cases.iter().enumerate().filter(|(_, test)| only.is_none_or(|only| test.name == only))
+        {
+            let (seed, runs) = test.seeds(first, count);
+            jobs.extend((0..runs).map(|run| Job { suite, case, seed: seed.map(|seed| seed.wrapping_add(run)) }));
+        }
+    }
+    jobs
+}
+
+/// Makes the runs, with so many threads; returns them in the order of `jobs`, and the coverage of each suite.
+pub(super) fn run(
+    suites: &[Suite],
+    jobs: &[Job],
+    threads: NonZeroUsize,
+    library: &Library<Sensed>,
+) -> (Vec<Made>, Vec<Coverage>) {
+    let next = AtomicUsize::new(0);
+    let fresh = || suites.iter().map(|suite| Coverage::new(suite.subject.machine())).collect::<Vec<_>>();
+    let (mut made, mut coverage) = (Vec::new(), fresh());
+    thread::scope(|scope| {
+        let (sender, receiver) = channel();
+        let (reached, workers) = channel();
+        for _ in 0..threads.get().min(jobs.len()) {
+            let (sender, reached, next, fresh) = (sender.clone(), reached.clone(), &next, &fresh);
+            scope.spawn(move || {
+                let mut coverage = fresh();
+                while let Some((number, job)) = taken(next, jobs) {
+                    let result = one(suites, *job, library, &mut coverage);
+                    // The runner listens until all threads have ended.
+                    let _ = sender.send((number, Made { job: *job, result }));
+                }
+                let _ = reached.send(coverage);
+            });
+        }
+        drop((sender, reached));
+        let begun = Instant::now();
+        let (mut err, is_seen) = (io::stderr(), io::stderr().is_terminal());
+        let mut progress = is_seen.then(|| Progress::new(&mut err, Box::new(move || begun.elapsed())));
+        for run in receiver {
+            made.push(run);
+            if let Some(progress) = &mut progress {
+                progress.runs(made.len() as u64, jobs.len() as u64);
+            }
+        }
+        for worker in workers {
+            coverage.iter_mut().zip(&worker).for_each(|(all, own)| all.add(own));
+        }
+    });
+    made.sort_by_key(|(number, _)| *number);
+    (made.into_iter().map(|(_, made)| made).collect(), coverage)
+}
+
+fn taken<'j>(next: &AtomicUsize, jobs: &'j [Job]) -> Option<(usize, &'j Job)> {
+    let number = next.fetch_add(1, Ordering::Relaxed);
+    jobs.get(number).map(|job| (number, job))
+}
+
+/// Makes a run. A panic in it fails this run alone.
+fn one(suites: &[Suite], job: Job, library: &Library<Sensed>, coverage: &mut [Coverage]) -> RunResult {
+    let (Some(suite), Some(coverage)) = (suites.get(job.suite), coverage.get_mut(job.suite)) else {
+        return RunResult::Crashed("there is no such test".to_owned());
+    };
+    let Some(case) = suite.cases.get(job.case) else {
+        return RunResult::Crashed("there is no such test".to_owned());
+    };
+    let mut own = coverage.clone();
+    own.begins();
+    let result = catch_unwind(AssertUnwindSafe(|| course(suite, case, job.seed, library, &mut own)));
+    match result {
+        Ok(Ok(course)) => {
+            *coverage = own;
+            let failures = judge(&case.expected, &course, &suite.subject);
+            RunResult::Judged(Box::new(course), failures)
+        }
+        Ok(Err(sentence)) => RunResult::Crashed(sentence),
+        Err(payload) => {
+            let words = payload.downcast_ref::<&str>().map(|words| (*words).to_owned());
+            let words = words.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
+            RunResult::Crashed(format!("a panic, which is a bug: {words}"))
+        }
+    }
+}
+
+fn course(
+    suite: &Suite,
+    case: &Case,
+    seed: Option<u64>,
+    library: &Library<Sensed>,
+    coverage: &mut Coverage,
+) -> Result<Course, String> {
+    match &case.runs_on {
+        RunsOn::Script(script) => Ok(scripted::run(&suite.subject, &case.expected, script, coverage)),
+        RunsOn::Simulation(simulation) => simulation.run(&suite.subject, &case.expected, seed, library, coverage),
+    }
+}

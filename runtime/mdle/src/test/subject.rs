@@ -1,0 +1,199 @@
+//! The plan that is tested: compiled, with its words, and loaded for the simulator.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use mdle_compiler::alphabet::did_you_mean;
+use mdle_compiler::diagnostic::{Diagnostic, Severity, judged};
+use mdle_compiler::fsm::{self, Machine, PlanWords};
+use mdle_compiler::load::{self, Loaded};
+use mdle_compiler::{Compiled, compile};
+use mdle_files::{Input, Known, Settings, Target, read_plan};
+use mdle_runtime::{Condition, Words as _};
+use mdle_sim::alphabet::Alphabet as SimAlphabet;
+
+use super::course::scope_names;
+use super::file::TestFile;
+use crate::failure::{self, Failure};
+
+/// Target of tests if nothing names another one.
+const SIM: &str = "sim";
+
+/// A plan that is tested.
+pub(super) struct Subject {
+    /// File of the plan.
+    pub(super) file: PathBuf,
+    pub(super) compiled: Compiled,
+    /// Operands and lines of the plan.
+    pub(super) words: PlanWords,
+    pub(super) target: Target,
+    /// Name of the target.
+    pub(super) target_name: String,
+    /// The plan for the simulator; `None` for another target.
+    pub(super) loaded: Option<Arc<Loaded<SimAlphabet>>>,
+    /// Arguments for the simulator by the `mdle.toml` beside the plan.
+    pub(super) options: Vec<String>,
+}
+
+/// A condition that a test names.
+pub(super) struct TestCondition {
+    pub(super) machine: Machine,
+    /// The condition for the simulator; `None` for another target.
+    pub(super) loaded: Option<Arc<Loaded<SimAlphabet>>>,
+}
+
+impl Subject {
+    /// Compiles the plan of the file of tests at `path`; returns it with its files. Messages of the compiler go to
+    /// standard error.
+    ///
+    /// # Errors
+    /// The plan cannot be read or has errors.
+    pub(super) fn read(path: &Path, tests: &TestFile) -> Result<(Self, Input), Failure> {
+        let file = plan_file(path, tests);
+        let settings = Settings::beside(&file)?;
+        let given = tests.target.as_ref().map(|target| target.get_ref().as_str());
+        // Scripts need no robot: without a target, the plan is that of a robot that has everything.
+        let is_simulated = tests.test.iter().any(|test| test.script.is_none());
+        let option = given.or_else(|| (is_simulated && !settings.names_target(None)).then_some(SIM));
+        let target_name = settings.name_of_target(option).unwrap_or_default();
+        let target = settings.target(option)?;
+        let mut input = read_plan(&file, &target)?;
+        let wanted = tests.name.as_ref().map(|name| name.get_ref().as_str());
+        if let Some(name) = wanted {
+            input.must_have(name)?;
+        }
+        let (plans, diagnostics) = input.compile(&target.alphabet, wanted);
+        let errors: Vec<_> = diagnostics.iter().filter(|found| is_error(found)).cloned().collect();
+        if let Err(sentence) = judged(&errors, false) {
+            failure::print(&input.sources, &errors);
+            failure::error(&format!("{}: {sentence} in the plan", path.display()));
+            return Err(Failure::Plan);
+        }
+        let named = plans.into_iter().map(|compiled| (compiled.plan.root.name.clone(), compiled));
+        let compiled = input.only(named.collect())?;
+        let words = fsm::words(&compiled.machine, &input.sources, &target.alphabet);
+        let loaded = match target_name == SIM {
+            true => Some(Arc::new(load::load(&compiled.machine, &input.sources, &target.alphabet)?)),
+            false => None,
+        };
+        let options = run_options(&settings, option)?;
+        Ok((Self { file, compiled, words, target, target_name, loaded, options }, input))
+    }
+
+    /// Returns the state machine of the plan.
+    pub(super) fn machine(&self) -> &Machine {
+        &self.compiled.machine
+    }
+
+    /// Returns the atoms that a text names, `true` for each: by the law, by the law's name, or by the name of a scope
+    /// around them.
+    ///
+    /// # Errors
+    /// The plan has no such atom: a sentence and a help.
+    pub(super) fn atoms(&self, text: &str) -> Result<Vec<bool>, (String, String)> {
+        let text = text.trim();
+        let law = self.law(text);
+        let first_word = |law: &str| law.split(' ').next().unwrap_or_default().to_owned();
+        let candidates: [&dyn Fn(u32) -> bool; 3] = [
+            &|atom| Some(&self.machine().atom(atom).law().text) == law.as_ref(),
+            &|atom| first_word(&self.machine().atom(atom).law().text) == text,
+            &|atom| !text.is_empty() && scope_names(self.machine(), atom).any(|name| name == text),
+        ];
+        let count = u32::try_from(self.machine().atoms().len()).unwrap_or(u32::MAX);
+        for is_named in candidates {
+            let atoms: Vec<bool> = (0..count).map(is_named).collect();
+            if atoms.contains(&true) {
+                return Ok(atoms);
+            }
+        }
+        let mut known: Vec<String> = self.machine().atoms().map(|atom| atom.law().text.clone()).collect();
+        known.dedup();
+        let scopes = self.machine().elements().map(|element| element.name()).filter(|name| !name.is_empty());
+        let names = known.iter().map(String::as_str).chain(scopes).collect::<Vec<_>>();
+        let near = did_you_mean(text, &names);
+        let listed = known.iter().map(|law| format!("`{law}`")).collect::<Vec<_>>().join(", ");
+        Err((format!("the plan has no atom `{text}`{near}"), format!("the laws of its atoms are {listed}")))
+    }
+
+    /// Returns the text of a law as the plan has it, whatever units and spaces it is written with.
+    fn law(&self, text: &str) -> Option<String> {
+        let plan = format!("{{ Law (Atom (null) ({text})) }}");
+        let mut sources = self.target.sources();
+        let source = sources.add("law", plan.as_str());
+        let (plans, _) = compile(source, &plan, &self.target.alphabet, None);
+        let atom = plans.first().and_then(|plan| plan.machine.atoms().next().map(|atom| atom.law().text.clone()));
+        atom.filter(|_| !text.contains(['(', ')', '{', '}', ';']) && text.trim() == text)
+    }
+
+    /// Compiles a condition on the output of one turn.
+    ///
+    /// # Errors
+    /// It is no such condition: a sentence.
+    pub(super) fn condition(&self, text: &str) -> Result<TestCondition, String> {
+        let law = self.machine().atom(0).law().text.clone();
+        let plan = format!("{{ Condition ({text})\n (Atom (null) ({law})) }}");
+        let mut sources = self.target.sources();
+        let source = sources.add("condition", plan.as_str());
+        let (mut plans, diagnostics) = compile(source, &plan, &self.target.alphabet, None);
+        if let Some(error) = diagnostics.iter().find(|found| is_error(found)) {
+            return Err(error.message.clone());
+        }
+        let machine = match (plans.pop(), plans.len()) {
+            (Some(compiled), 0) if compiled.machine.atoms().count() == 1 => compiled.machine,
+            _ => return Err("this is not one condition".to_owned()),
+        };
+        let rows = fsm::rows(&machine);
+        let root = rows.guards.iter().take(1).map(|guard| &guard.condition);
+        if let Some(word) = root.chain(&rows.operands).find_map(memory) {
+            return Err(format!("`{word}` depends on more than one turn, which a condition of a test cannot"));
+        }
+        let load = |_| load::load(&machine, &sources, &self.target.alphabet).map(Arc::new);
+        let loaded = self.loaded.as_ref().map(load).transpose().map_err(|error| error.to_string())?;
+        Ok(TestCondition { machine, loaded })
+    }
+
+    /// Returns the operands of the plan, each with its element, its number and its text as written.
+    pub(super) fn operands(&self) -> impl Iterator<Item = (u32, u32, mdle_runtime::OperandWords<'_>)> {
+        let elements = self.machine().elements().map(|element| element.number());
+        elements.flat_map(move |element| {
+            (0..).map_while(move |number| Some((element, number, self.words.operand(element, number)?)))
+        })
+    }
+}
+
+fn is_error(diagnostic: &Diagnostic) -> bool {
+    diagnostic.code.severity() == Severity::Error
+}
+
+/// The plan of a file of tests: the file that it names, or the one beside it.
+fn plan_file(path: &Path, tests: &TestFile) -> PathBuf {
+    match &tests.plan {
+        Some(plan) => path.with_file_name("").join(plan.get_ref()),
+        None => {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            path.with_file_name(format!("{}.mdle", name.strip_suffix(super::file::ENDING).unwrap_or(&name)))
+        }
+    }
+}
+
+/// The options of the `mdle.toml` beside the plan that a test may have as well.
+fn run_options(settings: &Settings, target: Option<&str>) -> Result<Vec<String>, Failure> {
+    const OF_TESTS: [&str; 8] =
+        ["--world=", "--start=", "--body=", "--without=", "--battery=", "--period=", "--paths=", "--start-noise="];
+    let options = settings.run_options(target, &[], |_| Known::default())?;
+    let words = options.iter().flat_map(|option| &option.arguments).map(|word| word.to_string_lossy().into_owned());
+    Ok(words.filter(|word| OF_TESTS.iter().any(|name| word.starts_with(name))).collect())
+}
+
+/// The word of an operand that depends on more than the output of one turn.
+fn memory<I>(operand: &Condition<I>) -> Option<&'static str> {
+    match operand {
+        Condition::Null | Condition::Quark(_) | Condition::Or(..) | Condition::And(..) | Condition::Not(_) => None,
+        Condition::Wait(_) => Some("wait"),
+        Condition::Elapsed(..) => Some("t"),
+        Condition::Driven(..) => Some("way"),
+        Condition::Lasting(..) => Some("stuck"),
+        Condition::Rising(..) => Some("RISING"),
+        Condition::After(..) => Some("after"),
+    }
+}

@@ -1,0 +1,107 @@
+//! A file of tests that is ready to run: its plan is compiled, and its tests are understood.
+
+use std::path::{Path, PathBuf};
+
+use codespan_reporting::diagnostic::{Diagnostic, Label};
+use mdle_compiler::diagnostic::{SourceId, Sources};
+use mdle_compiler::trace::Script;
+use mdle_files::Input;
+use mdle_runtime::Printable;
+
+use super::expected::Expected;
+use super::file::{self, TestFileError, TestText};
+use super::messages;
+use super::scripted;
+use super::simulated::Simulation;
+use super::subject::Subject;
+use crate::failure::{self, Failure};
+
+/// A file of tests.
+pub(super) struct Suite {
+    pub(super) path: PathBuf,
+    /// The text of the file, among the files of the plan.
+    pub(super) source: SourceId,
+    pub(super) subject: Subject,
+    pub(super) cases: Vec<Case>,
+}
+
+/// A test.
+pub(super) struct Case {
+    pub(super) name: String,
+    pub(super) text: TestText,
+    pub(super) expected: Expected,
+    pub(super) runs_on: RunsOn,
+}
+
+/// The robot of a test.
+pub(super) enum RunsOn {
+    Script(Script),
+    Simulation(Box<Simulation>),
+}
+
+impl Suite {
+    /// Reads a file of tests and compiles its plan; returns the tests with the files of the plan, to which the file of
+    /// tests is added. Messages go to standard error.
+    ///
+    /// # Errors
+    /// The file or the plan cannot be read, or has errors.
+    pub(super) fn read(path: &Path) -> Result<(Self, Input), Failure> {
+        let text = file::text(path).map_err(|error| Failure::Usage(error.message))?;
+        let tests = file::read(&text).map_err(|error| refused(path, &text, &error))?;
+        let (subject, mut input) = Subject::read(path, &tests)?;
+        let source = input.sources.add(path.display().to_string(), text.clone());
+        let cases = tests.test.into_iter().map(|test| Case::read(test, path, &subject));
+        let cases = cases.collect::<Result<_, _>>().map_err(|error| refused(path, &text, &error))?;
+        Ok((Self { path: path.to_owned(), source, subject, cases }, input))
+    }
+}
+
+impl Case {
+    fn read(text: TestText, path: &Path, subject: &Subject) -> Result<Self, TestFileError> {
+        let expected = Expected::read(&text.expect, subject, text.script.is_some())?;
+        let runs_on = match &text.script {
+            None => RunsOn::Simulation(Box::new(Simulation::read(&text, path, subject)?)),
+            Some(turns) => {
+                let seeds = [&text.seed, &text.seeds].into_iter().flatten().map(|seed| seed.span());
+                let faults = text.faults.iter().map(|fault| fault.fault.span());
+                let others = text.options().into_iter().map(|(.., place)| place).chain(seeds).chain(faults);
+                if let Some(place) = others.min_by_key(|place| place.start) {
+                    let message = "a test with a script has no robot, so it has no world, seed or faults";
+                    return Err(TestFileError::at(place, message).help("leave this out, or leave `script` out"));
+                }
+                RunsOn::Script(scripted::script(turns, subject)?)
+            }
+        };
+        if let Some(seeds) = text.seeds.as_ref().filter(|seeds| *seeds.get_ref() == 0) {
+            return Err(TestFileError::at(seeds.span(), "a test runs once at least"));
+        }
+        Ok(Self { name: text.name.get_ref().clone(), text, expected, runs_on })
+    }
+
+    /// Returns the first seed, and the number of runs; without a seed there is one run without random errors.
+    pub(super) fn seeds(&self, first: Option<u64>, count: Option<u64>) -> (Option<u64>, u64) {
+        let own = [&self.text.seed, &self.text.seeds].map(|seed| seed.as_ref().map(|seed| *seed.get_ref()));
+        match own {
+            [None, None] => (None, 1),
+            [seed, seeds] => (Some(first.or(seed).unwrap_or(1)), count.or(seeds).unwrap_or(1)),
+        }
+    }
+}
+
+/// Prints what is wrong with a file of tests.
+fn refused(path: &Path, text: &str, error: &TestFileError) -> Failure {
+    let mut sources = Sources::default();
+    let source = sources.add(path.display().to_string(), text);
+    let Some(place) = &error.place else {
+        let help = if error.help.is_empty() { String::new() } else { format!("\nhelp: {}", error.help) };
+        return Failure::Usage(format!("{}: {}{help}", path.display(), error.message));
+    };
+    let label = Label::primary(source, place.clone());
+    let mut report = Diagnostic::error().with_message(&error.message).with_labels(vec![label]);
+    if !error.help.is_empty() {
+        report = report.with_notes(vec![format!("help: {}", error.help)]);
+    }
+    messages::write(&sources, report);
+    failure::error(&format!("the file of tests {} has errors", Printable(&path.display().to_string())));
+    Failure::TestFile
+}
