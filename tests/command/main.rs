@@ -14,6 +14,7 @@ mod mdle_plans;
 mod mdle_run;
 mod mdle_shell;
 mod mdle_terminal;
+mod mdle_test;
 mod newcomer;
 mod other_machines;
 mod proposals;

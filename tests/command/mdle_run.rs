@@ -57,7 +57,9 @@ fn failures_to_run_have_a_help() {
 fn help_names_every_option() {
     let folder = with_plan("help");
     insta::assert_snapshot!(
-        ["--help", "run --help", "shell --help", "new-module --help"].map(|line| report(&folder, line)).join("\n")
+        ["--help", "run --help", "shell --help", "new-module --help", "test --help"]
+            .map(|line| report(&folder, line))
+            .join("\n")
     );
     let help = report(&folder, "run plan.mdle --target sim --help");
     assert!(help.contains("Usage: mdle run plan.mdle --target sim [OPTIONS]\n"), "{help}");

@@ -1,0 +1,193 @@
+//! `mdle test`: tests that fail and their messages, files of tests that have errors, and the tests of our own plans.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use mdle_tests::executable::{folder, mdle};
+use mdle_tests::repository::root;
+
+/// A plan with a scope, a loop, and operands of each kind.
+const DOCK: &str = "{ Dock (bumper)
+  (Atom (r0 < 60cm OR wait 20s) (go 20 0))
+  { Shake (wait 15s) ((Atom (wait 500ms) (go 5 0)) (Atom (null) turn 90))^3 }
+}
+";
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(mdle()).arg("test").args(arguments).current_dir(folder).output().unwrap()
+}
+
+/// Both streams of `mdle test` with these arguments, and its exit status.
+fn report(folder: &Path, arguments: &[&str]) -> String {
+    let Output { status, stdout, stderr } = run(folder, arguments);
+    let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    format!("$ mdle test {}\n{out}{err}[{}]\n", arguments.join(" "), status.code().unwrap())
+}
+
+/// A folder with this plan and these tests beside it.
+fn with(name: &str, plan: &str, tests: &str) -> PathBuf {
+    let folder = folder(name);
+    fs::write(folder.join("dock.mdle"), plan).unwrap();
+    fs::write(folder.join("dock.test.toml"), tests).unwrap();
+    folder
+}
+
+/// The report of one test of the plan [`DOCK`].
+fn of_one(name: &str, test: &str) -> String {
+    report(&with(name, DOCK, &format!("[[test]]\nname = \"one\"\n{test}")), &[])
+}
+
+#[test]
+fn every_plan_of_ours_passes_its_tests() {
+    let plans = root().join("plans");
+    let of = |folder: &Path| fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>();
+    let files: Vec<_> = of(&plans).into_iter().chain(of(&plans.join("paper"))).collect();
+    let plan_files: Vec<_> = files.iter().filter(|file| file.extension().is_some_and(|end| end == "mdle")).collect();
+    assert!(plan_files.len() > 10, "the plans are gone");
+    for plan in &plan_files {
+        assert!(plan.with_extension("test.toml").exists(), "{plan:?} has no tests");
+    }
+    let output = run(&root(), &["plans"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(text.lines().filter(|line| !line.starts_with(' ')).count(), plan_files.len() + 1, "{text}");
+}
+
+#[test]
+fn failures_show_test_plan_and_transitions() {
+    let script =
+        "script = [{ t = 0 }, { t = 3, fired = [\"r0 < 60cm\"] }, { t = 3.5 }, { t = 4, fired = [\"bumper\"] }]\n";
+    let expectations = [
+        "expect.atoms = [\"go 20 0\", \"turn 90\"]",
+        "expect.atoms = [\"go 20 0\"]",
+        "expect.atoms = [\"go 20 0\", \"go 5 0\", \"turn 90\", \"go 5 0\"]",
+        "expect.order = [\"go 20 0\", \"turn 90\", \"go 20 0\"]",
+        "expect.transitions = [{ from = \"go 20 0\", by = \"wait 20s\" }]",
+        "expect.transitions = [{ from = \"go 20 0\", to = \"Shake\", by = \"r0 < 0.6\", within = \"2s\" }]",
+        "expect.never = [\"turn 90\"]",
+        "expect.never = [\"Shake while r0 < 60cm\"]",
+        "expect.end = \"wait 15s\"",
+        "expect.end = \"completed\"",
+        "expect.end = \"running\"",
+        "expect.most-turns = 3\nexpect.most-transitions = 2\nexpect.most-time = \"3s\"",
+    ];
+    let reports = expectations.map(|expected| of_one("failures", &format!("{script}{expected}\n")));
+    assert!(reports.iter().all(|report| report.ends_with("[1]\n")));
+    insta::assert_snapshot!(reports.join("\n"));
+    let good = "expect.atoms = [\"go 20cm/s 0\", \"Shake\", \"turn 90deg\"]\nexpect.end = \"bumper\"\n\
+                expect.transitions = [{ from = \"Shake\", to = \"end\", by = \"Dock\", within = \"4s\" }]\n\
+                expect.never = [\"go 20 0 while bumper\", \"r0 < 60cm AND bumper\"]\n";
+    let good = of_one("met", &format!("{script}{good}"));
+    assert!(good.ends_with("1 passed\n[0]\n"), "{good}");
+}
+
+#[test]
+fn runs_in_the_simulator_fail_with_commands() {
+    let tests = "[[test]]
+name = \"too close\"
+world = \"room\"
+start = \"0.7,0.7,0\"
+body = \"scout\"
+seed = 3
+seeds = 4
+expect.never = [\"closer than 1 m\"]
+expect.end = \"wait 15s\"
+expect.pose = \"1,1,10cm,0,5\"
+
+[[test]]
+name = \"faults\"
+world = \"room\"
+faults = [{ fault = \"sonar\", sonar = 0, range = \"30cm\", from = \"2s\" }, { fault = \"robot\", from = \"9s\" }]
+expect.transitions = [{ by = \"r0 < 60cm\", within = \"2s\" }]
+
+[[test]]
+name = \"a fault that is expected\"
+world = \"room\"
+faults = [{ fault = \"robot\", from = \"1s\" }]
+expect.end = \"failed\"
+";
+    let folder = with("simulated", DOCK, tests);
+    insta::assert_snapshot!(report(&folder, &[]));
+    let again = report(&folder, &["dock.test.toml", "--test", "too close", "--seed", "4", "--seeds", "1"]);
+    assert!(
+        again.contains("error: too close, seed 4: the robot came too close") && again.ends_with("[1]\n"),
+        "{again}"
+    );
+    let by_jobs = ["1", "7"].map(|jobs| report(&folder, &["--jobs", jobs]).replace(&format!("--jobs {jobs}"), ""));
+    assert_eq!(by_jobs[0], by_jobs[1]);
+}
+
+#[test]
+fn a_run_is_that_of_mdle_run() {
+    let test = "world = \"room\"\nstart = \"0.7,0.7,20\"\nbody = \"scout\"\nseed = 5\nexpect.end = \"wait 15s\"\n";
+    let folder = with("same_run", DOCK, &format!("[[test]]\nname = \"one\"\n{test}"));
+    let tested = report(&folder, &[]);
+    let why = tested.lines().find_map(|line| line.trim().strip_prefix("= why: mdle ")).expect(&tested);
+    let why = why.replace(" --log failed.mcap", "");
+    let ran = Command::new(mdle()).args(why.split(' ')).current_dir(&folder).output().unwrap();
+    let ran = String::from_utf8(ran.stdout).unwrap();
+    let last = ran.lines().last().unwrap();
+    let (time, cause) = last.split_once(" s  plan over: ").unwrap();
+    assert!(tested.contains(&format!("it ended at {time} s by {cause}")), "{last}\n{tested}");
+}
+
+#[test]
+fn faulty_files_of_tests_have_a_help() {
+    let tests = [
+        "wrold = \"room\"",
+        "expect.nevr = []",
+        "expect.atoms = [\"go 20 1\"]",
+        "expect.order = [\"Shak\"]",
+        "expect.end = \"bumber\"",
+        "expect.never = [\"rubbish\"]",
+        "expect.never = [\"turn 90 while RISING bumper\"]",
+        "expect.never = [\"closer than 10 s\"]",
+        "expect.transitions = [{ by = \"r0 < 60m\", within = \"2s\" }]",
+        "expect.transitions = [{ after = \"3s\", within = \"2s\" }]",
+        "expect.pose = \"1,1\"",
+        "world = \"moon\"",
+        "world = \"room\"\nstart = \"0,0,0\"",
+        "body = \"tank\"",
+        "seeds = 0",
+        "faults = [{ fault = \"bumber\" }]",
+        "faults = [{ fault = \"sonar\", sonar = 16, range = \"1m\" }]",
+        "faults = [{ fault = \"battery\" }]",
+        "faults = [{ fault = \"bumper\", from = \"2s\", until = \"1s\" }]",
+        "script = []",
+        "script = [{ t = 0 }, { t = 1, fired = [\"bumber\"] }]",
+        "script = [{ t = 1 }, { t = 0 }]",
+        "script = [{ t = 0 }]\nworld = \"room\"",
+        "script = [{ t = 0 }]\nexpect.never = [\"closer than 1m\"]",
+        "script = [{ t = 0 }]\nexpect.pose = \"1,1,1\"",
+        "[[test]]\nname = \"one\"",
+    ];
+    let reports = tests.map(|test| of_one("refused", &format!("{test}\n")));
+    assert!(reports.iter().all(|report| report.ends_with("[2]\n")), "{}", reports.join("\n"));
+    insta::assert_snapshot!(reports.join("\n"));
+}
+
+#[test]
+fn files_that_are_not_there_are_named() {
+    let folder = with("files", DOCK, "[[test]]\nname = \"one\"\nscript = [{ t = 0 }]\n");
+    fs::create_dir_all(folder.join("empty")).unwrap();
+    fs::write(folder.join("lost.test.toml"), "[[test]]\nname = \"one\"\n").unwrap();
+    fs::write(folder.join("bad.mdle"), "{ P (bumber) (Atom (null) stop) }\n").unwrap();
+    fs::write(folder.join("bad.test.toml"), "[[test]]\nname = \"one\"\n").unwrap();
+    fs::write(folder.join("scout.test.toml"), "plan = \"dock.mdle\"\ntarget = \"scout\"\n[[test]]\nname = \"one\"\n")
+        .unwrap();
+    let calls: [&[&str]; 10] = [
+        &["dock.mdle"],
+        &["dock.test.toml", "dock.mdle"],
+        &["missing.mdle"],
+        &["empty"],
+        &["lost.test.toml"],
+        &["bad.mdle"],
+        &["bad.mdle", "dock.mdle"],
+        &["scout.test.toml"],
+        &["dock.mdle", "--test", "on"],
+        &["dock.mdle", "--seeds", "0"],
+    ];
+    insta::assert_snapshot!(calls.map(|call| report(&folder, call)).join("\n"));
+}
