@@ -3,7 +3,7 @@
 use std::num::NonZeroU64;
 use std::path::PathBuf;
 
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
 /// The arguments of `mdle test`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -18,10 +18,23 @@ pub(crate) struct Test {
     pub(crate) seed: Option<u64>,
     /// Number of parallel runs.
     pub(crate) jobs: Option<NonZeroU64>,
+    /// `true` if the coverage is printed.
+    pub(crate) coverage: bool,
+    /// Folder for pictures of the plans with counts.
+    pub(crate) pictures: Option<PathBuf>,
+    /// File for the results as JUnit's XML.
+    pub(crate) junit: Option<PathBuf>,
+    /// `true` if the results are printed as JSON.
+    pub(crate) json: bool,
+    /// `true` if files of tests are changed to what the runs did.
+    pub(crate) update: bool,
+    /// `true` if the tests run again whenever a file changes.
+    pub(crate) watch: bool,
 }
 
 /// Returns the command line.
 pub(crate) fn command() -> Command {
+    let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
     let option = |name: &'static str, value: &'static str| Arg::new(name).long(name).value_name(value);
     Command::new("test")
         .about("Run the tests of plans")
@@ -53,6 +66,23 @@ pub(crate) fn command() -> Command {
                 .help("Number of parallel runs; results do not depend on it [default: number of processors]")
                 .value_parser(value_parser!(NonZeroU64)),
         )
+        .arg(flag("coverage").help("Print which atoms, ends and operands of the plans the tests have reached"))
+        .arg(
+            option("pictures", "FOLDER")
+                .help("Folder for a picture of each plan with the number of times that each atom began")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            option("junit", "FILE")
+                .help("File for the results in the XML of JUnit")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(flag("json").help("Print the results and the coverage as JSON"))
+        .arg(
+            flag("update")
+                .help("Write the atoms, the end and the pose of runs into the files of tests, to be reviewed"),
+        )
+        .arg(flag("watch").help("Run the tests again whenever a file beside them changes").conflicts_with("update"))
         .after_help(
             "Exit status: 0 if all tests pass; 1 if a test fails or a plan has errors; 2 for wrong usage, or a file of \
              tests that cannot be read or has errors",
@@ -67,5 +97,11 @@ pub(crate) fn read(matches: &ArgMatches) -> Test {
         seeds: matches.get_one("seeds").copied(),
         seed: matches.get_one("seed").copied(),
         jobs: matches.get_one("jobs").copied(),
+        coverage: matches.get_flag("coverage"),
+        pictures: matches.get_one("pictures").cloned(),
+        junit: matches.get_one("junit").cloned(),
+        json: matches.get_flag("json"),
+        update: matches.get_flag("update"),
+        watch: matches.get_flag("watch"),
     }
 }

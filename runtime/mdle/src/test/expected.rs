@@ -65,7 +65,7 @@ pub(super) enum Never {
     /// The robot is nearer to an obstacle than this, in metres.
     Closer(f64),
     /// One of the atoms, if there are any, runs while the condition, if there is one, is true.
-    While { atoms: Option<AtomsNamed>, condition: Option<Box<TestCondition>> },
+    While { words: String, atoms: Option<AtomsNamed>, condition: Option<Box<TestCondition>> },
 }
 
 /// The end of a run.
@@ -205,12 +205,12 @@ fn never(text: &At<String>, subject: &Subject, is_script: bool) -> Result<Never,
     let refused = |(sentence, help): (String, String)| TestFileError::at(text.span(), sentence).help(help);
     if let Some((running, during)) = words.split_once(" while ") {
         let atoms = Some(atoms(running).map_err(refused)?);
-        return Ok(Never::While { atoms, condition: Some(condition(during)?) });
+        return Ok(Never::While { words: words.to_owned(), atoms, condition: Some(condition(during)?) });
     }
     match atoms(words) {
-        Ok(atoms) => Ok(Never::While { atoms: Some(atoms), condition: None }),
+        Ok(atoms) => Ok(Never::While { words: words.to_owned(), atoms: Some(atoms), condition: None }),
         Err(no_atom) => match condition(words) {
-            Ok(condition) => Ok(Never::While { atoms: None, condition: Some(condition) }),
+            Ok(condition) => Ok(Never::While { words: words.to_owned(), atoms: None, condition: Some(condition) }),
             Err(TestFileError { message, .. }) => {
                 let help = "expected an atom, a condition, `ATOM while CONDITION`, or `closer than DISTANCE`";
                 Err(TestFileError::at(text.span(), format!("{}; {message}", no_atom.0)).help(help))

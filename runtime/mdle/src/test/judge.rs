@@ -183,12 +183,12 @@ impl Judge<'_> {
             let (message, got) = match never {
                 Never::Closer(_) => {
                     let gap = breach.gap.unwrap_or(0.0).max(0.0) * 100.0;
-                    ("the robot came too close to an obstacle", format!("{gap:.1} cm {at}"))
+                    ("the robot came too close to an obstacle".to_owned(), format!("{gap:.1} cm {at}"))
                 }
-                Never::While { .. } => ("what was never to be was", format!("true {at}")),
+                Never::While { words, .. } => (format!("`{words}` was the case"), format!("it was {at}")),
             };
             let atom = breach.atom.map(|atom| (atom, format!("this atom ran {at}")));
-            let failure = self.failure(place, message.to_owned(), "never".to_owned(), got);
+            let failure = self.failure(place, message, "never".to_owned(), got);
             Some(Failure { atom, t: breach.t, ..failure })
         });
         failures.collect()

@@ -3,31 +3,44 @@
 pub(crate) mod arguments;
 mod course;
 mod coverage;
+mod coverage_table;
 mod expected;
 mod faults;
 mod file;
 mod judge;
 mod messages;
 mod report;
+mod results;
 mod runner;
 mod scripted;
 mod simulated;
 mod subject;
 mod suite;
+mod update;
+mod watched;
 
 use std::collections::BTreeSet;
+use std::fs;
+use std::io;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::thread::available_parallelism;
 
 use arguments::Test;
+use coverage::Coverage;
+use coverage_table::CoverageTable;
 use mdle_compiler::alphabet::did_you_mean;
+use mdle_compiler::picture;
 use mdle_engine::Library;
+use mdle_files::Input;
 use mdle_runtime::Sensed;
+use report::Tested;
+use runner::Made;
 use suite::Suite;
+use watched::WatchedFiles;
 
-use crate::failure::Failure;
+use crate::failure::{self, Failure};
 
 /// Exit status of tests of which one fails.
 const FAILED: u8 = 1;
@@ -35,31 +48,112 @@ const FAILED: u8 = 1;
 /// Runs tests; returns 0 if all of them pass, 1 if one fails or a plan has errors, and 2 if a file of tests has errors.
 ///
 /// # Errors
-/// There is nothing to test.
+/// There is nothing to test, or a file cannot be written.
 pub(crate) fn test(arguments: &Test, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
-    let (mut suites, mut inputs, mut status) = (Vec::new(), Vec::new(), 0);
-    for file in files(&arguments.files)? {
-        match Suite::read(&file) {
-            Ok((suite, input)) => {
-                suites.push(suite);
-                inputs.push(input);
+    let mut watched = WatchedFiles::new(&files(&arguments.files)?);
+    loop {
+        let status = once(arguments, library);
+        if !arguments.watch {
+            return status.map(ExitCode::from);
+        }
+        if let Err(failure) = status {
+            failure.tell_status();
+        }
+        let changed = watched.changed();
+        report::said(&format!("\n{} has changed\n", changed.display()));
+    }
+}
+
+/// Runs tests once, and once more if that has updated files of tests; returns the exit status.
+fn once(arguments: &Test, library: &Library<Sensed>) -> Result<u8, Failure> {
+    if arguments.update {
+        let (all, status) = Suites::read(arguments)?;
+        let (made, _) = all.run(arguments, library);
+        let tests = report::tested(&all.suites, &all.inputs, &made);
+        for tests in tests.chunk_by(|one, next| one.suite.path == next.suite.path) {
+            let Some(first) = tests.first() else { continue };
+            if let Some(text) = update::updated(first.sources.text(first.suite.source), tests) {
+                update::write(&first.suite.path, &text).map_err(Failure::Usage)?;
+                report::said(&format!("{} is updated: review the change\n", first.suite.path.display()));
             }
-            Err(failure) => status = status.max(failure.tell_status()),
+        }
+        if status > 0 {
+            return Ok(status);
         }
     }
-    let only = arguments.only.as_deref();
-    if let Some(name) = only {
-        must_have(name, &suites, status)?;
-    }
-    let (seed, seeds) = (arguments.seed, arguments.seeds.map(Into::into));
-    let jobs = runner::jobs(&suites, only, seed, seeds);
-    let threads = arguments.jobs.and_then(|jobs| NonZeroUsize::try_from(jobs).ok());
-    let threads = threads.or_else(|| available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
-    let (made, _coverage) = runner::run(&suites, &jobs, threads, library);
-    let tests = report::tested(&suites, &inputs, &made);
-    report::tell(&tests);
+    let (all, status) = Suites::read(arguments)?;
+    let (made, coverage) = all.run(arguments, library);
+    let tests = report::tested(&all.suites, &all.inputs, &made);
+    all.tell(arguments, &tests, &coverage)?;
     let has_failed = tests.iter().any(|test| !test.is_good());
-    Ok(ExitCode::from(if has_failed { status.max(FAILED) } else { status }))
+    Ok(if has_failed { status.max(FAILED) } else { status })
+}
+
+/// The files of tests of a call.
+struct Suites {
+    suites: Vec<Suite>,
+    /// The files of each plan.
+    inputs: Vec<Input>,
+}
+
+impl Suites {
+    /// Reads the files of tests; returns them with the exit status that those with errors demand.
+    fn read(arguments: &Test) -> Result<(Self, u8), Failure> {
+        let (mut suites, mut inputs, mut status) = (Vec::new(), Vec::new(), 0);
+        for file in files(&arguments.files)? {
+            match Suite::read(&file) {
+                Ok((suite, input)) => {
+                    suites.push(suite);
+                    inputs.push(input);
+                }
+                Err(failure) => status = status.max(failure.tell_status()),
+            }
+        }
+        if let Some(name) = &arguments.only {
+            must_have(name, &suites, status)?;
+        }
+        Ok((Self { suites, inputs }, status))
+    }
+
+    fn run(&self, arguments: &Test, library: &Library<Sensed>) -> (Vec<Made>, Vec<Coverage>) {
+        let seeds = arguments.seeds.map(Into::into);
+        let jobs = runner::jobs(&self.suites, arguments.only.as_deref(), arguments.seed, seeds);
+        let threads = arguments.jobs.and_then(|jobs| NonZeroUsize::try_from(jobs).ok());
+        let threads = threads.or_else(|| available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
+        runner::run(&self.suites, &jobs, threads, library)
+    }
+
+    /// Reports the tests as the arguments ask.
+    fn tell(&self, arguments: &Test, tests: &[Tested<'_>], coverage: &[Coverage]) -> Result<(), Failure> {
+        let covered = || self.suites.iter().zip(coverage);
+        let tables = covered().map(|(suite, coverage)| CoverageTable::new(&suite.subject, coverage));
+        if arguments.json {
+            report::said(&format!("{}\n", results::json(tests, tables.collect())));
+        } else {
+            report::tell(tests);
+            if arguments.coverage {
+                tables.for_each(|table| report::said(&table.text()));
+            }
+        }
+        let unwritten =
+            |path: &Path, error: io::Error| Failure::Usage(format!("{} cannot be written: {error}", path.display()));
+        if let Some(path) = &arguments.junit {
+            fs::write(path, results::junit(tests)).map_err(|error| unwritten(path, error))?;
+        }
+        let Some(folder) = &arguments.pictures else { return Ok(()) };
+        fs::create_dir_all(folder).map_err(|error| unwritten(folder, error))?;
+        for ((suite, coverage), input) in covered().zip(&self.inputs) {
+            let drawn = picture::counted_svg(suite.subject.machine(), &coverage.began);
+            let drawn = drawn.map_err(|error| {
+                failure::print(&input.sources, &[error]);
+                Failure::Plan
+            })?;
+            let name = suite.subject.file.with_extension("svg");
+            let path = folder.join(name.file_name().unwrap_or_default());
+            fs::write(&path, drawn).map_err(|error| unwritten(&path, error))?;
+        }
+        Ok(())
+    }
 }
 
 /// Checks that there is a test of this name, if all files could be read.
@@ -98,7 +192,7 @@ fn files(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
 
 /// Adds the files of tests in a folder and in the folders inside it, but for hidden ones and `target`.
 fn collect(folder: &Path, found: &mut BTreeSet<PathBuf>) {
-    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
         let name = entry.file_name().to_string_lossy().into_owned();
         // A link to a folder may lead back.

@@ -111,7 +111,8 @@ pub(super) fn tell(tests: &[Tested<'_>]) {
     });
 }
 
-fn said(text: &str) {
+/// Prints text to standard output.
+pub(super) fn said(text: &str) {
     // A reader that has gone is no reason to fail.
     let _ = write!(io::stdout().lock(), "{}", PrintableLines(text)).and_then(|()| io::stdout().flush());
 }
@@ -128,8 +129,11 @@ fn failed(test: &Tested<'_>) {
             messages::write(sources, report.with_notes(vec![format!("again: {}", test.again(first.job))]));
         }
         RunResult::Judged(course, failures) => {
+            let mut told = None;
             for (number, failure) in (1..).zip(failures) {
-                let report = report(test, first.job, course, failure);
+                // The transitions before several failures at one time are the same.
+                let is_new = told.replace(failure.t) != Some(failure.t);
+                let report = report(test, first.job, course, failure, is_new);
                 let commands = if number == failures.len() { commands(test, first.job, failures) } else { Vec::new() };
                 messages::write(sources, report.with_notes(commands));
             }
@@ -151,8 +155,14 @@ fn title(test: &Tested<'_>, job: Job) -> String {
     format!("{}{seed}", test.case.name)
 }
 
-/// The report of a failure: the expectation, the place in the plan, the last transitions, and commands.
-fn report(test: &Tested<'_>, job: Job, course: &Course, failure: &Failure) -> Diagnostic<SourceId> {
+/// The report of a failure: the expectation, the place in the plan, and the last transitions if they are to be shown.
+fn report(
+    test: &Tested<'_>,
+    job: Job,
+    course: &Course,
+    failure: &Failure,
+    has_transitions: bool,
+) -> Diagnostic<SourceId> {
     let machine = test.suite.subject.machine();
     let place = if failure.place.is_empty() { test.case.text.name.span() } else { failure.place.clone() };
     let mut labels = vec![Label::primary(test.suite.source, place).with_message(&failure.expected)];
@@ -161,7 +171,7 @@ fn report(test: &Tested<'_>, job: Job, course: &Course, failure: &Failure) -> Di
         labels.push(Label::secondary(source, range).with_message(words));
     }
     let mut notes = vec![format!("got: {}", failure.got)];
-    if course.steps.first().is_some_and(|step| step.t <= failure.t) {
+    if has_transitions && course.steps.first().is_some_and(|step| step.t <= failure.t) {
         notes.push(transitions(test, course, failure));
     }
     Diagnostic::error()

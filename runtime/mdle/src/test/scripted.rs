@@ -51,7 +51,7 @@ pub(super) fn run(subject: &Subject, expected: &Expected, script: &Script, cover
 /// Notes what is in a turn that never was to be.
 fn breaches(expected: &Expected, reports: &Reports, atom: Option<u32>, recorder: &mut Recorder<'_>) {
     for (number, (_, never)) in expected.never.iter().enumerate() {
-        let Never::While { atoms, condition } = never else { continue };
+        let Never::While { atoms, condition, .. } = never else { continue };
         let is_known = recorder.course.breaches.iter().any(|breach| breach.number == number);
         let runs = atoms.as_ref().is_none_or(|atoms| atom.is_some_and(|atom| atoms.holds(atom)));
         let is_true = |TestCondition { machine, .. }: &TestCondition| fires(machine, reports);
