@@ -15,6 +15,7 @@ mod mdle_run;
 mod mdle_shell;
 mod mdle_terminal;
 mod mdle_test;
+mod mdle_test_outputs;
 mod newcomer;
 mod other_machines;
 mod proposals;
