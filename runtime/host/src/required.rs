@@ -100,7 +100,7 @@ fn endings(plan: &dyn Texts, text: &str, may: impl Fn(u32) -> bool) -> impl Iter
 }
 
 /// The brackets of scopes, in order.
-fn scopes(fsm: Fsm<'_>) -> impl Iterator<Item = u32> {
+pub(crate) fn scopes(fsm: Fsm<'_>) -> impl Iterator<Item = u32> {
     let is_scope = |kind| match kind {
         Kind::Scope { .. } => true,
         Kind::Loop { .. } => false,

@@ -22,7 +22,7 @@ use crate::paths::{self, Recorder};
 use crate::progress::Progress;
 use crate::record::Record;
 use crate::report::Report;
-use crate::required::Required;
+use crate::required::{Required, scopes};
 use crate::run_end::{self, RunEnd, RunFault, say};
 use crate::run_log::{RunLog, is_record};
 use crate::runs::{self, Runs, Terms};
@@ -180,6 +180,9 @@ fn prepared(target: &TargetOptions, matches: &ArgMatches, executable: &dyn Execu
     let prepared = shielded(|| {
         let plan = executable.plan();
         let required = Required::of(matches, &*plan).map_err(Refusal::Usage)?;
+        let laws = (0..).take(plan.fsm().atoms.len()).map(|atom| plan.law(atom));
+        let texts: Vec<_> = laws.chain(scopes(plan.fsm()).map(|scope| plan.condition(scope))).collect();
+        (target.accepts)(matches, &texts)?;
         let store = paths::load(target, matches, plan.paths())?;
         Ok(PlanData { store, paths: plan.paths().to_vec(), required })
     });

@@ -38,6 +38,16 @@ pub trait Target {
         Ok(Time::Wall)
     }
 
+    /// Checks that the robot, as these options configure it, has what a plan needs. `texts` are the laws and the
+    /// conditions of the plan, as its text has them. Called before [`Target::connect`]; a robot that always has all
+    /// capabilities of its alphabet needs no check.
+    ///
+    /// # Errors
+    /// A sentence with the quark and the setting that it needs (exit status 2).
+    fn accepts(_matches: &ArgMatches, _texts: &[&str]) -> Result<(), Refusal> {
+        Ok(())
+    }
+
     /// Opens the robot; no motion yet.
     ///
     /// From the call on, signals no longer end the program: they make `request`. A robot that opens at once ignores it,

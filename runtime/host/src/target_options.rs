@@ -17,6 +17,7 @@ pub(crate) struct TargetOptions {
     pub(crate) time: fn(&ArgMatches) -> Result<Time, String>,
     pub(crate) files: fn(&ArgMatches) -> Vec<NamedFile>,
     pub(crate) answer: fn(&ArgMatches) -> Result<Option<String>, Refusal>,
+    pub(crate) accepts: fn(&ArgMatches, &[&str]) -> Result<(), Refusal>,
     /// Maximum speeds of a path; `None` if the target replays no paths.
     pub(crate) fastest: Option<Twist>,
     /// `true` if a record can hold the robot's outputs and inputs.
@@ -37,6 +38,7 @@ impl TargetOptions {
             time: T::time,
             files: T::files,
             answer: T::answer,
+            accepts: T::accepts,
             fastest: T::PATHS.map(|replays| replays.fastest),
             records: TypeId::of::<<T::Robot as Robot>::Output>() == TypeId::of::<Sensed>()
                 && TypeId::of::<<T::Robot as Robot>::Input>() == TypeId::of::<Twist>(),
