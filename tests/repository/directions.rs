@@ -45,6 +45,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-simulator", "mdle-conformance"]),
     ("targets/scout", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
     ("targets/atrv", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
+    ("targets/ros2", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
     ("targets/template", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-conformance"]),
     // The runtime, the line and the conformance are there for the tests of robots alone.
     ("targets/emulator", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-simulator", "mdle-conformance"]),

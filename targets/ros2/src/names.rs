@@ -1,0 +1,78 @@
+//! Names of topics and types, as ROS 2 and DDS write them.
+
+/// Returns the name of a topic from the root on: a relative name is one of the namespace.
+///
+/// # Errors
+/// A sentence that says why this is no name.
+pub fn absolute(namespace: &str, name: &str) -> Result<String, String> {
+    let whole = match namespace.trim_matches('/') {
+        _ if name.starts_with('/') => name.to_owned(),
+        "" => format!("/{name}"),
+        namespace => format!("/{namespace}/{name}"),
+    };
+    let is_word = |word: &str| {
+        let starts = word.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_');
+        starts && word.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
+    };
+    if whole.split('/').skip(1).all(is_word) {
+        Ok(whole)
+    } else {
+        Err(format!("`{name}` is no name of a topic: words of letters, digits and `_` between slashes"))
+    }
+}
+
+/// Returns the DDS topic of an absolute name.
+#[must_use]
+pub fn dds_topic(absolute: &str) -> String {
+    format!("rt{absolute}")
+}
+
+/// Returns the DDS name of a type, such as `std_msgs/msg/Bool`.
+#[must_use]
+pub fn dds_type(ros: &str) -> String {
+    let parts: Vec<_> = ros.split('/').collect();
+    match parts.as_slice() {
+        [package, folder, name] => format!("{package}::{folder}::dds_::{name}_"),
+        [..] => ros.to_owned(),
+    }
+}
+
+/// Returns the name of a topic as users know it, if a DDS topic is one of ROS 2.
+#[must_use]
+pub fn ros_topic(dds: &str) -> Option<&str> {
+    dds.strip_prefix("rt").filter(|name| name.starts_with('/'))
+}
+
+/// Returns the name of a type as users know it; unchanged if it is none of ROS 2.
+#[must_use]
+pub fn ros_type(dds: &str) -> String {
+    dds.replace("::dds_::", "::").trim_end_matches('_').replace("::", "/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_relative_to_the_namespace() {
+        for (namespace, name, whole) in [
+            ("", "odom", "/odom"),
+            ("/", "odom", "/odom"),
+            ("a200_0000", "platform/odom", "/a200_0000/platform/odom"),
+            ("/robot/", "/clock", "/clock"),
+        ] {
+            assert_eq!(absolute(namespace, name).as_deref(), Ok(whole));
+        }
+        for wrong in ["", "2nd", "a b", "a//b", "a/", "größe", "~/x"] {
+            assert!(absolute("", wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn names_of_dds_come_back() {
+        assert_eq!(dds_topic("/odom"), "rt/odom");
+        assert_eq!(dds_type("nav_msgs/msg/Odometry"), "nav_msgs::msg::dds_::Odometry_");
+        assert_eq!(ros_type("nav_msgs::msg::dds_::Odometry_"), "nav_msgs/msg/Odometry");
+        assert_eq!((ros_topic("rt/odom"), ros_topic("ros_discovery_info")), (Some("/odom"), None));
+    }
+}
