@@ -24,6 +24,9 @@ const SHARED: [&str; 8] = [
 /// Folders that no build of an executable reads; a folder with a package of its own is left out as well.
 const LEFT_OUT: [&str; 5] = ["tests", "benches", "examples", "snapshots", "target"];
 
+/// Name of a workspace's lock file.
+const LOCK: &str = "Cargo.lock";
+
 /// The folder of the package that robot emulators share, and below a target's folder that of its emulator.
 const EMULATOR: &str = "emulator";
 
@@ -40,14 +43,17 @@ pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
     packages.push(format!("targets/{EMULATOR}"));
     packages.extend(emulated.iter().map(|name| format!("targets/{name}/{EMULATOR}")));
 
+    // A target with a lock of its own is a workspace of its own, with libraries that no other plan needs.
+    let is_apart = |package: &String| root.join(package).join(LOCK).is_file();
+    let (apart, members): (Vec<_>, Vec<_>) = packages.iter().cloned().partition(is_apart);
     let reduced = out.join("workspace.toml");
-    fs::write(&reduced, workspace(&root, &packages)?)?;
-    let mut files = vec![("Cargo.toml".to_owned(), reduced), ("Cargo.lock".to_owned(), root.join("Cargo.lock"))];
+    fs::write(&reduced, workspace(&root, &members, &apart)?)?;
+    let mut files = vec![("Cargo.toml".to_owned(), reduced), (LOCK.to_owned(), root.join(LOCK))];
     for package in &packages {
         println!("cargo::rerun-if-changed={}", root.join(package).display());
         collect(&root.join(package), package, &mut files)?;
     }
-    for watched in ["Cargo.toml", "Cargo.lock", "targets"] {
+    for watched in ["Cargo.toml", LOCK, "targets"] {
         println!("cargo::rerun-if-changed={}", root.join(watched).display());
     }
     for (name, path) in &mut files {
@@ -62,12 +68,13 @@ pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The root manifest, reduced to `packages`.
-fn workspace(root: &Path, packages: &[String]) -> Result<String, Box<dyn Error>> {
+/// The root manifest, reduced to `packages`; those `apart` are workspaces of their own.
+fn workspace(root: &Path, packages: &[String], apart: &[String]) -> Result<String, Box<dyn Error>> {
     let mut manifest: toml::Table = read_manifest(root)?.parse()?;
     let workspace = table_in(&mut manifest, "workspace")?;
     workspace.remove("default-members");
     workspace.insert("members".to_owned(), packages.to_vec().into());
+    workspace.insert("exclude".to_owned(), apart.to_vec().into());
     table_in(workspace, "dependencies")?.retain(|_, dependency| {
         let path = dependency.get("path").and_then(toml::Value::as_str);
         path.is_none_or(|path| packages.iter().any(|package| package == path))

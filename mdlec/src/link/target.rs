@@ -88,11 +88,14 @@ fn builtin(name: &str, crate_name: &str, sources: &Sources) -> Result<Dependenci
         .ok_or_else(|| LinkError::NoSuchTarget(name.to_owned()))?;
     let mut packages: Vec<_> =
         SHARED.iter().map(|(name, folder)| ((*name).to_owned(), sources.folder.join(folder))).collect();
-    packages.push((package.to_owned(), sources.folder.join(folder)));
+    packages.push((package.to_owned(), sources.folder.join(&folder)));
+    // A target that is a workspace of its own has a lock of its own.
+    let own = sources::text(&format!("{folder}/{}", sources::LOCK));
+    let lock = if own.is_empty() { sources::text(sources::LOCK) } else { own };
     Ok(Dependencies {
         packages,
         patches: Vec::new(),
-        lock: sources::text(sources::LOCK).to_owned(),
+        lock: lock.to_owned(),
         identity: name.to_owned(),
         ours: sources.folder.clone(),
     })

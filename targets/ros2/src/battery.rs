@@ -1,0 +1,36 @@
+//! The power supply that a battery message describes.
+
+use mdle_runtime::{Supply, Volts};
+
+use crate::messages::BatteryState;
+
+/// Values of `power_supply_status` with a charger.
+const CHARGING: u8 = 1;
+const FULL: u8 = 4;
+
+/// Returns the supply; a battery without a charge is never low.
+#[must_use]
+pub fn supply(message: &BatteryState, low: f64) -> Supply {
+    let charge = f64::from(message.percentage);
+    Supply {
+        battery: Volts(f64::from(message.voltage)),
+        is_low: charge < low,
+        is_plugged: [CHARGING, FULL].contains(&message.power_supply_status),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_battery_is_low_by_its_charge() {
+        let state = |percentage, power_supply_status| {
+            let message = BatteryState { voltage: 14.5, percentage, power_supply_status, ..BatteryState::default() };
+            supply(&message, 0.15)
+        };
+        assert_eq!(state(0.1, 2), Supply { battery: Volts(14.5), is_low: true, is_plugged: false });
+        assert!(!state(0.15, 2).is_low && !state(f32::NAN, 0).is_low);
+        assert!(state(0.1, 1).is_plugged && state(1.0, 4).is_plugged && !state(1.0, 3).is_plugged);
+    }
+}

@@ -1,0 +1,217 @@
+//! Configuration of a robot that speaks ROS 2: a TOML file, the defaults, and the source of each value.
+
+use std::fmt;
+use std::net::IpAddr;
+use std::path::Path;
+
+use mdle_runtime::Meters;
+use mdle_runtime::Shape;
+use mdle_serial::{Key, Settings, Steering};
+use serde::Deserialize;
+
+use crate::capabilities::Capabilities;
+use crate::choices::{BumperSource, Distribution, RangeSensors, Stamped};
+use crate::names::absolute;
+
+/// Declares the configuration: a line for each key, `name: type = default, in range, "unit" "help";`.
+macro_rules! configuration {
+    ($(
+        $(#[$meta:meta])*
+        $key:ident: $type:ty = $default:expr, $(in $least:literal..=$most:literal,)? $unit:literal $help:literal;
+    )*) => {
+        /// Properties of one robot, and its place on the graph.
+        #[derive(Debug, Clone, PartialEq)]
+        pub struct Config {
+            $($(#[$meta])* pub $key: $type,)*
+            /// The gains with which laws steer.
+            pub steering: Steering,
+        }
+
+        /// The configuration file; a key that is missing keeps its value.
+        #[derive(Default, Deserialize)]
+        #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+        struct File {
+            $($key: Option<<$type as mdle_serial::Setting>::Written>,)*
+            rotate_gain: Option<f64>,
+            align_gain: Option<f64>,
+            avoid_gain: Option<f64>,
+        }
+
+        /// Returns the values of the file, for the rest the defaults.
+        fn values(file: File, settings: &mut Settings) -> Result<Config, String> {
+            Ok(Config {
+                $($key: settings.value(
+                    Key {
+                        name: stringify!($key),
+                        unit: $unit,
+                        help: $help,
+                        is_verified: true,
+                        range: configuration!(@range $($least, $most)?),
+                    },
+                    file.$key,
+                    $default,
+                )?,)*
+                steering: settings.steering([file.rotate_gain, file.align_gain, file.avoid_gain])?,
+            })
+        }
+    };
+    (@range) => { None };
+    (@range $least:literal, $most:literal) => { Some(($least as f64, $most as f64)) };
+}
+
+configuration! {
+    /// Distribution of ROS 2 on the robot.
+    distribution: Distribution = "jazzy".to_owned(), "" "humble, jazzy or kilted";
+    /// Number of the domain; the variable ROS_DOMAIN_ID is the default.
+    domain: u64 = domain_of_environment(), in 0..=232, "" "domain id; its default is that of ROS_DOMAIN_ID";
+    /// Namespace of relative topics.
+    namespace: String = String::new(), "" "namespace of topics without a slash in front";
+    /// Address of the only network to use; empty for all networks.
+    network: String = String::new(), "" "address of the only network to use; empty for all";
+    /// Topic of velocity commands.
+    cmd_vel: String = "cmd_vel".to_owned(), "" "topic of velocity commands";
+    /// Type of velocity commands.
+    stamped: Stamped = crate::choices::WrittenStamped::Word("auto".to_owned()),
+        "" "commands are TwistStamped; auto: as their subscriber wants";
+    /// Frame in the header of stamped commands.
+    frame_id: String = "base_link".to_owned(), "" "frame of stamped commands";
+    /// Topic of the odometry.
+    odom: String = "odom".to_owned(), "" "topic of nav_msgs/Odometry";
+    /// Topic of the scan; empty without one.
+    scan: String = "scan".to_owned(), "" "topic of sensor_msgs/LaserScan; empty without one";
+    /// Place of the scanner ahead of the centre, in metres.
+    scan_x: f64 = 0.0, in -10..=10, "m" "from the centre ahead to the scanner";
+    /// Place of the scanner to the left of the centre, in metres.
+    scan_y: f64 = 0.0, in -10..=10, "m" "from the centre to the left to the scanner";
+    /// Direction of the scanner's zero, in radians.
+    scan_yaw: f64 = 0.0, in -6.3..=6.3, "rad" "from the front to the scanner's zero, counter-clockwise";
+    /// `true` if the scanner reports 0 where nothing echoes.
+    scan_zero_is_free: bool = false, "" "a range of 0 means that nothing echoes";
+    /// Range sensors with topics of their own.
+    ranges: RangeSensors = Vec::new(), "" "range sensors: { topic, x, y, yaw } in m and rad";
+    /// Source of the bumper.
+    bumper_type: BumperSource = "none".to_owned(), "" "none, bool, hazard or scan";
+    /// Topic of the bumper.
+    bumper: String = "bumper".to_owned(), "" "topic of a bumper that is bool or hazard";
+    /// Margin around the body within which a ray of the scan is a contact, in metres.
+    bumper_margin: f64 = 0.02, in 0.0..=1.0, "m" "around the body, for a bumper by scan";
+    /// Topic of the battery; empty without one.
+    battery: String = String::new(), "" "topic of sensor_msgs/BatteryState; empty without one";
+    /// Charge below which the battery is low, as a part of the whole.
+    low_battery: f64 = 0.15, in 0.0..=1.0, "" "of the charge, below which the battery is low";
+    /// Radius of the smallest circle around the body, in metres.
+    body_radius: f64 = 0.18, in 0.01..=5.0, "m" "radius of the smallest circle around the body";
+    /// Half the length of the body, in metres; 0 for a round one.
+    half_length: f64 = 0.0, in 0.0..=5.0, "m" "half the length of the body; 0 for a round one";
+    /// Half the width of the body, in metres; 0 for a round one.
+    half_width: f64 = 0.0, in 0.0..=5.0, "m" "half the width of the body; 0 for a round one";
+    /// Distance between the wheels, in metres.
+    wheel_base: f64 = 0.23, in 0.01..=5.0, "m" "between the wheels";
+    /// Distance from the centre at which ranges of the sixteen directions begin, in metres.
+    ring_radius: f64 = 0.18, in 0.0..=5.0, "m" "from the centre to where ranges of directions begin";
+    /// Maximum speed, in m/s.
+    fastest: f64 = 0.3, in 0.01..=2.0, "m/s" "maximum speed";
+    /// Maximum turn rate, in rad/s.
+    fastest_turn: f64 = 1.5, in 0.01..=6.0, "rad/s" "maximum turn rate";
+    /// Maximum age of the odometry, in milliseconds.
+    stale_odom: u64 = 500, in 50..=60_000, "ms" "without odometry until the robot is stopped";
+    /// Maximum age of the scan and of ranges, in milliseconds.
+    stale_scan: u64 = 1000, in 50..=60_000, "ms" "without a scan or a range until the robot is stopped";
+    /// Maximum age of the bumper, in milliseconds; 0 for a bumper that reports changes only.
+    stale_bumper: u64 = 0, in 0..=60_000, "ms" "without the bumper until the robot is stopped; 0 for no limit";
+    /// Maximum distance that the odometry may jump, in metres.
+    jump: f64 = 0.3, in 0.01..=100.0, "m" "by which odometry may differ from the fastest way";
+    /// Maximum time to find the robot, in milliseconds.
+    discovery: u64 = 10_000, in 100..=600_000, "ms" "to find all topics";
+    /// `true` if time is that of `/clock`.
+    use_sim_time: bool = false, "" "time is that of the topic /clock";
+    /// Topic of the plan's state as text; empty for none.
+    state: String = "mdle/state".to_owned(), "" "topic of the plan's state, as JSON; empty for none";
+    /// Topic of the plan's state as a diagnostic array; empty for none.
+    diagnostics: String = "/diagnostics".to_owned(), "" "topic of the plan's state, as diagnostics; empty for none";
+}
+
+/// Returns the domain of the variable that all programs of ROS 2 read, or 0.
+fn domain_of_environment() -> u64 {
+    std::env::var("ROS_DOMAIN_ID").ok().and_then(|domain| domain.trim().parse().ok()).unwrap_or(0)
+}
+
+/// A configuration with the source of each of its values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Configured {
+    /// The values.
+    pub config: Config,
+    settings: Settings,
+}
+
+impl Configured {
+    /// Reads the file, if there is one.
+    ///
+    /// # Errors
+    /// The file cannot be read, is no TOML, has a key that there is not, or a value that makes no sense: where and why.
+    pub fn read(file: Option<&Path>) -> Result<Self, String> {
+        let (file, mut settings) = Settings::read::<File>(file)?;
+        let config = values(file, &mut settings)?;
+        config.check().map_err(|why| settings.blamed(&why))?;
+        Ok(Self { config, settings })
+    }
+}
+
+/// Returns the configuration as TOML, which `--config` reads, with the capabilities that it gives.
+impl fmt::Display for Configured {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.settings, Capabilities::of(&self.config))
+    }
+}
+
+impl Config {
+    /// Checks the conditions that a value's range cannot express.
+    fn check(&self) -> Result<(), String> {
+        if !self.network.is_empty() && self.network.parse::<IpAddr>().is_err() {
+            return Err(format!("`network` is `{}`, and has to be an address such as 192.168.1.5", self.network));
+        }
+        let topics = [&self.cmd_vel, &self.odom];
+        let optional = [&self.scan, &self.battery, &self.state, &self.diagnostics].into_iter();
+        let optional = optional.chain(has_topic(self.bumper_type).then_some(&self.bumper));
+        let ranges = self.ranges.0.iter().map(|sensor| &sensor.topic);
+        for topic in topics.into_iter().chain(optional.filter(|topic| !topic.is_empty())).chain(ranges) {
+            self.topic(topic)?;
+        }
+        if self.bumper_type == BumperSource::Scan && self.scan.is_empty() {
+            return Err("`bumper-type` is \"scan\", and there is no `scan`".to_owned());
+        }
+        Ok(())
+    }
+
+    /// Returns the absolute name of a topic.
+    ///
+    /// # Errors
+    /// A sentence that says why this is no name.
+    pub fn topic(&self, name: &str) -> Result<String, String> {
+        absolute(&self.namespace, name)
+    }
+
+    /// Returns the body, as laws need it.
+    #[must_use]
+    pub fn shape(&self) -> Shape {
+        let half = |length: f64| Meters(if length > 0.0 { length } else { self.body_radius });
+        Shape {
+            body_radius: Meters(self.body_radius),
+            half_length: half(self.half_length),
+            half_width: half(self.half_width),
+            sonars_apart: None,
+            wheel_base: Meters(self.wheel_base),
+            ring_radius: Meters(self.ring_radius),
+            confirmation: 3,
+            steering: self.steering,
+        }
+    }
+}
+
+/// Returns `true` if this bumper has a topic of its own.
+pub(crate) fn has_topic(bumper: BumperSource) -> bool {
+    match bumper {
+        BumperSource::Bool | BumperSource::Hazard => true,
+        BumperSource::None | BumperSource::Scan => false,
+    }
+}

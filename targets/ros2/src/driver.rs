@@ -1,0 +1,192 @@
+//! The robot as a kinetic state machine: each input is a velocity command, and the last messages are the output.
+
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use mdle_host::{Ended, Observer, PlanPosition, StopRequest};
+use mdle_runtime::{MetersPerSecond, Nanos, PathStore, RadiansPerSecond, Robot, Sensed, Twist};
+use mdle_serial::{Moment, Times};
+
+use crate::config::Config;
+use crate::fault::Fault;
+use crate::link::Link;
+use crate::pacing::Pacing;
+use crate::report::PlanState;
+use crate::sensing::Sensing;
+use crate::stamp::ros_now;
+
+/// The time between two looks for messages.
+pub(crate) const LOOK: Duration = Duration::from_micros(500);
+/// Maximum time without an answer of a robot whose time is not the host's.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// Maximum time for which a zero velocity is repeated.
+const HALTING: Duration = Duration::from_millis(500);
+/// Speeds below which a robot rests.
+const REST: Twist = Twist { v: MetersPerSecond(0.02), omega: RadiansPerSecond(0.05) };
+/// The time between two messages of the plan's state without a change.
+const REPEAT: Nanos = Nanos(1_000_000_000);
+
+/// A robot that speaks ROS 2, behind a link.
+#[derive(Debug)]
+pub struct Ros2<L> {
+    link: L,
+    config: Config,
+    sensing: Sensing,
+    pacing: Pacing,
+    times: Times,
+    /// Time at which the robot was found.
+    begun: Moment,
+    request: StopRequest,
+    /// Time of `/clock` at the first exchange, in nanoseconds.
+    origin: Option<i64>,
+    turns: u32,
+    /// Number of the atom, and time, of the last published state.
+    published: Option<(u64, Nanos)>,
+}
+
+impl<L: Link> Ros2<L> {
+    /// Returns the robot of a link, whose first messages `sensing` has.
+    pub fn new(config: Config, link: L, sensing: Sensing, pacing: Pacing, request: StopRequest, begun: Moment) -> Self {
+        let times = Times::new(pacing.clock());
+        Self { link, config, sensing, pacing, times, begun, request, origin: None, turns: 0, published: None }
+    }
+
+    /// Stores the paths that the plan replays.
+    pub fn take_paths(&mut self, paths: PathStore) {
+        self.sensing.paths = paths;
+    }
+
+    /// Returns the velocity to send: both speeds are reduced by the same factor, so that the robot stays on its curve.
+    fn limited(&self, input: &Twist) -> Result<Twist, Fault> {
+        if !(input.v.0.is_finite() && input.omega.0.is_finite()) {
+            return Err(Fault::NoNumber);
+        }
+        let part = |value: f64, most: f64| if value.abs() > most { most / value.abs() } else { 1.0 };
+        let scale = part(input.v.0, self.config.fastest).min(part(input.omega.0, self.config.fastest_turn));
+        Ok(Twist { v: MetersPerSecond(input.v.0 * scale), omega: RadiansPerSecond(input.omega.0 * scale) })
+    }
+
+    /// Returns the time by which the age of messages counts.
+    fn now(&self) -> Duration {
+        match self.pacing {
+            Pacing::Wall => self.begun.elapsed(),
+            Pacing::Lockstep(period) => period.saturating_mul(self.turns),
+            Pacing::Simulated(_) => Duration::from_nanos(self.sensing.clock().try_into().unwrap_or(0)),
+        }
+    }
+
+    /// Takes the messages that have come.
+    fn receive(&mut self, at: Nanos) -> Result<(), Fault> {
+        let now = self.now();
+        let sensing = &mut self.sensing;
+        self.link.receive(&mut |index, payload| sensing.take(index, payload, now, at))
+    }
+
+    /// Takes messages until `is_there`, or until the run is asked to end.
+    fn wait(&mut self, at: Nanos, topic: &str, is_there: impl Fn(&Sensing) -> bool) -> Result<(), Fault> {
+        let mut last = (self.sensing.clock(), Instant::now());
+        loop {
+            self.receive(at)?;
+            if is_there(&self.sensing) || self.request.is_made() {
+                return Ok(());
+            }
+            if self.sensing.clock() != last.0 {
+                last = (self.sensing.clock(), Instant::now());
+            }
+            let age = last.1.elapsed();
+            if age > PATIENCE {
+                let (topic, limit, why) = (topic.to_owned(), PATIENCE.as_millis() as u64, String::new());
+                return Err(Fault::Stale { topic, age: age.as_millis(), limit, why });
+            }
+            sleep(LOOK);
+        }
+    }
+
+    /// Sends a velocity, and takes the messages that answer it.
+    fn turn(&mut self, twist: Twist, at: Nanos) -> Result<(), Fault> {
+        self.turns = self.turns.saturating_add(1);
+        match self.pacing {
+            Pacing::Wall => {
+                self.link.command(twist)?;
+                self.receive(at)
+            }
+            Pacing::Lockstep(_) => {
+                // A robot that has no command yet repeats its messages.
+                self.receive(at)?;
+                let (before, _) = self.sensing.stamps();
+                self.link.command(twist)?;
+                let odom = self.config.topic(&self.config.odom).unwrap_or_default();
+                self.wait(at, &odom, |sensing| {
+                    let (odometry, looked) = sensing.stamps();
+                    odometry > before && looked >= odometry
+                })
+            }
+            Pacing::Simulated(period) => {
+                self.link.command(twist)?;
+                let origin = *self.origin.get_or_insert(self.sensing.clock());
+                let passed = period.saturating_mul(self.turns - 1).as_nanos();
+                let due = origin.saturating_add(i64::try_from(passed).unwrap_or(i64::MAX));
+                self.wait(at, "/clock", |sensing| sensing.clock() >= due)
+            }
+        }
+    }
+
+    /// Returns `true` if the last odometry is that of a robot at rest.
+    fn rests(&mut self) -> bool {
+        let is_received = self.receive(Nanos::ZERO).is_ok() && self.sensing.check(self.now()).is_ok();
+        let velocity = self.sensing.sensed(Nanos::ZERO).map(|sensed| sensed.velocity);
+        is_received && velocity.is_ok_and(|twist| twist.v.0.abs() < REST.v.0 && twist.omega.0.abs() < REST.omega.0)
+    }
+
+    /// Publishes the state of the plan; without it the plan runs as well.
+    fn tell(&mut self, state: &PlanState) {
+        let stamp = if self.config.use_sim_time { self.sensing.clock() } else { ros_now() };
+        if let Ok(messages) = state.messages(stamp) {
+            self.link.publish(messages);
+        }
+    }
+}
+
+impl<L: Link> Robot for Ros2<L> {
+    type Output = Sensed;
+    type Input = Twist;
+    type Error = Fault;
+
+    fn exchange(&mut self, input: &Twist) -> Result<Sensed, Fault> {
+        let twist = self.limited(input)?;
+        let at = self.times.now();
+        self.turn(twist, at)?;
+        self.sensing.check(self.now())?;
+        self.sensing.sensed(at)
+    }
+
+    fn stop(&mut self) -> Result<(), Fault> {
+        match self.link.halt(HALTING) {
+            // Another subscriber may be gone, and the robot has stopped.
+            Err(Fault::Unacknowledged(_)) if self.rests() => Ok(()),
+            result => result,
+        }
+    }
+
+    fn longest_gap(&self) -> Option<Duration> {
+        Some(Duration::from_millis(self.config.stale_odom.max(self.config.stale_scan)))
+    }
+}
+
+impl<L: Link> Observer for Ros2<L> {
+    fn looks(&self) -> bool {
+        !(self.config.state.is_empty() && self.config.diagnostics.is_empty())
+    }
+
+    fn turned(&mut self, position: &PlanPosition<'_>) {
+        let is_old = self.published.is_none_or(|(state, t)| state != position.state || position.t.since(t) >= REPEAT);
+        if is_old {
+            self.published = Some((position.state, position.t));
+            self.tell(&PlanState::at(position));
+        }
+    }
+
+    fn ended(&mut self, ended: &Ended<'_>) {
+        self.tell(&PlanState::after(ended));
+    }
+}

@@ -1,0 +1,97 @@
+//! Reasons why a robot that speaks ROS 2 cannot go on.
+
+use std::fmt;
+
+use mdle_host::Refusal;
+
+/// Reason why the run ends.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Fault {
+    /// The middleware does not work: a sentence.
+    Middleware(String),
+    /// Topics are missing: sentences with the missing topics and those on the graph.
+    Missing(String),
+    /// The run was asked to end while the robot was sought.
+    Ended,
+    /// A law has asked for a speed that is no number.
+    NoNumber,
+    /// Odometry is no pose.
+    NoPose,
+    /// Odometry went back in time by this many seconds.
+    Backwards(f64),
+    /// Odometry jumped.
+    Jumped {
+        /// Distance, in metres.
+        way: f64,
+        /// Angle, in degrees.
+        degrees: f64,
+        /// Time between the two messages, in seconds.
+        seconds: f64,
+    },
+    /// Several publishers of a topic.
+    Several {
+        /// Name of the topic.
+        topic: String,
+        /// Number of publishers.
+        count: usize,
+    },
+    /// A topic is stale.
+    Stale {
+        /// Name of the topic.
+        topic: String,
+        /// Age of the last message, in milliseconds.
+        age: u128,
+        /// Limit, in milliseconds.
+        limit: u64,
+        /// Reason why the last message was not taken; empty if none came.
+        why: String,
+    },
+    /// Nobody subscribes to velocity commands any more.
+    Unheard(String),
+    /// No subscriber of velocity commands has acknowledged the zero velocity.
+    Unacknowledged(String),
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Middleware(sentence) | Self::Missing(sentence) => f.write_str(sentence),
+            Self::Ended => f.write_str("the run was asked to end"),
+            Self::NoNumber => f.write_str("a law has asked for a speed that is no number"),
+            Self::NoPose => {
+                f.write_str("the odometry is no pose: a number of it is none, or its orientation has no length")
+            }
+            Self::Backwards(seconds) => write!(
+                f,
+                "the odometry has gone back in time by {seconds:.1} s, as after a restart of the robot; start the plan \
+                 again"
+            ),
+            Self::Jumped { way, degrees, seconds } => write!(
+                f,
+                "the odometry has jumped by {way:.2} m and {degrees:.0}° in {seconds:.2} s, further than the robot can \
+                 have moved; odometry must be continuous, so take a topic that no localisation corrects, or set \
+                 `fastest`, `fastest-turn` and `jump`"
+            ),
+            Self::Several { topic, count } => {
+                write!(
+                    f,
+                    "`{topic}` has {count} publishers, and the pose is that of one; stop the others, or set a namespace"
+                )
+            }
+            Self::Stale { topic, age, limit, why } => {
+                write!(f, "`{topic}` has been silent for {age} ms, and its limit is {limit} ms")?;
+                if why.is_empty() { Ok(()) } else { write!(f, "; the last message was left out: {why}") }
+            }
+            Self::Unheard(topic) => write!(f, "nobody subscribes to `{topic}` any more"),
+            Self::Unacknowledged(topic) => {
+                write!(f, "no subscriber of `{topic}` has acknowledged the zero velocity within half a second")
+            }
+        }
+    }
+}
+
+impl From<Fault> for Refusal {
+    fn from(fault: Fault) -> Self {
+        if fault == Fault::Ended { Self::Ended(Ok(())) } else { Self::Fault(fault.to_string()) }
+    }
+}

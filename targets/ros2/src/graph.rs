@@ -1,0 +1,160 @@
+//! The topics of other programs, as the driver sees them, and sentences about those that are missing.
+
+use crate::config::Config;
+use crate::names::{dds_topic, dds_type, ros_topic, ros_type};
+use crate::source::Input;
+
+/// Maximum number of topics that a sentence lists.
+const LISTED: usize = 30;
+
+/// A reader or writer of another program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Endpoint {
+    /// Topic, by its name in DDS.
+    pub topic: String,
+    /// Type, by its name in DDS.
+    pub kind: String,
+    /// `true` if it acknowledges messages, or waits for acknowledgements.
+    pub is_reliable: bool,
+    /// Quality of service that does not match the driver's.
+    pub mismatch: Option<String>,
+}
+
+/// The readers and writers of other programs.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Graph {
+    /// Readers.
+    pub readers: Vec<Endpoint>,
+    /// Writers.
+    pub writers: Vec<Endpoint>,
+}
+
+impl Graph {
+    /// Returns the readers of an absolute topic.
+    pub fn readers_of(&self, topic: &str) -> impl Iterator<Item = &Endpoint> {
+        let name = dds_topic(topic);
+        self.readers.iter().filter(move |reader| reader.topic == name)
+    }
+
+    /// Returns the writers of an absolute topic.
+    pub fn writers_of(&self, topic: &str) -> impl Iterator<Item = &Endpoint> {
+        let name = dds_topic(topic);
+        self.writers.iter().filter(move |writer| writer.topic == name)
+    }
+
+    /// Returns the number of writers of a topic that have its type.
+    #[must_use]
+    pub fn publishers(&self, input: &Input) -> usize {
+        let kind = dds_type(input.kind);
+        self.writers_of(&input.topic).filter(|writer| writer.kind == kind).count()
+    }
+
+    /// Returns the sentence about a topic without a message that could be taken.
+    #[must_use]
+    pub fn about_input(&self, input: &Input, left_out: &str) -> String {
+        let Input { topic, kind, .. } = input;
+        let writers: Vec<_> = self.writers_of(topic).collect();
+        if let Some(other) = writers.iter().find(|writer| writer.kind != dds_type(kind)) {
+            return format!("`{topic}` has messages of the type {}, and {kind} is expected", ros_type(&other.kind));
+        }
+        if let Some(policy) = writers.iter().find_map(|writer| writer.mismatch.as_ref()) {
+            return format!("the publisher of `{topic}` offers another quality of service ({policy})");
+        }
+        match (writers.is_empty(), left_out.is_empty()) {
+            (true, _) => format!("nobody publishes `{topic}` ({kind})"),
+            (false, true) => format!("`{topic}` has a publisher, and no message has come"),
+            (false, false) => format!("`{topic}` has messages that cannot be used: {left_out}"),
+        }
+    }
+
+    /// Returns the sentence about velocity commands that nobody takes.
+    #[must_use]
+    pub fn about_commands(&self, topic: &str, kind: &str) -> String {
+        let readers: Vec<_> = self.readers_of(topic).collect();
+        if let Some(other) = readers.iter().find(|reader| reader.kind != dds_type(kind)) {
+            let hint = "`stamped` in the configuration chooses the type";
+            let has = ros_type(&other.kind);
+            return format!("the subscriber of `{topic}` takes {has}, and commands are {kind}: {hint}");
+        }
+        match readers.iter().find_map(|reader| reader.mismatch.as_ref()) {
+            Some(policy) => format!("the subscriber of `{topic}` wants another quality of service ({policy})"),
+            None => format!("nobody subscribes to `{topic}` ({kind})"),
+        }
+    }
+
+    /// Returns the sentence about all topics on the graph.
+    #[must_use]
+    pub fn listed(&self, config: &Config) -> String {
+        let mut topics: Vec<_> = self
+            .writers
+            .iter()
+            .chain(&self.readers)
+            .filter_map(|endpoint| {
+                ros_topic(&endpoint.topic).map(|topic| format!("{topic} ({})", ros_type(&endpoint.kind)))
+            })
+            .collect();
+        topics.sort();
+        topics.dedup();
+        let domain = config.domain;
+        if topics.is_empty() {
+            let network = if config.network.is_empty() { "" } else { " and `network`" };
+            return format!(
+                "no program of ROS 2 answers in domain {domain}: compare `domain`{network} with ROS_DOMAIN_ID of the \
+                 robot, and see that the network passes multicast"
+            );
+        }
+        let more = topics.len().saturating_sub(LISTED);
+        topics.truncate(LISTED);
+        let more = if more == 0 { String::new() } else { format!(" and {more} more") };
+        format!("domain {domain} has {}{more}", topics.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Configured;
+    use crate::source::Source;
+
+    fn endpoint(topic: &str, kind: &str) -> Endpoint {
+        Endpoint { topic: dds_topic(topic), kind: dds_type(kind), is_reliable: true, mismatch: None }
+    }
+
+    #[test]
+    fn a_missing_topic_names_what_is_there() {
+        let odom =
+            Input { source: Source::Odometry, topic: "/odom".to_owned(), kind: "nav_msgs/msg/Odometry", limit: 500 };
+        let mut graph = Graph::default();
+        assert_eq!(graph.about_input(&odom, ""), "nobody publishes `/odom` (nav_msgs/msg/Odometry)");
+        graph.writers.push(endpoint("/odom", "nav_msgs/msg/Odometry"));
+        assert_eq!(graph.about_input(&odom, ""), "`/odom` has a publisher, and no message has come");
+        assert_eq!(graph.about_input(&odom, "9 bytes"), "`/odom` has messages that cannot be used: 9 bytes");
+        graph.writers[0].mismatch = Some("Deadline".to_owned());
+        assert!(graph.about_input(&odom, "").ends_with("offers another quality of service (Deadline)"));
+        graph.writers.push(endpoint("/odom", "geometry_msgs/msg/Pose"));
+        assert!(graph.about_input(&odom, "").contains("of the type geometry_msgs/msg/Pose, and nav_msgs"));
+        assert_eq!(graph.publishers(&odom), 1);
+    }
+
+    #[test]
+    fn commands_name_the_type_of_their_subscriber() {
+        let mut graph = Graph::default();
+        let about = |graph: &Graph| graph.about_commands("/cmd_vel", "geometry_msgs/msg/Twist");
+        assert_eq!(about(&graph), "nobody subscribes to `/cmd_vel` (geometry_msgs/msg/Twist)");
+        graph.readers.push(endpoint("/cmd_vel", "geometry_msgs/msg/TwistStamped"));
+        assert!(about(&graph).contains("takes geometry_msgs/msg/TwistStamped, and commands are"));
+    }
+
+    #[test]
+    fn an_empty_graph_names_the_settings() {
+        let config = Configured::read(None).unwrap().config;
+        assert!(Graph::default().listed(&config).contains("no program of ROS 2 answers in domain 0"));
+        let mut graph = Graph::default();
+        for number in 0..35 {
+            graph.writers.push(endpoint(&format!("/t{number:02}"), "std_msgs/msg/Bool"));
+        }
+        graph.readers.push(endpoint("/t00", "std_msgs/msg/Bool"));
+        let listed = graph.listed(&config);
+        assert!(listed.starts_with("domain 0 has /t00 (std_msgs/msg/Bool), /t01") && listed.ends_with("and 5 more"));
+    }
+}

@@ -1,0 +1,37 @@
+//! The time of a run: the host's clock, steps of a robot in lockstep, or the clock of a simulation.
+
+use std::time::Duration;
+
+use mdle_host::{Pace, Time};
+use mdle_serial::Clock;
+
+/// Source of the time of turns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pacing {
+    /// The clock of the host.
+    Wall,
+    /// A period for each turn, which begins when all topics have answered the last command.
+    Lockstep(Duration),
+    /// A period for each turn, which begins when `/clock` has advanced by it.
+    Simulated(Duration),
+}
+
+impl Pacing {
+    /// Returns the clock of outputs.
+    #[must_use]
+    pub fn clock(self) -> Clock {
+        match self {
+            Self::Wall => Clock::Wall,
+            Self::Lockstep(period) | Self::Simulated(period) => Clock::Stepped(period),
+        }
+    }
+
+    /// Returns the time of the host.
+    #[must_use]
+    pub fn time(self) -> Time {
+        match self {
+            Self::Wall => Time::Wall,
+            Self::Lockstep(_) | Self::Simulated(_) => Time::Stepped(Pace::Max),
+        }
+    }
+}

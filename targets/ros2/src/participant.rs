@@ -1,0 +1,211 @@
+//! The driver's place on the graph: a participant of DDS with its readers and writers.
+
+use std::net::IpAddr;
+use std::time::Duration;
+
+use rustdds::no_key::{DataWriter, SimpleDataReader};
+use rustdds::policy::{Durability, History};
+use rustdds::{
+    DataWriterStatus, DomainParticipant, DomainParticipantBuilder, GUID, Publisher, QosPolicies, QosPolicyBuilder,
+    RTPSEntity, StatusEvented, Subscriber, Topic, TopicKind,
+};
+
+use crate::cdr::Payload;
+use crate::config::Config;
+use crate::fault::Fault;
+use crate::graph::{Endpoint, Graph};
+use crate::names::{dds_topic, dds_type};
+use crate::payload_adapter::PayloadAdapter;
+
+/// Number of messages that a reader keeps between two turns.
+const KEPT: i32 = 16;
+/// Number of commands that a subscriber may leave unacknowledged before the next one is refused: at 50 Hz those of
+/// 20 s, after which a program that has died is off the graph.
+const UNACKNOWLEDGED: i32 = 1000;
+/// Number of states of the plan that a subscriber may leave unacknowledged, and that a late one gets.
+const STATES: i32 = 8;
+/// Time for which a writer waits for space.
+const BLOCKING: rustdds::Duration = rustdds::Duration::from_millis(1);
+
+/// A participant of DDS.
+pub(crate) struct Participant {
+    participant: DomainParticipant,
+    publisher: Publisher,
+    subscriber: Subscriber,
+}
+
+/// A reader of one topic.
+pub(crate) struct Reader(SimpleDataReader<Payload, PayloadAdapter>);
+
+/// A writer of one topic.
+pub(crate) struct Writer {
+    writer: DataWriter<Payload, PayloadAdapter>,
+    /// Number of subscribers that are matched now.
+    matched: i32,
+}
+
+/// A message, and the id of its writer.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Arrival {
+    pub(crate) payload: Payload,
+    pub(crate) writer: [u8; 16],
+}
+
+/// Delivery of a topic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Delivery {
+    /// The newest message counts, and each may be lost.
+    BestEffort,
+    /// Every message arrives.
+    Reliable,
+    /// Every message arrives, and the last one also at subscribers that come later.
+    Latched,
+}
+
+impl Delivery {
+    fn qos(self, depth: i32) -> QosPolicies {
+        let builder = QosPolicyBuilder::new().history(History::KeepLast { depth });
+        match self {
+            Self::BestEffort => builder.durability(Durability::Volatile).best_effort(),
+            Self::Reliable => builder.durability(Durability::Volatile).reliable(BLOCKING),
+            Self::Latched => builder.durability(Durability::TransientLocal).reliable(BLOCKING),
+        }
+        .build()
+    }
+}
+
+impl Participant {
+    /// Joins the domain of a configuration.
+    pub(crate) fn join(config: &Config) -> Result<Self, Fault> {
+        let failed = |what: &str| {
+            let domain = config.domain;
+            Fault::Middleware(format!("the network of ROS 2 cannot be used (domain {domain}): {what}"))
+        };
+        let domain = u16::try_from(config.domain).map_err(|_| failed("there is no such domain"))?;
+        let mut builder = DomainParticipantBuilder::new(domain);
+        if let Ok(address) = config.network.parse::<IpAddr>() {
+            builder = builder.with_only_networks([address]);
+        }
+        let participant = builder.build().map_err(|error| failed(&error.to_string()))?;
+        let qos = QosPolicyBuilder::new().build();
+        let publisher = participant.create_publisher(&qos).map_err(|error| failed(&error.to_string()))?;
+        let subscriber = participant.create_subscriber(&qos).map_err(|error| failed(&error.to_string()))?;
+        Ok(Self { participant, publisher, subscriber })
+    }
+
+    /// Subscribes to an absolute topic.
+    pub(crate) fn reader(&self, topic: &str, kind: &str, delivery: Delivery) -> Result<Reader, Fault> {
+        let qos = delivery.qos(KEPT);
+        let dds = self.topic(&dds_topic(topic), kind, &qos)?;
+        let reader = self.subscriber.create_simple_datareader_no_key(&dds, Some(qos));
+        reader.map(Reader).map_err(|error| refused(topic, &error.to_string()))
+    }
+
+    /// Publishes an absolute topic.
+    pub(crate) fn writer(&self, topic: &str, kind: &str, delivery: Delivery) -> Result<Writer, Fault> {
+        self.dds_writer(&dds_topic(topic), kind, delivery)
+    }
+
+    /// Publishes a topic by its name in DDS.
+    pub(crate) fn dds_writer(&self, topic: &str, kind: &str, delivery: Delivery) -> Result<Writer, Fault> {
+        let qos = match delivery {
+            Delivery::BestEffort | Delivery::Reliable => delivery.qos(UNACKNOWLEDGED),
+            Delivery::Latched => delivery.qos(STATES),
+        };
+        let dds = self.topic(topic, kind, &qos)?;
+        let writer = self.publisher.create_datawriter_no_key(&dds, Some(qos));
+        let writer = writer.map_err(|error| refused(topic, &error.to_string()))?;
+        Ok(Writer { writer, matched: 0 })
+    }
+
+    fn topic(&self, name: &str, kind: &str, qos: &QosPolicies) -> Result<Topic, Fault> {
+        let topic = self.participant.create_topic(name.to_owned(), dds_type(kind), qos, TopicKind::NoKey);
+        topic.map_err(|error| refused(name, &error.to_string()))
+    }
+
+    /// Returns the id of the participant.
+    pub(crate) fn gid(&self) -> [u8; 16] {
+        self.participant.guid().to_bytes()
+    }
+
+    /// Returns the readers and writers of other programs.
+    pub(crate) fn graph(&self) -> Graph {
+        let own = |guid: GUID| guid.prefix == self.participant.guid().prefix;
+        let endpoint = |topic: &str, kind: &str, qos: &QosPolicies| Endpoint {
+            topic: topic.to_owned(),
+            kind: kind.to_owned(),
+            is_reliable: qos.is_reliable(),
+            mismatch: None,
+        };
+        let readers = self.participant.discovered_readers();
+        let readers = readers.iter().filter(|reader| !own(reader.reader_proxy.remote_reader_guid)).map(|reader| {
+            let data = &reader.subscription_topic_data;
+            let mismatch = Delivery::Reliable.qos(1).compliance_failure_wrt(&data.qos());
+            let mismatch = mismatch.map(|policy| format!("{policy:?}"));
+            Endpoint { mismatch, ..endpoint(data.topic_name(), data.type_name(), &data.qos()) }
+        });
+        let writers = self.participant.discovered_writers();
+        let writers = writers.iter().filter(|writer| !own(writer.writer_proxy.remote_writer_guid)).map(|writer| {
+            let data = &writer.publication_topic_data;
+            let mismatch = data.qos().compliance_failure_wrt(&Delivery::BestEffort.qos(1));
+            let mismatch = mismatch.map(|policy| format!("{policy:?}"));
+            Endpoint { mismatch, ..endpoint(data.topic_name(), &data.type_name, &data.qos()) }
+        });
+        Graph { readers: readers.collect(), writers: writers.collect() }
+    }
+}
+
+/// Returns the fault of a topic that could not be made.
+fn refused(topic: &str, why: &str) -> Fault {
+    Fault::Middleware(format!("`{topic}` cannot be used: {why}"))
+}
+
+impl Reader {
+    /// Returns the next message, if one has come.
+    pub(crate) fn take(&self) -> Option<Arrival> {
+        self.0.drain_read_notifications();
+        loop {
+            match self.0.try_take_one() {
+                Ok(Some(sample)) => {
+                    let writer = sample.writer_guid().to_bytes();
+                    return Some(Arrival { payload: sample.into_value(), writer });
+                }
+                Ok(None) => return None,
+                // Such as a message in another format than CDR, which is passed over.
+                Err(_) => {}
+            }
+        }
+    }
+
+    /// Returns the id of the reader.
+    pub(crate) fn gid(&self) -> [u8; 16] {
+        self.0.guid().to_bytes()
+    }
+}
+
+impl Writer {
+    /// Publishes a message.
+    pub(crate) fn write(&self, payload: Payload) -> Result<(), String> {
+        self.writer.write(payload, None).map_err(|error| error.to_string())
+    }
+
+    /// Waits until all reliable subscribers have acknowledged all messages; returns `false` if they have not in time.
+    pub(crate) fn is_acknowledged(&self, within: Duration) -> bool {
+        self.writer.wait_for_acknowledgments(within).unwrap_or(false)
+    }
+
+    /// Returns the number of subscribers that are matched.
+    pub(crate) fn matched(&mut self) -> i32 {
+        while let Some(status) = self.writer.try_recv_status() {
+            if let DataWriterStatus::PublicationMatched { current, .. } = status {
+                self.matched = current.count();
+            }
+        }
+        self.matched
+    }
+
+    /// Returns the id of the writer.
+    pub(crate) fn gid(&self) -> [u8; 16] {
+        self.writer.guid().to_bytes()
+    }
+}

@@ -1,0 +1,194 @@
+//! Converts the rays of a laser scanner to ranges in the sixteen directions of a robot.
+
+use mdle_runtime::{Meters, Mount, Pose, Radians, SONARS, SonarId};
+
+use crate::config::Config;
+use crate::messages::LaserScan;
+
+/// A direction as a scan shows it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Direction {
+    /// No valid ray looked there.
+    #[default]
+    Unknown,
+    /// All valid rays there met nothing.
+    Free,
+    /// The nearest obstacle.
+    Echo {
+        /// Range from the ring, in metres.
+        range: Meters,
+        /// Bearing of the obstacle, as the mount of a sonar that looks at it.
+        mount: Mount,
+    },
+}
+
+/// Place of a scanner on the body, and its habits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scanner {
+    /// Place and direction, on the body.
+    mount: Pose,
+    ring_radius: f64,
+    zero_is_free: bool,
+}
+
+impl Scanner {
+    /// Returns the scanner of a configuration.
+    #[must_use]
+    pub fn of(config: &Config) -> Self {
+        let (x, y, theta) = (Meters(config.scan_x), Meters(config.scan_y), Radians(config.scan_yaw));
+        let (ring_radius, zero_is_free) = (config.ring_radius, config.scan_zero_is_free);
+        Self { mount: Pose { x, y, theta }, ring_radius, zero_is_free }
+    }
+
+    /// Returns the sixteen directions of a scan.
+    #[must_use]
+    pub fn directions(&self, scan: &LaserScan) -> [Direction; SONARS] {
+        let mut directions = [Direction::Unknown; SONARS];
+        for (angle, range) in self.rays(scan) {
+            let Some(range) = range else {
+                let direction = &mut directions[sonar_at(angle).number()];
+                if *direction == Direction::Unknown {
+                    *direction = Direction::Free;
+                }
+                continue;
+            };
+            let (x, y) = self.place(angle, range);
+            let bearing = Radians(libm::atan2(y, x));
+            let sonar = sonar_at(bearing);
+            let range = Meters((libm::hypot(x, y) - self.ring_radius).max(0.0));
+            let direction = &mut directions[sonar.number()];
+            let is_nearer = match direction {
+                Direction::Echo { range: nearest, .. } => range < *nearest,
+                Direction::Unknown | Direction::Free => true,
+            };
+            if is_nearer {
+                *direction = Direction::Echo { range, mount: Mount::of(0.0, 0.0, bearing, sonar) };
+            }
+        }
+        directions
+    }
+
+    /// Returns the places of obstacles on the body, in metres ahead and to the left of its centre.
+    pub fn obstacles<'s>(&'s self, scan: &'s LaserScan) -> impl Iterator<Item = (f64, f64)> + 's {
+        self.rays(scan).filter_map(|(angle, range)| Some(self.place(angle, range?)))
+    }
+
+    /// Returns the place of an obstacle on the body.
+    fn place(&self, angle: Radians, range: f64) -> (f64, f64) {
+        let (sin, cos) = libm::sincos(angle.0);
+        (self.mount.x.0 + range * cos, self.mount.y.0 + range * sin)
+    }
+
+    /// Returns the valid rays: their angle on the body, and their range; `None` for a ray that met nothing.
+    fn rays<'s>(&'s self, scan: &'s LaserScan) -> impl Iterator<Item = (Radians, Option<f64>)> + 's {
+        let (first, step) = (f64::from(scan.angle_min), f64::from(scan.angle_increment));
+        let (least, most) = (f64::from(scan.range_min), f64::from(scan.range_max));
+        scan.ranges.iter().enumerate().filter_map(move |(number, range)| {
+            let angle = Radians(self.mount.theta.0 + first + step * number as f64);
+            let range = f64::from(*range);
+            let is_free = range == f64::INFINITY || (self.zero_is_free && range == 0.0);
+            let is_valid = is_free || (range.is_finite() && range >= least && range <= most && range > 0.0);
+            (is_valid && angle.0.is_finite()).then_some((angle, (!is_free).then_some(range)))
+        })
+    }
+}
+
+/// Returns the sonar that looks nearest to a bearing.
+pub(crate) fn sonar_at(bearing: Radians) -> SonarId {
+    let places = SONARS as f64 * bearing.0 / std::f64::consts::TAU;
+    SonarId::new(libm::round(places).rem_euclid(SONARS as f64) as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::config::Configured;
+
+    /// A scanner in the middle of a ring without a radius.
+    fn scanner(change: impl Fn(&mut Config)) -> Scanner {
+        let mut config = Configured::read(None).unwrap().config;
+        config.ring_radius = 0.0;
+        change(&mut config);
+        Scanner::of(&config)
+    }
+
+    /// A scan of these ranges all round, from the back counter-clockwise.
+    fn scan(ranges: Vec<f32>) -> LaserScan {
+        let angle_increment = (2.0 * PI / ranges.len() as f64) as f32;
+        let (angle_min, range_min, range_max) = (-PI as f32, 0.1, 10.0);
+        LaserScan { angle_min, angle_increment, range_min, range_max, ranges, ..LaserScan::default() }
+    }
+
+    fn ranges(directions: [Direction; SONARS]) -> Vec<String> {
+        let text = |direction: &Direction| match direction {
+            Direction::Unknown => "?".to_owned(),
+            Direction::Free => "free".to_owned(),
+            Direction::Echo { range, .. } => format!("{:.2}", range.0),
+        };
+        directions.iter().map(text).collect()
+    }
+
+    #[test]
+    fn each_direction_has_its_nearest_valid_ray() {
+        let mut rays = vec![f32::INFINITY; 360];
+        // Two rays of direction 4, which is left, and one beyond its edge; angles count from the back.
+        (rays[180 + 90], rays[180 + 95], rays[180 + 78]) = (3.0, 2.0, 1.0);
+        // Direction 8 looks back, over the end of the list.
+        (rays[0], rays[359]) = (5.0, 4.0);
+        // Direction 12 has only rays that are none.
+        for ray in &mut rays[180 - 101..180 - 78] {
+            *ray = f32::NAN;
+        }
+        let found = ranges(scanner(|_| {}).directions(&scan(rays)));
+        let expected = ["free", "free", "free", "1.00", "2.00", "free", "free", "free", "4.00"];
+        assert_eq!(found[..9], expected);
+        assert_eq!(found[12], "?");
+    }
+
+    #[test]
+    fn invalid_rays_count_for_nothing() {
+        for invalid in [f32::NAN, f32::NEG_INFINITY, -1.0, 0.0, 0.05, 10.5] {
+            let directions = scanner(|_| {}).directions(&scan(vec![invalid; 360]));
+            assert_eq!(directions, [Direction::Unknown; SONARS], "{invalid}");
+        }
+        let zeros = scanner(|config| config.scan_zero_is_free = true).directions(&scan(vec![0.0; 360]));
+        assert_eq!(zeros, [Direction::Free; SONARS]);
+    }
+
+    #[test]
+    fn any_number_of_rays_is_taken() {
+        assert_eq!(scanner(|_| {}).directions(&scan(Vec::new())), [Direction::Unknown; SONARS]);
+        let one = ranges(scanner(|_| {}).directions(&scan(vec![2.0])));
+        assert_eq!((one[8].as_str(), one.iter().filter(|range| *range == "?").count()), ("2.00", 15));
+        let many = ranges(scanner(|_| {}).directions(&scan(vec![2.0; 40_000])));
+        assert!(many.iter().all(|range| range == "2.00"));
+    }
+
+    #[test]
+    fn a_scanner_may_be_turned_and_off_the_centre() {
+        let mut rays = vec![f32::INFINITY; 360];
+        rays[180] = 2.0;
+        let turned = ranges(scanner(|config| config.scan_yaw = PI).directions(&scan(rays.clone())));
+        assert_eq!((turned[8].as_str(), turned[0].as_str()), ("2.00", "free"));
+        let ahead = ranges(scanner(|config| config.scan_x = 0.5).directions(&scan(rays.clone())));
+        assert_eq!(ahead[0], "2.50");
+        let ring = ranges(scanner(|config| config.ring_radius = 0.2).directions(&scan(rays.clone())));
+        assert_eq!(ring[0], "1.80");
+        // Upside down, angles count clockwise.
+        let mut left = scan(vec![f32::INFINITY; 360]);
+        (left.angle_min, left.angle_increment) = (-left.angle_min, -left.angle_increment);
+        left.ranges[90] = 2.0;
+        assert_eq!(ranges(scanner(|_| {}).directions(&left))[4], "2.00");
+    }
+
+    #[test]
+    fn angles_that_are_no_numbers_have_no_rays() {
+        let mut strange = scan(vec![2.0; 100]);
+        strange.angle_increment = f32::NAN;
+        assert_eq!(scanner(|_| {}).directions(&strange), [Direction::Unknown; SONARS]);
+        strange.angle_increment = f32::MAX;
+        let _ = scanner(|_| {}).directions(&strange);
+    }
+}

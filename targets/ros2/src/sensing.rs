@@ -1,0 +1,251 @@
+//! The last messages of all topics, and the output that they make.
+
+use std::time::Duration;
+
+use mdle_runtime::{
+    Compass, Meters, Mount, Nanos, PathStore, Ping, Pings, Pose, Published, Radians, SONARS, Sensed, Shape, Supply,
+};
+
+use crate::battery::supply;
+use crate::cdr::Payload;
+use crate::choices::BumperSource;
+use crate::config::Config;
+use crate::contact;
+use crate::fault::Fault;
+use crate::messages::{
+    BatteryState, Bool, ClockMessage, HazardDetectionVector, Header, LaserScan, Odometry, Range, ShortRange,
+};
+use crate::odometer::Odometer;
+use crate::scan::{Direction, Scanner, sonar_at};
+use crate::source::{Input, Source, has_variance, inputs};
+
+/// A topic, and its last message that was taken.
+#[derive(Debug, Clone)]
+struct Seen {
+    input: Input,
+    /// Time at which it was taken; `None` before the first.
+    at: Option<Duration>,
+    /// Time of the message by its own stamp, in nanoseconds.
+    stamp: i64,
+    /// Reason why a later message was left out; empty if there was none.
+    left_out: String,
+}
+
+/// The senses of a robot.
+#[derive(Debug, Clone)]
+pub struct Sensing {
+    config: Config,
+    shape: Shape,
+    scanner: Scanner,
+    seen: Vec<Seen>,
+    odometer: Odometer,
+    pings: [Pings; SONARS],
+    /// Time at which each direction was last known.
+    known: [Duration; SONARS],
+    switches: u32,
+    supply: Supply,
+    /// Time of `/clock`, in nanoseconds.
+    clock: i64,
+    /// Recorded paths that the plan can replay.
+    pub paths: PathStore,
+}
+
+impl Sensing {
+    /// Returns the senses before the first message.
+    ///
+    /// # Errors
+    /// A sentence about a topic whose name is none.
+    pub fn new(config: &Config) -> Result<Self, String> {
+        let seen = |input| Seen { input, at: None, stamp: 0, left_out: String::new() };
+        Ok(Self {
+            shape: config.shape(),
+            scanner: Scanner::of(config),
+            seen: inputs(config)?.into_iter().map(seen).collect(),
+            odometer: Odometer::new(config),
+            pings: [Pings::default(); SONARS],
+            known: [Duration::ZERO; SONARS],
+            switches: 0,
+            supply: Supply::default(),
+            clock: 0,
+            paths: PathStore::EMPTY,
+            config: config.clone(),
+        })
+    }
+
+    /// Takes the message of the input of this index. `now` is the time of the host, and `at` that of the output.
+    ///
+    /// A message that cannot be read is left out: if no other comes, its topic becomes stale.
+    ///
+    /// # Errors
+    /// The odometry is none, has jumped, or has gone back in time.
+    pub fn take(&mut self, index: usize, payload: &Payload, now: Duration, at: Nanos) -> Result<(), Fault> {
+        let Some(seen) = self.seen.get(index) else { return Ok(()) };
+        let (source, since) = (seen.input.source, seen.at.map_or(now, |at| now.saturating_sub(at)));
+        let taken = match source {
+            Source::Odometry => match payload.read::<Odometry>() {
+                Err(why) => Err(why),
+                Ok(message) if self.odometer.take(&message, since.as_secs_f64())? => Ok(message.header.stamp.nanos()),
+                Ok(_) => Err("its time is not after that of the message before".to_owned()),
+            },
+            Source::Scan => payload.read().and_then(|scan: LaserScan| self.take_scan(&scan, now, at)),
+            Source::Range(number) => self.read_range(payload).map(|range| self.take_range(number, &range, at)),
+            Source::Bumper => self.take_bumper(payload),
+            Source::Battery => payload.read::<BatteryState>().map(|message| {
+                self.supply = supply(&message, self.config.low_battery);
+                message.header.stamp.nanos()
+            }),
+            Source::Clock => payload.read::<ClockMessage>().map(|message| {
+                self.clock = message.clock.nanos();
+                self.clock
+            }),
+        };
+        if let Some(seen) = self.seen.get_mut(index) {
+            match taken {
+                Ok(stamp) => (seen.at, seen.stamp, seen.left_out) = (Some(now), stamp, String::new()),
+                Err(why) => seen.left_out = why,
+            }
+        }
+        Ok(())
+    }
+
+    fn take_scan(&mut self, scan: &LaserScan, now: Duration, at: Nanos) -> Result<i64, String> {
+        let pose = self.pose_of(&scan.header);
+        let directions = self.scanner.directions(scan);
+        if directions.iter().all(|direction| *direction == Direction::Unknown) {
+            return Err(format!("none of its {} rays is valid", scan.ranges.len()));
+        }
+        let limit = Duration::from_millis(self.config.stale_scan);
+        for ((direction, pings), known) in directions.into_iter().zip(&mut self.pings).zip(&mut self.known) {
+            let (range, mount) = match direction {
+                Direction::Echo { range, mount } => (Some(range), mount),
+                Direction::Free => (None, Mount::default()),
+                Direction::Unknown => {
+                    if now.saturating_sub(*known) > limit {
+                        *pings = Pings::default();
+                    }
+                    continue;
+                }
+            };
+            *known = now;
+            pings.push(Ping { range, at, pose, mount });
+        }
+        if self.config.bumper_type == BumperSource::Scan {
+            self.switches = contact::of_scan(&self.config, &self.scanner, scan);
+        }
+        Ok(scan.header.stamp.nanos())
+    }
+
+    fn read_range(&self, payload: &Payload) -> Result<Range, String> {
+        let range: Range =
+            if has_variance(self.config.distribution) { payload.read()? } else { payload.read::<ShortRange>()?.into() };
+        let is_echo = range.range >= range.min_range && range.range <= range.max_range;
+        let is_free = range.range == f32::INFINITY || range.range > range.max_range;
+        if is_echo || is_free { Ok(range) } else { Err(format!("its range is {}", range.range)) }
+    }
+
+    /// Takes a valid range: beyond the maximum, or infinite, it met nothing.
+    fn take_range(&mut self, number: usize, message: &Range, at: Nanos) -> i64 {
+        let pose = self.pose_of(&message.header);
+        if let Some(sensor) = self.config.ranges.0.get(number) {
+            let (bearing, sonar) = (Radians(sensor.yaw), sonar_at(Radians(sensor.yaw)));
+            let (sin, cos) = libm::sincos(sensor.yaw);
+            let ahead = sensor.x * cos + sensor.y * sin - self.config.ring_radius;
+            let echo = f64::from(message.range) + ahead;
+            let range = (message.range <= message.max_range).then_some(Meters(echo.max(0.0)));
+            let ping = Ping { range, at, pose, mount: Mount::of(sensor.x, sensor.y, bearing, sonar) };
+            if let Some(pings) = self.pings.get_mut(sonar.number()) {
+                pings.push(ping);
+            }
+        }
+        message.header.stamp.nanos()
+    }
+
+    fn take_bumper(&mut self, payload: &Payload) -> Result<i64, String> {
+        let (switches, stamp) = match self.config.bumper_type {
+            BumperSource::Hazard => {
+                let hazards: HazardDetectionVector = payload.read()?;
+                (contact::of_hazards(&hazards), hazards.header.stamp.nanos())
+            }
+            BumperSource::None | BumperSource::Bool | BumperSource::Scan => (payload.read::<Bool>()?.data.into(), 0),
+        };
+        self.switches = switches;
+        Ok(stamp)
+    }
+
+    /// Returns the pose at the time of a message.
+    fn pose_of(&self, header: &Header) -> Pose {
+        self.odometer.pose_at(&header.stamp).unwrap_or(Pose::ORIGIN)
+    }
+
+    /// Returns the topics that are read.
+    pub fn inputs(&self) -> impl Iterator<Item = &Input> {
+        self.seen.iter().map(|seen| &seen.input)
+    }
+
+    /// Returns the topics that lack a first message, with the reason why one was left out; not those that report
+    /// changes only.
+    pub fn awaited(&self) -> impl Iterator<Item = (&Input, &str)> {
+        let awaited = self.seen.iter().filter(|seen| seen.at.is_none() && !reports_changes(&seen.input));
+        awaited.map(|seen| (&seen.input, seen.left_out.as_str()))
+    }
+
+    /// Returns the times of the last odometry and of the oldest of the scan and ranges, by their stamps.
+    #[must_use]
+    pub fn stamps(&self) -> (i64, i64) {
+        let looks = |source| match source {
+            Source::Scan | Source::Range(_) => true,
+            Source::Odometry | Source::Bumper | Source::Battery | Source::Clock => false,
+        };
+        let seen = self.seen.iter().filter(|seen| looks(seen.input.source)).map(|seen| seen.stamp);
+        (self.odometer.stamp(), seen.min().unwrap_or(i64::MAX))
+    }
+
+    /// Returns the time of `/clock`, in nanoseconds.
+    #[must_use]
+    pub fn clock(&self) -> i64 {
+        self.clock
+    }
+
+    /// Checks that no topic is stale.
+    ///
+    /// # Errors
+    /// The first topic that is.
+    pub fn check(&self, now: Duration) -> Result<(), Fault> {
+        for seen in self.seen.iter().filter(|seen| seen.input.limit > 0) {
+            let age = now.saturating_sub(seen.at.unwrap_or(Duration::ZERO)).as_millis();
+            if age > u128::from(seen.input.limit) {
+                let (topic, why) = (seen.input.topic.clone(), seen.left_out.clone());
+                return Err(Fault::Stale { topic, age, limit: seen.input.limit, why });
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the output at `at`.
+    ///
+    /// # Errors
+    /// There has been no odometry.
+    pub fn sensed(&self, at: Nanos) -> Result<Sensed, Fault> {
+        let (odometry, velocity) = self.odometer.last().ok_or(Fault::NoPose)?;
+        Ok(Sensed {
+            at,
+            odometry,
+            velocity,
+            switches: self.switches,
+            pings: self.pings,
+            compass: Compass::default(),
+            supply: self.supply,
+            shape: self.shape,
+            paths: self.paths,
+            published: Published::NONE,
+        })
+    }
+}
+
+/// Returns `true` if a topic may be silent from the start: the plan begins once it has a publisher.
+pub(crate) fn reports_changes(input: &Input) -> bool {
+    match input.source {
+        Source::Bumper | Source::Battery => input.limit == 0,
+        Source::Odometry | Source::Scan | Source::Range(_) | Source::Clock => false,
+    }
+}

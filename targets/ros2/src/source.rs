@@ -1,0 +1,76 @@
+//! The topics that a configuration reads, with their types.
+
+use crate::choices::{BumperSource, Distribution};
+use crate::config::{Config, has_topic};
+
+/// The purpose of a topic that the driver reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// `nav_msgs/msg/Odometry`.
+    Odometry,
+    /// `sensor_msgs/msg/LaserScan`.
+    Scan,
+    /// `sensor_msgs/msg/Range` of the sensor of this index in the configuration.
+    Range(usize),
+    /// The bumper.
+    Bumper,
+    /// `sensor_msgs/msg/BatteryState`.
+    Battery,
+    /// `rosgraph_msgs/msg/Clock`.
+    Clock,
+}
+
+/// A topic that the driver reads.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Input {
+    /// Purpose of the topic.
+    pub source: Source,
+    /// Absolute name.
+    pub topic: String,
+    /// Type, such as `std_msgs/msg/Bool`.
+    pub kind: &'static str,
+    /// Maximum age of its last message, in milliseconds; 0 for no limit.
+    pub limit: u64,
+}
+
+/// Returns the topics that a configuration reads, in the order in which a turn takes their messages.
+///
+/// # Errors
+/// A sentence about a name that is none.
+pub fn inputs(config: &Config) -> Result<Vec<Input>, String> {
+    let mut inputs = Vec::new();
+    let mut add = |source, name: &str, kind, limit| {
+        config.topic(name).map(|topic| inputs.push(Input { source, topic, kind, limit }))
+    };
+    if config.use_sim_time {
+        add(Source::Clock, "/clock", "rosgraph_msgs/msg/Clock", 0)?;
+    }
+    // Before the scan, whose poses it gives.
+    add(Source::Odometry, &config.odom, "nav_msgs/msg/Odometry", config.stale_odom)?;
+    if has_topic(config.bumper_type) {
+        let kind = match config.bumper_type {
+            BumperSource::Hazard => "irobot_create_msgs/msg/HazardDetectionVector",
+            BumperSource::None | BumperSource::Bool | BumperSource::Scan => "std_msgs/msg/Bool",
+        };
+        add(Source::Bumper, &config.bumper, kind, config.stale_bumper)?;
+    }
+    if !config.scan.is_empty() {
+        add(Source::Scan, &config.scan, "sensor_msgs/msg/LaserScan", config.stale_scan)?;
+    }
+    for (number, sensor) in config.ranges.0.iter().enumerate() {
+        add(Source::Range(number), &sensor.topic, "sensor_msgs/msg/Range", config.stale_scan)?;
+    }
+    if !config.battery.is_empty() {
+        add(Source::Battery, &config.battery, "sensor_msgs/msg/BatteryState", 0)?;
+    }
+    Ok(inputs)
+}
+
+/// Returns `true` if `sensor_msgs/msg/Range` has a variance in this distribution.
+#[must_use]
+pub fn has_variance(distribution: Distribution) -> bool {
+    match distribution {
+        Distribution::Humble => false,
+        Distribution::Jazzy | Distribution::Kilted => true,
+    }
+}
