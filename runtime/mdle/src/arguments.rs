@@ -2,6 +2,10 @@
 //!
 //! The words after the plan are the options of the run, which depend on the target: the host parses them.
 
+mod log;
+mod plot;
+mod why;
+
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -11,11 +15,11 @@ use mdle_engine::tree::Role;
 use mdle_quantity::Quantity;
 
 use crate::Failure;
-use crate::log::{self, Log};
 use crate::new_module::NewModule;
-use crate::plot::{self, Plot};
-use crate::why::{self, Why};
 use crate::test::arguments::{self as test, Test};
+pub(crate) use log::Log;
+pub(crate) use plot::Plot;
+pub(crate) use why::{Question, Why};
 
 /// The command that was given.
 #[derive(Debug, PartialEq)]
@@ -195,9 +199,9 @@ fn command() -> Command {
         .subcommand(shell())
         .subcommand(new_module())
         .subcommand(replay())
-        .subcommand(why::command())
-        .subcommand(log::command())
-        .subcommand(plot::command())
+        .subcommand(why::why())
+        .subcommand(log::log())
+        .subcommand(plot::plot())
         .subcommand(test::command())
 }
 

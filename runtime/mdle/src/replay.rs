@@ -18,8 +18,8 @@ use mdle_runtime::Printable;
 
 use crate::arguments::Replay;
 use crate::failure::{self, Failure};
-use crate::log;
 use crate::replayed::{Difference, Outcome, Parting, Record, ReplayTerms};
+use crate::run_time::run_time;
 use crate::targets;
 
 /// Exit status of a run that is not that of the record.
@@ -43,7 +43,7 @@ pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
     let linked = targets::linked(&begin.target).map_err(Failure::Usage)?;
     let target = mdle_files::target(Some(&begin.target))?;
     let (machine, sources) = plan(&arguments.log, arguments.plan.as_deref(), &begin, &target)?;
-    let until = arguments.until.as_deref().map(log::time).transpose()?;
+    let until = arguments.until.as_deref().map(run_time).transpose()?;
     let terms = ReplayTerms { until, goes_on: arguments.plan.is_some() };
     let outcome = (linked.replay)(&machine, &sources, &target, records, terms)?;
     let plan = arguments.plan.as_ref().and_then(|plan| plan.file_name()).map(|name| name.to_string_lossy());

@@ -18,9 +18,9 @@ use mdle_runtime::{Alphabet, Plan as _, Robot, Sensed, Twist};
 use crate::failure::Failure;
 use crate::plans;
 use crate::replayed::{Outcome, Record, ReplayTerms, replayed};
+use crate::rerun::{Rerun, rerun};
 use crate::safety::{Guarded, SafetyFile};
 use crate::session::Seat;
-use crate::why::{Rerun, rerun};
 
 /// A robot whose driver is part of this program.
 #[derive(Clone, Copy)]

@@ -68,7 +68,7 @@ impl Scripted {
         record.write_all(&bytes).unwrap();
     }
 
-    /// Returns the transitions of the last of these outputs, as the scope that ended with its text and the state entered.
+    /// Returns the transitions of the last of these outputs: the scope that ended with its text, and the state entered.
     pub(super) fn last_steps(&self, outputs: &[Sensed]) -> Vec<(u32, String, u64)> {
         let mut machine = Machine::begin(self.loaded.plan(), &outputs[0], Nanos(0));
         let mut last = Vec::new();

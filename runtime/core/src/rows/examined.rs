@@ -13,8 +13,8 @@ pub struct Examined {
 }
 
 impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
-    /// Calls `tell` with the condition of `scope`, which encloses the current atom, and with all its parts: a part comes
-    /// before its own operands, which come from left to right. `stuck` is one part.
+    /// Calls `tell` with the condition of `scope`, which encloses the current atom, and with all its parts: a part
+    /// comes before its own operands, which come from left to right. `stuck` is one part.
     pub fn examine(
         &self,
         cursor: &Cursor<E, P>,

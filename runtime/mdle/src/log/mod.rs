@@ -1,6 +1,5 @@
 //! `mdle log`: what a record contains, its first part as a record, and its turns as a table.
 
-mod arguments;
 mod cut;
 mod export;
 mod info;
@@ -10,13 +9,11 @@ use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 
-use mdle_host::Quantity;
 use mdle_record::ReadError;
-use mdle_runtime::Nanos;
 
-pub(crate) use arguments::{Log, log as command};
-
+use crate::arguments::Log;
 use crate::failure::{self, Failure};
+use crate::run_time::run_time;
 
 /// Exit status of a record that was changed or is damaged.
 const DAMAGED: u8 = 1;
@@ -28,22 +25,9 @@ const DAMAGED: u8 = 1;
 pub(crate) fn log(arguments: &Log) -> Result<ExitCode, Failure> {
     match arguments {
         Log::Info(log) => info::info(log),
-        Log::Cut(log, time, file) => cut::cut(log, self::time(time)?, file),
+        Log::Cut(log, time, file) => cut::cut(log, run_time(time)?, file),
         Log::Export(log, file) => export::export(log, file.as_deref()),
     }
-}
-
-/// Reads a time of a run.
-///
-/// # Errors
-/// The text is no time, or a negative one.
-pub(crate) fn time(text: &str) -> Result<Nanos, Failure> {
-    let seconds = Quantity::Time.read(text, "s").map_err(Failure::Usage)?;
-    if seconds < 0.0 {
-        return Err(Failure::Usage(format!("`{text}` is before the start of the run")));
-    }
-    // Conversion to an integer saturates.
-    Ok(Nanos(libm::round(seconds * 1e9) as u64))
 }
 
 /// Creates a file that does not exist yet.

@@ -4,9 +4,9 @@ use mdle_compiler::fsm::Machine;
 use mdle_host::{CauseText, Operand, Passes, Texts, place};
 use mdle_runtime::{Cause, Nanos, SONARS, Sensed, Transition, Turn, Twist};
 
-use super::examining::{Moment, ScopeMoment};
 use super::operands::{Examination, Facts, examination};
-use super::rerun::RerunTurn;
+use crate::rerun::RerunTurn;
+use crate::rerun::{Moment, ScopeMoment};
 
 /// An atom in a report.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -106,7 +106,7 @@ fn input(input: Twist) -> Value {
 }
 
 /// Returns the answer why an atom did not begin as a JSON object.
-pub(super) fn never(never: &Never) -> Value {
+pub(super) fn absence(never: &Never) -> Value {
     let Never { atom, ran, skipped, chance, end, last } = never;
     let turned = |(turn, t): &Turned| json!({ "turn": turn, "t": t.seconds() });
     json!({

@@ -1,13 +1,10 @@
 //! `mdle why`: explains a turn of a recorded run, which is made again up to that turn.
 
-mod arguments;
-mod examining;
 mod explanation;
 mod json;
 mod lack;
 mod never;
 mod operands;
-mod rerun;
 mod text;
 
 use std::io::{self, Write as _};
@@ -15,18 +12,18 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use mdle_compiler::fsm::Machine;
-use mdle_host::{Clocked, Quantity};
+use mdle_host::Clocked;
 use mdle_record::{Begin, ReadError};
 use mdle_runtime::{Nanos, Printable, PrintableLines};
 
-pub(crate) use arguments::{Question, Why, why as command};
 use explanation::{AtomWords, Explainer, Explanation};
-use rerun::Stop;
-pub(crate) use rerun::{Rerun, RerunTurn, rerun};
 
+use crate::arguments::{Question, Why};
 use crate::failure::{self, Failure};
 use crate::replay;
 use crate::replayed::Record;
+use crate::rerun::{Rerun, RerunTurn, Stop};
+use crate::run_time::run_time;
 use crate::targets;
 
 /// Exit status of a record that is not that of its plan.
@@ -71,7 +68,7 @@ pub(crate) fn why(arguments: &Why) -> Result<ExitCode, Failure> {
             let never = never::never(&machine, atom, &mut *rerun).map_err(Failure::Usage)?;
             never.map(
                 |never| {
-                    if arguments.is_json { json::never(&never).to_string() } else { text::never(&never, &name) }
+                    if arguments.is_json { json::absence(&never).to_string() } else { text::absence(&never, &name) }
                 },
             )
         }
@@ -121,13 +118,7 @@ struct Asked<'a> {
 
 /// Explains the turn at a time.
 fn at(asked: &Asked<'_>, time: &str, rerun: &mut dyn Rerun) -> Result<Result<Answer, Stop>, Failure> {
-    let seconds = Quantity::Time.read(time, "s").map_err(Failure::Usage)?;
-    if seconds < 0.0 {
-        let name = asked.name;
-        return Err(Failure::Usage(format!("the record {name} begins at 0.0 s: it has no turn at {time}")));
-    }
-    // Conversion to an integer saturates.
-    let time = Nanos(libm::round(seconds * 1e9) as u64);
+    let time = run_time(time)?;
     let mut explainer = Explainer::new(asked.machine);
     let mut last = None;
     let found = loop {

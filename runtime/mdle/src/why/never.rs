@@ -7,9 +7,9 @@ use mdle_compiler::fsm::{Element, Machine};
 use mdle_host::Texts;
 use mdle_runtime::Nanos;
 
-use super::examining::{Moment, ScopeMoment};
 use super::explanation::{AtomWords, Explainer, Scope};
-use super::rerun::{Rerun, RerunTurn, Stop};
+use crate::rerun::{Moment, ScopeMoment};
+use crate::rerun::{Rerun, RerunTurn, Stop};
 
 /// A turn: its number and its time.
 pub(crate) type Turned = (u64, Nanos);

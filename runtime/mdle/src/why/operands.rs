@@ -8,8 +8,8 @@ use mdle_compiler::plan::{Compared, Condition, QuarkId, Value, condition_text};
 use mdle_host::operand_words;
 use mdle_runtime::{Examined, Measured, Nanos, OperandWords, SONARS, Words};
 
-use super::examining::ScopeMoment;
 use super::lack::{Values, lack, short};
+use crate::rerun::ScopeMoment;
 
 /// Age from which the last ping of a sonar is stale.
 const STALE: Nanos = Nanos(1_000_000_000);

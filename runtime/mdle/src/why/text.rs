@@ -149,7 +149,7 @@ fn following(text: &mut String, next: &Next, now: Nanos) {
 }
 
 /// Returns the text of the answer why an atom did not begin, in the record of this name.
-pub(super) fn never(never: &Never, log: &str) -> String {
+pub(super) fn absence(never: &Never, log: &str) -> String {
     let Never { atom, ran, skipped, chance, end, last } = never;
     let turned = |(turn, t): &Turned| format!("turn {turn} at {}", Clocked(*t));
     if let Some((turn, cause)) = ran {

@@ -1,5 +1,7 @@
 //! The turns of a record, made again by its plan and looked at.
 
+mod examining;
+
 use std::io::{BufReader, Read};
 use std::sync::Arc;
 
@@ -12,9 +14,10 @@ use mdle_host::{Texts, Transitions};
 use mdle_record::{MessageKind, ReadError, RecordedTurn, Step, TurnsWithMessages};
 use mdle_runtime::{Alphabet, Machine, Nanos, Sensed, Stamp, Stamps, Turn, Twist};
 
-use super::examining::{Examining, Moment};
 use crate::failure::Failure;
 use crate::replayed::Record;
+use examining::Examining;
+pub(crate) use examining::{Moment, ScopeMoment};
 
 /// A turn of a record that was made again.
 #[derive(Debug)]

@@ -1,0 +1,19 @@
+//! Times of a run, as arguments give them.
+
+use mdle_host::Quantity;
+use mdle_runtime::Nanos;
+
+use crate::failure::Failure;
+
+/// Reads a time of a run.
+///
+/// # Errors
+/// The text is no time, or a negative one.
+pub(crate) fn run_time(text: &str) -> Result<Nanos, Failure> {
+    let seconds = Quantity::Time.read(text, "s").map_err(Failure::Usage)?;
+    if seconds < 0.0 {
+        return Err(Failure::Usage(format!("`{text}` is before the start of the run")));
+    }
+    // Conversion to an integer saturates.
+    Ok(Nanos(libm::round(seconds * 1e9) as u64))
+}
