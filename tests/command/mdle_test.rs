@@ -141,6 +141,7 @@ fn faulty_files_of_tests_have_a_help() {
         "expect.atoms = [\"go 20 1\"]",
         "expect.order = [\"Shak\"]",
         "expect.end = \"bumber\"",
+        "expect.end = \"wait 20s\"",
         "expect.never = [\"rubbish\"]",
         "expect.never = [\"turn 90 while RISING bumper\"]",
         "expect.never = [\"closer than 10 s\"]",

@@ -1,9 +1,11 @@
 //! The command line of `mdle test`.
 
-use std::num::NonZeroU64;
 use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+
+/// Maximum number of runs of a test.
+pub(crate) const MOST_SEEDS: u64 = 1_000_000;
 
 /// The arguments of `mdle test`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -13,11 +15,11 @@ pub(crate) struct Test {
     /// Name of the only test to run.
     pub(crate) only: Option<String>,
     /// Number of runs of each test with a seed.
-    pub(crate) seeds: Option<NonZeroU64>,
+    pub(crate) seeds: Option<u64>,
     /// First seed.
     pub(crate) seed: Option<u64>,
     /// Number of parallel runs.
-    pub(crate) jobs: Option<NonZeroU64>,
+    pub(crate) jobs: Option<u64>,
     /// `true` if the coverage is printed.
     pub(crate) coverage: bool,
     /// Folder for pictures of the plans with counts.
@@ -54,7 +56,7 @@ pub(crate) fn command() -> Command {
         .arg(
             option("seeds", "N")
                 .help("Number of runs of each test with a seed, with consecutive seeds [default: that of the test]")
-                .value_parser(value_parser!(NonZeroU64)),
+                .value_parser(value_parser!(u64).range(1..=MOST_SEEDS)),
         )
         .arg(
             option("seed", "N")
@@ -64,7 +66,7 @@ pub(crate) fn command() -> Command {
         .arg(
             option("jobs", "N")
                 .help("Number of parallel runs; results do not depend on it [default: number of processors]")
-                .value_parser(value_parser!(NonZeroU64)),
+                .value_parser(value_parser!(u64).range(1..=1024)),
         )
         .arg(flag("coverage").help("Print which atoms, ends and operands of the plans the tests have reached"))
         .arg(

@@ -3,11 +3,11 @@
 use std::ops::Range;
 use std::time::Duration;
 
-use mdle_host::{Quantity, is_operand};
-use mdle_runtime::trace::COMPLETED;
-use mdle_runtime::{Nanos, Printable};
+use mdle_host::Quantity;
+use mdle_runtime::Nanos;
 use mdle_sim::Goal;
 
+use super::causes::{Cause, cause, ending};
 use super::file::{At, ExpectText, TestFileError, TransitionText};
 use super::subject::{Subject, TestCondition};
 
@@ -38,16 +38,6 @@ pub(super) struct AtomsNamed {
     pub(super) text: String,
     /// `true` for each atom that is named.
     atoms: Vec<bool>,
-}
-
-/// A cause that a text names.
-pub(super) enum Cause {
-    /// The completion of a law.
-    Completed,
-    /// Operands of interrupts: element and number of each.
-    Operands(Vec<(u32, u32)>),
-    /// The interrupts of these scopes.
-    Scopes(Vec<u32>),
 }
 
 /// A transition that has to be made.
@@ -103,7 +93,7 @@ impl Expected {
         let never = text.never.iter().map(|text| Ok((text.span(), never(text, subject, is_script)?)));
         let pose = text.pose.as_ref().map(|pose| {
             if is_script {
-                let message = "`pose` needs a robot, which a script has not";
+                let message = "`pose` needs a robot, which a script does not have";
                 return Err(
                     TestFileError::at(pose.span(), message).help("leave `script` out for a run in the simulator")
                 );
@@ -156,36 +146,11 @@ fn transition(text: &TransitionText, subject: &Subject) -> Result<ExpectedTransi
     Ok(ExpectedTransition { from, to: to.transpose()?, by, after, within })
 }
 
-/// Reads a cause: `completed`, an operand, or the name of a scope.
-fn cause(text: &At<String>, subject: &Subject) -> Result<Cause, TestFileError> {
-    let wanted = text.get_ref().trim();
-    if wanted == COMPLETED {
-        return Ok(Cause::Completed);
-    }
-    let operands = subject.operands().filter(|(.., operand)| is_operand(wanted, operand));
-    let operands: Vec<_> = operands.map(|(element, number, _)| (element, number)).collect();
-    if !operands.is_empty() {
-        return Ok(Cause::Operands(operands));
-    }
-    let scopes = subject.machine().elements().filter(|element| !wanted.is_empty() && element.name() == wanted);
-    let scopes: Vec<_> = scopes.map(|element| element.number()).collect();
-    if !scopes.is_empty() {
-        return Ok(Cause::Scopes(scopes));
-    }
-    let mut known: Vec<&str> = subject.operands().map(|(.., operand)| operand.written).collect();
-    known.retain(|operand| *operand != "null");
-    known.dedup();
-    let near = mdle_compiler::alphabet::did_you_mean(wanted, &known);
-    let listed = known.iter().map(|operand| format!("`{operand}`")).collect::<Vec<_>>().join(", ");
-    let message = format!("no interrupt of the plan has the operand `{}`{near}", Printable(wanted));
-    Err(TestFileError::at(text.span(), message).help(format!("its operands are {listed}; a law ends by `{COMPLETED}`")))
-}
-
 fn end(text: &At<String>, subject: &Subject) -> Result<End, TestFileError> {
     Ok(match text.get_ref().trim() {
         "running" => End::Running,
         "failed" => End::Failed,
-        cause_text => End::By(cause_text.to_owned(), cause(text, subject)?),
+        words => End::By(words.to_owned(), ending(text, cause(text, subject)?, subject)?),
     })
 }
 

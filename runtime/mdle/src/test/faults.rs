@@ -139,3 +139,28 @@ fn reading(pings: &Pings, range: Meters) -> Pings {
     known.into_iter().rev().for_each(|ping| faulty.push(Ping { range: Some(range), ..ping }));
     faulty
 }
+
+#[cfg(test)]
+mod tests {
+    use mdle_runtime::{Mount, Pose};
+
+    use super::*;
+
+    #[test]
+    fn a_sonar_returns_its_range_and_keeps_its_times() {
+        let ping = |at, range| Ping { range, at: Nanos(at), pose: Pose::ORIGIN, mount: Mount::default() };
+        let mut pings = Pings::default();
+        pings.push(ping(1, None));
+        pings.push(ping(2, Some(Meters(2.0))));
+        let faulty = reading(&pings, Meters(0.3));
+        let kept: Vec<_> = faulty.newest_first().map(|ping| (ping.at, ping.range)).collect();
+        assert_eq!(kept, [(Nanos(2), Some(Meters(0.3))), (Nanos(1), Some(Meters(0.3)))]);
+    }
+
+    #[test]
+    fn a_fault_lasts_from_its_begin_up_to_its_end() {
+        let fault = TimedFault { from: Nanos(2), until: Nanos(4), fault: Fault::Bumper };
+        let lasts = [1, 2, 3, 4].map(|t| lasting(std::slice::from_ref(&fault), Nanos(t)).count());
+        assert_eq!(lasts, [0, 1, 1, 0]);
+    }
+}

@@ -4,8 +4,9 @@ use mdle_compiler::fsm::Machine;
 use mdle_runtime::trace::Seconds;
 use mdle_runtime::{Nanos, Pose, Words};
 
+use super::causes::Cause;
 use super::course::{Course, Ending, Step, atom_words};
-use super::expected::{AtomsNamed, Cause, End, Expected, ExpectedTransition, Never, Place};
+use super::expected::{AtomsNamed, End, Expected, ExpectedTransition, Never, Place};
 use super::subject::Subject;
 
 /// An expectation that a run has not met.

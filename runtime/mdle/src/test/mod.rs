@@ -1,6 +1,7 @@
 //! `mdle test`: tests of plans, in files beside them (docs/src/testing.md).
 
 pub(crate) mod arguments;
+mod causes;
 mod course;
 mod coverage;
 mod coverage_table;
@@ -116,9 +117,8 @@ impl Suites {
     }
 
     fn run(&self, arguments: &Test, library: &Library<Sensed>) -> (Vec<Made>, Vec<Coverage>) {
-        let seeds = arguments.seeds.map(Into::into);
-        let jobs = runner::jobs(&self.suites, arguments.only.as_deref(), arguments.seed, seeds);
-        let threads = arguments.jobs.and_then(|jobs| NonZeroUsize::try_from(jobs).ok());
+        let jobs = runner::jobs(&self.suites, arguments.only.as_deref(), arguments.seed, arguments.seeds);
+        let threads = arguments.jobs.and_then(|jobs| usize::try_from(jobs).ok()).and_then(NonZeroUsize::new);
         let threads = threads.or_else(|| available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
         runner::run(&self.suites, &jobs, threads, library)
     }

@@ -8,6 +8,7 @@ use mdle_compiler::trace::Script;
 use mdle_files::Input;
 use mdle_runtime::Printable;
 
+use super::arguments::MOST_SEEDS;
 use super::expected::Expected;
 use super::file::{self, TestFileError, TestText};
 use super::messages;
@@ -72,8 +73,9 @@ impl Case {
                 RunsOn::Script(scripted::script(turns, subject)?)
             }
         };
-        if let Some(seeds) = text.seeds.as_ref().filter(|seeds| *seeds.get_ref() == 0) {
-            return Err(TestFileError::at(seeds.span(), "a test runs once at least"));
+        if let Some(seeds) = text.seeds.as_ref().filter(|seeds| !(1..=MOST_SEEDS).contains(seeds.get_ref())) {
+            let message = format!("a test runs at least once and at most {MOST_SEEDS} times");
+            return Err(TestFileError::at(seeds.span(), message));
         }
         Ok(Self { name: text.name.get_ref().clone(), text, expected, runs_on })
     }

@@ -1,0 +1,84 @@
+//! The causes of transitions and of the end of a plan, as tests name them.
+
+use mdle_compiler::alphabet::did_you_mean;
+use mdle_compiler::fsm::ElementKind;
+use mdle_host::is_operand;
+use mdle_runtime::Printable;
+use mdle_runtime::trace::COMPLETED;
+
+use super::file::{At, TestFileError};
+use super::subject::Subject;
+
+/// A cause that a text names.
+pub(super) enum Cause {
+    /// The completion of a law.
+    Completed,
+    /// Operands of interrupts: element and number of each.
+    Operands(Vec<(u32, u32)>),
+    /// The interrupts of these scopes.
+    Scopes(Vec<u32>),
+}
+
+/// Reads a cause: `completed`, an operand, or the name of a scope.
+///
+/// # Errors
+/// The plan has no such cause.
+pub(super) fn cause(text: &At<String>, subject: &Subject) -> Result<Cause, TestFileError> {
+    let wanted = text.get_ref().trim();
+    if wanted == COMPLETED {
+        return Ok(Cause::Completed);
+    }
+    let operands = subject.operands().filter(|(.., operand)| is_operand(wanted, operand));
+    let operands: Vec<_> = operands.map(|(element, number, _)| (element, number)).collect();
+    if !operands.is_empty() {
+        return Ok(Cause::Operands(operands));
+    }
+    let scopes = subject.machine().elements().filter(|element| !wanted.is_empty() && element.name() == wanted);
+    let scopes: Vec<_> = scopes.map(|element| element.number()).collect();
+    if !scopes.is_empty() {
+        return Ok(Cause::Scopes(scopes));
+    }
+    let mut known: Vec<&str> = subject.operands().map(|(.., operand)| operand.written).collect();
+    known.retain(|operand| *operand != "null");
+    known.dedup();
+    let near = did_you_mean(wanted, &known);
+    let listed = known.iter().map(|operand| format!("`{operand}`")).collect::<Vec<_>>().join(", ");
+    let message = format!("no interrupt of the plan has the operand `{}`{near}", Printable(wanted));
+    Err(TestFileError::at(text.span(), message).help(format!("its operands are {listed}; a law ends by `{COMPLETED}`")))
+}
+
+/// Returns the cause as far as the plan can end by it.
+///
+/// # Errors
+/// The cause ends a part of the plan only.
+pub(super) fn ending(text: &At<String>, cause: Cause, subject: &Subject) -> Result<Cause, TestFileError> {
+    let (cause, is_left) = match cause {
+        Cause::Completed => (Cause::Completed, true),
+        Cause::Operands(mut operands) => {
+            operands.retain(|(element, _)| ends_plan(subject, *element));
+            let is_left = !operands.is_empty();
+            (Cause::Operands(operands), is_left)
+        }
+        Cause::Scopes(mut scopes) => {
+            scopes.retain(|scope| ends_plan(subject, *scope));
+            let is_left = !scopes.is_empty();
+            (Cause::Scopes(scopes), is_left)
+        }
+    };
+    if is_left {
+        return Ok(cause);
+    }
+    let message = format!("`{}` ends a part of the plan, and more follows", Printable(text.get_ref().trim()));
+    let help = "expect a transition: `expect.transitions = [{ by = \"…\" }]`";
+    Err(TestFileError::at(text.span(), message).help(help))
+}
+
+/// Returns `true` if nothing follows an element when it ends, at least in the last pass of the loops around it.
+fn ends_plan(subject: &Subject, element: u32) -> bool {
+    let last = subject.machine().root().last().number();
+    subject
+        .machine()
+        .element(element)
+        .outwards()
+        .all(|element| element.last().number() == last && !matches!(element.kind(), ElementKind::Loop { times: None }))
+}
