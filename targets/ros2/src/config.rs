@@ -170,11 +170,11 @@ impl Config {
         if !self.network.is_empty() && self.network.parse::<IpAddr>().is_err() {
             return Err(format!("`network` is `{}`, and has to be an address such as 192.168.1.5", self.network));
         }
-        let topics = [&self.cmd_vel, &self.odom];
         let optional = [&self.scan, &self.battery, &self.state, &self.diagnostics].into_iter();
-        let optional = optional.chain(has_topic(self.bumper_type).then_some(&self.bumper));
-        let ranges = self.ranges.0.iter().map(|sensor| &sensor.topic);
-        for topic in topics.into_iter().chain(optional.filter(|topic| !topic.is_empty())).chain(ranges) {
+        let required = [&self.cmd_vel, &self.odom].into_iter();
+        let required = required.chain(has_topic(self.bumper_type).then_some(&self.bumper));
+        let required = required.chain(self.ranges.0.iter().map(|sensor| &sensor.topic));
+        for topic in required.chain(optional.filter(|topic| !topic.is_empty())) {
             self.topic(topic)?;
         }
         if self.bumper_type == BumperSource::Scan && self.scan.is_empty() {
@@ -215,3 +215,6 @@ pub(crate) fn has_topic(bumper: BumperSource) -> bool {
         BumperSource::None | BumperSource::Scan => false,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -21,7 +21,7 @@ use crate::names::dds_type;
 use crate::pacing::Pacing;
 use crate::participant::{Delivery, Participant, Reader, Writer};
 use crate::report::StateMessages;
-use crate::sensing::{Sensing, reports_changes};
+use crate::sensing::Sensing;
 use crate::source::{Input, Source};
 use crate::stamp::ros_now;
 
@@ -137,14 +137,18 @@ fn find(
         if commands.is_none()
             && let Some(is_stamped) = is_stamped(config, &graph, &topic)
         {
-            let kind = if is_stamped { TWIST_STAMPED } else { TWIST };
-            let writer = participant.writer(&topic, kind, Delivery::Reliable)?;
+            let writer = participant.writer(&topic, kind_of(is_stamped), Delivery::Reliable)?;
             commands = Some(Commands { topic: topic.clone(), frame: config.frame_id.clone(), writer, is_stamped });
         }
         let mut missing: Vec<_> = sensing.awaited().map(|(input, why)| graph.about_input(input, why)).collect();
-        let silent = sensing.inputs().filter(|input| reports_changes(input) && graph.publishers(input) == 0);
-        missing.extend(silent.map(|input| graph.about_input(input, "")));
-        let is_heard = commands.as_mut().is_some_and(|commands| commands.writer.matched() > 0);
+        let is_awaited = |input: &Input| sensing.awaited().any(|(awaited, _)| awaited == input);
+        let unpublished = sensing.inputs().filter(|input| !is_awaited(input) && graph.publishers(input) == 0);
+        missing.extend(unpublished.map(|input| graph.about_input(input, "")));
+        // The middleware also matches a subscriber of another type, which understands nothing.
+        let is_heard = commands.as_mut().is_some_and(|commands| {
+            let kind = dds_type(commands.kind());
+            commands.writer.matched() > 0 && graph.readers_of(&topic).any(|reader| reader.kind == kind)
+        });
         match commands.take() {
             Some(found) if is_heard && missing.is_empty() => {
                 several(sensing, &graph)?;
@@ -154,8 +158,7 @@ fn find(
         }
         if begun.elapsed() > limit {
             if !is_heard {
-                let kind = if config.stamped == Stamped::Yes { TWIST_STAMPED } else { TWIST };
-                missing.insert(0, graph.about_commands(&topic, kind));
+                missing.insert(0, graph.about_commands(&topic, kind_of(config.stamped == Stamped::Yes)));
             }
             let sentences = missing.join("; ");
             return Err(Fault::Missing(format!("{sentences}; {}", graph.listed(config))));
@@ -198,7 +201,17 @@ fn receive(readers: &[(Input, Reader)], take: &mut Take<'_>) -> Result<(), Fault
     Ok(())
 }
 
+/// Returns the type of velocity commands.
+fn kind_of(is_stamped: bool) -> &'static str {
+    if is_stamped { TWIST_STAMPED } else { TWIST }
+}
+
 impl Commands {
+    /// Returns the type of the commands.
+    fn kind(&self) -> &'static str {
+        kind_of(self.is_stamped)
+    }
+
     fn send(&self, twist: Twist, stamp: i64) -> Result<(), String> {
         let vector = |x, z| (Vector3 { x, ..Vector3::default() }, Vector3 { z, ..Vector3::default() });
         let (linear, angular) = vector(twist.v.0, twist.omega.0);

@@ -1,5 +1,8 @@
 //! The last messages of all topics, and the output that they make.
 
+#[cfg(test)]
+mod tests;
+
 use std::time::Duration;
 
 use mdle_runtime::{
@@ -243,7 +246,7 @@ impl Sensing {
 }
 
 /// Returns `true` if a topic may be silent from the start: the plan begins once it has a publisher.
-pub(crate) fn reports_changes(input: &Input) -> bool {
+fn reports_changes(input: &Input) -> bool {
     match input.source {
         Source::Bumper | Source::Battery => input.limit == 0,
         Source::Odometry | Source::Scan | Source::Range(_) | Source::Clock => false,

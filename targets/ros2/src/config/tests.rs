@@ -1,0 +1,78 @@
+//! Configurations as they are read, printed and refused.
+
+use std::fs;
+use std::path::PathBuf;
+
+use super::*;
+
+/// Writes a configuration file, of this name.
+fn file(name: &str, text: &str) -> PathBuf {
+    let path = std::env::temp_dir().join(format!("mdle-ros2-{}-{name}.toml", std::process::id()));
+    fs::write(&path, text).unwrap();
+    path
+}
+
+fn read(name: &str, text: &str) -> Result<Config, String> {
+    let path = file(name, text);
+    let configured = Configured::read(Some(&path));
+    fs::remove_file(path).unwrap();
+    configured.map(|configured| configured.config)
+}
+
+/// Returns the configurations of the book.
+fn examples() -> Vec<(&'static str, &'static str)> {
+    let book = include_str!("../../../../docs/src/ros2.md");
+    let blocks = book.split("```toml,").skip(1);
+    blocks.map(|block| block.split_once("```").unwrap().0.split_once('\n').unwrap()).collect()
+}
+
+#[test]
+fn the_examples_of_the_book_are_read() {
+    let configs: Vec<_> = examples().iter().map(|(name, text)| read(name, text).expect(name)).collect();
+    assert_eq!(configs.len(), 4);
+    let has = |config: &Config| Capabilities::of(config).suffice(&["goAvoid 90 2 20", "bumper", "lowBattery"]);
+    let blind: Vec<_> = configs.iter().map(|config| has(config).is_err()).collect();
+    assert_eq!(blind, [false, false, true, false]);
+    assert_eq!(configs[3].topic(&configs[3].odom).unwrap(), "/a200_0000/platform/odom");
+    assert_eq!(configs[3].shape().half_length, Meters(0.5));
+}
+
+#[test]
+fn what_is_printed_is_read_again() {
+    for (name, text) in examples().into_iter().chain([("ranges", "ranges = [{ topic = \"a\", x = 0.1, yaw = -1.5 }]")])
+    {
+        let path = file(name, text);
+        let first = Configured::read(Some(&path)).unwrap();
+        assert_eq!(read(&format!("{name}-again"), &first.to_string()), Ok(first.config), "{name}");
+        fs::remove_file(path).unwrap();
+    }
+}
+
+#[test]
+fn the_capabilities_are_printed() {
+    let printed = Configured::read(None).unwrap().to_string();
+    let comments: Vec<_> = printed.lines().filter(|line| line.starts_with("# ")).collect();
+    let expected = [
+        "# capabilities: diff_drive, odometry, paths, modules, sonar[16]",
+        "# without bumper, no plan can use bumper; `bumper-type` gives it",
+        "# without power, no plan can use lowBattery, charger, battery; `battery` gives it",
+    ];
+    assert_eq!(comments, expected);
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    for (text, sentence) in [
+        ("stamped = \"maybe\"", "`stamped` is \"maybe\", and has to be true or false or \"auto\""),
+        ("domain = 233", "`domain` is 233, and has to be from 0 to 232"),
+        ("bumper-type = \"bool\"\nbumper = \"\"", "`` is no name of a topic"),
+        ("bumper-type = \"button\"", "has to be \"none\" or \"bool\" or \"hazard\" or \"scan\""),
+        ("ranges = [{ topic = \"a\", x = 1e9 }]", "the place of the range sensor `a` is more than 10 m away"),
+        ("ranges = [{ topic = \"a\", z = 1 }]", "unknown field `z`"),
+        ("namespace = \"a b\"", "is no name of a topic"),
+        ("domain = -1", "domain"),
+    ] {
+        let refused = read("refused", text).unwrap_err();
+        assert!(refused.contains(sentence), "{text}: {refused}");
+    }
+}
