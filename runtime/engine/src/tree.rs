@@ -16,5 +16,6 @@ mod watch;
 pub use desk::{Desk, Reply, Served};
 pub use hub::{Hub, QUEUE};
 pub use node::{Access, Kind, Node, Role, Tree};
+pub(crate) use proposal::listed;
 pub use request::{Answer, Change, Operation, Request};
 pub use value::{Value, read};

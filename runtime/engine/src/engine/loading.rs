@@ -1,7 +1,7 @@
 //! Modules that are made while the robot drives: each on a thread of its own, as its code may take long.
 //!
-//! The thread that starts these threads is started with the engine, before the control thread is scheduled in real time:
-//! a thread has the scheduling of the one that starts it, and so have child processes.
+//! The thread that starts these threads is started with the engine, before the control thread is scheduled in real
+//! time: a thread has the scheduling of the one that starts it, and so have child processes.
 
 use std::io;
 use std::sync::mpsc::{Receiver, Sender, channel};

@@ -6,6 +6,7 @@ use mdle_runtime::{ModuleRead, Nanos, PUBLISHED, Published, PublishedNumber};
 
 use crate::attribute::{AGE, AttributeName, Reading};
 use crate::board::{Board, Post};
+use crate::tree::listed;
 
 /// Time for which a plan waits for what it reads.
 pub(super) const PATIENCE: Nanos = Nanos(2_000_000_000);
@@ -54,9 +55,6 @@ pub(super) fn in_vain(missing: &[&ModuleRead], board: &Board) -> String {
     format!("the plan reads {paths}, which no module has published within {seconds} s{there_are}")
 }
 
-/// Maximum number of attributes of a module in a sentence.
-const NAMED: usize = 12;
-
 /// Returns the end of a sentence about a module or an attribute of it that does not exist: a similar name, and the
 /// modules with what they publish.
 fn publishers(module: &str, board: &Board) -> String {
@@ -65,8 +63,7 @@ fn publishers(module: &str, board: &Board) -> String {
     let near = if modules.contains(&module) { String::new() } else { did_you_mean(module, &modules) };
     let lists = modules.iter().map(|module| {
         let names: Vec<_> = board.of(module).map(|post| &*post.name.attribute).collect();
-        let more = if names.len() > NAMED { ", …" } else { "" };
-        format!("`{module}` publishes {}{more}", names.get(..NAMED).unwrap_or(&names).join(", "))
+        format!("`{module}` publishes {}", listed(&names))
     });
     let lists: Vec<_> = lists.collect();
     let lists = if lists.is_empty() { "no module publishes anything".to_owned() } else { lists.join("; ") };

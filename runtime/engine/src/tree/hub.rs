@@ -6,6 +6,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, chan
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use super::node::names;
 use super::proposal::proposal;
 use super::shared::{NO_VALUE, Pending, Shared, Snapshot};
 use super::{Access, Answer, Change, Node, Operation, Request, Tree};
@@ -145,14 +146,6 @@ impl Hub {
     fn lock(&self) -> MutexGuard<'_, Arc<Snapshot>> {
         self.shared.snapshot.lock().unwrap_or_else(PoisonError::into_inner)
     }
-}
-
-/// The names in a folder; those of folders end with `/`.
-pub(super) fn names(tree: &Tree, folder: &str) -> Vec<String> {
-    let inside = format!("{folder}/");
-    let names = tree.keys().filter_map(|path| path.strip_prefix(&inside));
-    let names = names.map(|rest| rest.split_once('/').map_or(rest.to_owned(), |(folder, _)| format!("{folder}/")));
-    names.collect::<BTreeSet<_>>().into_iter().collect()
 }
 
 /// The answer about a path that leads nowhere.

@@ -1,11 +1,19 @@
 //! The nodes of the tree: what may be done with each, by whom.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use mdle_quantity::Quantity;
 
 /// The nodes by their paths. A folder is a path that others begin with.
 pub type Tree = BTreeMap<String, Node>;
+
+/// Returns the names in a folder; those of folders end with `/`.
+pub(super) fn names(tree: &Tree, folder: &str) -> Vec<String> {
+    let inside = format!("{folder}/");
+    let names = tree.keys().filter_map(|path| path.strip_prefix(&inside));
+    let names = names.map(|rest| rest.split_once('/').map_or(rest.to_owned(), |(folder, _)| format!("{folder}/")));
+    names.collect::<BTreeSet<_>>().into_iter().collect()
+}
 
 /// An attribute or a method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

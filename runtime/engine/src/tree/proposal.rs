@@ -3,9 +3,9 @@
 use mdle_compiler::alphabet::nearest;
 
 use super::Tree;
-use super::hub::names;
+use super::node::names;
 
-/// Maximum number of names of a folder in a sentence.
+/// Maximum number of names in a sentence.
 const NAMED: usize = 12;
 
 /// Returns the end of a sentence about a path that leads nowhere: a path that ends alike, a similar one, or else the
@@ -23,7 +23,7 @@ pub(super) fn proposal(tree: &Tree, path: &str) -> String {
         let mut inside_names = inside.iter().map(|name| name.trim_end_matches('/'));
         let next = if inside_names.clone().any(|known| known == name) { Some(name) } else { None };
         let Some(next) = next.or_else(|| nearest(name, &mut inside_names)) else {
-            return if is_changed { mean(&known) } else { listed(&known, &inside) };
+            return if is_changed { mean(&known) } else { content(&known, &inside) };
         };
         is_changed |= next != name;
         known = format!("{known}/{next}");
@@ -31,15 +31,21 @@ pub(super) fn proposal(tree: &Tree, path: &str) -> String {
     if is_changed { mean(&known) } else { String::new() }
 }
 
-/// Lists the names in a folder.
-fn listed(folder: &str, names: &[String]) -> String {
+/// Returns the end of a sentence about a folder with these names.
+fn content(folder: &str, names: &[String]) -> String {
     let folder = if folder.is_empty() { "/" } else { folder };
     match names {
         [] => format!(": `{folder}` is no folder"),
-        _ => {
-            let more = if names.len() > NAMED { ", …" } else { "" };
-            format!(": `{folder}` has {}{more}", names.get(..NAMED).unwrap_or(names).join(", "))
-        }
+        _ => format!(": `{folder}` has {}", listed(names)),
+    }
+}
+
+/// Lists names in a sentence, at most twelve.
+pub(crate) fn listed<S: AsRef<str>>(names: &[S]) -> String {
+    let first: Vec<_> = names.iter().take(NAMED).map(AsRef::as_ref).collect();
+    match names.len().saturating_sub(NAMED) {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
     }
 }
 
