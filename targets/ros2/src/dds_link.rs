@@ -130,7 +130,8 @@ fn find(
             if request.is_made() {
                 return Err(Fault::Ended);
             }
-            receive(readers, &mut |index, payload, _| sensing.take(index, payload, begun.elapsed(), Nanos::ZERO))?;
+            let now = if config.use_sim_time { sensing.simulated() } else { begun.elapsed() };
+            receive(readers, &mut |index, payload, _| sensing.take(index, payload, now, Nanos::ZERO))?;
             sleep(LOOK);
         }
         let graph = participant.graph();

@@ -71,7 +71,7 @@ impl<L: Link> Ros2<L> {
         match self.pacing {
             Pacing::Wall => self.begun.elapsed(),
             Pacing::Lockstep(period) => period.saturating_mul(self.turns),
-            Pacing::Simulated(_) => Duration::from_nanos(self.sensing.clock().try_into().unwrap_or(0)),
+            Pacing::Simulated(_) => self.sensing.simulated(),
         }
     }
 

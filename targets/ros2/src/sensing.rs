@@ -98,7 +98,7 @@ impl Sensing {
                 message.header.stamp.nanos()
             }),
             Source::Clock => payload.read::<ClockMessage>().map(|message| {
-                self.clock = message.clock.nanos();
+                self.take_clock(message.clock.nanos());
                 self.clock
             }),
         };
@@ -109,6 +109,16 @@ impl Sensing {
             }
         }
         Ok(())
+    }
+
+    /// Takes the time of a simulation. Messages that came before its first are as old as that.
+    fn take_clock(&mut self, clock: i64) {
+        let is_first = self.clock == 0;
+        self.clock = clock;
+        if is_first {
+            let now = self.simulated();
+            self.seen.iter_mut().for_each(|seen| seen.at = seen.at.map(|_| now));
+        }
     }
 
     fn take_scan(&mut self, scan: &LaserScan, now: Duration, at: Nanos) -> Result<i64, String> {
@@ -207,6 +217,12 @@ impl Sensing {
     #[must_use]
     pub fn clock(&self) -> i64 {
         self.clock
+    }
+
+    /// Returns the time of `/clock`, since its beginning.
+    #[must_use]
+    pub fn simulated(&self) -> Duration {
+        Duration::from_nanos(self.clock.try_into().unwrap_or(0))
     }
 
     /// Checks that no topic is stale.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::*;
 use crate::choices::{Distribution, RangeSensor, RangeSensors};
 use crate::config::Configured;
-use crate::messages::Time;
+use crate::messages::{ClockMessage, Time};
 
 /// A robot, and the time of the host in milliseconds.
 struct Robot {
@@ -170,4 +170,15 @@ fn a_scan_can_be_the_bumper() {
     assert_eq!(robot.sensed().switches, 0b1111);
     robot.scan(0.21).unwrap();
     assert_eq!(robot.sensed().switches, 0);
+}
+
+#[test]
+fn messages_before_the_first_clock_are_not_stale() {
+    let mut robot = Robot::new(|config| config.use_sim_time = true);
+    robot.odometry(0.0).unwrap();
+    robot.scan(2.0).unwrap();
+    robot.take(Source::Clock, &ClockMessage { clock: Time::of(1_700_000_000_000_000_000) }).unwrap();
+    assert_eq!(robot.sensing.check(robot.sensing.simulated()), Ok(()));
+    robot.take(Source::Clock, &ClockMessage { clock: Time::of(1_700_000_000_600_000_000) }).unwrap();
+    assert!(robot.sensing.check(robot.sensing.simulated()).is_err());
 }
