@@ -86,8 +86,10 @@ const PACKAGES: &[(&str, &[&str])] = &[
     (
         "tests/benchmarks",
         &[
+            "mdle",
             "mdle-engine",
             "mdle-host",
+            "mdle-record",
             "mdle-runtime",
             "mdle-sim",
             "mdle-tests",

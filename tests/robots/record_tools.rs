@@ -115,3 +115,16 @@ fn a_record_is_drawn() {
     assert_eq!((err.as_str(), status), (expected, 2));
     assert!(!folder.join("other.svg").exists());
 }
+
+/// The plan goes on under a rule, and its own input is computed again.
+#[test]
+fn a_rule_that_changed_an_input_is_named() {
+    let folder = recorded("safety");
+    fs::write(folder.join("rules.toml"), "[limits]\nspeed = \"10cm/s\"\n").unwrap();
+    let options = "--world hall --speed max --safety rules.toml --turns 60 --log safe.mcap";
+    assert_eq!(run(&folder, &format!("run square.mdle --target sim {options}")).2, 4);
+    let (out, err, status) = run(&folder, "why safe.mcap 5");
+    assert_eq!((err.as_str(), status), ("", 0));
+    let expected = "  the plan asked for 0.2 m/s, 0 rad/s, and 0.1 m/s, 0 rad/s was sent  <- safety limited: speed\n";
+    assert!(out.contains(expected), "{out}");
+}
