@@ -120,4 +120,16 @@ mod tests {
         assert_eq!(seeing.suffice(&["(bumper) OR (r0 < 1m)"]), Ok(()));
         assert!(seeing.suffice(&["battery < 11V"]).is_err());
     }
+
+    #[test]
+    fn the_capabilities_are_printed() {
+        let printed = capabilities(|_| {}).to_string();
+        let comments: Vec<_> = printed.lines().filter(|line| line.starts_with("# ")).collect();
+        let expected = [
+            "# capabilities: diff_drive, odometry, paths, modules, sonar[16]",
+            "# without bumper, no plan can use bumper; `bumper-type` gives it",
+            "# without power, no plan can use lowBattery, charger, battery; `battery` gives it",
+        ];
+        assert_eq!(comments, expected);
+    }
 }

@@ -9,7 +9,6 @@ use mdle_runtime::Shape;
 use mdle_serial::{Key, Settings, Steering};
 use serde::Deserialize;
 
-use crate::capabilities::Capabilities;
 use crate::choices::{BumperSource, Distribution, RangeSensors, Stamped};
 use crate::names::absolute;
 
@@ -157,10 +156,10 @@ impl Configured {
     }
 }
 
-/// Returns the configuration as TOML, which `--config` reads, with the capabilities that it gives.
+/// Returns the configuration as TOML, which `--config` reads.
 impl fmt::Display for Configured {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}", self.settings, Capabilities::of(&self.config))
+        self.settings.fmt(f)
     }
 }
 

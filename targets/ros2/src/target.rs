@@ -72,7 +72,8 @@ impl mdle_host::Target for Target {
     }
 
     fn answer(matches: &ArgMatches) -> Result<Option<String>, Refusal> {
-        matches.get_flag("print-config").then(|| configured(matches).map(|all| all.to_string())).transpose()
+        let printed = |configured: Configured| format!("{configured}{}", Capabilities::of(&configured.config));
+        matches.get_flag("print-config").then(|| configured(matches).map(printed)).transpose()
     }
 
     fn accepts(matches: &ArgMatches, texts: &[&str]) -> Result<(), Refusal> {

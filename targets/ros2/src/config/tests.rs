@@ -4,6 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use super::*;
+use crate::capabilities::Capabilities;
 
 /// Writes a configuration file, of this name.
 fn file(name: &str, text: &str) -> PathBuf {
@@ -46,18 +47,6 @@ fn what_is_printed_is_read_again() {
         assert_eq!(read(&format!("{name}-again"), &first.to_string()), Ok(first.config), "{name}");
         fs::remove_file(path).unwrap();
     }
-}
-
-#[test]
-fn the_capabilities_are_printed() {
-    let printed = Configured::read(None).unwrap().to_string();
-    let comments: Vec<_> = printed.lines().filter(|line| line.starts_with("# ")).collect();
-    let expected = [
-        "# capabilities: diff_drive, odometry, paths, modules, sonar[16]",
-        "# without bumper, no plan can use bumper; `bumper-type` gives it",
-        "# without power, no plan can use lowBattery, charger, battery; `battery` gives it",
-    ];
-    assert_eq!(comments, expected);
 }
 
 #[test]
