@@ -73,7 +73,7 @@ def plain(thing):
     if isinstance(thing, list):
         return [plain(part) for part in thing]
     if hasattr(thing, "__msgtype__"):
-        fields = {key: plain(part) for key, part in vars(thing).items() if not key.isupper()}
+        fields = {key: plain(part) for key, part in vars(thing).items() if not (key.isupper() or key.startswith("__"))}
         return {"kind" if key == "type" else key: part for key, part in fields.items()}
     return thing
 
