@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use mdle_tests::executable::{folder, mdle};
+use mdle_tests::executable::{folder, mdle, run_mdlec};
+use mdle_tests::repository::root;
 
 const PLAN: &str = "{ Square (wait 5min)
   ((Atom (way >= 1m OR r0 < 40cm) (go 20 0)) (Atom (null) turn 90))^4
@@ -92,6 +93,47 @@ fn a_record_becomes_a_table() {
     assert!(lines[52].split(',').count() == columns && lines[52].ends_with(','), "{}", lines[52]);
     run(&folder, "log export --csv square.mcap -o table.csv");
     assert_eq!(fs::read_to_string(folder.join("table.csv")).unwrap(), out);
+}
+
+/// On its script the plan does what it did in the run, by two machines: so the debugger steps through that run.
+#[test]
+fn a_record_becomes_a_script() {
+    let folder = recorded("script");
+    fs::copy(root().join("plans/lab_tour.mdle"), folder.join("tour.mdle")).unwrap();
+    for (plan, world) in [("square", "hall"), ("tour", "office")] {
+        let options = format!("--speed max --body scout --seed 7 --world {world}");
+        for log in ["jsonl", "mcap"] {
+            let _ = fs::remove_file(folder.join(format!("{plan}.mcap")));
+            let (_, err, _) = run(&folder, &format!("run {plan}.mdle --target sim {options} --log {plan}.{log}"));
+            assert_eq!(err, "");
+        }
+        let script = format!("{plan}.script");
+        assert_eq!(run(&folder, &format!("log export --script {plan}.mcap -o {script}")), Default::default());
+        let log = fs::read_to_string(folder.join(format!("{plan}.jsonl"))).unwrap();
+        let plan = format!("{plan}.mdle");
+        for machine in ["tree", "counted"] {
+            let arguments = ["trace", &plan, "--target", "sim", "--script", &script, "--machine", machine];
+            let output = run_mdlec(&folder, &arguments);
+            assert_eq!(String::from_utf8(output.stderr).unwrap(), "");
+            assert_eq!(String::from_utf8(output.stdout).unwrap(), log, "{plan}, {machine}");
+        }
+    }
+}
+
+#[test]
+fn what_no_script_can_say_is_refused() {
+    let folder = recorded("untold");
+    fs::write(folder.join("twice.mdle"), "{ Twice (wait 5min)\n  ((Atom (null) turn 90))^2\n}\n").unwrap();
+    run(&folder, "run twice.mdle --target sim --speed max --log twice.mcap");
+    let (out, err, status) = run(&folder, "log export --script twice.mcap");
+    let lines = out.lines().count();
+    let expected = format!(
+        "error: turn {lines} of the record twice.mcap, at {}.{} s, is none for a script: `turn 90` ends an atom and begins \
+         again in the same turn, which a script cannot say; the script ends before it\n",
+        lines / 10,
+        lines % 10
+    );
+    assert_eq!((err, status), (expected, 2));
 }
 
 #[test]

@@ -258,7 +258,7 @@ mod tests {
 
     #[test]
     fn unknown_keys_are_refused_with_the_nearest() {
-        let keys = "help: the keys are target, world, options; options of runs are in the table `options`";
+        let keys = "help: the keys are target, world, options, modules; options of runs are in the table `options`";
         assert_eq!(
             refused("\ntagret = \"sim\""),
             format!("2: there is no key `tagret`; did you mean `target`?\n{keys}")

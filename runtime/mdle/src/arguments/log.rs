@@ -11,8 +11,15 @@ pub(crate) enum Log {
     Info(PathBuf),
     /// `mdle log cut`: the record, the time of the last turn, and the new record.
     Cut(PathBuf, String, PathBuf),
-    /// `mdle log export`: the record, and the file to write; `None` for standard output.
-    Export(PathBuf, Option<PathBuf>),
+    /// `mdle log export`.
+    Export {
+        /// The record.
+        log: PathBuf,
+        /// For a script in place of a table: the file of its plan, unless the record has it.
+        script: Option<Option<PathBuf>>,
+        /// File to write; `None` for standard output.
+        file: Option<PathBuf>,
+    },
 }
 
 impl Log {
@@ -24,7 +31,11 @@ impl Log {
                 let time = cut.get_one::<String>("time").cloned().unwrap_or_default();
                 Self::Cut(path(cut, "log"), time, path(cut, "file"))
             }
-            Some(("export", export)) => Self::Export(path(export, "log"), export.get_one("file").cloned()),
+            Some(("export", export)) => Self::Export {
+                log: path(export, "log"),
+                script: export.get_flag("script").then(|| export.get_one("plan").cloned()),
+                file: export.get_one("file").cloned(),
+            },
             Some((_, info)) => Self::Info(path(info, "log")),
             None => Self::Info(PathBuf::new()),
         }
@@ -57,14 +68,26 @@ pub(crate) fn log() -> Command {
         )
         .arg(file("File of the new record, which must not exist").required(true));
     let export = Command::new("export")
-        .about("Write the turns of a record as a table")
+        .about("Write the turns of a record as a table, or as a script")
         .arg(log())
         .arg(
             Arg::new("csv")
                 .long("csv")
                 .action(ArgAction::SetTrue)
-                .required(true)
+                .required_unless_present("script")
+                .conflicts_with("script")
                 .help("Write a line for each turn as CSV"),
+        )
+        .arg(Arg::new("script").long("script").action(ArgAction::SetTrue).help(
+            "Write the interrupts that have fired and the laws that have completed, for `mdlec trace` and the debugger",
+        ))
+        .arg(
+            Arg::new("plan")
+                .long("plan")
+                .value_name("FILE")
+                .requires("script")
+                .value_parser(value_parser!(PathBuf))
+                .help("File of the plan, if the record is that of an executable"),
         )
         .arg(file("File to write, which must not exist [default: standard output]").short('o').long("output"));
     Command::new("log")

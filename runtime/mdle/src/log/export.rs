@@ -19,25 +19,56 @@ use crate::replay;
 /// The record cannot be read, or the table cannot be written.
 pub(super) fn export(log: &Path, file: Option<&Path>) -> Result<ExitCode, Failure> {
     let (_, records) = replay::record(log)?;
-    let mut out: Box<dyn Write> = match file {
-        Some(file) => Box::new(BufWriter::new(created(file)?)),
-        None => Box::new(BufWriter::new(io::stdout().lock())),
-    };
-    let name = file.map_or("standard output".to_owned(), |file| file.display().to_string());
-    let mut write = |line: &str| out.write_all(line.as_bytes()).map_err(|error| unwritten(&name, &error));
-    write(&head())?;
+    let mut table = Table::created(file)?;
+    table.write(&head())?;
     let mut outcome = Ok(ExitCode::SUCCESS);
     for turn in records.with_messages() {
         match turn {
-            Ok((turn, messages)) => write(&line(&turn, &messages))?,
+            Ok((turn, messages)) => table.write(&line(&turn, &messages))?,
             Err(error) => {
                 outcome = damaged(log, &error);
                 break;
             }
         }
     }
-    out.flush().map_err(|error| unwritten(&name, &error))?;
+    table.close()?;
     outcome
+}
+
+/// Lines that go to a file or to standard output.
+pub(super) struct Table {
+    out: Box<dyn Write>,
+    name: String,
+}
+
+impl Table {
+    /// Begins a file, which must not exist; `None` is standard output.
+    ///
+    /// # Errors
+    /// The file cannot be created.
+    pub(super) fn created(file: Option<&Path>) -> Result<Self, Failure> {
+        let out: Box<dyn Write> = match file {
+            Some(file) => Box::new(BufWriter::new(created(file)?)),
+            None => Box::new(BufWriter::new(io::stdout().lock())),
+        };
+        Ok(Self { out, name: file.map_or("standard output".to_owned(), |file| file.display().to_string()) })
+    }
+
+    /// Writes a line with its end.
+    ///
+    /// # Errors
+    /// That of the system.
+    pub(super) fn write(&mut self, line: &str) -> Result<(), Failure> {
+        self.out.write_all(line.as_bytes()).map_err(|error| unwritten(&self.name, &error))
+    }
+
+    /// Writes what is still held back.
+    ///
+    /// # Errors
+    /// That of the system.
+    pub(super) fn close(mut self) -> Result<(), Failure> {
+        self.out.flush().map_err(|error| unwritten(&self.name, &error))
+    }
 }
 
 /// The names of the columns, in SI units.

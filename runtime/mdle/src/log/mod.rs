@@ -1,8 +1,9 @@
-//! `mdle log`: what a record contains, its first part as a record, and its turns as a table.
+//! `mdle log`: what a record contains, its first part as a record, and its turns as a table or as a script.
 
 mod cut;
 mod export;
 mod info;
+mod script;
 
 use std::fs::File;
 use std::io;
@@ -26,7 +27,8 @@ pub(crate) fn log(arguments: &Log) -> Result<ExitCode, Failure> {
     match arguments {
         Log::Info(log) => info::info(log),
         Log::Cut(log, time, file) => cut::cut(log, run_time(time)?, file),
-        Log::Export(log, file) => export::export(log, file.as_deref()),
+        Log::Export { log, script: None, file } => export::export(log, file.as_deref()),
+        Log::Export { log, script: Some(plan), file } => script::script(log, plan.as_deref(), file.as_deref()),
     }
 }
 

@@ -1,0 +1,107 @@
+//! `mdle log export --script`: a record as a script of interrupts, for `mdlec trace` and the debugger.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::ExitCode;
+
+use mdle_compiler::fsm::Machine;
+use mdle_compiler::plan::Condition;
+use mdle_runtime::trace::Seconds;
+use mdle_runtime::{Examined, Nanometers, Nanos};
+use serde_json::json;
+
+use super::export::Table;
+use crate::failure::Failure;
+use crate::replay;
+use crate::rerun::{Moment, RerunTurn};
+use crate::why;
+
+/// Writes a line for each turn of a record: the interrupts that have fired among those that its plan asked for, and the
+/// laws that have completed. `plan` names the file of a plan that the record does not have.
+///
+/// # Errors
+/// The record or the plan cannot be read, a turn cannot be told by a script, or the file cannot be written.
+pub(super) fn script(log: &Path, plan: Option<&Path>, file: Option<&Path>) -> Result<ExitCode, Failure> {
+    let (begin, record) = replay::record(log)?;
+    let (machine, mut rerun) = why::reruns(log, plan, &begin, record)?;
+    let mut table = Table::created(file)?;
+    let mut way = Nanometers(0);
+    while let Some(turn) = rerun.turn(&mut |_, _| true) {
+        let turn = match turn {
+            Ok(turn) => turn,
+            Err(stop) => {
+                table.close()?;
+                return why::stopped(&stop, &log.display().to_string());
+            }
+        };
+        way = turn.moments.first().and_then(|moment| moment.scopes.first()).map_or(way, |plan| plan.way);
+        let line = line(&machine, &turn, way).map_err(|text| untold(log, &turn, &text))?;
+        table.write(&line)?;
+    }
+    table.close()?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The line of a turn, or a text that is both true and false in it.
+fn line(machine: &Machine, turn: &RerunTurn, way: Nanometers) -> Result<String, String> {
+    let (mut fired, mut completed) = (BTreeMap::new(), BTreeMap::new());
+    for moment in &turn.moments {
+        interrupts(machine, moment, &mut fired)?;
+        note(&mut completed, &machine.atom(moment.atom).law().text, moment.is_completed)?;
+    }
+    let listed = |known: BTreeMap<&str, bool>| {
+        known.into_iter().filter(|(_, is_so)| *is_so).map(|(text, _)| text.to_owned()).collect::<Vec<_>>()
+    };
+    let (fired, completed) = (listed(fired), listed(completed));
+    // Billionths as decimals: a script is read to the nanosecond and the nanometre.
+    let [t, way] = [turn.recorded.t, Nanos(way.0)].map(|billionths| Seconds(billionths).to_string());
+    let heading = turn.recorded.y.odometry.theta.degrees();
+    let mut line = format!("{{\"t\":{t},\"way\":{way},\"heading\":{heading}");
+    for (key, texts) in [("fired", fired), ("completed", completed)] {
+        if !texts.is_empty() {
+            line += &format!(",\"{key}\":{}", json!(texts));
+        }
+    }
+    Ok(line + "}\n")
+}
+
+/// Notes the interrupts that a moment has asked for.
+fn interrupts<'m>(machine: &'m Machine, moment: &Moment, fired: &mut BTreeMap<&'m str, bool>) -> Result<(), String> {
+    for scope in &moment.scopes {
+        parts(machine, machine.element(scope.bracket).condition(), &mut scope.parts.iter(), fired)?;
+    }
+    Ok(())
+}
+
+/// Notes the quarks of a condition, whose parts come in the order in which they were examined; `stuck` is one part.
+fn parts<'m>(
+    machine: &'m Machine,
+    condition: &'m Condition,
+    examined: &mut std::slice::Iter<'_, Examined>,
+    fired: &mut BTreeMap<&'m str, bool>,
+) -> Result<(), String> {
+    let Some(part) = examined.next() else { return Ok(()) };
+    if let Some((quark, _)) = condition.lasting() {
+        return note(fired, &machine.quark(quark).text, part.fired);
+    }
+    if let Condition::Quark(quark) = condition {
+        note(fired, &machine.quark(*quark).text, part.fired)?;
+    }
+    condition.children().iter().try_for_each(|operand| parts(machine, operand, examined, fired))
+}
+
+/// Notes that a text is true or false in the turn; refuses what has been the other before.
+fn note<'m>(known: &mut BTreeMap<&'m str, bool>, text: &'m str, is_so: bool) -> Result<(), String> {
+    match known.insert(text, is_so) {
+        Some(before) if before != is_so => Err(text.to_owned()),
+        Some(_) | None => Ok(()),
+    }
+}
+
+fn untold(log: &Path, turn: &RerunTurn, text: &str) -> Failure {
+    let (log, number, t) = (log.display(), turn.recorded.number, Seconds(turn.recorded.t));
+    Failure::Usage(format!(
+        "turn {number} of the record {log}, at {t} s, is none for a script: `{text}` ends an atom and begins again in the \
+         same turn, which a script cannot say; the script ends before it"
+    ))
+}
