@@ -63,7 +63,7 @@ fn runs_of_every_plan_replay_to_the_bit() {
     let folder = folder("plans");
     let plans = fs::read_dir(root().join("plans")).unwrap().map(|entry| entry.unwrap().path());
     let mut records = 0;
-    for plan in plans.filter(|plan| plan.is_file()) {
+    for plan in plans.filter(|plan| plan.extension().is_some_and(|extension| extension == "mdle")) {
         for (body, seed) in [("ideal", "1"), ("scout", "2"), ("atrv", "3")] {
             let plan = plan.to_str().unwrap();
             let common = ["run", plan, "--target", "sim", "--speed", "max", "--timeout", "200", "--log", "run.MCAP"];
