@@ -102,7 +102,7 @@ expect.order = [\"go 20 0\"]
 ";
     let folder = with("update", tests);
     let output = run(&folder, &["--update"]);
-    // What never was to be is no value that can be recorded.
+    // An `expect.never` has no value that can be recorded.
     assert_eq!(output.status.code(), Some(1));
     let updated = fs::read_to_string(folder.join("dock.test.toml")).unwrap();
     insta::assert_snapshot!(format!("{}\n{updated}", out(&output)));

@@ -27,7 +27,7 @@ pub(crate) struct Seat {
     pub(crate) desk: Desk,
     /// `true` if stepped time stands before the first turn.
     pub(crate) is_paused: bool,
-    /// Where the run reports.
+    /// The stream to which the run reports.
     pub(crate) stream: OwnedFd,
 }
 

@@ -24,7 +24,7 @@ const LOOK: Duration = Duration::from_millis(200);
 pub(crate) struct HeldTerminal {
     /// The way in which the terminal was read before.
     before: Option<Termios>,
-    /// Where the run reports.
+    /// The stream to which the run reports.
     reports: PipeWriter,
     printed: std::sync::mpsc::Receiver<()>,
 }

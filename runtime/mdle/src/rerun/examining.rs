@@ -46,7 +46,7 @@ pub(crate) struct ScopeMoment {
     pub(crate) since: Nanos,
     /// Length of the path driven since it was entered.
     pub(crate) way: Nanometers,
-    /// Its condition and all parts of that, each part before its operands.
+    /// The condition of the scope and all parts of it, each part before its operands.
     pub(crate) parts: Vec<Examined>,
     /// The atom that would follow if the scope ended now; `None` if the plan would be over.
     pub(crate) leads_to: Option<u32>,

@@ -18,7 +18,7 @@ pub(super) struct Course {
     pub(super) ending: Ending,
     /// The true pose at the end, where a robot was simulated.
     pub(super) pose: Option<Pose>,
-    /// What never was to be and was: the number of the expectation, and when.
+    /// An `expect.never` that was not met: the number of the expectation, and the time.
     pub(super) breaches: Vec<Breach>,
 }
 

@@ -5,7 +5,7 @@ use mdle_compiler::plan::Condition;
 use mdle_host::Transitions;
 use mdle_runtime::{Cause, Transition};
 
-/// What runs of a plan have reached.
+/// Parts of a plan that runs have reached.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Coverage {
     /// For each atom, the number of times that its law began.

@@ -65,7 +65,7 @@ pub(super) fn jobs(suites: &[Suite], only: Option<&str>, first: Option<u64>, cou
     jobs
 }
 
-/// Makes the runs, with so many threads; returns them in the order of `jobs`, and the coverage of each suite.
+/// Makes the runs on this number of threads; returns them in the order of `jobs`, and the coverage of each suite.
 pub(super) fn run(
     suites: &[Suite],
     jobs: &[Job],
