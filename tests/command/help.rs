@@ -196,7 +196,7 @@ fn a_version_names_what_was_built() {
     let ["Rest", "(text", own, "target", "sim,", "alphabet", alphabet, "mdlec", compiler, rest @ ..] = &*words else {
         panic!("{first}")
     };
-    assert_eq!((own.len(), alphabet.len(), *compiler), (13, 13, "0.1.0,"));
+    assert_eq!((own.len(), alphabet.len(), *compiler), (13, 13, "0.2.0,"));
     let ["code", code, "rustc", release] = rest else { panic!("{first}") };
     assert!(code.len() == 13 && release.starts_with("1."), "{first}");
     assert_eq!(version("second", texts), first);

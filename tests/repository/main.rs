@@ -7,3 +7,4 @@ mod coverage;
 mod directions;
 mod readme;
 mod tidy;
+mod versions;
