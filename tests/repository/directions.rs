@@ -45,7 +45,8 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-simulator", "mdle-conformance"]),
     ("targets/scout", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
     ("targets/atrv", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
-    ("targets/ros2", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
+    // The simulator and the conformance are there for its tests alone.
+    ("targets/ros2", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms", "mdle-simulator", "mdle-conformance"]),
     ("targets/template", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-conformance"]),
     // The runtime, the line and the conformance are there for the tests of robots alone.
     ("targets/emulator", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-simulator", "mdle-conformance"]),

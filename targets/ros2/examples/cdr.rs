@@ -29,6 +29,8 @@ fn main() {
             "BatteryState" => convert::<m::BatteryState>,
             "Clock" => convert::<m::ClockMessage>,
             "DiagnosticArray" => convert::<m::DiagnosticArray>,
+            "ParticipantEntitiesInfo" => convert::<m::ParticipantEntitiesInfo>,
+            "LongEntitiesInfo" => written_with_long_ids,
             other => panic!("there is no type `{other}`"),
         };
         println!("{}", convert(way, text));
@@ -37,8 +39,7 @@ fn main() {
 
 fn convert<T: Serialize + DeserializeOwned>(way: &str, text: &str) -> String {
     if way == "write" {
-        let payload = Payload::of(&serde_json::from_str::<T>(text).unwrap()).unwrap();
-        return payload.bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+        return digits(&serde_json::from_str::<T>(text).unwrap());
     }
     let digits = text.as_bytes().chunks(2).map(|pair| std::str::from_utf8(pair).unwrap());
     let bytes = digits.map(|pair| u8::from_str_radix(pair, 16).unwrap()).collect();
@@ -46,4 +47,19 @@ fn convert<T: Serialize + DeserializeOwned>(way: &str, text: &str) -> String {
         Ok(message) => serde_json::to_string(&message).unwrap(),
         Err(why) => format!("error: {why}"),
     }
+}
+
+/// Returns the bytes of a message, as hexadecimal digits.
+fn digits<T: Serialize>(message: &T) -> String {
+    Payload::of(message).unwrap().bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Writes the nodes of a program with the ids of Humble, which the driver does not read.
+fn written_with_long_ids(_: &str, text: &str) -> String {
+    let mut info: m::ParticipantEntitiesInfo = serde_json::from_str(text).unwrap();
+    info.gid.is_long = true;
+    for node in &mut info.node_entities_info_seq {
+        node.reader_gid_seq.iter_mut().chain(&mut node.writer_gid_seq).for_each(|gid| gid.is_long = true);
+    }
+    digits(&info)
 }

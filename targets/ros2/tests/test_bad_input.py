@@ -121,6 +121,20 @@ def test_a_robot_that_comes_later_is_waited_for():
             stopped(robot)
 
 
+def test_a_subscriber_that_comes_later_is_waited_for():
+    domain = new_domain()
+    robot = Robot(domain)
+    robot.commands, robot.take = None, lambda: 0
+    with robot, running("hop", configuration(domain)) as run:
+        time.sleep(2)
+        assert run.process.poll() is None and not robot.history
+        robot.commands = DataReader(robot.dp, robot.command_topic, qos=robot.qos)
+        del robot.take
+        code, out, err = run.end()
+        assert code == 0, out + err
+        stopped(robot)
+
+
 def test_a_subscriber_that_vanishes_is_a_fault():
     domain = new_domain()
     with Robot(domain) as robot, running("ride", configuration(domain)) as run:

@@ -103,6 +103,39 @@ def test_messages_are_those_of_rosbags(distribution, name):
         assert each[4:].startswith(bytes.fromhex(line)) and len(each) - 4 - len(line) // 2 < 4
 
 
+@pytest.mark.parametrize("distribution, size", [("humble", 24), ("jazzy", 16)])
+def test_the_nodes_of_a_program_are_those_of_rosbags(distribution, size):
+    types, luck = get_typestore(STORES[distribution]), random.Random(distribution)
+    name = "rmw_dds_common/msg/ParticipantEntitiesInfo"
+    texts = {
+        "rmw_dds_common/msg/Gid": f"uint8[{size}] data\n",
+        "rmw_dds_common/msg/NodeEntitiesInfo":
+            "string node_namespace\nstring node_name\nGid[] reader_gid_seq\nGid[] writer_gid_seq\n",
+        name: "Gid gid\nNodeEntitiesInfo[] node_entities_info_seq\n",
+    }
+    for each, text in texts.items():
+        types.register(get_types_from_msg(text, each))
+    gid, node, info = (types.types[each] for each in texts)
+
+    def ids(count):
+        return [[luck.randrange(256) for _ in range(16)] for _ in range(count)]
+
+    def theirs(id):
+        return gid(numpy.array(id + [0] * (size - 16), dtype="uint8"))
+
+    for _ in range(20):
+        [own], readers, writers = ids(1), ids(luck.randrange(4)), ids(luck.randrange(4))
+        names = ["/" + "a" * luck.randrange(9), "b" * luck.randrange(9)]
+        message = info(theirs(own), [node(*names, [*map(theirs, readers)], [*map(theirs, writers)])])
+        keys = ["node_namespace", "node_name", "reader_gid_seq", "writer_gid_seq"]
+        ours = {"gid": own, "node_entities_info_seq": [dict(zip(keys, [*names, readers, writers]))]}
+        expected = bytes(types.serialize_cdr(message, name))[4:]
+        [written] = converted([f"{'Participant' if size == 16 else 'Long'}EntitiesInfo write {json.dumps(ours)}"])
+        assert expected.startswith(bytes.fromhex(written)) and len(expected) - len(written) // 2 < 4
+        if size == 16:
+            assert json.loads(*converted([f"ParticipantEntitiesInfo read {expected.hex()}"])) == ours
+
+
 @pytest.mark.parametrize("name", TYPES)
 def test_damaged_bytes_are_no_message_and_no_crash(name):
     types, luck = store("jazzy"), random.Random(name)
