@@ -48,6 +48,9 @@ fn failures_to_run_have_a_help() {
         "run plan.mdle --target sim --world moon",
         "run plan.mdle --target sim --turns 0",
         "run plan.mdle --target sim --log plan.mdle",
+        "man repley",
+        "man log cut up",
+        "completions tcsh",
     ];
     insta::assert_snapshot!(lines.map(|line| report(&folder, line)).join("\n"));
     assert_eq!(fs::read_to_string(folder.join("plan.mdle")).unwrap(), PLAN);
@@ -64,6 +67,30 @@ fn help_names_every_option() {
     let help = report(&folder, "run plan.mdle --target sim --help");
     assert!(help.contains("Usage: mdle run plan.mdle --target sim [OPTIONS]\n"), "{help}");
     assert!(help.contains("--start-noise") && help.ends_with("[0]\n"), "{help}");
+}
+
+#[test]
+fn shells_and_man_know_every_command_of_mdle() {
+    let folder = folder("mdle_manual");
+    let text = |line: &str| String::from_utf8(run(&folder, &line.split(' ').collect::<Vec<_>>()).stdout).unwrap();
+    let help = text("--help");
+    let listed = help.split("Commands:\n").nth(1).unwrap().lines().take_while(|line| line.starts_with("  "));
+    let commands: Vec<_> = listed.filter_map(|line| line.split_whitespace().next()).collect();
+    assert!(commands.len() > 9, "{commands:?}");
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = text(&format!("completions {shell}"));
+        assert!(commands.iter().all(|command| script.contains(command)) && script.contains("deny-warnings"), "{shell}");
+    }
+    fs::write(folder.join("mdle.bash"), text("completions bash")).unwrap();
+    let typed = "COMP_WORDS=(mdle re); COMP_CWORD=1; _mdle mdle re mdle; echo ${COMPREPLY[@]}";
+    let script = format!("source ./mdle.bash; {typed}");
+    let completed = Command::new("bash").args(["-c", &script]).current_dir(&folder).output().unwrap();
+    assert_eq!(String::from_utf8(completed.stdout).unwrap(), "replay\n");
+    let [all, replay, cut] = ["man", "man replay", "man log cut"].map(|line| text(line).replace('\\', ""));
+    assert!(all.contains(".TH mdle 1"), "{all}");
+    assert!(commands.iter().all(|command| all.contains(&format!("mdle-{command}(1)"))), "{all}");
+    assert!(replay.contains(".TH mdle-replay 1") && replay.contains("--until"), "{replay}");
+    assert!(cut.contains(".TH mdle-log-cut 1") && cut.contains("<TIME>"), "{cut}");
 }
 
 #[test]

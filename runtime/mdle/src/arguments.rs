@@ -3,6 +3,7 @@
 //! The words after the plan are the options of the run, which depend on the target: the host parses them.
 
 mod log;
+mod manual;
 mod plot;
 mod why;
 
@@ -10,6 +11,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use clap_complete::Shell;
 
 use mdle_engine::tree::Role;
 use mdle_quantity::Quantity;
@@ -38,6 +40,10 @@ pub(crate) enum Asked {
     Plot(Plot),
     /// `mdle test`.
     Test(Test),
+    /// `mdle completions`.
+    Completions(Shell),
+    /// `mdle man`: the words of a command.
+    Man(Vec<String>),
 }
 
 /// The arguments of `mdle replay`.
@@ -122,6 +128,8 @@ pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
         Some(("log", matches)) => Ok(Asked::Log(Log::of(matches))),
         Some(("plot", matches)) => Ok(Asked::Plot(Plot::of(matches))),
         Some(("test", matches)) => Ok(Asked::Test(test::read(matches))),
+        Some(("completions", matches)) => Ok(Asked::Completions(manual::shell(matches))),
+        Some(("man", matches)) => Ok(Asked::Man(manual::words(matches))),
         Some(_) | None => Err(Failure::Usage("no command was given\nhelp: `mdle run PLAN` runs a plan".to_owned())),
     }
 }
@@ -189,7 +197,7 @@ fn apart(arguments: Vec<OsString>) -> Result<(Vec<OsString>, Vec<OsString>), Fai
 }
 
 /// Returns the command line of `mdle`.
-fn command() -> Command {
+pub(crate) fn command() -> Command {
     Command::new("mdle")
         .about("Run MDLe plans on robots without building them")
         .version(env!("CARGO_PKG_VERSION"))
@@ -203,6 +211,8 @@ fn command() -> Command {
         .subcommand(log::log())
         .subcommand(plot::plot())
         .subcommand(test::command())
+        .subcommand(manual::completions())
+        .subcommand(manual::man())
 }
 
 fn new_module() -> Command {
@@ -388,6 +398,8 @@ mod tests {
             Asked::Log(log) => panic!("{log:?}"),
             Asked::Plot(plot) => panic!("{plot:?}"),
             Asked::Test(test) => panic!("{test:?}"),
+            Asked::Completions(shell) => panic!("{shell:?}"),
+            Asked::Man(words) => panic!("{words:?}"),
         }
     }
 

@@ -7,6 +7,7 @@
 mod arguments;
 mod failure;
 mod log;
+mod manual;
 mod modules;
 mod new_module;
 mod plans;
@@ -54,6 +55,8 @@ pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
         Asked::Log(arguments) => log::log(&arguments),
         Asked::Plot(arguments) => plot::plot(&arguments),
         Asked::Test(arguments) => test::test(&arguments, &library),
+        Asked::Completions(shell) => manual::completions(shell),
+        Asked::Man(words) => manual::man(&words),
     };
     arguments::parse(arguments).and_then(run).unwrap_or_else(Failure::tell)
 }
