@@ -28,15 +28,22 @@ LOOPBACK = """<CycloneDDS><Domain id="any">
 <Discovery><ParticipantIndex>auto</ParticipantIndex></Discovery>
 </Domain></CycloneDDS>"""
 
+# A network that passes no multicast: the robot hears and says only what is addressed to one program.
+UNICAST = LOOPBACK.replace("<AllowMulticast>true", "<AllowMulticast>false")
+# The same, and the robot knows where the driver is.
+PEER = UNICAST.replace("</ParticipantIndex>", """</ParticipantIndex><MaxAutoParticipantIndex>20</MaxAutoParticipantIndex>
+<Peers><Peer address="127.0.0.1"/></Peers>""")
+NETWORKS = {"multicast": LOOPBACK, "unicast": UNICAST, "peer": PEER}
+
 RELIABLE = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(50))
 BEST_EFFORT = Qos(Policy.Reliability.BestEffort, Policy.History.KeepLast(5))
 
 _domains = {}
 
 
-def participant(domain):
+def participant(domain, network="multicast"):
     if domain not in _domains:
-        _domains[domain] = Domain(domain, LOOPBACK)
+        _domains[domain] = Domain(domain, NETWORKS[network])
     return DomainParticipant(domain)
 
 
@@ -163,7 +170,9 @@ def main():
     parser.add_argument("--world", type=Path)
     parser.add_argument("--lockstep", action="store_true")
     parser.add_argument("--stamped", action="store_true")
+    parser.add_argument("--network", choices=NETWORKS, default="multicast")
     options = parser.parse_args()
+    participant(options.domain, options.network)
     Robot(options.domain, options.world, options.stamped, options.lockstep).run()
 
 

@@ -1,6 +1,9 @@
 """Robots that are missing, double, late, damaged or mad."""
 
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import pytest
 from cyclonedds.core import Policy, Qos
@@ -11,7 +14,7 @@ from cyclonedds.topic import Topic
 from dataclasses import dataclass
 
 import messages as m
-from harness import configuration, drives, new_domain, running, stopped, until
+from harness import LONG, built, configuration, drives, new_domain, running, stopped, until
 from robot import RELIABLE, Robot, participant
 
 
@@ -190,6 +193,27 @@ def test_an_unknown_network_is_a_fault():
     with running("ride", configuration(new_domain(), network="203.0.113.9", discovery=3000)) as run:
         code, _, err = run.end()
         assert code == 3, err
+
+
+def test_no_network_is_a_fault():
+    domain = new_domain()
+    command = ["unshare", "--net", "--map-root-user", built("ride"), "--config", configuration(domain, discovery=3000)]
+    run = subprocess.run(command, capture_output=True, text=True, timeout=LONG)
+    assert run.returncode == 3, run
+    assert f"no program of ROS 2 answers in domain {domain}" in run.stderr and "multicast" in run.stderr, run.stderr
+
+
+def test_without_multicast_a_robot_that_knows_the_address_is_driven():
+    domain = new_domain()
+    command = [sys.executable, Path(__file__).with_name("robot.py"), "--domain", str(domain), "--network", "peer"]
+    robot = subprocess.Popen(command)
+    try:
+        with running("hop", configuration(domain)) as run:
+            code, out, err = run.end()
+            assert code == 0, out + err
+    finally:
+        robot.kill()
+        robot.wait()
 
 
 def test_another_quality_of_service_is_named():

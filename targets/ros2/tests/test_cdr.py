@@ -106,16 +106,9 @@ def test_messages_are_those_of_rosbags(distribution, name):
 @pytest.mark.parametrize("distribution, size", [("humble", 24), ("jazzy", 16)])
 def test_the_nodes_of_a_program_are_those_of_rosbags(distribution, size):
     types, luck = get_typestore(STORES[distribution]), random.Random(distribution)
-    name = "rmw_dds_common/msg/ParticipantEntitiesInfo"
-    texts = {
-        "rmw_dds_common/msg/Gid": f"uint8[{size}] data\n",
-        "rmw_dds_common/msg/NodeEntitiesInfo":
-            "string node_namespace\nstring node_name\nGid[] reader_gid_seq\nGid[] writer_gid_seq\n",
-        name: "Gid gid\nNodeEntitiesInfo[] node_entities_info_seq\n",
-    }
-    for each, text in texts.items():
-        types.register(get_types_from_msg(text, each))
-    gid, node, info = (types.types[each] for each in texts)
+    package = "rmw_dds_common/msg/"
+    name = package + "ParticipantEntitiesInfo"
+    gid, node, info = (types.types[package + each] for each in ["Gid", "NodeEntitiesInfo", "ParticipantEntitiesInfo"])
 
     def ids(count):
         return [[luck.randrange(256) for _ in range(16)] for _ in range(count)]

@@ -1,6 +1,7 @@
 """Robots of several kinds: their commands, bumpers, batteries, ranges, clocks and names."""
 
 import json
+import math
 import subprocess
 
 import pytest
@@ -65,10 +66,18 @@ def test_rays_are_a_bumper(wall):
         assert 1.1 < robot.body.place.x < 1.3
 
 
-def test_a_scan_is_sixteen_ranges(wall):
+@pytest.mark.parametrize("yaw", [0.0, math.pi])
+def test_a_scan_is_sixteen_ranges(yaw, wall):
+    def turned(scan):
+        half = len(scan.ranges) // 2
+        scan.ranges = scan.ranges[half:] + scan.ranges[:half]
+        return scan
+
     domain = new_domain()
     with Robot(domain, wall) as robot:
-        with running("until_near", configuration(domain, ring_radius=0.2)) as run:
+        if yaw != 0:
+            robot.changed["scan"] = turned
+        with running("until_near", configuration(domain, ring_radius=0.2, scan_yaw=yaw)) as run:
             arrives(run, robot)
         # At 60 cm from the ring.
         assert 0.6 < robot.body.place.x < 0.85
