@@ -51,7 +51,7 @@ impl Capabilities {
 impl fmt::Display for Capabilities {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let given = self.optional.iter().filter(|(_, is_there, _)| *is_there).map(|(name, _, _)| *name);
-        let all: Vec<_> = ["diff_drive", "odometry", "paths", "modules"].into_iter().chain(given).collect();
+        let all: Vec<_> = ["diff_drive", "odometry", "paths"].into_iter().chain(given).collect();
         writeln!(f, "# capabilities: {}", all.join(", "))?;
         for (capability, _, key) in self.optional.iter().filter(|(_, is_there, _)| !is_there) {
             let quarks = quarks(capability).join(", ");
@@ -126,7 +126,7 @@ mod tests {
         let printed = capabilities(|_| {}).to_string();
         let comments: Vec<_> = printed.lines().filter(|line| line.starts_with("# ")).collect();
         let expected = [
-            "# capabilities: diff_drive, odometry, paths, modules, sonar[16]",
+            "# capabilities: diff_drive, odometry, paths, sonar[16]",
             "# without bumper, no plan can use bumper; `bumper-type` gives it",
             "# without power, no plan can use lowBattery, charger, battery; `battery` gives it",
         ];
