@@ -3,6 +3,8 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
+use mdle_record::SafetyTexts;
+
 /// The words by which a program that runs a plan was called.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Call {
@@ -22,9 +24,11 @@ pub struct Call {
 pub struct RecordedPlan {
     /// The name and the text of each file of the plan, its own first; empty for an executable, which has no texts.
     pub files: Vec<(String, String)>,
-    /// Causes of inputs besides the plan and the robot's outputs, such as safety rules; empty if there is
-    /// nothing. Such a run cannot be replayed.
+    /// Causes of inputs besides the plan and the robot's outputs, such as safety rules, for people; empty if there is
+    /// nothing.
     pub beside: String,
+    /// The safety rules of the run, if there are any.
+    pub safety: Option<SafetyTexts>,
 }
 
 impl Call {

@@ -4,15 +4,17 @@
 use std::any::Any;
 use std::time::Duration;
 
+use mdle_record::Change;
 use mdle_runtime::{MetersPerSecond, Nanos, Output as _, Plan, Radians, Robot, Sensed, Turn, Twist};
 
+use crate::helm::Helm;
 use crate::observer::{Observer, Observes};
-use crate::pilot::{Moment, Pilot, PilotFault};
+use crate::pilot::{Pilot, PilotFault};
 use crate::position::Position;
 use crate::report::Report;
 use crate::run_end::RunEnd;
 use crate::transitions::Transitions;
-use crate::{Break, Intervention, Orders, SettingsOf, Supervisor, Verdict};
+use crate::{Break, Intervention, Orders, SettingsOf, Supervisor};
 
 /// A robot with the plan that drives it: exchange and turn alternate, the exchange first.
 pub(crate) trait Drive {
@@ -35,9 +37,12 @@ pub(crate) trait Drive {
     fn longest_gap(&self) -> Option<Duration>;
     /// Returns the heading and the speed of the robot by its last output, if it has one and paths are recorded.
     fn motion(&self) -> Option<(Radians, MetersPerSecond)>;
-    /// Returns the last output and the input that is sent next, for a record; `None` if they are of other types than a
-    /// record has.
-    fn exact(&self) -> Option<(&Sensed, Twist)>;
+    /// Returns the last output and input, for a record; `None` if they are of other types than a record has.
+    fn exact(&self) -> Option<Exact<'_>>;
+    /// Notes from now on what [`Drive::take_changes`] returns: called before the first turn.
+    fn record(&mut self);
+    /// Takes the causes of the last turn besides its output.
+    fn take_changes(&mut self) -> Vec<Change>;
     /// Makes turn `number` with the last output at time `t`; the first turn begins the plan.
     ///
     /// # Errors
@@ -66,26 +71,27 @@ pub(crate) trait Drive {
     }
 }
 
+/// The output and the input of a turn.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Exact<'y> {
+    /// The robot's output.
+    pub(crate) y: &'y Sensed,
+    /// The input that the plan asked for.
+    pub(crate) asked: Twist,
+    /// The input that is sent.
+    pub(crate) sent: Twist,
+}
+
 /// A robot, and the pilot that drives it.
 pub(crate) struct PilotOnRobot<'p, R: Robot, B: Pilot> {
     robot: R,
     observer: Observes<R>,
     /// Returns the speed of the robot by an output, if paths are recorded.
     speed: Option<Speed<R>>,
-    pilot: B,
-    supervised: Option<Supervised<'p, B>>,
+    helm: Helm<'p, B>,
     /// Settings of the robot, for the supervisor.
     settings: Option<SettingsOf<R>>,
-    /// Time of the last turn.
-    t: Nanos,
     output: Option<R::Output>,
-    input: R::Input,
-}
-
-/// The supervisor of a run, and the plans to which it may divert.
-pub(crate) struct Supervised<'p, B: Pilot> {
-    pub(crate) supervisor: Box<dyn Supervisor<B> + 'p>,
-    pub(crate) diversions: &'p dyn Fn(usize) -> Option<B::Plan>,
 }
 
 /// Returns the forward speed of a robot by an output.
@@ -96,31 +102,13 @@ where
     R: Robot,
     B: Pilot<Plan: Plan<Output = R::Output, Input = R::Input>>,
 {
-    pub(crate) fn new(robot: R, observer: Observes<R>, speed: Option<Speed<R>>, pilot: B) -> Self {
-        let (output, input) = (None, R::Input::default());
-        Self { robot, observer, speed, pilot, supervised: None, settings: None, t: Nanos::ZERO, output, input }
+    pub(crate) fn new(robot: R, observer: Observes<R>, speed: Option<Speed<R>>, helm: Helm<'p, B>) -> Self {
+        Self { robot, observer, speed, helm, settings: None, output: None }
     }
 
-    /// Puts a supervisor between the plan and the robot, which can change the robot's settings.
-    pub(crate) fn supervised(self, supervised: Option<Supervised<'p, B>>, settings: Option<SettingsOf<R>>) -> Self {
-        Self { supervised, settings, ..self }
-    }
-
-    /// Sets the input that is sent next, as the supervisor changes it.
-    fn send(&mut self, asked: R::Input) {
-        self.input = match (&mut self.supervised, &self.output) {
-            (Some(supervised), Some(y)) => supervised.supervisor.filter(asked, y, self.t),
-            (Some(_) | None, _) => asked,
-        };
-    }
-
-    /// Returns the plan to which the last turn has diverted.
-    fn diversion(&self) -> Option<B::Plan> {
-        let supervised = self.supervised.as_ref()?;
-        match supervised.supervisor.intervention()?.verdict {
-            Verdict::Diverted(plan) => (supervised.diversions)(plan),
-            Verdict::Limited | Verdict::Held | Verdict::Ended => None,
-        }
+    /// Lets the supervisor change these settings of the robot.
+    pub(crate) fn with_settings(self, settings: Option<SettingsOf<R>>) -> Self {
+        Self { settings, ..self }
     }
 }
 
@@ -130,12 +118,12 @@ where
     B: Pilot<Plan: Plan<Output = R::Output, Input = R::Input>>,
 {
     fn exchange(&mut self) -> Result<(), String> {
-        self.output = Some(self.robot.exchange(&self.input).map_err(|fault| fault.to_string())?);
+        self.output = Some(self.robot.exchange(self.helm.input()).map_err(|fault| fault.to_string())?);
         Ok(())
     }
 
     fn release(&mut self) -> Result<(), String> {
-        self.send(R::Input::default());
+        self.helm.send(R::Input::default(), self.output.as_ref());
         self.exchange()
     }
 
@@ -152,67 +140,62 @@ where
         Some((output.here().theta, speed(output)))
     }
 
-    fn exact(&self) -> Option<(&Sensed, Twist)> {
+    fn exact(&self) -> Option<Exact<'_>> {
         let y = (self.output.as_ref()? as &dyn Any).downcast_ref()?;
-        Some((y, *(&self.input as &dyn Any).downcast_ref()?))
+        let sent = (self.helm.input() as &dyn Any).downcast_ref()?;
+        Some(Exact { y, asked: self.helm.asked()?, sent: *sent })
+    }
+
+    fn record(&mut self) {
+        self.helm.record();
+    }
+
+    fn take_changes(&mut self) -> Vec<Change> {
+        self.helm.take_changes()
     }
 
     fn turn(&mut self, t: Nanos, number: u64, transitions: &mut Transitions) -> Result<Turn<()>, RunEnd> {
-        self.t = t;
-        let diversion = self.diversion();
         // Without an output no law can compute an input.
         let Some(y) = &mut self.output else { return Ok(Turn::Cut) };
-        self.pilot.complete(y, t);
-        if let Some(plan) = diversion {
-            self.pilot.divert(plan, Moment { y, t, number });
-        }
-        let turn = self.pilot.turn(Moment { y, t, number }, transitions).map_err(|fault| match fault {
+        self.helm.turn(y, t, number, transitions).map_err(|fault| match fault {
             PilotFault::Stopped(sentence) => RunEnd::Pilot(sentence),
             PilotFault::Panicked(message) => RunEnd::Bug(message),
-        })?;
-        let kind = match turn {
-            Turn::Law(_) => Turn::Law(()),
-            Turn::Cut => Turn::Cut,
-            Turn::Over => Turn::Over,
-        };
-        self.send(turn.input());
-        Ok(kind)
+        })
     }
 
     fn messages(&mut self, say: &mut dyn FnMut(&str)) {
-        self.pilot.messages(say);
+        self.helm.pilot_mut().messages(say);
     }
 
     fn parts(&mut self) -> (Option<&mut dyn Observer>, Option<&dyn Position>) {
         let observer = self.observer.map(|observer| observer(&mut self.robot));
-        (observer, self.pilot.machine().map(|machine| machine as _))
+        (observer, self.helm.pilot().machine().map(|machine| machine as _))
     }
 
     fn zero(&self) -> Nanos {
-        self.pilot.zero()
+        self.helm.pilot().zero()
     }
 
     fn intervention(&self) -> Option<Intervention<'_>> {
-        self.supervised.as_ref().and_then(|supervised| supervised.supervisor.intervention())
+        self.helm.intervention()
     }
 
     fn take_requests(&mut self) -> Vec<String> {
-        self.supervised.as_mut().map(|supervised| supervised.supervisor.take_requests()).unwrap_or_default()
+        self.helm.supervisor_mut().map(Supervisor::take_requests).unwrap_or_default()
     }
 
     fn plan(&self) -> (u64, &str) {
-        (self.pilot.plan_number(), self.pilot.reason())
+        (self.helm.pilot().plan_number(), self.helm.pilot().reason())
     }
 
     fn ended_by(&mut self, rule: &str) -> bool {
-        self.pilot.ended_by(rule)
+        self.helm.pilot_mut().ended_by(rule)
     }
 
     fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &Report<'_>) -> Orders {
-        let Self { robot, supervised: Some(supervised), settings, output: Some(y), input, pilot, .. } = self else {
-            return Orders::default();
-        };
+        let Self { robot, helm, settings, output: Some(y), .. } = self else { return Orders::default() };
+        let Some((supervisor, pilot, input)) = helm.parts() else { return Orders::default() };
         let (settings, course) = (settings.map(|settings| settings(robot)), report.course());
-        supervised.supervisor.at_break(&mut Break { turns, t, y, input, is_over, pilot, settings, course })
+        supervisor.at_break(&mut Break { turns, t, y, input, is_over, pilot, settings, course })
     }
 }

@@ -7,7 +7,8 @@ use std::time::Duration;
 use clap::ArgMatches;
 use mdle_runtime::{PathStore, Plan, Robot};
 
-use crate::drive::{Drive, PilotOnRobot, Supervised};
+use crate::drive::{Drive, PilotOnRobot};
+use crate::helm::{Helm, Supervised};
 use crate::pilot::{MakePilot, Pilot, RunTerms};
 use crate::position::Texts;
 use crate::runs::Runs;
@@ -70,10 +71,12 @@ where
             speed
         });
         let observer = T::OBSERVATION.map(|observation| observation.observer);
-        let supervised = self
-            .supervision
-            .map(|Supervision { supervisor, diversions, .. }| Supervised { supervisor: supervisor(terms), diversions });
-        Box::new(PilotOnRobot::new(robot, observer, speed, pilot).supervised(supervised, T::SETTINGS))
+        let supervised = self.supervision.map(|Supervision { supervisor, diversions, .. }| Supervised {
+            supervisor: supervisor(terms),
+            diversions: Box::new(diversions),
+        });
+        let helm = Helm::new(pilot, supervised);
+        Box::new(PilotOnRobot::new(robot, observer, speed, helm).with_settings(T::SETTINGS))
     }
 }
 

@@ -3,6 +3,7 @@
 
 use std::time::Duration;
 
+use mdle_record::Change;
 use mdle_runtime::{Machine, Nanos, Plan, Turn};
 
 use crate::transitions::Transitions;
@@ -54,6 +55,15 @@ pub trait Pilot {
 
     /// Calls `say` with each message for the operator since the last call.
     fn messages(&mut self, _say: &mut dyn FnMut(&str)) {}
+
+    /// Notes from now on what [`Pilot::take_changes`] returns: called before the first turn of a run that is recorded.
+    fn record(&mut self) {}
+
+    /// Takes the causes of the last turn besides the robot's output, in order: with these and the outputs, the run can
+    /// be made again.
+    fn take_changes(&mut self) -> Vec<Change> {
+        Vec::new()
+    }
 }
 
 /// A turn of a run.

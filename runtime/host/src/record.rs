@@ -7,14 +7,16 @@ use std::fmt::Write as _;
 use std::io::{self, Write as _};
 
 use mdle_record::frames::{Frames, TurnMade};
-use mdle_record::{Applied, Begin, Step};
+use mdle_record::{Applied, Begin, Change, Overruled, Step};
 use mdle_runtime::trace::{Json, Seconds};
 use mdle_runtime::{Nanos, Sensed, Turn, Twist};
 
 use crate::Intervention;
 use crate::background_writer::Outlet;
 use crate::cause::CauseText;
+use crate::drive::Exact;
 use crate::log::Entry;
+use crate::supervised::Supervised;
 use crate::transitions::Operand;
 
 /// Time of the run after which what was recorded is handed to the system, if somebody may be watching.
@@ -26,8 +28,10 @@ pub(crate) struct Record {
     file: Outlet,
     frames: Frames,
     begin: Begin,
-    /// The output and the input of the turn.
-    exact: Option<(Sensed, Twist)>,
+    /// The output of the turn, and the inputs that the plan asked for and that is sent.
+    exact: Option<(Sensed, Twist, Twist)>,
+    /// Causes of the turn besides its output.
+    changes: Vec<Change>,
     has_begun: bool,
     /// `true` if each second reaches the file at once: not at the fastest pace.
     prompt: bool,
@@ -38,17 +42,32 @@ pub(crate) struct Record {
     intervention: String,
 }
 
+/// A turn, without what a plan has made of it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct UnmadeTurn<'a> {
+    /// The number of the turn, from 0.
+    pub(crate) number: u64,
+    /// Time of the turn.
+    pub(crate) t: Nanos,
+    /// The number of the plan, from 1.
+    pub(crate) plan: u64,
+    /// The supervisor's part in the turn.
+    pub(crate) supervised: &'a Supervised,
+}
+
 impl Record {
     /// A record to `file` of a run that begins.
     pub(crate) fn new(file: Outlet, begin: Begin, prompt: bool) -> Self {
         let (frames, bytes, intervention) = (Frames::default(), Vec::new(), String::new());
         let flushed = Nanos::ZERO;
-        Self { file, frames, begin, exact: None, has_begun: false, prompt, flushed, bytes, intervention }
+        let changes = Vec::new();
+        Self { file, frames, begin, exact: None, changes, has_begun: false, prompt, flushed, bytes, intervention }
     }
 
-    /// Takes the output of a turn, and the input that is sent after it.
-    pub(crate) fn take(&mut self, exact: Option<(&Sensed, Twist)>) {
-        self.exact = exact.map(|(y, sent)| (*y, sent));
+    /// Takes the output and the input of a turn, and its causes besides the output.
+    pub(crate) fn take(&mut self, exact: Option<Exact<'_>>, changes: Vec<Change>) {
+        self.exact = exact.map(|Exact { y, asked, sent }| (*y, asked, sent));
+        self.changes = changes;
     }
 
     /// Writes a turn, whose output was taken.
@@ -56,24 +75,56 @@ impl Record {
     /// # Errors
     /// When the file cannot be written, such as when the disk is full.
     pub(crate) fn turn(&mut self, entry: &Entry<'_>) -> io::Result<()> {
-        let Some((y, sent)) = self.exact.take() else {
-            return Err(io::Error::other("this robot has outputs or inputs of a type of its own"));
-        };
-        let Entry { plan, turn: number, t, state, kind, transitions, plan_number, .. } = *entry;
-        self.bytes.clear();
-        if !std::mem::replace(&mut self.has_begun, true) {
-            self.frames.begin(&self.begin, &y, plan.paths(), &mut self.bytes);
-        }
+        let Entry { turn, t, state, kind, transitions, plan_number, supervised, .. } = *entry;
         let applied = match kind {
             Turn::Law(()) => Applied::Law,
             Turn::Cut => Applied::Cut,
             Turn::Over => Applied::Over,
         };
-        let made = TurnMade { number, t, sent, applied, plan: plan_number, state };
-        let steps: Vec<_> = transitions.iter().map(|(transition, operands)| step(transition, operands)).collect();
-        self.frames.turn(made, &y, steps.into_iter(), &mut self.bytes);
+        let steps = transitions.iter().map(|(transition, operands)| step(transition, operands)).collect();
+        let unmade = UnmadeTurn { number: turn, t, plan: plan_number, supervised };
+        self.exact(&unmade, (applied, state), steps)?;
         self.transitions(entry);
-        self.intervention(entry);
+        self.written(&unmade)
+    }
+
+    /// Writes a turn that no plan has made, whose output was taken.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub(crate) fn turn_without_plan(&mut self, unmade: &UnmadeTurn<'_>) -> io::Result<()> {
+        self.exact(unmade, (Applied::Cut, 0), Vec::new())?;
+        self.written(unmade)
+    }
+
+    /// Writes the part of a turn that a replay needs.
+    fn exact(&mut self, turn: &UnmadeTurn<'_>, (applied, state): (Applied, u64), steps: Vec<Step>) -> io::Result<()> {
+        let Some((y, asked, sent)) = self.exact.take() else {
+            return Err(io::Error::other("this robot has outputs or inputs of a type of its own"));
+        };
+        let UnmadeTurn { number, t, plan, supervised } = *turn;
+        self.bytes.clear();
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.frames.begin(&self.begin, &y, &mut self.bytes);
+        }
+        let overruled = supervised.intervention();
+        let overruled = overruled.map(|Intervention { rule, .. }| Overruled { asked, rule: rule.to_owned() });
+        let (changes, overruled) = (self.changes.as_slice(), overruled.as_ref());
+        let made = TurnMade { number, t, sent, applied, plan, state, changes, overruled };
+        self.frames.turn(made, &y, steps.into_iter(), &mut self.bytes);
+        Ok(())
+    }
+
+    /// Writes the events of a turn, and hands all of it over.
+    fn written(&mut self, turn: &UnmadeTurn<'_>) -> io::Result<()> {
+        let UnmadeTurn { number, t, plan, supervised } = *turn;
+        for request in &supervised.requests {
+            self.event(number, t, "request", request);
+        }
+        if let Some(reason) = &supervised.begins {
+            self.event(number, t, "plan", &format!("plan {plan}: {reason}"));
+        }
+        self.intervention(turn);
         self.file.write_all(&self.bytes)?;
         if self.prompt && t.0 >= self.flushed.0.saturating_add(FLUSH) {
             self.flushed = t;
@@ -108,12 +159,12 @@ impl Record {
     }
 
     /// Writes an event if the supervisor's part differs from that of the turn before.
-    fn intervention(&mut self, entry: &Entry<'_>) {
-        let now = entry.supervised.intervention();
+    fn intervention(&mut self, turn: &UnmadeTurn<'_>) {
+        let now = turn.supervised.intervention();
         let now =
             now.map_or_else(String::new, |Intervention { verdict, rule, .. }| format!("{}: {rule}", verdict.word()));
         if now != self.intervention {
-            self.event(entry.turn, entry.t, "safety", &now);
+            self.event(turn.number, turn.t, "safety", &now);
             self.intervention = now;
         }
     }

@@ -3,10 +3,12 @@
 use std::io;
 use std::path::Path;
 
-use mdle_runtime::{Nanos, Sensed, Twist};
+use mdle_record::Change;
+use mdle_runtime::Nanos;
 
+use crate::drive::Exact;
 use crate::log::{Entry, Log};
-use crate::record::Record;
+use crate::record::{Record, UnmadeTurn};
 
 /// Ending of the name of a record.
 const MCAP: &str = "mcap";
@@ -26,11 +28,30 @@ pub(crate) fn is_record(path: &Path) -> bool {
 }
 
 impl RunLog {
-    /// Takes the output of a turn, and the input that is sent after it.
-    pub(crate) fn take(&mut self, exact: Option<(&Sensed, Twist)>) {
+    /// Returns `true` if the log is a record, which takes more of a turn than an entry has.
+    pub(crate) fn is_record(&self) -> bool {
+        match self {
+            Self::Lines(_) => false,
+            Self::Record(_) => true,
+        }
+    }
+
+    /// Takes the output and the input of a turn, and its causes besides the output.
+    pub(crate) fn take(&mut self, exact: Option<Exact<'_>>, changes: Vec<Change>) {
         match self {
             Self::Lines(_) => {}
-            Self::Record(record) => record.take(exact),
+            Self::Record(record) => record.take(exact, changes),
+        }
+    }
+
+    /// Writes a turn that no plan has made.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub(crate) fn turn_without_plan(&mut self, unmade: &UnmadeTurn<'_>) -> io::Result<()> {
+        match self {
+            Self::Lines(_) => Ok(()),
+            Self::Record(record) => record.turn_without_plan(unmade),
         }
     }
 

@@ -89,13 +89,14 @@ where
     }
     let read = KnownFiles { read: &call.read, paths: &paths };
     let begin = Begin {
-        version: program.version.to_owned(),
+        version: if program.version.is_empty() { env!("CARGO_PKG_VERSION") } else { program.version }.to_owned(),
         target: target.name.to_owned(),
         plan: program.plan.to_owned(),
         command: call.command(program.plan),
         period: Nanos(nanos(options.period)),
         files: call.recorded.files.clone(),
         beside: call.recorded.beside.clone(),
+        safety: call.recorded.safety.clone(),
     };
     let ready = ready(executable, &matches, &options, store, read, &signals, begin);
     let Ready { mut drive, time, mut log, mut path } = match ready {

@@ -4,6 +4,7 @@
 use std::fmt;
 use std::os::fd::BorrowedFd;
 
+use mdle_record::Change;
 use mdle_runtime::{Nanos, Plan};
 
 use crate::standing::{Course, standing};
@@ -30,6 +31,18 @@ pub trait Supervisor<B: Pilot> {
     fn at_break(&mut self, _moment: &mut Break<'_, B>) -> Orders {
         Orders::default()
     }
+
+    /// Notes from now on what [`Supervisor::take_changes`] returns: called before the first turn of a run that is
+    /// recorded.
+    fn record(&mut self) {}
+
+    /// Takes the changes of the supervisor's rules before the last turn.
+    fn take_changes(&mut self) -> Vec<Change> {
+        Vec::new()
+    }
+
+    /// Repeats a change of the supervisor's rules, when a run is made again.
+    fn repeat(&mut self, _change: &Change) {}
 
     /// Returns the requests that were carried out at breaks since the last call, for the log.
     fn take_requests(&mut self) -> Vec<String> {

@@ -11,6 +11,7 @@ use crate::log::Entry;
 use crate::paths::Recorder;
 use crate::position::Position;
 use crate::progress::Progress;
+use crate::record::UnmadeTurn;
 use crate::report::Report;
 use crate::run_end::{RunEnd, say};
 use crate::run_log::RunLog;
@@ -45,6 +46,9 @@ pub(crate) fn run<I: Instants>(
 ) -> RunEnd {
     let transitions = Transitions::default();
     let supervised = Supervised::default();
+    if witnesses.log.as_ref().is_some_and(|log| log.is_record()) {
+        drive.record();
+    }
     let mut turns = OnePlan { drive, witnesses, transitions, fresh: true, plan: 1, supervised, pace: None, number: 0 };
     cycle(&mut turns, limits, clock, signals)
 }
@@ -113,7 +117,8 @@ impl Turns for OnePlan<'_, '_, '_> {
         supervised.requests = drive.take_requests();
         *fresh |= !transitions.is_empty() || begins;
         if let Some(log) = &mut witnesses.log {
-            log.take(drive.exact());
+            let changes = drive.take_changes();
+            log.take(drive.exact(), changes);
         }
         if let (observer, Some(position)) = drive.parts() {
             let written = witnesses.tell(position, MadeTurn { turn, number, t, plan: *plan }, transitions, supervised);
@@ -122,6 +127,9 @@ impl Turns for OnePlan<'_, '_, '_> {
             if let Some(observer) = observer {
                 watched(observer, position, turn, has_begun, (t, zero), witnesses.report);
             }
+        } else if let Some(log) = &mut witnesses.log {
+            let written = log.turn_without_plan(&UnmadeTurn { number, t, plan: *plan, supervised });
+            written.map_err(|error| RunEnd::Log(error.to_string()))?;
         }
         let step = self.step(turn)?;
         self.at_break(number.saturating_add(1), t, step == Step::Over)?;

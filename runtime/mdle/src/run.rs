@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
         (linked.check)(program, &call).map_err(|text| option.refused(&text))?;
         options.extend(option.arguments);
     }
-    let recorded = RecordedPlan { files: recorded(&input), beside: beside(&arguments, ready.as_ref()) };
+    let recorded = RecordedPlan { files: recorded(&input), beside: beside(&arguments, ready.as_ref()), safety: None };
     options.extend(arguments.options);
     let read = input.inputs(&target).into_iter().chain(safety.iter().flat_map(SafetyFile::files)).collect();
     drop(input);

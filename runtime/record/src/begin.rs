@@ -21,9 +21,21 @@ pub struct Begin {
     /// Files of the plan, its own first: the name and the text of each. Empty for an executable, which does not have
     /// the text of its plan.
     pub files: Vec<(String, String)>,
-    /// Causes of inputs besides the plan and the outputs, such as safety rules: empty if there is nothing, and
-    /// then the run can be replayed.
+    /// Causes of inputs besides the plan and the outputs, such as safety rules, for people; empty if there is nothing.
     pub beside: String,
+    /// The safety rules of the run, if there are any.
+    pub safety: Option<SafetyTexts>,
+}
+
+/// The texts of safety rules.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct SafetyTexts {
+    /// Name of the safety file.
+    pub name: String,
+    /// Text of the safety file.
+    pub text: String,
+    /// The plans to which rules divert, in the order of the rules: the files of each, its own first.
+    pub plans: Vec<Vec<(String, String)>>,
 }
 
 /// The part of a robot's outputs that never changes.
@@ -36,19 +48,23 @@ pub struct Constants {
 }
 
 impl Begin {
-    /// Writes the begin of a run whose first output is `y`, and in which the plan replays these paths.
-    pub(crate) fn put(&self, y: &Sensed, paths: &[&str], to: &mut Vec<u8>) {
+    /// Writes the begin of a run whose first output is `y`, with the paths that the plan can replay.
+    pub(crate) fn put(&self, y: &Sensed, to: &mut Vec<u8>) {
         for text in [&self.version, &self.target, &self.plan, &self.command, &self.beside] {
             put_text(to, text);
         }
         put_u64(to, self.period.0);
-        put_u32(to, count(&self.files));
-        for (name, text) in &self.files {
+        put_files(&self.files, to);
+        to.push(u8::from(self.safety.is_some()));
+        if let Some(SafetyTexts { name, text, plans }) = &self.safety {
             put_text(to, name);
             put_text(to, text);
+            put_u32(to, count(plans));
+            plans.iter().for_each(|files| put_files(files, to));
         }
         put_shape(&y.shape, to);
-        put_u32(to, count(paths));
+        let paths: Vec<_> = y.paths.names().collect();
+        put_u32(to, count(&paths));
         for name in paths {
             put_text(to, name);
             let setpoints = y.paths.path(name).unwrap_or_default();
@@ -66,7 +82,11 @@ impl Begin {
         let [version, target, plan, command, beside] =
             [from.text()?, from.text()?, from.text()?, from.text()?, from.text()?];
         let period = from.nanos()?;
-        let files = from.list(|from| Some((from.text()?, from.text()?)))?;
+        let files = take_files(from)?;
+        let safety = match from.u8()? {
+            0 => None,
+            _ => Some(SafetyTexts { name: from.text()?, text: from.text()?, plans: from.list(take_files)? }),
+        };
         let shape = take_shape(from)?;
         let setpoint = |from: &mut Bytes<'_>| {
             Some(Setpoint { at: from.nanos()?, heading: Radians(from.f64()?), speed: MetersPerSecond(from.f64()?) })
@@ -77,12 +97,27 @@ impl Begin {
             paths.into_iter().map(|(name, setpoints)| StoredPath { name: name.leak(), setpoints: setpoints.leak() });
         let stored: Vec<_> = stored.collect();
         let paths = if stored.is_empty() { PathStore::EMPTY } else { PathStore::new(stored.leak()) };
-        Some((Self { version, target, plan, command, period, files, beside }, Constants { shape, paths }))
+        Some((Self { version, target, plan, command, period, files, beside, safety }, Constants { shape, paths }))
     }
 }
 
-fn count<T>(items: &[T]) -> u32 {
+/// The number of some items.
+pub(crate) fn count<T>(items: &[T]) -> u32 {
     u32::try_from(items.len()).unwrap_or(u32::MAX)
+}
+
+/// Writes the names and the texts of files.
+pub(crate) fn put_files(files: &[(String, String)], to: &mut Vec<u8>) {
+    put_u32(to, count(files));
+    for (name, text) in files {
+        put_text(to, name);
+        put_text(to, text);
+    }
+}
+
+/// Reads the names and the texts of files.
+pub(crate) fn take_files(from: &mut Bytes<'_>) -> Option<Vec<(String, String)>> {
+    from.list(|from| Some((from.text()?, from.text()?)))
 }
 
 fn put_shape(shape: &Shape, to: &mut Vec<u8>) {

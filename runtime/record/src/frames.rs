@@ -4,8 +4,8 @@
 use mdle_runtime::{Nanos, Sensed, Twist};
 
 use crate::bytes::{Bytes, put_u32, put_u64};
-use crate::turn::{self, Made};
-use crate::{Applied, Begin, Chain, RecordedTurn, Step};
+use crate::turn;
+use crate::{Applied, Begin, Chain, Change, Overruled, RecordedTurn, Step};
 
 /// Bytes before the content of a frame.
 const HEAD: usize = 5;
@@ -38,7 +38,7 @@ pub struct Frames {
 
 /// A turn of a run that goes on, besides its output.
 #[derive(Debug, Clone, Copy)]
-pub struct TurnMade {
+pub struct TurnMade<'a> {
     /// Number of the turn, from 0.
     pub number: u64,
     /// Time of the run.
@@ -49,26 +49,34 @@ pub struct TurnMade {
     pub applied: Applied,
     /// Number of the plan that ran, from 1.
     pub plan: u64,
-    /// The state in which the turn ended.
+    /// The state in which the turn ended; 0 if no plan has made it.
     pub state: u64,
+    /// Causes of the turn besides its output.
+    pub changes: &'a [Change],
+    /// The input that a safety rule changed.
+    pub overruled: Option<&'a Overruled>,
 }
 
 impl Frames {
-    /// Writes the begin of a record, whose first output is `y`, and in which the plan replays these paths.
-    pub fn begin(&mut self, begin: &Begin, y: &Sensed, paths: &[&str], to: &mut Vec<u8>) {
+    /// Writes the begin of a record, whose first output is `y`.
+    pub fn begin(&mut self, begin: &Begin, y: &Sensed, to: &mut Vec<u8>) {
         self.content.clear();
-        begin.put(y, paths, &mut self.content);
+        begin.put(y, &mut self.content);
+        self.chained();
         self.put(Tag::Begin, to);
     }
 
     /// Writes a turn with the output `y`.
-    pub fn turn(&mut self, made: TurnMade, y: &Sensed, steps: impl ExactSizeIterator<Item = Step>, to: &mut Vec<u8>) {
-        let TurnMade { number, t, sent, applied, plan, state } = made;
+    pub fn turn(
+        &mut self,
+        made: TurnMade<'_>,
+        y: &Sensed,
+        steps: impl ExactSizeIterator<Item = Step>,
+        to: &mut Vec<u8>,
+    ) {
         self.content.clear();
-        let made = Made { sent, applied, plan, state, steps };
-        turn::put((number, t), (y, self.before.as_ref()), made, &mut self.content);
-        self.chain = self.chain.with(&self.content);
-        self.content.extend_from_slice(&self.chain.bytes());
+        turn::put(made, (y, self.before.as_ref()), steps, &mut self.content);
+        self.chained();
         self.before = Some(*y);
         self.put(Tag::Turn, to);
     }
@@ -87,6 +95,12 @@ impl Frames {
     pub fn end(&mut self, to: &mut Vec<u8>) {
         self.content.clear();
         self.put(Tag::End, to);
+    }
+
+    /// Adds the sum over the content and all before it.
+    fn chained(&mut self) {
+        self.chain = self.chain.with(&self.content);
+        self.content.extend_from_slice(&self.chain.bytes());
     }
 
     fn text(&mut self, tag: Tag, t: Nanos, json: &str, to: &mut Vec<u8>) {
@@ -124,27 +138,24 @@ pub(crate) struct Turns {
 /// Reason why a turn cannot be decoded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Undecoded {
-    /// The sum over the turns differs: bytes were changed.
+    /// The sum over this and all before it differs: bytes were changed.
     Changed,
-    /// The bytes are none of a turn.
+    /// The bytes are none of the begin or of a turn.
     Unreadable,
 }
 
 impl Turns {
     /// Takes the content of a frame of the begin.
-    pub(crate) fn of(content: &[u8]) -> Option<Self> {
-        let (begin, constants) = Begin::take(&mut Bytes(content))?;
-        Some(Self { begin, constants, before: None, chain: Chain::default() })
+    pub(crate) fn of(content: &[u8]) -> Result<Self, Undecoded> {
+        let mut chain = Chain::default();
+        let content = chain.checked(content)?;
+        let (begin, constants) = Begin::take(&mut Bytes(content)).ok_or(Undecoded::Unreadable)?;
+        Ok(Self { begin, constants, before: None, chain })
     }
 
     /// Takes the content of the next frame of a turn.
     pub(crate) fn next(&mut self, content: &[u8]) -> Result<RecordedTurn, Undecoded> {
-        let length = content.len().checked_sub(Chain::LENGTH).ok_or(Undecoded::Unreadable)?;
-        let (content, sum) = content.split_at_checked(length).ok_or(Undecoded::Unreadable)?;
-        self.chain = self.chain.with(content);
-        if self.chain.bytes() != sum {
-            return Err(Undecoded::Changed);
-        }
+        let content = self.chain.checked(content)?;
         let turn = turn::take(&mut Bytes(content), self.before.as_ref(), &self.constants);
         let turn = turn.ok_or(Undecoded::Unreadable)?;
         self.before = Some(turn.y);

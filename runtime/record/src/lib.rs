@@ -7,14 +7,17 @@
 
 mod begin;
 mod bytes;
+mod change;
 mod exact;
 pub mod frames;
+mod parts;
 mod reader;
 mod turn;
 mod viewers;
 mod writer;
 
-pub use begin::{Begin, Constants};
+pub use begin::{Begin, Constants, SafetyTexts};
+pub use change::{Change, Overruled};
 pub use reader::{Message, MessageKind, ReadError, Records, TurnsWithMessages};
 pub use turn::{Applied, Chain, RecordedTurn, Step};
 pub use writer::RecordFile;

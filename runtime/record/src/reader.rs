@@ -3,16 +3,11 @@
 use std::fmt;
 use std::io::{self, Read};
 
-use mcap::records::Record;
-use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
-
 use crate::frames::{Turns, Undecoded};
+use crate::parts::{Part, Parts, Unreadable};
 use crate::writer::{BEGIN, TURN};
 use crate::{Begin, RecordedTurn};
 use mdle_runtime::Nanos;
-
-/// Maximum size of a record's part, in bytes: more than a second of a robot.
-const LARGEST: usize = 64_000_000;
 
 /// Reason why a record, or the rest of it, cannot be read.
 #[derive(Debug)]
@@ -21,8 +16,10 @@ pub enum ReadError {
     System(io::Error),
     /// The file is no record of a run.
     NotARecord,
-    /// The record is of another version of this format: the encoding of its turns.
-    OtherVersion(String),
+    /// The record is of another version of this format: the encoding of its messages, and the one that can be read.
+    OtherVersion(String, &'static str),
+    /// Bytes of the begin were changed after they had been written.
+    ChangedBegin,
     /// Bytes of the turn of this number were changed after they had been written.
     Changed(u64),
     /// The file is damaged after this number of turns.
@@ -34,9 +31,11 @@ impl fmt::Display for ReadError {
         match self {
             Self::System(error) => write!(f, "{error}"),
             Self::NotARecord => write!(f, "it is no record of a run: `--log FILE.mcap` of a run writes one"),
-            Self::OtherVersion(found) => {
-                write!(f, "its turns are of the format `{found}`, and this program reads `{TURN}`")
-            }
+            Self::OtherVersion(found, known) => write!(
+                f,
+                "it is of the format `{found}`, and this program reads `{known}`: the version of mdle that wrote it reads it"
+            ),
+            Self::ChangedBegin => write!(f, "its begin was changed after it had been written"),
             Self::Changed(turn) => write!(f, "turn {turn} was changed after it had been written"),
             Self::Damaged(turns, why) => write!(f, "it is damaged after {turns} turns: {why}"),
         }
@@ -99,16 +98,13 @@ impl<R: Read> Iterator for TurnsWithMessages<R> {
 
 /// The turns of a record.
 pub struct Records<R> {
-    source: R,
-    reader: LinearReader,
+    parts: Parts<R>,
     /// Channels of `/exact/begin`, `/exact/turn`, `/plan/transitions` and `/engine/events`.
     channels: [Option<u16>; 4],
     /// The messages that were read since the last turn.
     messages: Vec<Message>,
     turns: Option<Turns>,
     count: u64,
-    /// `true` once the end of the record was read: it was not cut short.
-    is_whole: bool,
 }
 
 impl<R: Read> Records<R> {
@@ -117,13 +113,14 @@ impl<R: Read> Records<R> {
     /// # Errors
     /// The source cannot be read, or is no record.
     pub fn open(source: R) -> Result<(Begin, Self), ReadError> {
-        let options = LinearReaderOptions::default().with_record_length_limit(LARGEST);
-        let reader = LinearReader::new_with_options(options);
-        let mut records =
-            Self { source, reader, channels: [None; 4], messages: Vec::new(), turns: None, count: 0, is_whole: false };
+        let (parts, messages) = (Parts::new(source), Vec::new());
+        let mut records = Self { parts, channels: [None; 4], messages, turns: None, count: 0 };
         match records.message() {
             Ok(Some((0, content))) => {
-                let turns = Turns::of(&content).ok_or(ReadError::NotARecord)?;
+                let turns = Turns::of(&content).map_err(|why| match why {
+                    Undecoded::Changed => ReadError::ChangedBegin,
+                    Undecoded::Unreadable => ReadError::NotARecord,
+                })?;
                 let begin = turns.begin.clone();
                 records.turns = Some(turns);
                 Ok((begin, records))
@@ -136,7 +133,7 @@ impl<R: Read> Records<R> {
     /// Returns `true` once the end of the record was read; a run that was killed leaves a record without an end.
     #[must_use]
     pub fn is_whole(&self) -> bool {
-        self.is_whole
+        self.parts.is_whole
     }
 
     /// Returns the turns with the messages about them.
@@ -146,40 +143,30 @@ impl<R: Read> Records<R> {
 
     /// Returns the next message of `/exact/begin`, which is 0, or of `/exact/turn`, which is 1; `None` at the end.
     fn message(&mut self) -> Result<Option<(usize, Vec<u8>)>, ReadError> {
-        let damaged = |count: u64| move |error: mcap::McapError| ReadError::Damaged(count, error.to_string());
-        while let Some(event) = self.reader.next_event() {
-            match event {
-                Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                    let read = self.source.read(self.reader.insert(wanted)).map_err(ReadError::System)?;
-                    self.reader.notify_read(read);
-                }
-                Ok(LinearReadEvent::Record { opcode, data }) => {
-                    let record = mcap::parse_record(opcode, data).map_err(damaged(self.count))?;
-                    if let Record::Channel(channel) = record {
-                        match (channel.topic.as_str(), channel.message_encoding) {
-                            ("/exact/begin", encoding) if encoding == BEGIN => self.channels[0] = Some(channel.id),
-                            ("/exact/turn", encoding) if encoding == TURN => self.channels[1] = Some(channel.id),
-                            ("/plan/transitions", _) => self.channels[2] = Some(channel.id),
-                            ("/engine/events", _) => self.channels[3] = Some(channel.id),
-                            ("/exact/begin" | "/exact/turn", other) => return Err(ReadError::OtherVersion(other)),
-                            _ => {}
-                        }
-                    } else if let Record::Message { header, data } = record {
-                        let kind = self.channels.iter().position(|known| *known == Some(header.channel_id));
-                        let text = || String::from_utf8_lossy(&data).into_owned();
-                        match kind {
-                            Some(2) => self.messages.push(Message { kind: MessageKind::Transition, json: text() }),
-                            Some(3) => self.messages.push(Message { kind: MessageKind::Event, json: text() }),
-                            Some(kind) => return Ok(Some((kind, data.into_owned()))),
-                            None => {}
-                        }
-                    } else {
-                        self.is_whole |= matches!(record, Record::Footer(_));
+        let unreadable = |why| match why {
+            Unreadable::System(error) => ReadError::System(error),
+            Unreadable::Damaged(sentence) => ReadError::Damaged(self.count, sentence),
+        };
+        while let Some(part) = self.parts.next().map_err(unreadable)? {
+            match part {
+                Part::Channel(id, topic, encoding) => match (topic.as_str(), encoding) {
+                    ("/exact/begin", encoding) if encoding == BEGIN => self.channels[0] = Some(id),
+                    ("/exact/turn", encoding) if encoding == TURN => self.channels[1] = Some(id),
+                    ("/plan/transitions", _) => self.channels[2] = Some(id),
+                    ("/engine/events", _) => self.channels[3] = Some(id),
+                    ("/exact/begin", other) => return Err(ReadError::OtherVersion(other, BEGIN)),
+                    ("/exact/turn", other) => return Err(ReadError::OtherVersion(other, TURN)),
+                    _ => {}
+                },
+                Part::Message(channel, data) => {
+                    let text = || String::from_utf8_lossy(&data).into_owned();
+                    match self.channels.iter().position(|known| *known == Some(channel)) {
+                        Some(2) => self.messages.push(Message { kind: MessageKind::Transition, json: text() }),
+                        Some(3) => self.messages.push(Message { kind: MessageKind::Event, json: text() }),
+                        Some(kind) => return Ok(Some((kind, data))),
+                        None => {}
                     }
                 }
-                // The file ends in the middle of a chunk: all chunks before it have been read.
-                Err(mcap::McapError::UnexpectedEof) if self.turns.is_some() => return Ok(None),
-                Err(error) => return Err(damaged(self.count)(error)),
             }
         }
         Ok(None)

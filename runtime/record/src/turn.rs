@@ -2,9 +2,11 @@
 
 use mdle_runtime::{Cause, Nanos, Sensed, Transition, Twist};
 
-use crate::Constants;
 use crate::bytes::{Bytes, put_u32, put_u64};
+use crate::change::{put_changes, put_overruled, take_changes, take_overruled};
 use crate::exact::{self, put_twist, take_twist};
+use crate::frames::{TurnMade, Undecoded};
+use crate::{Change, Constants, Overruled};
 
 /// A turn of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,10 +23,14 @@ pub struct RecordedTurn {
     pub applied: Applied,
     /// Number of the plan that ran, from 1.
     pub plan: u64,
-    /// The state in which the turn ended.
+    /// The state in which the turn ended; 0 if no plan has made it.
     pub state: u64,
     /// The transitions, in order.
     pub steps: Vec<Step>,
+    /// Causes of the turn besides its output, in order.
+    pub changes: Vec<Change>,
+    /// The input that a safety rule changed.
+    pub overruled: Option<Overruled>,
 }
 
 /// What a turn led to.
@@ -62,36 +68,29 @@ impl Step {
     }
 }
 
-/// The part of a turn besides its output.
-#[derive(Debug, Clone)]
-pub(crate) struct Made<S> {
-    pub(crate) sent: Twist,
-    pub(crate) applied: Applied,
-    pub(crate) plan: u64,
-    pub(crate) state: u64,
-    pub(crate) steps: S,
-}
-
 /// Writes a turn, whose output came after `before`.
 pub(crate) fn put(
-    (number, t): (u64, Nanos),
+    made: TurnMade<'_>,
     (y, before): (&Sensed, Option<&Sensed>),
-    made: Made<impl ExactSizeIterator<Item = Step>>,
+    steps: impl ExactSizeIterator<Item = Step>,
     to: &mut Vec<u8>,
 ) {
+    let TurnMade { number, t, sent, applied, plan, state, changes, overruled } = made;
     put_u64(to, number);
     put_u64(to, t.0);
     exact::put(y, before, to);
-    put_twist(made.sent, to);
-    to.push(match made.applied {
+    put_changes(changes, to);
+    put_overruled(overruled, to);
+    put_twist(sent, to);
+    to.push(match applied {
         Applied::Law => 0,
         Applied::Cut => 1,
         Applied::Over => 2,
     });
-    put_u64(to, made.plan);
-    put_u64(to, made.state);
-    put_u32(to, u32::try_from(made.steps.len()).unwrap_or(u32::MAX));
-    for Step { from, scope, cause, to: entered, operands } in made.steps {
+    put_u64(to, plan);
+    put_u64(to, state);
+    put_u32(to, u32::try_from(steps.len()).unwrap_or(u32::MAX));
+    for Step { from, scope, cause, to: entered, operands } in steps {
         put_u64(to, from);
         put_u32(to, scope);
         to.push(u8::from(matches!(cause, Cause::Completed(_))));
@@ -106,6 +105,7 @@ pub(crate) fn put(
 pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Constants) -> Option<RecordedTurn> {
     let (number, t) = (from.u64()?, from.nanos()?);
     let y = exact::take(from, before, constants)?;
+    let (changes, overruled) = (take_changes(from)?, take_overruled(from)?);
     let sent = take_twist(from)?;
     let applied = match from.u8()? {
         0 => Applied::Law,
@@ -120,16 +120,16 @@ pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Co
         let cause = if is_completed { Cause::Completed(level) } else { Cause::Fired(level) };
         Some(Step { from: left, scope, cause, to: from.u64()?, operands: from.list(Bytes::u32)? })
     })?;
-    Some(RecordedTurn { number, t, y, sent, applied, plan, state, steps })
+    Some(RecordedTurn { number, t, y, sent, applied, plan, state, steps, changes, overruled })
 }
 
-/// The sum over all turns so far, by which a reader finds the first turn that was changed.
+/// The sum over the begin and all turns so far, by which a reader finds the first turn that was changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Chain(u32);
 
 impl Chain {
     /// Bytes of a sum.
-    pub(crate) const LENGTH: usize = 4;
+    const LENGTH: usize = 4;
 
     /// Returns the sum with the bytes of the next turn.
     pub(crate) fn with(self, bytes: &[u8]) -> Self {
@@ -137,6 +137,14 @@ impl Chain {
         sum.update(&self.0.to_le_bytes());
         sum.update(bytes);
         Self(sum.finalize())
+    }
+
+    /// Returns a content without the sum at its end, which this sum has to be with it.
+    pub(crate) fn checked<'c>(&mut self, content: &'c [u8]) -> Result<&'c [u8], Undecoded> {
+        let length = content.len().checked_sub(Self::LENGTH).ok_or(Undecoded::Unreadable)?;
+        let (content, sum) = content.split_at_checked(length).ok_or(Undecoded::Unreadable)?;
+        *self = self.with(content);
+        if self.bytes() == sum { Ok(content) } else { Err(Undecoded::Changed) }
     }
 
     pub(crate) fn bytes(self) -> [u8; Self::LENGTH] {

@@ -16,9 +16,9 @@ use crate::viewers::CHANNELS;
 /// Time of the run after which a chunk is closed and written, in nanoseconds.
 const CHUNK: u64 = 1_000_000_000;
 /// Encoding of the messages of `/exact/begin`.
-pub(crate) const BEGIN: &str = "mdle.begin.1";
+pub(crate) const BEGIN: &str = "mdle.begin.2";
 /// Encoding of the messages of `/exact/turn`.
-pub(crate) const TURN: &str = "mdle.turn.1";
+pub(crate) const TURN: &str = "mdle.turn.2";
 
 /// Writes frames to a record. Each second of the run is a chunk, which is written whole: a record that is cut short can
 /// be read up to its last second.
@@ -121,7 +121,7 @@ impl<W: Write> Drop for RecordFile<W> {
 
 impl<W: Write> Open<W> {
     fn begin(to: W, content: &[u8]) -> io::Result<Self> {
-        let turns = Turns::of(content).ok_or_else(|| invalid("the begin cannot be read"))?;
+        let turns = Turns::of(content).map_err(|_| invalid("the begin cannot be read"))?;
         let options = WriteOptions::new()
             .library(format!("mdle {}", turns.begin.version))
             .compression(None)
@@ -192,7 +192,7 @@ impl Channels {
 
 /// Writes what people and other programs may want to know of a run.
 fn describe<W: Write>(writer: &mut Writer<NoSeek<W>>, begin: &Begin) -> mcap::McapResult<()> {
-    let Begin { version, target, plan, command, period, files, beside } = begin;
+    let Begin { version, target, plan, command, period, files, beside, safety } = begin;
     let facts = [
         ("version", version.clone()),
         ("target", target.clone()),
@@ -203,7 +203,9 @@ fn describe<W: Write>(writer: &mut Writer<NoSeek<W>>, begin: &Begin) -> mcap::Mc
     ];
     let metadata = facts.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
     writer.write_metadata(&Metadata { name: "mdle".to_owned(), metadata })?;
-    for (name, text) in files {
+    let rules = safety.iter().map(|safety| (&safety.name, &safety.text));
+    let retreats = safety.iter().flat_map(|safety| &safety.plans).flatten().map(|(name, text)| (name, text));
+    for (name, text) in files.iter().map(|(name, text)| (name, text)).chain(rules).chain(retreats) {
         let (media_type, data) = ("text/plain".to_owned(), text.as_bytes().into());
         writer.attach(&Attachment { log_time: 0, create_time: 0, name: name.clone(), media_type, data })?;
     }

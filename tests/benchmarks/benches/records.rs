@@ -83,6 +83,8 @@ fn encoding(record: &Path) -> Duration {
                 applied: turn.applied,
                 plan: turn.plan,
                 state: turn.state,
+                changes: &turn.changes,
+                overruled: turn.overruled.as_ref(),
             };
             frames.turn(made, &turn.y, turn.steps.iter().cloned(), &mut bytes);
             std::hint::black_box(&bytes);

@@ -46,7 +46,7 @@ impl Scripted {
             ..Begin::default()
         };
         let (mut frames, mut bytes) = (Frames::default(), Vec::new());
-        frames.begin(&begin, &outputs[0], &[], &mut bytes);
+        frames.begin(&begin, &outputs[0], &mut bytes);
         let mut machine = Machine::begin(self.loaded.plan(), &outputs[0], Nanos(0));
         for (number, y) in (0..).zip(outputs) {
             let t = Nanos(number * PERIOD.0);
@@ -57,7 +57,8 @@ impl Scripted {
                 Turn::Cut => Applied::Cut,
                 Turn::Over => Applied::Over,
             };
-            let turn = TurnMade { number, t, sent: made.input(), applied, plan: 1, state: machine.state() };
+            let (sent, state) = (made.input(), machine.state());
+            let turn = TurnMade { number, t, sent, applied, plan: 1, state, changes: &[], overruled: None };
             frames.turn(turn, y, steps.steps.into_iter(), &mut bytes);
             if machine.is_over() {
                 break;

@@ -11,6 +11,7 @@ use super::plan::ToyPlan;
 use super::toy::Sensed;
 use crate::cycle::Limits;
 use crate::drive::PilotOnRobot;
+use crate::helm::Helm;
 use crate::pilot::PlanAlone;
 use crate::required::{self, Required};
 use crate::runs::{self, Runs, Terms};
@@ -96,7 +97,7 @@ impl Several {
         };
         let runs = Runs::of(batch, |robot| {
             let pilot = PlanAlone::new(&ToyPlan::lab);
-            Ok(Box::new(PilotOnRobot::new(robot, Some(|robot| robot), None, pilot)))
+            Ok(Box::new(PilotOnRobot::new(robot, Some(|robot| robot), None, Helm::new(pilot, None))))
         });
         let limits = Limits { timeout: None, turns: Some(100) };
         let words = ["it"].iter().chain(require).copied();

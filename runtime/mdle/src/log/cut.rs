@@ -49,11 +49,12 @@ struct Part<W: io::Write> {
 impl<W: io::Write> Part<W> {
     fn turn(&mut self, begin: &Begin, turn: RecordedTurn, messages: Vec<Message>) -> io::Result<()> {
         let mut bytes = Vec::new();
-        let RecordedTurn { number, t, y, sent, applied, plan, state, steps } = turn;
+        let RecordedTurn { number, t, y, sent, applied, plan, state, steps, changes, overruled } = turn;
         if self.turns == 0 {
-            self.frames.begin(begin, &y, &y.paths.names().collect::<Vec<_>>(), &mut bytes);
+            self.frames.begin(begin, &y, &mut bytes);
         }
-        let made = TurnMade { number, t, sent, applied, plan, state };
+        let (changes, overruled) = (changes.as_slice(), overruled.as_ref());
+        let made = TurnMade { number, t, sent, applied, plan, state, changes, overruled };
         self.frames.turn(made, &y, steps.into_iter(), &mut bytes);
         for Message { kind, json } in messages {
             match kind {

@@ -1,0 +1,167 @@
+//! Causes of a turn besides the robot's output, as bytes and back: what modules have published, and what people and
+//! the engine have changed at the break before the turn.
+
+use mdle_runtime::{Nanos, Twist};
+
+use crate::begin::{count, put_files, take_files};
+use crate::bytes::{Bytes, put_f64, put_text, put_u32, put_u64};
+use crate::exact::{put_twist, take_twist};
+
+/// A cause of a turn besides the robot's output.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Change {
+    /// A module has an attribute from now on. Other changes name it by its number: those of a record count from 0.
+    Attribute {
+        /// Name of the module.
+        module: String,
+        /// Name of the attribute in the module.
+        name: String,
+        /// Number of the kind of its values.
+        kind: u8,
+    },
+    /// The attribute of this number has vanished.
+    Vanished(u32),
+    /// A module has published a value at a break.
+    Published {
+        /// Number of the attribute.
+        attribute: u32,
+        /// Time of the turn before that break.
+        at: Nanos,
+        /// The value as 64 bits; 0 for a kind that plans do not read.
+        bits: u64,
+    },
+    /// The files of a plan: the name and the text of each, its own first. Those of a record count from 0.
+    Files(Vec<(String, String)>),
+    /// A plan is ready to take over.
+    Armed {
+        /// Number of its files.
+        files: u32,
+        /// Name of the plan.
+        plan: String,
+        /// Number of the moment at which it takes over.
+        when: u8,
+    },
+    /// The plan that was armed is taken back.
+    Cancelled,
+    /// The plan on trial is ended for this reason.
+    RolledBack(String),
+    /// A plan that takes over from now on is on trial for this time.
+    Trial(Nanos),
+    /// A limit of the safety rules has another value.
+    Limit {
+        /// Key of the limit in a safety file.
+        key: String,
+        /// The limit in SI units.
+        value: f64,
+    },
+    /// The plan made no turn, as no thread had taken it in time.
+    Skipped,
+    /// The plan had not ended its turn in time.
+    Late,
+    /// A turn of the plan that was late has ended; its input comes too late.
+    Back,
+}
+
+/// An input that a safety rule changed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Overruled {
+    /// The input that the plan asked for.
+    pub asked: Twist,
+    /// Name of the rule.
+    pub rule: String,
+}
+
+/// Writes the changes before a turn.
+pub(crate) fn put_changes(changes: &[Change], to: &mut Vec<u8>) {
+    put_u32(to, count(changes));
+    changes.iter().for_each(|change| put(change, to));
+}
+
+/// Reads the changes before a turn.
+pub(crate) fn take_changes(from: &mut Bytes<'_>) -> Option<Vec<Change>> {
+    from.list(take)
+}
+
+fn put(change: &Change, to: &mut Vec<u8>) {
+    match change {
+        Change::Attribute { module, name, kind } => {
+            to.push(0);
+            put_text(to, module);
+            put_text(to, name);
+            to.push(*kind);
+        }
+        Change::Vanished(attribute) => {
+            to.push(1);
+            put_u32(to, *attribute);
+        }
+        Change::Published { attribute, at, bits } => {
+            to.push(2);
+            put_u32(to, *attribute);
+            put_u64(to, at.0);
+            put_u64(to, *bits);
+        }
+        Change::Files(files) => {
+            to.push(3);
+            put_files(files, to);
+        }
+        Change::Armed { files, plan, when } => {
+            to.push(4);
+            put_u32(to, *files);
+            put_text(to, plan);
+            to.push(*when);
+        }
+        Change::Cancelled => to.push(5),
+        Change::RolledBack(why) => {
+            to.push(6);
+            put_text(to, why);
+        }
+        Change::Trial(time) => {
+            to.push(7);
+            put_u64(to, time.0);
+        }
+        Change::Limit { key, value } => {
+            to.push(8);
+            put_text(to, key);
+            put_f64(to, *value);
+        }
+        Change::Skipped => to.push(9),
+        Change::Late => to.push(10),
+        Change::Back => to.push(11),
+    }
+}
+
+fn take(from: &mut Bytes<'_>) -> Option<Change> {
+    Some(match from.u8()? {
+        0 => Change::Attribute { module: from.text()?, name: from.text()?, kind: from.u8()? },
+        1 => Change::Vanished(from.u32()?),
+        2 => Change::Published { attribute: from.u32()?, at: from.nanos()?, bits: from.u64()? },
+        3 => Change::Files(take_files(from)?),
+        4 => Change::Armed { files: from.u32()?, plan: from.text()?, when: from.u8()? },
+        5 => Change::Cancelled,
+        6 => Change::RolledBack(from.text()?),
+        7 => Change::Trial(from.nanos()?),
+        8 => Change::Limit { key: from.text()?, value: from.f64()? },
+        9 => Change::Skipped,
+        10 => Change::Late,
+        11 => Change::Back,
+        _ => return None,
+    })
+}
+
+/// Writes the input that a rule changed, if one did.
+pub(crate) fn put_overruled(overruled: Option<&Overruled>, to: &mut Vec<u8>) {
+    to.push(u8::from(overruled.is_some()));
+    if let Some(Overruled { asked, rule }) = overruled {
+        put_twist(*asked, to);
+        put_text(to, rule);
+    }
+}
+
+/// Reads the input that a rule changed; `None` within if none did.
+pub(crate) fn take_overruled(from: &mut Bytes<'_>) -> Option<Option<Overruled>> {
+    match from.u8()? {
+        0 => Some(None),
+        1 => Some(Some(Overruled { asked: take_twist(from)?, rule: from.text()? })),
+        _ => None,
+    }
+}
