@@ -1,9 +1,11 @@
 //! The board: every attribute of every module with its last value, changed at turn breaks only. Readers are wired to
 //! places on it when a module is loaded or unloaded, so that a turn looks up no names.
 
+use std::sync::Arc;
+
 use mdle_runtime::{ModuleRead, Nanos};
 
-use crate::attribute::{AGE, AttributeName, Reading, Value};
+use crate::attribute::{AGE, AttributeKind, AttributeName, Reading, Value};
 use crate::module::{About, Declared, Ports, Refusal, Source};
 
 /// All attributes of the loaded modules, in the order in which the modules were loaded.
@@ -79,6 +81,25 @@ impl Board {
     /// Returns the place of the first attribute of a module.
     pub(crate) fn first(&self, module: &str) -> usize {
         self.posts.iter().position(|post| &*post.name.module == module).unwrap_or(self.posts.len())
+    }
+
+    /// Adds an attribute of a module that is not loaded, as a run had it that is made again.
+    pub(crate) fn restore(&mut self, name: AttributeName, kind: AttributeKind) {
+        self.forget(&name);
+        let about = About { name: Arc::clone(&name.attribute), kind, unit: None, doc: "" };
+        self.posts.push(Post { name, about, reading: None, refused: 0 });
+    }
+
+    /// Gives such an attribute the value that it had.
+    pub(crate) fn restore_reading(&mut self, name: &AttributeName, reading: Reading) {
+        if let Some(post) = self.posts.iter_mut().find(|post| post.name == *name) {
+            post.reading = Some(reading);
+        }
+    }
+
+    /// Removes one attribute.
+    pub(crate) fn forget(&mut self, name: &AttributeName) {
+        self.posts.retain(|post| post.name != *name);
     }
 
     /// Returns the places of all that a module reads.

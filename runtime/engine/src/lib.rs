@@ -12,6 +12,7 @@ mod library;
 mod module;
 mod plans;
 mod process;
+mod replay;
 pub mod safety;
 pub mod shell;
 #[cfg(test)]

@@ -49,9 +49,15 @@ fn compiled<A: EngineAlphabet>(source: &PlanSource, target: &Target) -> Result<C
     if machines.is_empty() {
         return Err(input.only::<()>(Vec::new()).err().map(unread).unwrap_or_default());
     }
-    let text: Arc<str> = input.sources.text(input.source).into();
-    let stored = machines.into_iter().map(|(name, machine)| stored(name, &machine, &input, target, &text));
+    let files = texts(&input).into();
+    let stored = machines.into_iter().map(|(name, machine)| stored(name, &machine, &input, target, &files));
     Ok(CompiledPlans { plans: stored.collect::<Result<_, _>>()?, warnings })
+}
+
+/// Returns names and texts of the files of a plan that was compiled, its own first.
+pub(crate) fn texts(input: &Input) -> Vec<(String, String)> {
+    let names = input.files().map(|path| path.display().to_string());
+    names.zip(input.texts().map(str::to_owned)).collect()
 }
 
 fn stored<A: Alphabet + EngineAlphabet>(
@@ -59,10 +65,10 @@ fn stored<A: Alphabet + EngineAlphabet>(
     machine: &mdle_compiler::fsm::Machine,
     input: &Input,
     target: &Target,
-    text: &Arc<str>,
+    files: &Arc<[(String, String)]>,
 ) -> Result<StoredPlan<A>, String> {
     let loaded = load::load(machine, &input.sources, &target.alphabet).map_err(|error| error.to_string())?;
-    Ok(StoredPlan { name: name.into(), text: Arc::clone(text), loaded: Arc::new(loaded) })
+    Ok(StoredPlan { name: name.into(), files: Arc::clone(files), loaded: Arc::new(loaded) })
 }
 
 /// The message about a text that cannot be read.

@@ -3,22 +3,21 @@
 use std::fs::File;
 use std::io::{self, BufReader, Read, Write as _};
 use std::os::unix::fs::FileTypeExt as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
 
-use mdle_compiler::Compiled;
-use mdle_compiler::alphabet::Alphabet;
-use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, judged};
+use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::fsm::Machine;
-use mdle_compiler::syntax::Loader;
-use mdle_files::{InputError, Target, read_plan};
+use mdle_files::{Target, read_plan};
 use mdle_host::Clocked;
 use mdle_record::{Begin, ReadError, Records};
 use mdle_runtime::Printable;
 
 use crate::arguments::Replay;
-use crate::failure::{self, Failure};
-use crate::replayed::{Difference, Outcome, Parting, Record, ReplayTerms};
+use crate::failure::Failure;
+use crate::recorded_files;
+use crate::replayed::{Difference, Outcome, Parting, Record, ReplayTerms, replayed};
 use crate::run_time::run_time;
 use crate::targets;
 
@@ -32,20 +31,14 @@ const ROWS: usize = 20;
 /// # Errors
 /// The record or the plan cannot be read.
 pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
-    let name = arguments.log.display();
     let (begin, records) = record(&arguments.log)?;
-    if !begin.beside.is_empty() {
-        return Err(Failure::Usage(format!(
-            "the record {name} cannot be replayed: the run depended on {} as well, which a record does not have",
-            begin.beside
-        )));
-    }
     let linked = targets::linked(&begin.target).map_err(Failure::Usage)?;
-    let target = mdle_files::target(Some(&begin.target))?;
+    let target = Arc::new(mdle_files::target(Some(&begin.target))?);
     let (machine, sources) = plan(&arguments.log, arguments.plan.as_deref(), &begin, &target)?;
     let until = arguments.until.as_deref().map(run_time).transpose()?;
     let terms = ReplayTerms { until, goes_on: arguments.plan.is_some() };
-    let outcome = (linked.replay)(&machine, &sources, &target, records, terms)?;
+    let mut replay = (linked.replay)(&machine, &sources, &target, &begin, records)?;
+    let outcome = replayed(&mut *replay, terms)?;
     let plan = arguments.plan.as_ref().and_then(|plan| plan.file_name()).map(|name| name.to_string_lossy());
     tell(&outcome, plan.as_deref().unwrap_or_default())
         .map_err(|error| Failure::Usage(format!("standard output cannot be written: {error}")))?;
@@ -92,77 +85,21 @@ pub(crate) fn plan(
     begin: &Begin,
     target: &Target,
 ) -> Result<(Machine, Sources), Failure> {
-    let (plans, diagnostics, sources) = match (file, begin.files.split_first()) {
-        (Some(path), _) => {
-            let mut input = read_plan(path, target)?;
-            input.must_have(&begin.plan)?;
-            let (plans, diagnostics) = input.compile(&target.alphabet, Some(&begin.plan));
-            (plans, diagnostics, input.sources)
-        }
-        (None, Some((own, used))) => {
-            let mut files = RecordedFiles::new(own, used, target);
-            let (plans, diagnostics) = files.compile(&target.alphabet, &begin.plan);
-            (plans, diagnostics, files.sources)
-        }
-        (None, None) => {
+    let Some(path) = file else {
+        if begin.files.is_empty() {
             return Err(Failure::Usage(format!(
                 "the record of an executable does not have the text of its plan\nhelp: name its file, as in `mdle replay \
                  {} --plan PLAN.mdle`",
                 log.display()
             )));
         }
+        return recorded_files::compiled(&begin.files, Some(&begin.plan), target);
     };
-    // Warnings were printed before the run.
-    if let Err(sentence) = judged(&diagnostics, false) {
-        failure::print(&sources, &diagnostics);
-        failure::error(&sentence);
-        return Err(Failure::Plan);
-    }
-    let only = plans.into_iter().next().map(|compiled| compiled.machine);
-    let name = || InputError::Unusable(format!("the record has no plan `{}`", begin.plan));
-    Ok((only.ok_or_else(name)?, sources))
-}
-
-/// The files of a plan as its record has them: they are used in place of those on the disk.
-struct RecordedFiles<'b> {
-    sources: Sources,
-    own: SourceId,
-    /// Files that the plan uses, by their names in the record.
-    used: &'b [(String, String)],
-    /// Names of the files that were added to the sources.
-    names: Vec<(SourceId, PathBuf)>,
-}
-
-impl<'b> RecordedFiles<'b> {
-    fn new((name, text): &(String, String), used: &'b [(String, String)], target: &Target) -> Self {
-        let mut sources = target.sources();
-        let own = sources.add(name.clone(), text.clone());
-        Self { sources, own, used, names: vec![(own, name.into())] }
-    }
-
-    fn compile(&mut self, alphabet: &Alphabet, plan: &str) -> (Vec<Compiled>, Vec<Diagnostic>) {
-        let text = self.sources.text(self.own).to_owned();
-        mdle_compiler::compile_with(self.own, &text, alphabet, Some(plan), self)
-    }
-}
-
-impl Loader for RecordedFiles<'_> {
-    fn find(&mut self, from: SourceId, path: &str) -> Result<SourceId, String> {
-        let folder = self.names.iter().find(|(source, _)| *source == from).and_then(|(_, name)| name.parent());
-        let name = folder.unwrap_or(Path::new("")).join(path);
-        if let Some((source, _)) = self.names.iter().find(|(_, known)| *known == name) {
-            return Ok(*source);
-        }
-        let text = self.used.iter().find(|(known, _)| Path::new(known) == name).map(|(_, text)| text);
-        let text = text.ok_or_else(|| format!("the record has no file `{}`", name.display()))?;
-        let source = self.sources.add(name.display().to_string(), text.clone());
-        self.names.push((source, name));
-        Ok(source)
-    }
-
-    fn text(&self, source: SourceId) -> &str {
-        self.sources.text(source)
-    }
+    let mut input = read_plan(path, target)?;
+    input.must_have(&begin.plan)?;
+    let (plans, diagnostics) = input.compile(&target.alphabet, Some(&begin.plan));
+    let machine = recorded_files::only(plans, &diagnostics, &input.sources, Some(&begin.plan))?;
+    Ok((machine, input.sources))
 }
 
 /// Prints the outcome for a plan of this name.

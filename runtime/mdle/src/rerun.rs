@@ -11,7 +11,7 @@ use mdle_compiler::load::{self, Entered, Loaded, LoadedPlan};
 use mdle_compiler::plan::Condition;
 use mdle_files::Target;
 use mdle_host::{Texts, Transitions};
-use mdle_record::{MessageKind, ReadError, RecordedTurn, Step, TurnsWithMessages};
+use mdle_record::{Message, MessageKind, ReadError, RecordedTurn, Step, TurnsWithMessages};
 use mdle_runtime::{Alphabet, Machine, Nanos, Sensed, Stamp, Stamps, Turn, Twist};
 
 use crate::failure::Failure;
@@ -90,6 +90,12 @@ where
     }))
 }
 
+/// Returns `true` for an event that holds until the next: not for a request, or for a plan that took over.
+fn is_standing(message: &Message) -> bool {
+    let is_moment = || ["request", "plan"].iter().any(|kind| message.json.contains(&format!("\"kind\":\"{kind}\"")));
+    message.kind == MessageKind::Event && !is_moment()
+}
+
 struct RerunOf<A: Alphabet> {
     loaded: Arc<Loaded<A>>,
     texts: LoadedPlan<A>,
@@ -108,7 +114,7 @@ impl<A: Alphabet<Output = Sensed, Input = Twist>> Rerun for RerunOf<A> {
             Err(error) => return Some(Err(Stop::Unread(error))),
         };
         let next = self.record.next_time();
-        if let Some(event) = messages.into_iter().rfind(|message| message.kind == MessageKind::Event) {
+        if let Some(event) = messages.into_iter().rfind(is_standing) {
             self.event = event.json;
         }
         if recorded.plan != 1 {

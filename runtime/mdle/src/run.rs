@@ -13,6 +13,7 @@ use mdle_runtime::Sensed;
 use crate::arguments::Run;
 use crate::failure::{self, Failure};
 use crate::modules;
+use crate::plans::texts;
 use crate::safety::SafetyFile;
 use crate::session;
 use crate::targets::{self, LinkedTarget, Ready};
@@ -38,7 +39,11 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
         (linked.check)(program, &call).map_err(|text| option.refused(&text))?;
         options.extend(option.arguments);
     }
-    let recorded = RecordedPlan { files: recorded(&input), beside: beside(&arguments, ready.as_ref()), safety: None };
+    let recorded = RecordedPlan {
+        files: texts(&input),
+        beside: beside(&arguments, ready.as_ref()),
+        safety: ready.safety().cloned(),
+    };
     options.extend(arguments.options);
     let read = input.inputs(&target).into_iter().chain(safety.iter().flat_map(SafetyFile::files)).collect();
     drop(input);
@@ -50,12 +55,6 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
 /// The call of nothing.
 fn no_call() -> Call {
     Call { words: Vec::new(), options: Vec::new(), read: Vec::new(), recorded: RecordedPlan::default() }
-}
-
-/// Names and texts of the files of a plan, its own first.
-fn recorded(input: &Input) -> Vec<(String, String)> {
-    let names = input.files().map(|path| path.display().to_string());
-    names.zip(input.texts().map(str::to_owned)).collect()
 }
 
 /// Names the causes of inputs besides the plan and the robot's outputs; empty if there are none.

@@ -7,9 +7,12 @@ use mdle_compiler::diagnostic::{Sources, judged};
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::safety::{Conditions, GuardError, Guardian, Rules, read};
 use mdle_files::{Target, read_plan};
+use mdle_record::SafetyTexts;
 use mdle_runtime::{Alphabet, ModuleRead, Plan as _};
 
 use crate::failure::{self, Failure};
+use crate::plans::texts;
+use crate::recorded_files;
 
 /// Maximum size of a safety file, in bytes.
 const LARGEST: u64 = 1_000_000;
@@ -18,7 +21,10 @@ const LARGEST: u64 = 1_000_000;
 #[derive(Debug)]
 pub(crate) struct SafetyFile {
     path: PathBuf,
+    text: String,
     rules: Rules,
+    /// The files of the plans to which rules divert, as a record has them; `None` for those on the disk.
+    recorded: Option<Vec<Vec<(String, String)>>>,
 }
 
 /// The rules of a safety file, with what they need of a robot.
@@ -26,6 +32,7 @@ pub(crate) struct Guarded<A: Alphabet> {
     rules: Rules,
     conditions: Conditions<A>,
     diversions: Vec<Arc<Loaded<A>>>,
+    texts: SafetyTexts,
 }
 
 impl SafetyFile {
@@ -37,8 +44,20 @@ impl SafetyFile {
         let name = path.display();
         let unread = |error| Failure::Usage(format!("the safety file {name} cannot be read: {error}"));
         let text = mdle_host::read_text(path, LARGEST).map_err(unread)?;
-        let rules = read(&text).map_err(|error| Failure::Usage(format!("{name}:{error}")))?;
-        Ok(Self { path: path.to_owned(), rules })
+        Self::of_text(path, text, None)
+    }
+
+    /// Reads the rules that a record has.
+    ///
+    /// # Errors
+    /// They are none of this version.
+    pub(crate) fn recorded(SafetyTexts { name, text, plans }: &SafetyTexts) -> Result<Self, Failure> {
+        Self::of_text(Path::new(name), text.clone(), Some(plans.clone()))
+    }
+
+    fn of_text(path: &Path, text: String, recorded: Option<Vec<Vec<(String, String)>>>) -> Result<Self, Failure> {
+        let rules = read(&text).map_err(|error| Failure::Usage(format!("{}:{error}", path.display())))?;
+        Ok(Self { path: path.to_owned(), text, rules, recorded })
     }
 
     /// The files that the rules need: their own, and plans.
@@ -57,8 +76,15 @@ impl SafetyFile {
         let name = self.path.display().to_string();
         let compiled = Conditions::compile(&name, &self.rules.guards, &mut sources, &target.alphabet);
         let conditions = compiled.map_err(|error| refused(error, &name, &sources))?;
-        let plans = self.files().skip(1).map(|plan| diversion(&plan, target));
-        Ok(Guarded { rules: self.rules.clone(), conditions, diversions: plans.collect::<Result<_, _>>()? })
+        let (mut diversions, mut texts) = (Vec::new(), Vec::new());
+        for (number, plan) in self.files().skip(1).enumerate() {
+            let recorded = self.recorded.as_ref().map(|plans| plans.get(number).map_or(&[][..], Vec::as_slice));
+            let (loaded, files) = diversion(&plan, recorded, target)?;
+            diversions.push(loaded);
+            texts.push(files);
+        }
+        let texts = SafetyTexts { name, text: self.text.clone(), plans: texts };
+        Ok(Guarded { rules: self.rules.clone(), conditions, diversions, texts })
     }
 }
 
@@ -74,20 +100,37 @@ fn refused(error: GuardError, name: &str, sources: &Sources) -> Failure {
     }
 }
 
-/// Compiles and loads a plan to which a rule diverts.
-fn diversion<A: Alphabet>(file: &Path, target: &Target) -> Result<Arc<Loaded<A>>, Failure> {
-    let mut input = read_plan(file, target)?;
-    let (plans, diagnostics) = input.compile(&target.alphabet, None);
-    failure::print(&input.sources, &diagnostics);
-    if let Err(sentence) = judged(&diagnostics, false) {
-        failure::error(&sentence);
-        return Err(Failure::Plan);
-    }
-    let machines = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine));
-    let machine = input.only(machines.collect())?;
-    let loaded = Arc::new(load::load::<A>(&machine, &input.sources, &target.alphabet)?);
+/// A plan to which a rule diverts, with names and texts of its files.
+type Diversion<A> = (Arc<Loaded<A>>, Vec<(String, String)>);
+
+/// Compiles and loads a plan to which a rule diverts, from a file or from the texts of a record.
+fn diversion<A: Alphabet>(
+    file: &Path,
+    recorded: Option<&[(String, String)]>,
+    target: &Target,
+) -> Result<Diversion<A>, Failure> {
+    let (machine, sources, files) = match recorded {
+        Some(files) => {
+            let (machine, sources) = recorded_files::compiled(files, None, target)?;
+            (machine, sources, files.to_vec())
+        }
+        None => {
+            let mut input = read_plan(file, target)?;
+            let (plans, diagnostics) = input.compile(&target.alphabet, None);
+            failure::print(&input.sources, &diagnostics);
+            if let Err(sentence) = judged(&diagnostics, false) {
+                failure::error(&sentence);
+                return Err(Failure::Plan);
+            }
+            let machines = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine));
+            let machine = input.only(machines.collect())?;
+            let files = texts(&input);
+            (machine, input.sources, files)
+        }
+    };
+    let loaded = Arc::new(load::load::<A>(&machine, &sources, &target.alphabet)?);
     if loaded.plan().paths().is_empty() {
-        return Ok(loaded);
+        return Ok((loaded, files));
     }
     Err(Failure::Usage(format!("the plan {} replays paths, which a plan of a safety rule cannot", file.display())))
 }
@@ -96,6 +139,11 @@ impl<A: Alphabet> Guarded<A> {
     /// Returns the guardian of a run with this period.
     pub(crate) fn guardian(&self, period: std::time::Duration) -> Guardian<A> {
         Guardian::new(self.rules.clone(), &self.conditions, period)
+    }
+
+    /// Returns the texts of the rules and of the plans to which they divert.
+    pub(crate) fn texts(&self) -> &SafetyTexts {
+        &self.texts
     }
 
     /// Returns the attributes of modules that the rules read.

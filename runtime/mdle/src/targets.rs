@@ -13,11 +13,13 @@ use mdle_engine::tree::Desk;
 use mdle_engine::{Engine, EngineAlphabet, Library, StoredPlan};
 use mdle_files::{Input, Target};
 use mdle_host::{Call, Program, Refusal, RunTerms, Supervision};
+use mdle_record::{Begin, SafetyTexts};
 use mdle_runtime::{Alphabet, Plan as _, Robot, Sensed, Twist};
 
 use crate::failure::Failure;
-use crate::plans;
-use crate::replayed::{Outcome, Record, ReplayTerms, replayed};
+use crate::plans::{self, texts};
+use crate::replayed::Record;
+use crate::replayer::{Replay, replay};
 use crate::rerun::{Rerun, rerun};
 use crate::safety::{Guarded, SafetyFile};
 use crate::session::Seat;
@@ -41,7 +43,7 @@ pub(crate) struct LinkedTarget {
 type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Box<dyn Ready>, Failure>;
 
 /// Runs the plan of a machine on the outputs of a record.
-type ReplayRecord = fn(&Machine, &Sources, &Target, Record, ReplayTerms) -> Result<Outcome, Failure>;
+type ReplayRecord = fn(&Machine, &Sources, &Arc<Target>, &Begin, Record) -> Result<Box<dyn Replay>, Failure>;
 
 /// Loads the plan of a machine, to make the turns of a record again, with all laws or with those alone that complete.
 type RerunRecord = fn(&Machine, &Sources, &Target, Record, bool) -> Result<Box<dyn Rerun>, Failure>;
@@ -50,6 +52,9 @@ type RerunRecord = fn(&Machine, &Sources, &Target, Record, bool) -> Result<Box<d
 pub(crate) trait Ready {
     /// Returns `true` if the plan reads attributes of modules.
     fn reads_modules(&self) -> bool;
+
+    /// Returns the texts of the safety rules.
+    fn safety(&self) -> Option<&SafetyTexts>;
 
     /// Runs the plan of this name, with these modules.
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode;
@@ -101,8 +106,8 @@ impl LinkedTarget {
 /// A plan for the target `T`.
 struct PlanFor<T, A: Alphabet> {
     loaded: Arc<Loaded<A>>,
-    /// The text of its file.
-    text: Arc<str>,
+    /// Names and texts of its files, its own first.
+    files: Arc<[(String, String)]>,
     /// The target, for other plans.
     known: Arc<Target>,
     safety: Option<Guarded<A>>,
@@ -129,6 +134,10 @@ where
         !self.loaded.plan().reads().is_empty()
     }
 
+    fn safety(&self) -> Option<&SafetyTexts> {
+        self.safety.as_ref().map(Guarded::texts)
+    }
+
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode {
         let plan = || self.loaded.plan();
         let engine = |terms: &RunTerms| self.engine(library, terms);
@@ -142,7 +151,7 @@ where
     fn session(&self, name: &str, call: Call, library: &Library<Sensed>, seat: Seat) -> ExitCode {
         let Seat { desk, is_paused, stream } = seat;
         let (plan, desk) = (|| self.loaded.plan(), Mutex::new(Some(desk)));
-        let first = StoredPlan { name: name.into(), text: self.text.clone(), loaded: self.loaded.clone() };
+        let first = StoredPlan { name: name.into(), files: self.files.clone(), loaded: self.loaded.clone() };
         let engine = |terms: &RunTerms| {
             let mut engine = self.engine(library, terms)?;
             plans::begin(engine.plans_mut(), first.clone(), &self.known)?;
@@ -161,20 +170,6 @@ where
     }
 }
 
-fn replay<A>(
-    machine: &Machine,
-    sources: &Sources,
-    target: &Target,
-    record: Record,
-    terms: ReplayTerms,
-) -> Result<Outcome, Failure>
-where
-    A: Alphabet<Output = Sensed, Input = Twist>,
-{
-    let loaded = Arc::new(load::load::<A>(machine, sources, &target.alphabet)?);
-    Ok(replayed(&loaded, record, terms))
-}
-
 fn load<T, A>(
     machine: &Machine,
     input: &Input,
@@ -187,6 +182,6 @@ where
 {
     let loaded = Arc::new(load::load::<A>(machine, &input.sources, &target.alphabet)?);
     let safety = safety.map(|safety| safety.compile(target)).transpose()?;
-    let text = input.sources.text(input.source).into();
-    Ok(Box::new(PlanFor::<T, A> { loaded, text, known: Arc::clone(target), safety, target: std::marker::PhantomData }))
+    let files = texts(input).into();
+    Ok(Box::new(PlanFor::<T, A> { loaded, files, known: Arc::clone(target), safety, target: std::marker::PhantomData }))
 }

@@ -77,6 +77,33 @@ pub struct Reading {
 }
 
 impl AttributeKind {
+    /// All kinds, in the order of their numbers in records.
+    const ALL: [Self; 13] = [
+        Self::Flag,
+        Self::Integer,
+        Self::Number,
+        Self::Length,
+        Self::Speed,
+        Self::Angle,
+        Self::AngularRate,
+        Self::Voltage,
+        Self::Time,
+        Self::Pose,
+        Self::Text,
+        Self::Numbers,
+        Self::Bytes,
+    ];
+
+    /// Returns the number of the kind in records.
+    pub(crate) fn number(self) -> u8 {
+        (0..).zip(Self::ALL).find(|(_, kind)| *kind == self).map_or(u8::MAX, |(number, _)| number)
+    }
+
+    /// Returns the kind of this number in records.
+    pub(crate) fn of_number(number: u8) -> Option<Self> {
+        Self::ALL.get(usize::from(number)).copied()
+    }
+
     /// Name of the kind in words, with its article: "an angle".
     #[must_use]
     pub fn words(self) -> String {
@@ -143,6 +170,41 @@ impl Value {
             | Self::Voltage(Volts(number)) => Some(*number),
             Self::Time(time) => Some(time.seconds()),
             Self::Flag(_) | Self::Pose(_) | Self::Text(_) | Self::Numbers(_) | Self::Bytes(_) => None,
+        }
+    }
+
+    /// Returns the bits of a value that plans read as a number; 0 for any other.
+    pub(crate) fn bits(&self) -> u64 {
+        match self {
+            Self::Integer(number) => number.cast_unsigned(),
+            Self::Time(time) => time.0,
+            Self::Number(_)
+            | Self::Length(_)
+            | Self::Speed(_)
+            | Self::Angle(_)
+            | Self::AngularRate(_)
+            | Self::Voltage(_) => self.number().map_or(0, f64::to_bits),
+            Self::Flag(_) | Self::Pose(_) | Self::Text(_) | Self::Numbers(_) | Self::Bytes(_) => 0,
+        }
+    }
+
+    /// Returns the value of this kind with these bits; for a kind that plans do not read, a value that they do not read.
+    pub(crate) fn of_bits(kind: AttributeKind, bits: u64) -> Self {
+        let number = f64::from_bits(bits);
+        match kind {
+            AttributeKind::Integer => Self::Integer(bits.cast_signed()),
+            AttributeKind::Number => Self::Number(number),
+            AttributeKind::Length => Self::Length(Meters(number)),
+            AttributeKind::Speed => Self::Speed(MetersPerSecond(number)),
+            AttributeKind::Angle => Self::Angle(Radians(number)),
+            AttributeKind::AngularRate => Self::AngularRate(RadiansPerSecond(number)),
+            AttributeKind::Voltage => Self::Voltage(Volts(number)),
+            AttributeKind::Time => Self::Time(Nanos(bits)),
+            AttributeKind::Flag
+            | AttributeKind::Pose
+            | AttributeKind::Text
+            | AttributeKind::Numbers
+            | AttributeKind::Bytes => Self::Flag(false),
         }
     }
 

@@ -90,6 +90,11 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         &self.board
     }
 
+    /// Returns the board, to repeat what another run has published.
+    pub(super) fn board_mut(&mut self) -> &mut Board {
+        &mut self.board
+    }
+
     /// Returns the events since the last call of [`Modules::turn`].
     #[must_use]
     pub fn events(&self) -> &[Event] {

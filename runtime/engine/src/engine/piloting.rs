@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use mdle_compiler::load::LoadedPlan;
 use mdle_host::{Moment, Pilot, PilotFault, RunTerms, Time, Transitions, claim_for_worker};
+use mdle_record::Change;
 use mdle_runtime::{Machine, ModuleRead, Nanos, Output as _, Turn};
 
 use super::event::Event;
@@ -13,6 +14,7 @@ use crate::fork::Threads;
 use crate::library::Library;
 use crate::module::{Candidate, Declare, Refusal};
 use crate::plans::{EngineAlphabet, NoTrial, PlanTurn, Plans, reads};
+use crate::replay::{History, Repeats};
 
 /// Name of the module that makes the turns of plans; no other module can have it.
 pub const PLAN: &str = "mdle";
@@ -29,6 +31,10 @@ pub struct Engine<A: EngineAlphabet> {
     /// Attributes of modules that safety rules read; `None` without rules.
     rules_read: Option<&'static [ModuleRead]>,
     messages: Vec<String>,
+    /// What a record needs of this run; `None` if it is not recorded.
+    history: Option<History>,
+    /// The recorded run that is made again.
+    repeats: Option<Repeats>,
 }
 
 impl<A: EngineAlphabet> Engine<A> {
@@ -49,7 +55,16 @@ impl<A: EngineAlphabet> Engine<A> {
         let no_threads = |error| mdle_host::Refusal::Fault(format!("the system gives no threads: {error}"));
         let (plans, modules) = (Plans::new(plan), Modules::new(threads, service).map_err(no_threads)?);
         let loading = Loading::new(library.clone(), terms.request.clone()).map_err(no_threads)?;
-        let mut engine = Self { plans, modules, loading, patience, rules_read: None, messages: Vec::new() };
+        let mut engine = Self {
+            plans,
+            modules,
+            loading,
+            patience,
+            rules_read: None,
+            messages: Vec::new(),
+            history: None,
+            repeats: None,
+        };
         engine.load_plan_module();
         for candidate in library.candidates(&terms.request) {
             let loaded = candidate.and_then(|candidate| engine.modules.load(candidate));
@@ -77,6 +92,37 @@ impl<A: EngineAlphabet> Engine<A> {
         engine.modules.plan_reads(engine.plans.reads().chain(reads));
         engine.modules.prepare();
         Ok(engine)
+    }
+
+    /// Makes a recorded run again under safety rules that read these attributes of modules, if it had rules:
+    /// [`Engine::repeat`] gives it the values of modules. The engine has no modules but that of the plans.
+    #[must_use]
+    pub fn repeating(self, rules_read: Option<&'static [ModuleRead]>) -> Self {
+        Self { rules_read, repeats: Some(Repeats::default()), ..self }
+    }
+
+    /// Repeats a change before the next turn. The caller repeats a plan that was armed, by [`Plans::replace`], and the
+    /// limits of safety rules.
+    pub fn repeat(&mut self, change: &Change) {
+        match change {
+            Change::Cancelled => self.plans.cancel(),
+            // A record notes only what was carried out.
+            Change::RolledBack(why) => drop(self.rollback(why)),
+            Change::Trial(time) => self.plans.set_trial(*time),
+            Change::Attribute { .. }
+            | Change::Vanished(_)
+            | Change::Published { .. }
+            | Change::Files(_)
+            | Change::Armed { .. }
+            | Change::Limit { .. }
+            | Change::Skipped
+            | Change::Late
+            | Change::Back => {
+                if let Some(repeats) = &mut self.repeats {
+                    repeats.repeat(change, self.modules.board_mut());
+                }
+            }
+        }
     }
 
     /// Returns the plans.
@@ -153,6 +199,13 @@ impl<A: EngineAlphabet> Engine<A> {
     /// # Errors
     /// No plan is on trial.
     pub fn rollback(&mut self, why: &str) -> Result<(), NoTrial> {
+        self.go_back(why)?;
+        self.plans.note(Change::RolledBack(why.to_owned()));
+        Ok(())
+    }
+
+    /// Ends the plan on trial, as [`Engine::rollback`] does, for a reason that follows from the turns.
+    fn go_back(&mut self, why: &str) -> Result<(), NoTrial> {
         let was_late = self.plans.is_late();
         self.plans.rollback(why)?;
         if was_late {
@@ -177,10 +230,26 @@ impl<A: EngineAlphabet> Engine<A> {
     }
 
     /// Takes the plan's turn; a plan on trial that panicked or hangs is rolled back.
-    fn land(&mut self, t: Nanos, transitions: &mut Transitions) -> Result<Turn<A::Input>, PilotFault> {
+    fn land(&mut self, t: Nanos, is_new: bool, transitions: &mut Transitions) -> Result<Turn<A::Input>, PilotFault> {
+        if self.repeats.as_ref().is_some_and(|repeats| !repeats.lands()) {
+            return Ok(Turn::Cut);
+        }
+        let was_away = !is_new && self.plans.is_late();
         match self.plans.land(t, transitions) {
             PlanTurn::Made(turn) => Ok(turn),
-            PlanTurn::Late => Ok(Turn::Cut),
+            PlanTurn::Late => {
+                let progress = match (is_new, self.plans.is_late()) {
+                    (true, true) => Some(Change::Late),
+                    (true, false) => Some(Change::Skipped),
+                    (false, false) if was_away => Some(Change::Back),
+                    // It is not back yet, or waits for what it reads.
+                    (false, _) => None,
+                };
+                if let Some(history) = &mut self.history {
+                    progress.into_iter().for_each(|progress| history.note(progress));
+                }
+                Ok(Turn::Cut)
+            }
             PlanTurn::Panicked(message) => {
                 let sentence = format!("its code panicked, which is a bug: {message}");
                 self.ends_trial(&sentence).map(|()| Turn::Cut).map_err(|_| PilotFault::Panicked(message))
@@ -191,7 +260,7 @@ impl<A: EngineAlphabet> Engine<A> {
     /// Rolls back for a reason that the operator has to be told.
     fn ends_trial(&mut self, why: &str) -> Result<(), NoTrial> {
         let name = self.plans.name().to_owned();
-        self.rollback(why)?;
+        self.go_back(why)?;
         self.messages.push(format!("warning: the plan {name} on trial is ended: {why}"));
         Ok(())
     }
@@ -208,8 +277,12 @@ impl<A: EngineAlphabet> Engine<A> {
                 }
             }
         }
-        if is_given_up && self.ends_trial("it has not ended its turn").is_err() {
-            return Err(PilotFault::Stopped("the plan has not ended its turn".to_owned()));
+        if is_given_up {
+            let why = "it has not ended its turn";
+            if self.ends_trial(why).is_err() {
+                return Err(PilotFault::Stopped("the plan has not ended its turn".to_owned()));
+            }
+            self.plans.note(Change::RolledBack(why.to_owned()));
         }
         Ok(())
     }
@@ -219,6 +292,11 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
     type Plan = LoadedPlan<A>;
 
     fn complete(&mut self, y: &mut A::Output, now: Nanos) {
+        if let Some(history) = &mut self.history {
+            let reads = self.plans.reads().chain(self.rules_read.unwrap_or_default());
+            let reads: Vec<_> = reads.collect();
+            history.begin(self.plans.take_changes(), reads.into_iter(), self.modules.board());
+        }
         let Some(rules_read) = self.rules_read else { return };
         let board = self.modules.board();
         let oldest = reads::oldest(rules_read.iter().chain(self.plans.driving_reads()), board, now);
@@ -236,8 +314,13 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
             y.take_published(published);
         }
         let deadline = self.patience.map(|patience| Instant::now() + patience);
-        self.modules.turn(y, number, t, deadline);
-        let turn = self.land(t, transitions)?;
+        if self.repeats.as_ref().is_none_or(Repeats::makes_turn) {
+            self.modules.turn(y, number, t, deadline);
+        }
+        let turn = self.land(t, published.is_some(), transitions)?;
+        if let Some(repeats) = &mut self.repeats {
+            repeats.end_turn();
+        }
         self.modules.settle();
         self.turn_break()?;
         self.plans.arm();
@@ -278,5 +361,14 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
 
     fn messages(&mut self, say: &mut dyn FnMut(&str)) {
         self.messages.drain(..).for_each(|message| say(&message));
+    }
+
+    fn record(&mut self) {
+        self.history = Some(History::default());
+        self.plans.record();
+    }
+
+    fn take_changes(&mut self) -> Vec<Change> {
+        self.history.as_mut().map(History::take).unwrap_or_default()
     }
 }

@@ -63,7 +63,15 @@ pub(crate) struct Product<A: EngineAlphabet> {
     /// Plans to be stored, and their warnings.
     pub(crate) compiled: CompiledPlans<A>,
     /// The plan that is to take over, before its first turn.
-    pub(crate) next: Option<(LoadedPlan<A>, When)>,
+    pub(crate) next: Option<Next<A>>,
+}
+
+/// A plan that is to take over, before its first turn.
+pub(crate) struct Next<A: EngineAlphabet> {
+    pub(crate) plan: LoadedPlan<A>,
+    /// Names and texts of its files, its own first.
+    pub(crate) files: Arc<[(String, String)]>,
+    pub(crate) when: When,
 }
 
 /// The thread, which ends when this value is dropped.
@@ -161,6 +169,12 @@ impl<A: EngineAlphabet> Counter<A> {
     }
 }
 
+impl<A: EngineAlphabet> Next<A> {
+    fn of(plan: &StoredPlan<A>, when: When) -> Self {
+        Self { plan: plan.loaded.plan(), files: Arc::clone(&plan.files), when }
+    }
+}
+
 impl<A: EngineAlphabet> Task<A> {
     /// Returns `true` if a plan is to take over.
     fn takes_over(&self) -> bool {
@@ -176,7 +190,7 @@ impl<A: EngineAlphabet> Task<A> {
                 let compiled = compile(&source)?;
                 let next = match (when, compiled.plans.as_slice()) {
                     (None, _) => None,
-                    (Some(when), [only]) => Some((only.loaded.plan(), when)),
+                    (Some(when), [only]) => Some(Next::of(only, when)),
                     (Some(_), plans) => {
                         let names = plans.iter().map(|plan| &*plan.name).collect::<Vec<_>>().join(", ");
                         return Err(format!("the text has several plans, and one of them can drive: {names}"));
@@ -186,7 +200,7 @@ impl<A: EngineAlphabet> Task<A> {
             }
             Self::Begin(plan, when) => {
                 let compiled = CompiledPlans { plans: Vec::new(), warnings: String::new() };
-                Ok(Product { compiled, next: Some((plan.loaded.plan(), when)) })
+                Ok(Product { compiled, next: Some(Next::of(&plan, when)) })
             }
         }
     }

@@ -18,6 +18,18 @@ pub enum When {
 impl When {
     /// Every moment, with the word by which people name it.
     pub const ALL: [(&'static str, Self); 3] = [("now", Self::Now), ("atom", Self::AtomEnds), ("plan", Self::PlanEnds)];
+
+    /// Returns the number of the moment in records: its place in [`When::ALL`].
+    #[must_use]
+    pub fn number(self) -> u8 {
+        (0..).zip(Self::ALL).find(|(_, (_, when))| *when == self).map_or(u8::MAX, |(number, _)| number)
+    }
+
+    /// Returns the moment of this number in records.
+    #[must_use]
+    pub fn of_number(number: u8) -> Option<Self> {
+        Self::ALL.get(usize::from(number)).map(|(_, when)| *when)
+    }
 }
 
 impl fmt::Display for When {

@@ -17,16 +17,19 @@ use std::io;
 use std::sync::Arc;
 
 pub use compiler::{Compile, CompiledPlans, PlanSource};
-use compiler::{Compiler, Order, Task};
+use compiler::{Compiler, Next, Order, Task};
 pub use event::{NoTrial, PlanEvent, When};
 use flight::{Desk, Flight};
 use mdle_compiler::load::LoadedPlan;
+use mdle_record::Change;
 use mdle_runtime::{Machine, ModuleRead, Nanos, Plan as _};
 pub use running::EngineAlphabet;
 use running::Running;
 use stored::Store;
 pub use stored::{MOST_STORED, StoredPlan};
 pub(crate) use turns::PlanTurn;
+
+use crate::replay::PlanChanges;
 
 /// Time for which a new plan is on trial, unless [`Plans::set_trial`] sets another.
 pub const TRIAL: Nanos = Nanos(3_000_000_000);
@@ -58,6 +61,8 @@ pub struct Plans<A: EngineAlphabet> {
     events: Vec<PlanEvent>,
     /// Plans to drop on another thread: to drop a large one takes longer than a turn may.
     spent: Vec<Spent>,
+    /// What a record needs of these plans; `None` if the run is not recorded.
+    changes: Option<PlanChanges>,
 }
 
 /// A plan that drives, as it is named.
@@ -95,6 +100,24 @@ impl<A: EngineAlphabet> Plans<A> {
             reason: String::new(),
             events: Vec::new(),
             spent: Vec::new(),
+            changes: None,
+        }
+    }
+
+    /// Notes from now on what a record needs.
+    pub(crate) fn record(&mut self) {
+        self.changes = Some(PlanChanges::default());
+    }
+
+    /// Takes the changes since the last call.
+    pub(crate) fn take_changes(&mut self) -> Vec<Change> {
+        self.changes.as_mut().map(PlanChanges::take).unwrap_or_default()
+    }
+
+    /// Notes a change if the run is recorded.
+    pub(crate) fn note(&mut self, change: Change) {
+        if let Some(changes) = &mut self.changes {
+            changes.note(change);
         }
     }
 
@@ -134,6 +157,7 @@ impl<A: EngineAlphabet> Plans<A> {
     /// Sets the time for which a plan that takes over from now on is on trial.
     pub fn set_trial(&mut self, trial: Nanos) {
         self.trial = trial;
+        self.note(Change::Trial(trial));
     }
 
     /// Returns the time for which a plan that takes over is on trial.
@@ -168,13 +192,21 @@ impl<A: EngineAlphabet> Plans<A> {
     pub fn replace(&mut self, plan: LoadedPlan<A>, when: When) -> u32 {
         self.last = self.last.saturating_add(1);
         let number = self.last;
-        self.arm_plan(number, plan, when);
+        self.arm_plan(number, Next { plan, files: Arc::default(), when });
         number
     }
 
     /// Cancels the request that waits for the compiler, and the plan that is armed. A text that is being compiled is
     /// not cancelled.
     pub fn cancel(&mut self) {
+        if self.armed.is_some() {
+            self.note(Change::Cancelled);
+        }
+        self.take_back();
+    }
+
+    /// Takes back what is to follow: see [`Plans::cancel`].
+    fn take_back(&mut self) {
         let waiting = self.compiler.as_ref().and_then(Compiler::take_back);
         if let Some(order) = waiting {
             self.events.push(PlanEvent::Cancelled(order.ticket));
@@ -278,12 +310,16 @@ impl<A: EngineAlphabet> Plans<A> {
         driving.map_or(&[], |flight| flight.current.reads)
     }
 
-    fn arm_plan(&mut self, ticket: u32, plan: LoadedPlan<A>, when: When) {
+    fn arm_plan(&mut self, ticket: u32, next: Next<A>) {
+        let Next { plan, files, when } = next;
         let missing = plan.paths().iter().find(|path| !self.paths.contains(path));
         if let Some(path) = missing {
             let sentence = format!("the plan replays the path `{path}`, which the first plan of the run does not");
             self.events.push(PlanEvent::Refused(ticket, sentence));
             return self.discard(Running::new(ticket, plan));
+        }
+        if let Some(changes) = &mut self.changes {
+            changes.armed(&files, mdle_runtime::Plan::name(&plan, 0), when);
         }
         if let Some((old, _)) = self.armed.replace((Running::new(ticket, plan), when)) {
             self.events.push(PlanEvent::Superseded(old.ticket));

@@ -14,16 +14,24 @@ pub const MOST_STORED: usize = 64;
 pub struct StoredPlan<A: EngineAlphabet> {
     /// Name of the plan.
     pub name: Arc<str>,
-    /// The text of its file.
-    pub text: Arc<str>,
+    /// Its files: the name and the text of each, its own first.
+    pub files: Arc<[(String, String)]>,
     /// The plan before it begins.
     pub loaded: Arc<Loaded<A>>,
 }
 
 impl<A: EngineAlphabet> Clone for StoredPlan<A> {
     fn clone(&self) -> Self {
-        let Self { name, text, loaded } = self;
-        Self { name: Arc::clone(name), text: Arc::clone(text), loaded: Arc::clone(loaded) }
+        let Self { name, files, loaded } = self;
+        Self { name: Arc::clone(name), files: Arc::clone(files), loaded: Arc::clone(loaded) }
+    }
+}
+
+impl<A: EngineAlphabet> StoredPlan<A> {
+    /// Returns the text of the plan's own file.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        self.files.first().map_or("", |(_, text)| text)
     }
 }
 

@@ -106,7 +106,7 @@ impl<A: EngineAlphabet> Plans<A> {
             self.store_all(compiled.plans).map(|()| (names, next))
         });
         match product {
-            Ok((_, Some((plan, when)))) => self.arm_plan(ticket, plan, when),
+            Ok((_, Some(next))) => self.arm_plan(ticket, next),
             Ok((names, None)) => self.events.push(PlanEvent::Stored(ticket, names)),
             Err(diagnostics) => self.events.push(PlanEvent::Refused(ticket, diagnostics)),
         }
@@ -130,7 +130,7 @@ impl<A: EngineAlphabet> Plans<A> {
     /// Replaces the plan that drives at once and without a trial, as for a supervisor; a plan that is armed is
     /// cancelled.
     pub(crate) fn divert(&mut self, plan: LoadedPlan<A>) {
-        self.cancel();
+        self.take_back();
         self.last = self.last.saturating_add(1);
         let mut plan = Running::new(self.last, plan);
         plan.number = self.next_number();

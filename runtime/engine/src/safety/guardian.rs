@@ -3,10 +3,11 @@
 use std::time::Duration;
 
 use mdle_host::{Intervention, Pilot, Supervisor};
+use mdle_record::Change;
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{Alphabet, Nanos, Plan, Twist};
 
-use super::{Conditions, Envelope, Rules, Watched};
+use super::{Conditions, Envelope, Limits, Measure, Rules, Watched};
 
 /// An envelope with the conditions of its guards: the supervisor of one run.
 #[derive(Debug)]
@@ -34,6 +35,22 @@ impl<A: Alphabet> Guardian<A> {
     }
 }
 
+impl<A: Alphabet> Guardian<A> {
+    /// Returns the limits that differ from `recorded`, which has them from then on.
+    pub(crate) fn changes_since(&self, recorded: &mut Limits) -> Vec<Change> {
+        let mut limits = self.envelope.rules().limits;
+        let mut changes = Vec::new();
+        for measure in Measure::ALL {
+            let (before, value) = (measure.of(recorded), *measure.of(&mut limits));
+            if before.to_bits() != value.to_bits() {
+                *before = value;
+                changes.push(Change::Limit { key: measure.key().to_owned(), value });
+            }
+        }
+        changes
+    }
+}
+
 impl<A> Guardian<A>
 where
     A: Alphabet<Input = Twist>,
@@ -58,5 +75,13 @@ where
 
     fn intervention(&self) -> Option<Intervention<'_>> {
         self.envelope.intervention()
+    }
+
+    fn repeat(&mut self, change: &Change) {
+        if let Change::Limit { key, value } = change
+            && let Some(measure) = Measure::ALL.into_iter().find(|measure| measure.key() == key)
+        {
+            *measure.of(&mut self.envelope.rules_mut().limits) = *value;
+        }
     }
 }

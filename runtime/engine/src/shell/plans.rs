@@ -133,7 +133,7 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
             None => to.extend([const { None }; 6]),
         }
         to.extend([const { None }; 3]);
-        to.extend(plans.stored().flat_map(|plan| [Some(Value::Text(plan.text.clone())), None, None]));
+        to.extend(plans.stored().flat_map(|plan| [Some(Value::text(plan.text())), None, None]));
     }
 
     fn change(&mut self, path: &str, change: &Change, moment: &mut Break<'_, Engine<A>>, reply: Reply) {

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use mdle_host::{Break, Intervention, Orders, RunTerms, StopRequest, Supervisor};
+use mdle_record::Change;
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{Alphabet, Nanos, Twist};
 
@@ -12,7 +13,7 @@ use super::parts::{EnginePart, RobotPart, SafetyPart};
 use super::plans::PlansPart;
 use crate::engine::Engine;
 use crate::plans::EngineAlphabet;
-use crate::safety::Guardian;
+use crate::safety::{Guardian, Limits};
 use crate::tree::{Desk, Served};
 
 /// Maximum wait for a request while the clock stands, between two checks of the signals.
@@ -24,6 +25,8 @@ pub struct Session<A: Alphabet> {
     desk: Desk,
     parts: Parts<A>,
     request: StopRequest,
+    /// The limits of the safety rules that are in the record.
+    recorded: Option<Limits>,
 }
 
 /// The parts of the tree.
@@ -49,7 +52,7 @@ impl<A: Alphabet> Session<A> {
             engine: EnginePart::default(),
             safety: SafetyPart(guardian),
         };
-        Self { desk, parts, request: terms.request.clone() }
+        Self { desk, parts, request: terms.request.clone(), recorded: None }
     }
 }
 
@@ -76,6 +79,18 @@ where
             self.serve(moment, Some(LOOK));
         }
         Orders { pace: self.parts.clock.ordered.take(), end: self.parts.engine.quits }
+    }
+
+    fn record(&mut self) {
+        let limits = self.parts.safety.0.as_ref().map(|guardian| guardian.envelope().rules().limits);
+        self.recorded = limits;
+    }
+
+    fn take_changes(&mut self) -> Vec<Change> {
+        let Some((recorded, guardian)) = self.recorded.as_mut().zip(self.parts.safety.0.as_ref()) else {
+            return Vec::new();
+        };
+        guardian.changes_since(recorded)
     }
 
     fn take_requests(&mut self) -> Vec<String> {

@@ -35,7 +35,7 @@ pub(super) fn info(log: &Path) -> Result<ExitCode, Failure> {
     let is_whole = if records.is_whole() { "" } else { "; the record has no end" };
     let files: Vec<_> = begin.files.iter().map(|(name, _)| name.as_str()).collect();
     let files = if files.is_empty() { "without its text".to_owned() } else { files.join(", ") };
-    let beside = if begin.beside.is_empty() { "the outputs alone: it can be replayed" } else { &begin.beside };
+    let beside = if begin.beside.is_empty() { "the outputs alone" } else { &begin.beside };
     let lines = [
         ("plan", format!("{} ({files})", begin.plan)),
         ("target", begin.target.clone()),

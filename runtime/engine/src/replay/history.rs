@@ -1,0 +1,128 @@
+//! The causes of an engine's turns besides the robot's outputs, while it drives: values that plans and safety rules
+//! read of modules, and changes of plans.
+
+use std::sync::Arc;
+
+use mdle_record::Change;
+use mdle_runtime::{ModuleRead, Nanos};
+
+use crate::attribute::{AGE, AttributeKind, AttributeName};
+use crate::board::{Board, Post};
+use crate::plans::When;
+
+/// The changes that a record of the run needs.
+#[derive(Debug, Default)]
+pub(crate) struct History {
+    /// The attributes that are in the record, by their numbers; `None` for those that have vanished.
+    known: Vec<Option<Known>>,
+    /// Changes of the turn that is made.
+    changes: Vec<Change>,
+}
+
+/// An attribute that is in the record.
+#[derive(Debug)]
+struct Known {
+    name: AttributeName,
+    kind: AttributeKind,
+    /// Time and bits of the value that was recorded last.
+    reading: Option<(Nanos, u64)>,
+}
+
+impl History {
+    /// Begins a turn, after these changes of plans; `reads` are the attributes that plans and rules read, now or soon.
+    pub(crate) fn begin(
+        &mut self,
+        plans: Vec<Change>,
+        reads: impl Iterator<Item = &'static ModuleRead>,
+        board: &Board,
+    ) {
+        self.changes = plans;
+        let mut posts: Vec<&Post> = Vec::new();
+        for read in reads {
+            let of_module = board.of(read.module);
+            let is_read = |post: &&Post| read.attribute == AGE || *post.name.attribute == *read.attribute;
+            for post in of_module.filter(is_read) {
+                if !posts.iter().any(|other| std::ptr::eq(*other, post)) {
+                    posts.push(post);
+                }
+            }
+        }
+        self.forget(board);
+        posts.into_iter().for_each(|post| self.see(post));
+    }
+
+    /// Notes a cause of the turn that is made.
+    pub(crate) fn note(&mut self, change: Change) {
+        self.changes.push(change);
+    }
+
+    /// Takes the changes of the turn.
+    pub(crate) fn take(&mut self) -> Vec<Change> {
+        std::mem::take(&mut self.changes)
+    }
+
+    /// Notes which attributes have vanished.
+    fn forget(&mut self, board: &Board) {
+        for (number, known) in (0..).zip(&mut self.known) {
+            let has_gone = |known: &mut Known| {
+                let post = board.post(&known.name.module, &known.name.attribute);
+                post.is_none_or(|post| {
+                    post.about.kind != known.kind || post.reading.is_none() && known.reading.is_some()
+                })
+            };
+            if known.take_if(has_gone).is_some() {
+                self.changes.push(Change::Vanished(number));
+            }
+        }
+    }
+
+    /// Notes an attribute that is new, and a value that is.
+    fn see(&mut self, post: &Post) {
+        let is_same = |known: &Option<Known>| known.as_ref().is_some_and(|known| known.name == post.name);
+        let number = self.known.iter().position(is_same).unwrap_or_else(|| {
+            let (name, kind) = (post.name.clone(), post.about.kind);
+            let (module, attribute) = (name.module.to_string(), name.attribute.to_string());
+            self.changes.push(Change::Attribute { module, name: attribute, kind: kind.number() });
+            self.known.push(Some(Known { name, kind, reading: None }));
+            self.known.len() - 1
+        });
+        let reading = post.reading.as_ref().map(|reading| (reading.at, reading.value.bits()));
+        let Some(Some(known)) = self.known.get_mut(number) else { return };
+        if let Some((at, bits)) = reading.filter(|_| known.reading != reading) {
+            known.reading = reading;
+            let attribute = u32::try_from(number).unwrap_or(u32::MAX);
+            self.changes.push(Change::Published { attribute, at, bits });
+        }
+    }
+}
+
+/// The changes of plans since the last turn.
+#[derive(Debug, Default)]
+pub(crate) struct PlanChanges {
+    /// The files of plans that are in the record, by their numbers.
+    files: Vec<Arc<[(String, String)]>>,
+    changes: Vec<Change>,
+}
+
+impl PlanChanges {
+    /// Notes that a plan of these files is to take over.
+    pub(crate) fn armed(&mut self, files: &Arc<[(String, String)]>, plan: &str, when: When) {
+        let number = self.files.iter().position(|known| known == files).unwrap_or_else(|| {
+            self.changes.push(Change::Files(files.to_vec()));
+            self.files.push(Arc::clone(files));
+            self.files.len() - 1
+        });
+        let files = u32::try_from(number).unwrap_or(u32::MAX);
+        self.changes.push(Change::Armed { files, plan: plan.to_owned(), when: when.number() });
+    }
+
+    /// Notes another change.
+    pub(crate) fn note(&mut self, change: Change) {
+        self.changes.push(change);
+    }
+
+    /// Takes the changes.
+    pub(crate) fn take(&mut self) -> Vec<Change> {
+        std::mem::take(&mut self.changes)
+    }
+}

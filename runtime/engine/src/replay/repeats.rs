@@ -1,0 +1,81 @@
+//! The changes of a recorded run, as an engine repeats them: its board has what modules published, without modules.
+
+use mdle_record::Change;
+
+use crate::attribute::{AttributeKind, AttributeName, Reading, Value};
+use crate::board::Board;
+
+/// The state of a run that is made again.
+#[derive(Debug, Default)]
+pub(crate) struct Repeats {
+    /// The attributes of the record, by their numbers.
+    attributes: Vec<(AttributeName, AttributeKind)>,
+    progress: PlanProgress,
+}
+
+/// Progress of the plan's turn in the recorded run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum PlanProgress {
+    /// The plan made its turn in time.
+    #[default]
+    Made,
+    /// No thread had taken the turn in time.
+    Skipped,
+    /// The turn had begun and was not done in time.
+    Late,
+    /// The turn of an earlier time was not done yet.
+    Away,
+    /// The turn of an earlier time was done.
+    Back,
+}
+
+impl Repeats {
+    /// Repeats what a module has published, or how far the plan was with its turn; other changes are not of this kind.
+    pub(crate) fn repeat(&mut self, change: &Change, board: &mut Board) {
+        match change {
+            Change::Attribute { module, name, kind } => {
+                let Some(kind) = AttributeKind::of_number(*kind) else { return };
+                let name = AttributeName::new(module, name);
+                board.restore(name.clone(), kind);
+                self.attributes.push((name, kind));
+            }
+            Change::Vanished(attribute) => {
+                if let Some((name, _)) = self.attributes.get(*attribute as usize) {
+                    board.forget(name);
+                }
+            }
+            Change::Published { attribute, at, bits } => {
+                if let Some((name, kind)) = self.attributes.get(*attribute as usize) {
+                    board.restore_reading(name, Reading { value: Value::of_bits(*kind, *bits), at: *at });
+                }
+            }
+            Change::Skipped => self.progress = PlanProgress::Skipped,
+            Change::Late => self.progress = PlanProgress::Late,
+            Change::Back => self.progress = PlanProgress::Back,
+            Change::Files(_)
+            | Change::Armed { .. }
+            | Change::Cancelled
+            | Change::RolledBack(_)
+            | Change::Trial(_)
+            | Change::Limit { .. } => {}
+        }
+    }
+
+    /// Returns `true` if the plan makes its turn now.
+    pub(crate) fn makes_turn(&self) -> bool {
+        matches!(self.progress, PlanProgress::Made | PlanProgress::Late)
+    }
+
+    /// Returns `true` if what lies on the plan's desk is taken in this turn.
+    pub(crate) fn lands(&self) -> bool {
+        !matches!(self.progress, PlanProgress::Late | PlanProgress::Away)
+    }
+
+    /// Ends the turn.
+    pub(crate) fn end_turn(&mut self) {
+        self.progress = match self.progress {
+            PlanProgress::Made | PlanProgress::Skipped | PlanProgress::Back => PlanProgress::Made,
+            PlanProgress::Late | PlanProgress::Away => PlanProgress::Away,
+        };
+    }
+}

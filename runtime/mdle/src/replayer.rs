@@ -1,0 +1,260 @@
+//! The turns of a record, made again by the engine on the recorded outputs: plans, safety rules and all.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use mdle_compiler::diagnostic::Sources;
+use mdle_compiler::fsm;
+use mdle_compiler::load::{self, Loaded, LoadedPlan};
+use mdle_engine::{Engine, EngineAlphabet, Library, When};
+use mdle_files::Target;
+use mdle_host::{Helm, Intervention, Pace, Pilot as _, Refusal, RunTerms, StopRequest, Supervised, Texts, Time};
+use mdle_host::{PilotFault, Transitions, Verdict};
+use mdle_record::{Applied, Begin, Change, Message, ReadError, RecordedTurn, Step, TurnsWithMessages};
+use mdle_runtime::{Alphabet, Plan, Sensed, Turn, Twist};
+
+use crate::failure::Failure;
+use crate::recorded_files;
+use crate::replayed::{OVER, Part, Record, RecordSource};
+use crate::safety::{Guarded, SafetyFile};
+
+/// A run that is made again, on any robot.
+pub(crate) trait Replay {
+    /// Makes the next turn; returns `None` at the end of the record.
+    fn turn(&mut self) -> Option<Result<ReplayedTurn, Stop>>;
+
+    /// Returns `true` once the end of the record was read; a run that was killed leaves a record without an end.
+    fn is_whole(&self) -> bool;
+}
+
+/// A turn that was made again.
+#[derive(Debug)]
+pub(crate) struct ReplayedTurn {
+    /// The turn in the record.
+    pub(crate) recorded: RecordedTurn,
+    /// The messages about it in the record.
+    pub(crate) messages: Vec<Message>,
+    /// The parts that differ from the record.
+    pub(crate) parts: Vec<Part>,
+    /// The laws that began in the turn, in order; [`OVER`] for the end of the plan.
+    pub(crate) laws: Vec<String>,
+    /// The law of the atom in which the turn ended; empty if there is none.
+    pub(crate) law: String,
+}
+
+/// Reason why no further turn is made.
+#[derive(Debug)]
+pub(crate) enum Stop {
+    /// The record cannot be read.
+    Unread(ReadError),
+    /// A plan that took over cannot be compiled.
+    Failed(Failure),
+}
+
+/// Returns the run of a record whose first plan is that of `machine`.
+///
+/// # Errors
+/// The plan or a safety rule cannot be loaded.
+pub(crate) fn replay<A>(
+    machine: &fsm::Machine,
+    sources: &Sources,
+    target: &Arc<Target>,
+    begin: &Begin,
+    record: Record,
+) -> Result<Box<dyn Replay>, Failure>
+where
+    A: EngineAlphabet<Output = Sensed, Input = Twist>,
+{
+    let plan = Arc::new(load::load::<A>(machine, sources, &target.alphabet)?).plan();
+    let safety = begin.safety.as_ref().map(|texts| SafetyFile::recorded(texts)?.compile::<A>(target));
+    let safety = safety.transpose()?.map(Arc::new);
+    let period = Duration::from_nanos(begin.period.0);
+    let terms = RunTerms { time: Time::Stepped(Pace::Max), period, request: StopRequest::default() };
+    let engine = Engine::new(plan, &Library::new(), &terms).map_err(refused)?;
+    let engine = engine.repeating(safety.as_ref().map(|safety| safety.reads()));
+    let helm = Helm::new(engine, safety.map(|safety| supervised(safety, period)));
+    let (target, record) = (Arc::clone(target), record.with_messages());
+    Ok(Box::new(ReplayOf { helm, record, target, files: Vec::new() }))
+}
+
+/// Returns the supervisor of a run under these rules.
+fn supervised<A>(safety: Arc<Guarded<A>>, period: Duration) -> Supervised<'static, Engine<A>>
+where
+    A: EngineAlphabet<Output = Sensed, Input = Twist>,
+{
+    let supervisor = Box::new(safety.guardian(period));
+    Supervised { supervisor, diversions: Box::new(move |number| safety.diversion(number)) }
+}
+
+fn refused(refusal: Refusal) -> Failure {
+    Failure::Usage(match refusal {
+        Refusal::Usage(sentence) | Refusal::Fault(sentence) | Refusal::Ended(Err(sentence)) => sentence,
+        Refusal::Ended(Ok(())) => "the run was asked to end before it began".to_owned(),
+    })
+}
+
+struct ReplayOf<A: EngineAlphabet<Output = Sensed, Input = Twist>> {
+    helm: Helm<'static, Engine<A>>,
+    record: TurnsWithMessages<RecordSource>,
+    target: Arc<Target>,
+    /// The files of plans that took over, by their numbers in the record.
+    files: Vec<Vec<(String, String)>>,
+}
+
+impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> Replay for ReplayOf<A> {
+    fn turn(&mut self) -> Option<Result<ReplayedTurn, Stop>> {
+        let (mut recorded, messages) = match self.record.next()? {
+            Ok(turn) => turn,
+            Err(error) => return Some(Err(Stop::Unread(error))),
+        };
+        for change in std::mem::take(&mut recorded.changes) {
+            if let Err(failure) = self.repeat(change) {
+                return Some(Err(Stop::Failed(failure)));
+            }
+        }
+        Some(Ok(self.made(recorded, messages)))
+    }
+
+    fn is_whole(&self) -> bool {
+        self.record.is_whole()
+    }
+}
+
+impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
+    /// Repeats a change before a turn.
+    fn repeat(&mut self, change: Change) -> Result<(), Failure> {
+        match change {
+            Change::Files(files) => self.files.push(files),
+            Change::Armed { files, plan, when } => {
+                let plan = self.plan(files, &plan)?;
+                let when = When::of_number(when).unwrap_or(When::Now);
+                self.helm.pilot_mut().plans_mut().replace(plan, when);
+            }
+            Change::Limit { .. } => {
+                if let Some(supervisor) = self.helm.supervisor_mut() {
+                    supervisor.repeat(&change);
+                }
+            }
+            Change::Attribute { .. }
+            | Change::Vanished(_)
+            | Change::Published { .. }
+            | Change::Cancelled
+            | Change::RolledBack(_)
+            | Change::Trial(_)
+            | Change::Skipped
+            | Change::Late
+            | Change::Back => self.helm.pilot_mut().repeat(&change),
+        }
+        Ok(())
+    }
+
+    /// Compiles a plan that took over.
+    fn plan(&self, files: u32, name: &str) -> Result<LoadedPlan<A>, Failure> {
+        let files = self.files.get(files as usize).map_or(&[][..], Vec::as_slice);
+        let (machine, sources) = recorded_files::compiled(files, Some(name), &self.target)?;
+        let loaded: Arc<Loaded<A>> = Arc::new(load::load(&machine, &sources, &self.target.alphabet)?);
+        Ok(loaded.plan())
+    }
+
+    /// Makes a turn.
+    fn made(&mut self, recorded: RecordedTurn, messages: Vec<Message>) -> ReplayedTurn {
+        let (mut y, mut transitions) = (recorded.y, Transitions::default());
+        let made = self.helm.turn(&mut y, recorded.t, recorded.number, &mut transitions);
+        let plan = self.helm.pilot().machine().map(|machine| machine.plan());
+        let laws = transitions.iter().map(|(transition, _)| match (transition.atom, plan) {
+            (Some(atom), Some(plan)) => Plan::law(plan, atom).to_owned(),
+            (Some(_) | None, _) => OVER.to_owned(),
+        });
+        let laws = laws.collect();
+        let parts = self.differing(&recorded, &made, &transitions);
+        let machine = self.helm.pilot().machine();
+        let law = machine.and_then(|machine| Some(Plan::law(machine.plan(), machine.atom()?).to_owned()));
+        if let Some(Intervention { verdict: Verdict::Ended, rule, .. }) = self.helm.intervention() {
+            let rule = rule.to_owned();
+            self.helm.pilot_mut().ended_by(&rule);
+        }
+        ReplayedTurn { recorded, messages, parts, laws, law: law.unwrap_or_default() }
+    }
+
+    /// Returns the parts of a turn that differ from the record.
+    fn differing(
+        &self,
+        recorded: &RecordedTurn,
+        made: &Result<Turn<()>, PilotFault>,
+        transitions: &Transitions,
+    ) -> Vec<Part> {
+        let made = match made {
+            Ok(made) => *made,
+            Err(PilotFault::Stopped(sentence) | PilotFault::Panicked(sentence)) => {
+                return vec![Part::new("turn", "made", sentence)];
+            }
+        };
+        let applied = match made {
+            Turn::Law(()) => Applied::Law,
+            Turn::Cut => Applied::Cut,
+            Turn::Over => Applied::Over,
+        };
+        let pilot = self.helm.pilot();
+        let (state, number) = (pilot.machine().map_or(0, |machine| machine.state()), pilot.plan_number());
+        let steps = transitions.iter().map(|(made, fired)| Step::new(made, fired.iter().map(|(number, _)| *number)));
+        let steps: Vec<_> = steps.collect();
+        let (asked, sent) = (self.helm.asked().unwrap_or_default(), *self.helm.input());
+        let rule = self.helm.intervention().map_or("", |intervention| intervention.rule);
+        let overruled = recorded.overruled.as_ref();
+        let recorded_rule = overruled.map_or("", |overruled| &overruled.rule);
+        let recorded_asked = overruled.map_or(recorded.sent, |overruled| overruled.asked);
+        let mut parts = Vec::new();
+        let mut part = |name: &str, is_same: bool, texts: &dyn Fn() -> [String; 2]| {
+            if !is_same {
+                let [recorded, replayed] = texts();
+                parts.push(Part::new(name, &recorded, &replayed));
+            }
+        };
+        let texts = pilot.machine().map(|machine| machine.plan());
+        part("plan", recorded.plan == number, &|| [recorded.plan, number].map(|number| number.to_string()));
+        part("transitions", recorded.steps == steps, &|| [&recorded.steps, &steps].map(|steps| listed(texts, steps)));
+        part("state", recorded.state == state, &|| [recorded.state, state].map(|state| state.to_string()));
+        part("input by", recorded.applied == applied, &|| [recorded.applied, applied].map(words));
+        part("asked input", bits(recorded_asked) == bits(asked) || overruled.is_none() && rule.is_empty(), &|| {
+            [recorded_asked, asked].map(input)
+        });
+        part("safety rule", recorded_rule == rule, &|| [recorded_rule, rule].map(str::to_owned));
+        part("input", bits(recorded.sent) == bits(sent), &|| [recorded.sent, sent].map(input));
+        parts
+    }
+}
+
+fn bits(input: Twist) -> [u64; 2] {
+    [input.v.0, input.omega.0].map(f64::to_bits)
+}
+
+fn input(input: Twist) -> String {
+    format!("{} m/s, {} rad/s", input.v.0, input.omega.0)
+}
+
+fn words(applied: Applied) -> String {
+    match applied {
+        Applied::Law => "the law of the atom",
+        Applied::Cut => "the null input",
+        Applied::Over => "the end of the plan",
+    }
+    .to_owned()
+}
+
+/// The transitions of a turn, as a trace has them.
+fn listed<A: Alphabet>(plan: Option<&LoadedPlan<A>>, steps: &[Step]) -> String {
+    steps.iter().map(|step| text(plan, step)).collect::<Vec<_>>().join("; ")
+}
+
+fn text<A: Alphabet>(plan: Option<&LoadedPlan<A>>, step: &Step) -> String {
+    let Step { from, scope, cause, to, operands } = step;
+    let Some(plan) = plan else { return format!("{from} to {to}") };
+    let source = Plan::source(plan);
+    let fired = operands.iter().filter_map(|number| source.operand(*scope, *number)).map(|words| words.text);
+    let by = match cause {
+        mdle_runtime::Cause::Completed(_) => "completed".to_owned(),
+        mdle_runtime::Cause::Fired(_) if operands.is_empty() => Texts::condition(plan, *scope).to_owned(),
+        mdle_runtime::Cause::Fired(_) => fired.collect::<Vec<_>>().join(" and "),
+    };
+    format!("{from} to {to} by {by}")
+}
