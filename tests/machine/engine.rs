@@ -163,7 +163,8 @@ fn a_plan_can_replace_itself_in_every_turn() {
 /// Compiles the plan `Main` of a text.
 fn compiled(source: &PlanSource) -> Result<CompiledPlans<Alphabet>, String> {
     let PlanSource::Text(text) = source else { return Err("there is no such file".to_owned()) };
-    let plan = StoredPlan { name: "Main".into(), text: text.as_str().into(), loaded: loaded(text)? };
+    let plan =
+        StoredPlan { name: "Main".into(), files: [("main".to_owned(), text.clone())].into(), loaded: loaded(text)? };
     Ok(CompiledPlans { plans: vec![plan], warnings: String::new() })
 }
 

@@ -18,6 +18,7 @@ mod power;
 mod processes;
 mod record_tools;
 mod records;
+mod replays;
 mod safety;
 mod scout;
 mod sessions;

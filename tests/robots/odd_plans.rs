@@ -237,7 +237,11 @@ fn plans_are_dropped_by_the_janitor() {
     run.engine.plans_mut().replace(other(), When::PlanEnds);
     threads.push(("superseded", dropped(&mut run)));
 
-    let stored = |text: &str| StoredPlan { name: "Odd".into(), text: text.into(), loaded: loaded(text) };
+    let stored = |text: &str| StoredPlan {
+        name: "Odd".into(),
+        files: [("odd.mdle".to_owned(), text.to_owned())].into(),
+        loaded: loaded(text),
+    };
     run.engine.plans_mut().store(stored(&plan("(go -15 0)"))).unwrap();
     run.engine.plans_mut().delete("Odd").unwrap();
     threads.push(("deleted", dropped(&mut run)));

@@ -35,7 +35,9 @@ fn a_record_tells_what_it_contains() {
     let folder = recorded("info");
     let (out, err, status) = run(&folder, "log info square.mcap");
     assert_eq!((err.as_str(), status), ("", 0));
-    let out: Vec<_> = out.lines().filter(|line| !line.starts_with("command")).collect();
+    assert!(out.contains(concat!("\nversion      ", env!("CARGO_PKG_VERSION"), "\n")), "{out}");
+    let is_fixed = |line: &&str| !line.starts_with("command") && !line.starts_with("version");
+    let out: Vec<_> = out.lines().filter(is_fixed).collect();
     insta::assert_snapshot!(out.join("\n"));
     let record = fs::read(folder.join("square.mcap")).unwrap();
     fs::write(folder.join("cut.mcap"), &record[..record.len() / 2]).unwrap();

@@ -107,7 +107,11 @@ fn text(number: u64) -> String {
 
 fn compiled(source: &PlanSource) -> Result<CompiledPlans<Alphabet>, String> {
     let PlanSource::Text(text) = source else { return Err("a text is expected".to_owned()) };
-    let plan = StoredPlan { name: "Swapped".into(), text: text.as_str().into(), loaded: loaded(text)? };
+    let plan = StoredPlan {
+        name: "Swapped".into(),
+        files: [("swapped".to_owned(), text.clone())].into(),
+        loaded: loaded(text)?,
+    };
     Ok(CompiledPlans { plans: vec![plan], warnings: String::new() })
 }
 

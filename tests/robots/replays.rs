@@ -1,0 +1,202 @@
+//! Runs of every kind are made again from their records, to the bit: with random errors, modules, child processes,
+//! safety rules, and people who replace plans; in the simulator and on both emulated robots.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use mdle_atrv_emulator::atrv::{Atrv, step};
+use mdle_emulator::{Emulated, Pace, Port, serve};
+use mdle_scout_emulator::scout::Scout;
+use mdle_sim::{Body, Make, Simulated, World};
+use mdle_tests::chance::{Chance, repeated};
+use mdle_tests::executable::{folder, mdle};
+
+use crate::loaded::random_plan;
+
+const PERIOD: Duration = Duration::from_millis(100);
+const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
+/// Number of kinds of runs.
+const KINDS: u64 = 10;
+/// Number of runs if `MDLE_LONG` is 1: half of them without the variable.
+const RUNS: u64 = 50;
+
+/// The files of all runs. `Rounds` has a loop, a memory, a rising condition and a frame; `Sound` and `Ears` read
+/// modules; `Back` is what a safety rule diverts to, and uses another file.
+const FILES: [(&str, &str); 8] = [
+    (
+        "rounds.mdle",
+        "{ Rounds (wait 30s)
+  ((Atom (RISING (r0 < 80cm) OR wait 4s) (go 30 0)) ahead: (Atom (wait 2s OR bumper) (go 0 0.7))
+  FRAME here (Atom (NOT after ahead (wait 2s) OR wait 1s) stop))^inf
+}
+",
+    ),
+    ("go.mdle", "{ Go (wait 20s)\n  (Atom (bumper OR wait 3s) (go 60 0))\n  (Atom (wait 2s) (go -20 0.3))\n}\n"),
+    (
+        "sound.mdle",
+        "{ Sound (bumper OR age(heading module) > 5s OR wait 20s)
+  (Atom (range(heading module) < 60cm) goAvoid(heading module))
+  (Atom (wait 1) stop)
+}
+",
+    ),
+    (
+        "ears.mdle",
+        "{ Ears (bumper OR age(ears module) > 1s OR wait 9s)\n  (Atom (range(ears module) < 50cm) (go 20 0))\n}\n",
+    ),
+    ("back.mdle", "use \"parts.mdle\"\n{ Back (wait 3s) Leg(1s) Leg(2s) }\n"),
+    ("parts.mdle", "{ Leg(long: time) (Atom (wait long) (go -20 0.1)) }\n"),
+    (
+        "ears.py",
+        "import json, sys
+print(json.dumps({'publishes': {'range': 'cm'}, 'reads': {'sensors/x': 'cm'}}), flush=True)
+for number, line in enumerate(sys.stdin):
+    x = json.loads(line)['sensors/x']
+    print(json.dumps({'range': None if x is None or number % 7 == 3 else 90 - x}), flush=True)
+",
+    ),
+    (
+        "rules.toml",
+        "[limits]\nspeed = \"40cm/s\"\nturn_rate = \"90deg/s\"\nacceleration = \"50cm/s2\"\n
+[[fence]]\ninside = [[-3, -3], [3, -3], [3, 3], [-3, 3]]\nmargin = \"3cm\"\ndeceleration = \"0.5m/s2\"\n
+[contact]\nthen = \"back.mdle\"\n
+[guards.near]\nwhen = \"r0 < 30cm AND v > 5cm/s\"\nthen = \"hold forward\"\n
+[guards.slow]\nwhen = \"range(heading module) < 1m AND omega > 1rad/s\"\nthen = \"hold\"\n
+[guards.far]\nwhen = \"x > 2.5m\"\nthen = \"end\"\n",
+    ),
+];
+
+/// A folder with the files, and the random plan and commands of this number.
+fn prepared(number: u64) -> PathBuf {
+    let folder = folder(&format!("replay-{number}"));
+    for (name, text) in FILES {
+        fs::write(folder.join(name), text).unwrap();
+    }
+    let mut chance = Chance::new(number);
+    fs::write(folder.join("random.mdle"), random_plan(&mut chance)).unwrap();
+    fs::write(folder.join("commands"), commands(&mut chance)).unwrap();
+    folder
+}
+
+/// Commands of a session, some of which are refused.
+fn commands(chance: &mut Chance) -> String {
+    let mut text = "load_plan go.mdle\nload_plan sound.mdle\nstep 3\n".to_owned();
+    for _ in 0..12 {
+        let steps = 1 + chance.below(12);
+        let command = chance.pick(&[
+            "swap Go now",
+            "swap Go atom",
+            "swap Rounds plan",
+            "swap Rounds atom",
+            "swap Sound now",
+            "set /usr/mdle/main { Typed (wait 2s) (Atom (null) (go 0 0.5)) }",
+            "rollback",
+            "rollback",
+            "cancel",
+            "set /usr/mdle/trial 500ms",
+            "set /safety/limits/speed 20cm/s",
+            "set /safety/limits/acceleration 2m/s2",
+            "pause",
+        ]);
+        writeln!(text, "{command}\nstep {steps}").unwrap();
+    }
+    text + "wait\n"
+}
+
+/// The arguments of `mdle` for the run of this number, without those of an emulated robot.
+fn arguments(number: u64) -> String {
+    let body = ["ideal", "scout", "atrv"][number as usize % 3];
+    let sim = format!("--target sim --world hall --speed max --body {body} --seed {number} --timeout 100");
+    let line = "--lockstep --timeout 60";
+    let session = "--paused -c commands";
+    let arguments = match number % KINDS {
+        0 => format!("run random.mdle {sim}"),
+        1 => format!("run rounds.mdle {sim}"),
+        2 => format!("run sound.mdle {sim} --point 2,1"),
+        3 => format!("run ears.mdle {sim} --module {}", "ears=exec\u{a0}python3\u{a0}ears.py"),
+        4 => format!("run rounds.mdle {sim} --safety rules.toml --point 1,1"),
+        5 => format!("run go.mdle {sim} --safety rules.toml --point 3,0"),
+        6 => format!("shell rounds.mdle {sim} {session} --point 2,0"),
+        7 => format!("shell sound.mdle {sim} {session} --point -2,1 --safety rules.toml"),
+        8 => format!("shell rounds.mdle --target scout {line} {session} --point 2,0"),
+        _ => format!("shell go.mdle --target atrv {line} {session} --point 2,0 --safety rules.toml"),
+    };
+    format!("{arguments} --log run.mcap")
+}
+
+/// Runs `mdle` with these words; a no-break space is a space within a word.
+fn run(folder: &Path, arguments: &str) -> (String, i32) {
+    let words = arguments.split(' ').map(|word| word.replace('\u{a0}', " "));
+    let output = Command::new(mdle()).args(words).current_dir(folder).output().unwrap();
+    let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap()).concat();
+    (text, output.status.code().unwrap())
+}
+
+/// Runs `mdle` on an emulated robot.
+fn emulated<R: Emulated + Send>(folder: &Path, mut robot: R, arguments: &str) -> (String, i32) {
+    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
+    thread::scope(|scope| {
+        let serving = scope.spawn(|| serve(&mut robot, &port, IN_LOCKSTEP, &|| !over.load(Ordering::Relaxed)));
+        let outcome = run(folder, &format!("{arguments} --device {}", port.path().display()));
+        over.store(true, Ordering::Relaxed);
+        serving.join().unwrap().unwrap();
+        outcome
+    })
+}
+
+/// A robot with all errors of its body.
+fn simulated(body: Body, step: Duration, seed: u64) -> Simulated {
+    let world = World::named("hall").unwrap().unwrap();
+    let make = Make { body, without: Vec::new(), seed: Some(seed) };
+    Simulated::with(&make, &world, world.start, step).unwrap()
+}
+
+/// Records the run of this number; returns its folder and its output.
+fn recorded(number: u64) -> (PathBuf, String) {
+    let (folder, arguments) = (prepared(number), arguments(number));
+    let (text, status) = match number % KINDS {
+        8 => emulated(&folder, Scout::new(simulated(Body::Scout, PERIOD, number)).unwrap(), &arguments),
+        9 => {
+            let step = step(IN_LOCKSTEP);
+            emulated(&folder, Atrv::new(simulated(Body::Atrv, step, number), step, false).unwrap(), &arguments)
+        }
+        _ => run(&folder, &arguments),
+    };
+    // 1: a command was refused; 6: a safety rule ended the plan.
+    assert!(matches!(status, 0 | 1 | 4 | 6), "{arguments}: {status}\n{text}");
+    (folder, text)
+}
+
+/// Returns how often something is in a record.
+fn count(record: &[u8], text: &str) -> usize {
+    record.windows(text.len()).filter(|bytes| *bytes == text.as_bytes()).count()
+}
+
+#[test]
+fn runs_of_every_kind_replay_to_the_bit() {
+    let (mut plans, mut interventions, mut rollbacks) = (0, 0, 0);
+    for number in 0..repeated(RUNS) {
+        let (folder, report) = recorded(number);
+        // The record needs no other file.
+        for (name, _) in FILES {
+            fs::remove_file(folder.join(name)).unwrap();
+        }
+        let (text, status) = run(&folder, "replay run.mcap");
+        let turns = text.strip_prefix("the same to the bit, ").and_then(|rest| rest.strip_suffix(" turns\n"));
+        let turns: u64 = turns.unwrap_or_else(|| panic!("{number}: {text}{report}")).parse().unwrap();
+        assert!(turns > 0 && status == 0, "{number}: {text}{report}");
+        let record = fs::read(folder.join("run.mcap")).unwrap();
+        plans += count(&record, "\"kind\":\"plan\"");
+        interventions += count(&record, "\"kind\":\"safety\"");
+        rollbacks += count(&record, ": rolled back\"");
+        fs::remove_dir_all(&folder).unwrap();
+    }
+    let runs = repeated(RUNS) as usize;
+    assert!(plans > runs / 2 && interventions > runs && rollbacks > runs / 10, "{plans} {interventions} {rollbacks}");
+}
