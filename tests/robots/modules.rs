@@ -20,7 +20,7 @@ use mdle_sim::{Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::golden;
 
-const PERIOD: Duration = Duration::from_millis(100);
+pub(super) const PERIOD: Duration = Duration::from_millis(100);
 /// Drives to whatever the module `heading` publishes.
 const FOLLOW: &str = "{ Sound (bumper OR age(heading module) > 5s)
   (Atom (range(heading module) < 60cm) goAvoid(heading module))

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -19,11 +19,13 @@ use super::modules::{Run, loaded};
 
 /// Something that a law does besides its input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Deed {
+pub(super) enum Deed {
     /// Nothing else.
     None,
     /// Never returns, until the test is over.
     Hangs,
+    /// At a time of [`SLOW`], returns three turns later, by [`TURN`].
+    Slow,
     /// Panics.
     Panics,
     /// Notes the thread that drops its plan.
@@ -31,18 +33,23 @@ enum Deed {
 }
 
 /// The speeds of `go` with which a law does something else, in m/s.
-const DEEDS: [(f64, Deed); 3] = [(-0.13, Deed::Hangs), (-0.14, Deed::Panics), (-0.15, Deed::Noted)];
+const DEEDS: [(f64, Deed); 4] =
+    [(-0.13, Deed::Hangs), (-0.14, Deed::Panics), (-0.15, Deed::Noted), (-0.16, Deed::Slow)];
+/// The times at which a slow law takes long.
+const SLOW: [Nanos; 2] = [Nanos(300_000_000), Nanos(1_000_000_000)];
+/// Number of the turn for which slow laws wait.
+pub(super) static TURN: AtomicU64 = AtomicU64::new(u64::MAX);
 /// `true` once laws that hang are to return.
 static IS_OVER: AtomicBool = AtomicBool::new(false);
 /// Names of the threads that have dropped noted plans.
 static DROPPED: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 /// The alphabet of the simulated robot, in which some laws do something else.
-struct Odd;
+pub(super) struct Odd;
 
-struct OddControl(AnyControl, Deed);
+pub(super) struct OddControl(AnyControl, Deed);
 
-struct OddLaw(AnyLaw, Deed);
+pub(super) struct OddLaw(AnyLaw, Deed);
 
 impl runtime::Alphabet for Odd {
     type Output = Sensed;
@@ -107,6 +114,12 @@ impl Law<Sensed> for OddLaw {
                 }
             }
             Deed::Panics => panic!("index 7 of 3"),
+            Deed::Slow => {
+                let last = y.at.0 / 100_000_000 + 3;
+                while SLOW.contains(&y.at) && TURN.load(Ordering::Relaxed) < last {
+                    thread::sleep(Duration::from_millis(1));
+                }
+            }
         }
         self.0.input(y, t)
     }

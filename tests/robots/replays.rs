@@ -4,6 +4,7 @@
 
 use std::fmt::Write as _;
 use std::fs;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,6 +13,8 @@ use std::time::Duration;
 
 use mdle_atrv_emulator::atrv::{Atrv, step};
 use mdle_emulator::{Emulated, Pace, Port, serve};
+use mdle_record::frames::{Frames, TurnMade};
+use mdle_record::{RecordFile, RecordedTurn, Records};
 use mdle_scout_emulator::scout::Scout;
 use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::chance::{Chance, repeated};
@@ -171,6 +174,32 @@ fn recorded(number: u64) -> (PathBuf, String) {
     // 1: a command was refused; 6: a safety rule ended the plan.
     assert!(matches!(status, 0 | 1 | 4 | 6), "{arguments}: {status}\n{text}");
     (folder, text)
+}
+
+/// Writes the record `run.mcap` without the changes of its turns, as `bare.mcap`.
+fn without_changes(folder: &Path) {
+    let (begin, turns) = Records::open(fs::File::open(folder.join("run.mcap")).unwrap()).unwrap();
+    let (mut frames, mut bytes) = (Frames::default(), Vec::new());
+    let turns: Vec<_> = turns.map(Result::unwrap).collect();
+    frames.begin(&begin, &turns[0].y, &mut bytes);
+    for RecordedTurn { number, t, y, sent, applied, plan, state, steps, overruled, .. } in turns {
+        let made = TurnMade { number, t, sent, applied, plan, state, changes: &[], overruled: overruled.as_ref() };
+        frames.turn(made, &y, steps.into_iter(), &mut bytes);
+    }
+    frames.end(&mut bytes);
+    RecordFile::new(fs::File::create(folder.join("bare.mcap")).unwrap()).write_all(&bytes).unwrap();
+}
+
+/// What modules and people do decides the course of a run: without it the record is that of another run.
+#[test]
+fn a_replay_needs_the_changes_of_a_record() {
+    for number in [62, 63, 66, 67] {
+        let (folder, report) = recorded(number);
+        without_changes(&folder);
+        let (text, status) = run(&folder, "replay bare.mcap");
+        assert!(text.contains(" differs\n") && status == 1, "{number}: {text}{report}");
+        assert!(run(&folder, "replay run.mcap").0.starts_with("the same to the bit, "));
+    }
 }
 
 /// Returns how often something is in a record.

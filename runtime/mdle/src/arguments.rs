@@ -55,6 +55,8 @@ pub(crate) struct Replay {
     pub(crate) plan: Option<PathBuf>,
     /// Time of the last turn, as it was typed; `None` for all turns.
     pub(crate) until: Option<String>,
+    /// `true` if the turns are made one by one, as commands ask for them.
+    pub(crate) steps: bool,
 }
 
 /// The arguments of `mdle run`.
@@ -123,6 +125,7 @@ pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
             log: replay.get_one("log").cloned().unwrap_or_default(),
             plan: replay.get_one("plan").cloned(),
             until: replay.get_one("until").cloned(),
+            steps: replay.get_flag("step"),
         })),
         Some(("why", matches)) => Ok(Asked::Why(Why::of(matches))),
         Some(("log", matches)) => Ok(Asked::Log(Log::of(matches))),
@@ -261,9 +264,15 @@ fn replay() -> Command {
                 .value_name("TIME")
                 .help("Time of the last turn to make, in seconds or with a unit [default: that of the record]"),
         )
+        .arg(
+            Arg::new("step")
+                .long("step")
+                .action(ArgAction::SetTrue)
+                .help("Show the turns one by one, forth and back, by commands on standard input; `help` lists them"),
+        )
         .after_help(
             "Exit status: 0 if all turns are those of the record; 1 if a turn differs, the record was changed, or the plan has \
-             errors; 2 for wrong usage or a file that cannot be read",
+             errors; 2 for wrong usage or a file that cannot be read. With `--step` 1 also if a command of a pipe was refused",
         )
 }
 

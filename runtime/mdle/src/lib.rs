@@ -21,6 +21,7 @@ mod run;
 mod run_time;
 mod safety;
 mod session;
+mod step;
 mod targets;
 mod terminal;
 mod test;

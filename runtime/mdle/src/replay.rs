@@ -12,13 +12,15 @@ use mdle_compiler::fsm::Machine;
 use mdle_files::{Target, read_plan};
 use mdle_host::Clocked;
 use mdle_record::{Begin, ReadError, Records};
-use mdle_runtime::Printable;
+use mdle_runtime::{Nanos, Printable};
 
 use crate::arguments::Replay;
 use crate::failure::Failure;
 use crate::recorded_files;
 use crate::replayed::{Difference, Outcome, Parting, Record, ReplayTerms, replayed};
+use crate::replayer::RecordedRun;
 use crate::run_time::run_time;
+use crate::step::{Steps, step};
 use crate::targets;
 
 /// Exit status of a run that is not that of the record.
@@ -38,6 +40,9 @@ pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
     let until = arguments.until.as_deref().map(run_time).transpose()?;
     let terms = ReplayTerms { until, goes_on: arguments.plan.is_some() };
     let mut replay = (linked.replay)(&machine, &sources, &target, &begin, records)?;
+    if arguments.steps {
+        return stepped(&arguments.log, &mut *replay, until);
+    }
     let outcome = replayed(&mut *replay, terms)?;
     let plan = arguments.plan.as_ref().and_then(|plan| plan.file_name()).map(|name| name.to_string_lossy());
     tell(&outcome, plan.as_deref().unwrap_or_default())
@@ -47,6 +52,17 @@ pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
         Outcome::Same { .. } => Ok(ExitCode::SUCCESS),
         Outcome::Differs(_) | Outcome::Unread(..) => Ok(ExitCode::from(DIFFERS)),
     }
+}
+
+/// Shows the turns of a record one by one.
+fn stepped(log: &Path, replay: &mut dyn RecordedRun, until: Option<Nanos>) -> Result<ExitCode, Failure> {
+    if log == Path::new("-") {
+        let sentence =
+            "the record and the commands cannot both come from standard input\nhelp: name the file of the record";
+        return Err(Failure::Usage(sentence.to_owned()));
+    }
+    let Steps { differs, is_refused } = step(replay, until)?;
+    Ok(ExitCode::from(if differs || is_refused { DIFFERS } else { 0 }))
 }
 
 /// Opens a record and reads its begin.

@@ -6,7 +6,7 @@ use mdle_record::{Message, MessageKind, ReadError, Records};
 use mdle_runtime::Nanos;
 
 use crate::failure::Failure;
-use crate::replayer::{Replay, ReplayedTurn, Stop};
+use crate::replayer::{RecordedRun, ReplayedTurn, Stop};
 
 /// The end of a plan, in place of a law.
 pub(crate) const OVER: &str = "plan over";
@@ -88,7 +88,7 @@ impl Part {
 ///
 /// # Errors
 /// A plan that took over in the record cannot be compiled.
-pub(crate) fn replayed(replay: &mut dyn Replay, terms: ReplayTerms) -> Result<Outcome, Failure> {
+pub(crate) fn replayed(replay: &mut dyn RecordedRun, terms: ReplayTerms) -> Result<Outcome, Failure> {
     let (mut turns, mut difference) = (0, None::<Difference>);
     while let Some(turn) = replay.turn() {
         let turn = match turn {

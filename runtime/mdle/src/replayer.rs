@@ -19,7 +19,7 @@ use crate::replayed::{OVER, Part, Record, RecordSource};
 use crate::safety::{Guarded, SafetyFile};
 
 /// A run that is made again, on any robot.
-pub(crate) trait Replay {
+pub(crate) trait RecordedRun {
     /// Makes the next turn; returns `None` at the end of the record.
     fn turn(&mut self) -> Option<Result<ReplayedTurn, Stop>>;
 
@@ -61,7 +61,7 @@ pub(crate) fn replay<A>(
     target: &Arc<Target>,
     begin: &Begin,
     record: Record,
-) -> Result<Box<dyn Replay>, Failure>
+) -> Result<Box<dyn RecordedRun>, Failure>
 where
     A: EngineAlphabet<Output = Sensed, Input = Twist>,
 {
@@ -101,7 +101,7 @@ struct ReplayOf<A: EngineAlphabet<Output = Sensed, Input = Twist>> {
     files: Vec<Vec<(String, String)>>,
 }
 
-impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> Replay for ReplayOf<A> {
+impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> RecordedRun for ReplayOf<A> {
     fn turn(&mut self) -> Option<Result<ReplayedTurn, Stop>> {
         let (mut recorded, messages) = match self.record.next()? {
             Ok(turn) => turn,

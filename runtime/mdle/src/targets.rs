@@ -19,7 +19,7 @@ use mdle_runtime::{Alphabet, Plan as _, Robot, Sensed, Twist};
 use crate::failure::Failure;
 use crate::plans::{self, texts};
 use crate::replayed::Record;
-use crate::replayer::{Replay, replay};
+use crate::replayer::{RecordedRun, replay};
 use crate::rerun::{Rerun, rerun};
 use crate::safety::{Guarded, SafetyFile};
 use crate::session::Seat;
@@ -43,7 +43,7 @@ pub(crate) struct LinkedTarget {
 type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Box<dyn Ready>, Failure>;
 
 /// Runs the plan of a machine on the outputs of a record.
-type ReplayRecord = fn(&Machine, &Sources, &Arc<Target>, &Begin, Record) -> Result<Box<dyn Replay>, Failure>;
+type ReplayRecord = fn(&Machine, &Sources, &Arc<Target>, &Begin, Record) -> Result<Box<dyn RecordedRun>, Failure>;
 
 /// Loads the plan of a machine, to make the turns of a record again, with all laws or with those alone that complete.
 type RerunRecord = fn(&Machine, &Sources, &Target, Record, bool) -> Result<Box<dyn Rerun>, Failure>;

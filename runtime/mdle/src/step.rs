@@ -1,0 +1,257 @@
+//! `mdle replay --step`: the turns of a record one by one, forth and back.
+
+use std::fmt::Write as _;
+use std::io::{self, BufRead, IsTerminal as _, Write};
+
+use mdle_compiler::alphabet::did_you_mean;
+use mdle_host::Clocked;
+use mdle_record::{Message, MessageKind, Overruled};
+use mdle_runtime::{Nanos, Printable};
+
+use crate::failure::Failure;
+use crate::replayed::OVER;
+use crate::replayer::{RecordedRun, ReplayedTurn, Stop};
+use crate::run_time::run_time;
+
+/// The commands, with what they do.
+const COMMANDS: [(&str, &str); 6] = [
+    ("step [N]", "make the next turn, or N turns; an empty line does the same"),
+    ("back [N]", "go back by a turn, or by N turns"),
+    ("next", "make turns up to the next one with a transition"),
+    ("to TIME", "go to the last turn at or before a time of the run"),
+    ("help", "print the commands"),
+    ("quit", "end"),
+];
+
+/// The outcome of the steps through a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Steps {
+    /// `true` if a turn differs from the record, or the record was changed.
+    pub(crate) differs: bool,
+    /// `true` if a command was refused.
+    pub(crate) is_refused: bool,
+}
+
+/// A turn that was made.
+#[derive(Debug)]
+struct MadeTurn {
+    t: Nanos,
+    has_transition: bool,
+    text: String,
+}
+
+/// The turns of a record up to the last one that was made.
+struct Turns<'r> {
+    replay: &'r mut dyn RecordedRun,
+    until: Option<Nanos>,
+    made: Vec<MadeTurn>,
+    /// Number of turns up to the one that is shown.
+    place: usize,
+    /// Why there are no more turns, once there are none.
+    end: Option<String>,
+    differs: bool,
+}
+
+/// Steps through a record by the commands on standard input; prints the turns on standard output.
+///
+/// # Errors
+/// A plan that took over cannot be compiled, or standard output cannot be written.
+pub(crate) fn step(replay: &mut dyn RecordedRun, until: Option<Nanos>) -> Result<Steps, Failure> {
+    let is_typed = io::stdin().is_terminal();
+    let (mut lines, mut out) = (io::stdin().lock().lines(), io::stdout().lock());
+    let mut turns = Turns { replay, until, made: Vec::new(), place: 0, end: None, differs: false };
+    let unwritten = |error: io::Error| Failure::Usage(format!("standard output cannot be written: {error}"));
+    let (mut answer, mut is_refused) = (turns.forward(1)?, false);
+    loop {
+        let prompt = if is_typed { "> " } else { "" };
+        write!(out, "{answer}{prompt}").and_then(|()| out.flush()).map_err(unwritten)?;
+        let Some(Ok(line)) = lines.next() else { break };
+        answer = match turns.command(line.trim()) {
+            Ok(Some(text)) => text,
+            Ok(None) => break,
+            Err(Refused::Sentence(sentence)) => {
+                is_refused |= !is_typed;
+                // Between answers, as in the shell: the order of both counts.
+                let _ = writeln!(io::stderr(), "error: {sentence}");
+                String::new()
+            }
+            Err(Refused::Failure(failure)) => return Err(failure),
+        };
+    }
+    Ok(Steps { differs: turns.differs, is_refused })
+}
+
+/// Reason why a command is not carried out.
+enum Refused {
+    /// The command is wrong.
+    Sentence(String),
+    /// A plan cannot be compiled.
+    Failure(Failure),
+}
+
+impl From<Failure> for Refused {
+    fn from(failure: Failure) -> Self {
+        Self::Failure(failure)
+    }
+}
+
+impl Turns<'_> {
+    /// Carries out a command; returns its answer, or `None` for the end.
+    fn command(&mut self, line: &str) -> Result<Option<String>, Refused> {
+        let (word, argument) = line.split_once(' ').map_or((line, ""), |(word, argument)| (word, argument.trim()));
+        if ["next", "help", "quit"].contains(&word) && !argument.is_empty() {
+            return Err(Refused::Sentence(format!("`{word}` takes no arguments")));
+        }
+        match word {
+            "" | "step" => Ok(Some(self.forward(count(word, argument)?)?)),
+            "back" => Ok(Some(self.back(count(word, argument)?))),
+            "next" => Ok(Some(self.next()?)),
+            "to" => {
+                let found =
+                    if argument.is_empty() { String::new() } else { format!("; found `{}`", Printable(argument)) };
+                let refused = |_| Refused::Sentence(format!("`to` takes a time, as in `to 5s`{found}"));
+                let time = run_time(argument).map_err(refused)?;
+                Ok(Some(self.to(time)?))
+            }
+            "help" => Ok(Some(COMMANDS.iter().fold(String::new(), |mut text, (command, what)| {
+                let _ = writeln!(text, "{command:<9} {what}");
+                text
+            }))),
+            "quit" => Ok(None),
+            _ => {
+                let names: Vec<_> = COMMANDS.iter().filter_map(|(command, _)| command.split(' ').next()).collect();
+                let near = did_you_mean(word, &names);
+                let near = if near.is_empty() { ": `help` lists them".to_owned() } else { near };
+                Err(Refused::Sentence(format!("there is no command `{}`{near}", Printable(word))))
+            }
+        }
+    }
+
+    /// Goes forward by this many turns.
+    fn forward(&mut self, count: usize) -> Result<String, Failure> {
+        let wanted = self.place.saturating_add(count);
+        while self.made.len() < wanted && self.make()? {}
+        self.show(wanted)
+    }
+
+    /// Goes back by this many turns.
+    fn back(&mut self, count: usize) -> String {
+        match self.place.checked_sub(count).filter(|place| *place > 0) {
+            Some(place) => {
+                self.place = place;
+                self.text()
+            }
+            None => {
+                self.place = self.made.len().min(1);
+                format!("this is the first turn\n{}", self.text())
+            }
+        }
+    }
+
+    /// Goes to the next turn with a transition.
+    fn next(&mut self) -> Result<String, Failure> {
+        let mut place = self.place;
+        loop {
+            if self.made.len() <= place && !self.make()? {
+                return self.show(place.saturating_add(1));
+            }
+            place += 1;
+            if self.made.get(place - 1).is_some_and(|turn| turn.has_transition) {
+                return self.show(place);
+            }
+        }
+    }
+
+    /// Goes to the last turn at or before this time.
+    fn to(&mut self, time: Nanos) -> Result<String, Failure> {
+        while self.made.last().is_none_or(|last| last.t <= time) && self.make()? {}
+        let place = self.made.iter().take_while(|turn| turn.t <= time).count();
+        self.show(place.max(1))
+    }
+
+    /// Shows the turn at this place, or the last one.
+    fn show(&mut self, place: usize) -> Result<String, Failure> {
+        self.place = place.min(self.made.len());
+        let end = self.end.as_ref().filter(|_| place > self.made.len());
+        Ok(end.map_or_else(String::new, |end| format!("{end}\n")) + &self.text())
+    }
+
+    fn text(&self) -> String {
+        let shown = self.place.checked_sub(1).and_then(|place| self.made.get(place));
+        shown.map_or_else(String::new, |turn| turn.text.clone())
+    }
+
+    /// Makes the turn after the last one; returns `false` if there is none.
+    fn make(&mut self) -> Result<bool, Failure> {
+        if self.end.is_some() {
+            return Ok(false);
+        }
+        let end = match self.replay.turn() {
+            Some(Ok(turn)) if self.until.is_none_or(|until| turn.recorded.t <= until) => {
+                self.differs |= !turn.parts.is_empty();
+                let (t, has_transition) = (turn.recorded.t, !turn.laws.is_empty() || !turn.recorded.steps.is_empty());
+                self.made.push(MadeTurn { t, has_transition, text: text(&turn) });
+                return Ok(true);
+            }
+            Some(Err(Stop::Failed(failure))) => return Err(failure),
+            Some(Err(Stop::Unread(error))) => {
+                self.differs = true;
+                format!("no turn follows: {error}")
+            }
+            Some(Ok(_)) => "no turn follows up to that time".to_owned(),
+            None if self.replay.is_whole() => "no turn follows: the record ends here".to_owned(),
+            None => "no turn follows: the record has no end".to_owned(),
+        };
+        self.end = Some(end);
+        Ok(false)
+    }
+}
+
+/// Reads a number of turns.
+fn count(word: &str, argument: &str) -> Result<usize, Refused> {
+    if argument.is_empty() {
+        return Ok(1);
+    }
+    let count = argument.parse().ok().filter(|count| *count > 0);
+    count.ok_or_else(|| {
+        Refused::Sentence(format!("`{word}` takes a number of turns from 1; found `{}`", Printable(argument)))
+    })
+}
+
+/// The text of a turn: what led to it, its transitions, its input, and what differs from the record.
+fn text(ReplayedTurn { recorded, messages, parts, laws, law }: &ReplayedTurn) -> String {
+    let mut text = format!("turn {} at {}  {}\n", recorded.number, Clocked(recorded.t), Printable(law));
+    if law.is_empty() {
+        text = text.trim_end().to_owned() + "\n";
+    }
+    let mut line = |line: &str| _ = writeln!(text, "  {}", Printable(line));
+    for (kind, words) in messages.iter().filter_map(words) {
+        line(&format!("{kind}{words}"));
+    }
+    if messages.iter().all(|message| message.kind != MessageKind::Transition) {
+        laws.iter().for_each(|law| line(law));
+    }
+    if let Some(Overruled { asked, rule }) = &recorded.overruled {
+        line(&format!("asked for {} m/s, {} rad/s; {rule} changed it", asked.v.0, asked.omega.0));
+    }
+    line(&format!("sent {} m/s, {} rad/s", recorded.sent.v.0, recorded.sent.omega.0));
+    for part in parts {
+        line(&format!("differs: {}: recorded {}, replayed {}", part.name, part.recorded, part.replayed));
+    }
+    text
+}
+
+/// The words of a message of the record.
+fn words(message: &Message) -> Option<(String, String)> {
+    let json: serde_json::Value = serde_json::from_str(&message.json).ok()?;
+    let field = |name: &str| json.get(name).and_then(serde_json::Value::as_str);
+    Some(match message.kind {
+        MessageKind::Transition => {
+            (field("law").unwrap_or(OVER).to_owned(), format!("  <- {}", field("cause").unwrap_or_default()))
+        }
+        MessageKind::Event => {
+            let text = field("text").filter(|text| !text.is_empty()).unwrap_or("the plan goes on");
+            (format!("{}: ", field("kind")?), text.to_owned())
+        }
+    })
+}

@@ -1,0 +1,92 @@
+//! A run in which plans are late, skipped and rolled back is made again by an engine that waits for nobody, to the bit.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::sync::atomic::Ordering;
+use std::thread;
+
+use mdle_engine::{Engine, Library, When};
+use mdle_host::{Moment, Pace, Pilot as _, RunTerms, StopRequest, Time, Transitions};
+use mdle_record::{Change, Step};
+use mdle_runtime::{Nanos, Robot as _, Sensed, Turn, Twist};
+use mdle_sim::{Simulated, World};
+
+use super::modules::{PERIOD, loaded};
+use super::odd_plans::{Odd, TURN};
+
+/// Plans whose laws take long at two times.
+const FIRST: &str = "{ First (null) ((Atom (wait 400ms) (go -16 0)) (Atom (wait 200ms) (go -16 0.1)))^inf }";
+const SECOND: &str = "{ Second (null) ((Atom (wait 200ms) (go -16 0.2)) (Atom (wait 300ms) (go -16 0.3)))^inf }";
+
+/// Number of turns.
+const TURNS: u64 = 40;
+
+/// A turn of a run, and all that led to it.
+#[derive(Debug)]
+struct Made {
+    y: Sensed,
+    t: Nanos,
+    changes: Vec<Change>,
+    outcome: Outcome,
+}
+
+/// The outcome of a turn: the input, the transitions, the state, and the plan.
+#[derive(Debug, PartialEq)]
+struct Outcome(Turn<Twist>, Vec<Step>, Option<u64>, u64);
+
+fn engine(time: Time) -> Engine<Odd> {
+    let terms = RunTerms { time, period: PERIOD, request: StopRequest::default() };
+    Engine::new(loaded(FIRST).plan(), &Library::new(), &terms).unwrap()
+}
+
+fn turn(engine: &mut Engine<Odd>, y: &Sensed, number: u64) -> Outcome {
+    let (mut y, t, mut transitions) = (*y, Nanos(number * 100_000_000), Transitions::default());
+    engine.complete(&mut y, t);
+    let turn = engine.turn(Moment { y: &y, t, number }, &mut transitions).unwrap();
+    let steps = transitions.iter().map(|(made, fired)| Step::new(made, fired.iter().map(|(number, _)| *number)));
+    Outcome(turn, steps.collect(), engine.machine().map(|machine| machine.state()), engine.plan_number())
+}
+
+/// A run on workers with a deadline for each turn.
+fn live() -> Vec<Made> {
+    let world = World::named("hall").unwrap().unwrap();
+    let mut robot = Simulated::new(&world, world.start, Some(3), PERIOD).unwrap();
+    let (mut engine, mut input, mut turns) = (engine(Time::Wall), Twist::default(), Vec::new());
+    engine.record();
+    for number in 0..TURNS {
+        TURN.store(number, Ordering::Relaxed);
+        match number {
+            6 => _ = engine.plans_mut().replace(loaded(SECOND).plan(), When::AtomEnds),
+            20 => drop(engine.rollback("asked for")),
+            30 => _ = engine.plans_mut().replace(loaded(SECOND).plan(), When::Now),
+            _ => {}
+        }
+        let y = robot.exchange(&input).unwrap();
+        let outcome = turn(&mut engine, &y, number);
+        input = outcome.0.input();
+        turns.push(Made { y, t: y.at, changes: engine.take_changes(), outcome });
+        // So that a turn that is late can come back some turns later.
+        thread::sleep(PERIOD / 10);
+    }
+    TURN.store(u64::MAX, Ordering::Relaxed);
+    turns
+}
+
+#[test]
+fn late_turns_replay_to_the_bit() {
+    let turns = live();
+    let count = |kind: &Change| turns.iter().filter(|turn| turn.changes.contains(kind)).count();
+    assert!(count(&Change::Late) >= 2 && count(&Change::Back) >= 2, "{turns:?}");
+    assert!(turns.last().unwrap().outcome.3 >= 3, "{turns:?}");
+    let mut again = engine(Time::Stepped(Pace::Max)).repeating(None);
+    for (number, Made { y, t, changes, outcome }) in (0..).zip(&turns) {
+        for change in changes {
+            match change {
+                Change::Armed { when, .. } => {
+                    again.plans_mut().replace(loaded(SECOND).plan(), When::of_number(*when).unwrap());
+                }
+                other => again.repeat(other),
+            }
+        }
+        assert_eq!(turn(&mut again, y, number), *outcome, "turn {number} at {t:?} after {changes:?}");
+    }
+}
