@@ -74,6 +74,10 @@ fn wrong_commands_of_steps_are_refused() {
     ));
     let both = dialogue(&folder, "replay --step -", "step\n");
     assert!(both.ends_with("[2]\n"), "{both}");
+    fs::write(folder.join("steps"), "step\nquit\n").unwrap();
+    let file = dialogue(&folder, "replay --step run.mcap -c steps", "");
+    assert!(file.starts_with("turn 0 at 0.0 s") && file.ends_with("\n---\n[0]\n"), "{file}");
+    assert!(file.contains("\nturn 1 at 0.1 s"), "{file}");
 }
 
 /// Each step is compared: another plan differs in its turn, and the steps end with exit status 1.

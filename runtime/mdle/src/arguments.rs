@@ -57,6 +57,8 @@ pub(crate) struct Replay {
     pub(crate) until: Option<String>,
     /// `true` if the turns are made one by one, as commands ask for them.
     pub(crate) steps: bool,
+    /// File of these commands; `None` for standard input.
+    pub(crate) commands: Option<PathBuf>,
 }
 
 /// The arguments of `mdle run`.
@@ -126,6 +128,7 @@ pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
             plan: replay.get_one("plan").cloned(),
             until: replay.get_one("until").cloned(),
             steps: replay.get_flag("step"),
+            commands: replay.get_one("commands").cloned(),
         })),
         Some(("why", matches)) => Ok(Asked::Why(Why::of(matches))),
         Some(("log", matches)) => Ok(Asked::Log(Log::of(matches))),
@@ -268,11 +271,21 @@ fn replay() -> Command {
             Arg::new("step")
                 .long("step")
                 .action(ArgAction::SetTrue)
-                .help("Show the turns one by one, forth and back, by commands on standard input; `help` lists them"),
+                .help("Show the turns one by one, forth and back, as commands ask for them; `help` lists these"),
+        )
+        .arg(
+            Arg::new("commands")
+                .short('c')
+                .long("commands")
+                .value_name("FILE")
+                .requires("step")
+                .help("File of commands [default: standard input]")
+                .value_parser(value_parser!(PathBuf)),
         )
         .after_help(
             "Exit status: 0 if all turns are those of the record; 1 if a turn differs, the record was changed, or the plan has \
-             errors; 2 for wrong usage or a file that cannot be read. With `--step` 1 also if a command of a pipe was refused",
+             errors; 2 for wrong usage or a file that cannot be read. With `--step` it is 1 also if a command that was not \
+             typed was refused",
         )
 }
 

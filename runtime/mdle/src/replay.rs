@@ -1,7 +1,7 @@
 //! `mdle replay`: re-executes a recorded run, and compares it with the record to the bit.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Write as _};
+use std::io::{self, BufReader, IsTerminal as _, Read, Write as _};
 use std::os::unix::fs::FileTypeExt as _;
 use std::path::Path;
 use std::process::ExitCode;
@@ -20,7 +20,8 @@ use crate::recorded_files;
 use crate::replayed::{Difference, Outcome, Parting, Record, ReplayTerms, replayed};
 use crate::replayer::RecordedRun;
 use crate::run_time::run_time;
-use crate::step::{Steps, step};
+use crate::session;
+use crate::step::step;
 use crate::targets;
 
 /// Exit status of a run that is not that of the record.
@@ -41,7 +42,7 @@ pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
     let terms = ReplayTerms { until, goes_on: arguments.plan.is_some() };
     let mut replay = (linked.replay)(&machine, &sources, &target, &begin, records)?;
     if arguments.steps {
-        return stepped(&arguments.log, &mut *replay, until);
+        return stepped(arguments, &mut *replay, until);
     }
     let outcome = replayed(&mut *replay, terms)?;
     let plan = arguments.plan.as_ref().and_then(|plan| plan.file_name()).map(|name| name.to_string_lossy());
@@ -55,14 +56,21 @@ pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
 }
 
 /// Shows the turns of a record one by one.
-fn stepped(log: &Path, replay: &mut dyn RecordedRun, until: Option<Nanos>) -> Result<ExitCode, Failure> {
-    if log == Path::new("-") {
-        let sentence =
-            "the record and the commands cannot both come from standard input\nhelp: name the file of the record";
-        return Err(Failure::Usage(sentence.to_owned()));
-    }
-    let Steps { differs, is_refused } = step(replay, until)?;
-    Ok(ExitCode::from(if differs || is_refused { DIFFERS } else { 0 }))
+fn stepped(
+    Replay { log, commands, .. }: &Replay,
+    run: &mut dyn RecordedRun,
+    until: Option<Nanos>,
+) -> Result<ExitCode, Failure> {
+    let outcome = match commands {
+        Some(path) => step(run, until, BufReader::new(session::opened(path)?), false)?,
+        None if log == Path::new("-") => {
+            let sentence = "the record and the commands cannot both come from standard input\nhelp: name a file of \
+                            commands, as in `-c FILE`";
+            return Err(Failure::Usage(sentence.to_owned()));
+        }
+        None => step(run, until, io::stdin().lock(), io::stdin().is_terminal())?,
+    };
+    Ok(ExitCode::from(if outcome.differs || outcome.is_refused { DIFFERS } else { 0 }))
 }
 
 /// Opens a record and reads its begin.

@@ -103,7 +103,7 @@ fn front_end(
 }
 
 /// Opens a file of commands, which may be a pipe.
-fn opened(path: &Path) -> Result<File, Failure> {
+pub(crate) fn opened(path: &Path) -> Result<File, Failure> {
     let unread =
         |error: io::Error| Failure::Usage(format!("the commands in {} cannot be read: {error}", path.display()));
     let file = File::open(path).map_err(unread)?;

@@ -1,7 +1,7 @@
 //! `mdle replay --step`: the turns of a record one by one, forth and back.
 
 use std::fmt::Write as _;
-use std::io::{self, BufRead, IsTerminal as _, Write};
+use std::io::{self, BufRead, Write};
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_host::Clocked;
@@ -52,13 +52,17 @@ struct Turns<'r> {
     differs: bool,
 }
 
-/// Steps through a record by the commands on standard input; prints the turns on standard output.
+/// Steps through a record by these commands, which a person types if `is_typed`; prints the turns on standard output.
 ///
 /// # Errors
 /// A plan that took over cannot be compiled, or standard output cannot be written.
-pub(crate) fn step(replay: &mut dyn RecordedRun, until: Option<Nanos>) -> Result<Steps, Failure> {
-    let is_typed = io::stdin().is_terminal();
-    let (mut lines, mut out) = (io::stdin().lock().lines(), io::stdout().lock());
+pub(crate) fn step(
+    replay: &mut dyn RecordedRun,
+    until: Option<Nanos>,
+    commands: impl BufRead,
+    is_typed: bool,
+) -> Result<Steps, Failure> {
+    let (mut lines, mut out) = (commands.lines(), io::stdout().lock());
     let mut turns = Turns { replay, until, made: Vec::new(), place: 0, end: None, differs: false };
     let unwritten = |error: io::Error| Failure::Usage(format!("standard output cannot be written: {error}"));
     let (mut answer, mut is_refused) = (turns.forward(1)?, false);
