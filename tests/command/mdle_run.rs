@@ -69,6 +69,25 @@ fn help_names_every_option() {
     assert!(help.contains("--start-noise") && help.ends_with("[0]\n"), "{help}");
 }
 
+/// All commands about records have one rule for exit statuses.
+#[test]
+fn commands_about_records_describe_themselves() {
+    let folder = folder("record-help");
+    let lines = [
+        "why --help",
+        "log --help",
+        "log cut --help",
+        "log export --help",
+        "plot --help",
+        "why run.mcap",
+        "log export",
+    ];
+    let helps = lines.map(|line| report(&folder, line)).join("\n");
+    let rule = "1 if the record was changed, or the plan has errors or is not that of the record; 2 for wrong usage";
+    assert_eq!(helps.matches(rule).count(), 3, "{helps}");
+    insta::assert_snapshot!(helps);
+}
+
 #[test]
 fn shells_and_man_know_every_command_of_mdle() {
     let folder = folder("mdle_manual");

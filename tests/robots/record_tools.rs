@@ -63,6 +63,39 @@ fn a_part_of_a_record_is_a_record() {
     assert_eq!(refused[0].1, "error: part.mcap exists already\n");
 }
 
+/// A negative time is no option.
+#[test]
+fn times_before_the_run_have_a_help() {
+    let folder = recorded("negative");
+    let calls =
+        ["log cut square.mcap -5 new.mcap", "log cut square.mcap -5s new.mcap", "replay square.mcap --until -5"];
+    for call in calls.into_iter().chain(["why square.mcap -5"]) {
+        let (out, err, status) = run(&folder, call);
+        let time = if call.contains("-5s") { "-5s" } else { "-5" };
+        let help = "help: a time of the run is 0 or more, as in `12.3` or `2min`";
+        assert_eq!((err, status), (format!("error: `{time}` is before the start of the run\n{help}\n"), 2), "{call}");
+        assert!(out.is_empty() && !folder.join("new.mcap").exists());
+    }
+}
+
+/// As in `mdle log export --csv square.mcap | head -1`.
+#[test]
+fn a_reader_that_has_gone_is_no_error() {
+    let folder = recorded("closed");
+    let calls =
+        ["log export --csv", "log export --script", "log info", "replay"].map(|call| format!("{call} square.mcap"));
+    for call in calls.into_iter().chain(["why square.mcap 5".to_owned(), "why square.mcap --not turn".to_owned()]) {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = Command::new(mdle()).args(call.split(' ')).current_dir(&folder).stdout(writer).output().unwrap();
+        assert_eq!(
+            (String::from_utf8(output.stderr).unwrap(), output.status.code()),
+            (String::new(), Some(0)),
+            "{call}"
+        );
+    }
+}
+
 #[test]
 fn a_damaged_record_is_not_cut() {
     let folder = recorded("damaged");

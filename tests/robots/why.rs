@@ -1,6 +1,9 @@
 //! `mdle why` answers questions about records that a test writes, and names the operands that decide.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+mod absences;
+mod keys;
+mod other_plans;
 mod questions;
 mod random;
 mod scripted;

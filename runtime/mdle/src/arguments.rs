@@ -265,7 +265,8 @@ fn replay() -> Command {
             Arg::new("until")
                 .long("until")
                 .value_name("TIME")
-                .help("Time of the last turn to make, in seconds or with a unit [default: that of the record]"),
+                .help("Time of the last turn to make, in seconds or with a unit [default: that of the record]")
+                .allow_hyphen_values(true),
         )
         .arg(
             Arg::new("step")
@@ -284,8 +285,8 @@ fn replay() -> Command {
         )
         .after_help(
             "Exit status: 0 if all turns are those of the record; 1 if a turn differs, the record was changed, or the plan has \
-             errors; 2 for wrong usage or a file that cannot be read. With `--step` it is 1 also if a command that was not \
-             typed was refused",
+             errors or is not in its file; 2 for wrong usage or a file that cannot be read. With `--step` it is 1 also if \
+             a command that was not typed was refused",
         )
 }
 

@@ -9,7 +9,7 @@ use mdle_compiler::load::LoadError;
 use mdle_files::{FaultyFile, InputError};
 use mdle_runtime::PrintableLines;
 
-/// Exit status of a plan with errors.
+/// Exit status of a plan with errors, of a record that was changed, and of a plan that is not that of the record.
 const PLAN: u8 = 1;
 /// Exit status of wrong usage.
 const USAGE: u8 = 2;
@@ -25,6 +25,10 @@ pub(crate) enum Failure {
     Input(InputError),
     /// The plan has errors, whose diagnostics were printed.
     Plan,
+    /// The plan is not that of the record: a sentence.
+    OtherPlan(String),
+    /// The reader of standard output has gone, which is no error.
+    Closed,
     /// A file of tests has errors, which were printed.
     TestFile,
 }
@@ -76,9 +80,22 @@ impl Failure {
                 status
             }
             Self::Plan => PLAN,
+            Self::OtherPlan(sentence) => {
+                error(&sentence);
+                PLAN
+            }
+            Self::Closed => 0,
             Self::TestFile => USAGE,
         }
     }
+}
+
+/// Returns the failure to write to standard output: a reader that closes the pipe, as `head` does, is no error.
+pub(crate) fn unprinted(error: &io::Error) -> Failure {
+    if error.kind() == io::ErrorKind::BrokenPipe {
+        return Failure::Closed;
+    }
+    Failure::Usage(format!("standard output cannot be written: {error}"))
 }
 
 /// Prints an error.

@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod arguments;
+mod elements_named;
 mod failure;
 mod log;
 mod manual;

@@ -11,8 +11,9 @@ use mdle_sim::{Drawing, SignalCurve, TimeChart};
 use crate::arguments::Plot;
 use crate::failure::Failure;
 use crate::log::{created, unwritten};
+use crate::replay::{self, WantedPlan};
 use crate::rerun::{Rerun, RerunTurn};
-use crate::{replay, why};
+use crate::why;
 
 /// Draws a record.
 ///
@@ -22,14 +23,17 @@ pub(crate) fn plot(arguments: &Plot) -> Result<ExitCode, Failure> {
     let signals = arguments.signals.iter().map(|name| signal(name)).collect::<Result<Vec<_>, _>>()?;
     let (begin, record) = replay::record(&arguments.log)?;
     let name = arguments.log.display().to_string();
-    let (machine, mut rerun) = why::reruns(&arguments.log, arguments.plan.as_deref(), &begin, record)?;
+    let call = format!("mdle plot {name} {}", arguments.file.display());
+    let (log, file) = (arguments.log.as_path(), arguments.plan.as_deref());
+    let wanted = WantedPlan { log, file, begin: &begin, call: &call, has_run: true };
+    let (machine, mut rerun) = why::reruns(&wanted, record)?;
     let mut picture =
         if arguments.is_over_time { Picture::OverTime(Box::default()) } else { Picture::Unbegun(name.clone()) };
     let mut pictured = Pictured { atom: None, touches: false, end: Nanos::ZERO, by: String::new() };
     while let Some(turn) = rerun.turn(&mut |_, _| false) {
         match turn {
             Ok(turn) => pictured.turn(&turn, &machine, &*rerun, &mut picture, &signals)?,
-            Err(stop) => return why::stopped(&stop, &name),
+            Err(stop) => return why::stopped(&stop, &name, arguments.plan.as_deref()),
         }
     }
     let text = pictured.ended(picture, &begin.plan, &*rerun);

@@ -9,13 +9,13 @@ use std::sync::Arc;
 
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::fsm::Machine;
-use mdle_files::{Target, read_plan};
+use mdle_files::{Input, Target, read_plan};
 use mdle_host::Clocked;
 use mdle_record::{Begin, ReadError, Records};
 use mdle_runtime::{Nanos, Printable};
 
 use crate::arguments::Replay;
-use crate::failure::Failure;
+use crate::failure::{self, Failure};
 use crate::recorded_files;
 use crate::replayed::{Difference, Outcome, Parting, Record, ReplayTerms, replayed};
 use crate::replayer::RecordedRun;
@@ -37,7 +37,10 @@ pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
     let (begin, records) = record(&arguments.log)?;
     let linked = targets::linked(&begin.target).map_err(Failure::Usage)?;
     let target = Arc::new(mdle_files::target(Some(&begin.target))?);
-    let (machine, sources) = plan(&arguments.log, arguments.plan.as_deref(), &begin, &target)?;
+    let call = format!("mdle replay {}", arguments.log.display());
+    let (log, file) = (arguments.log.as_path(), arguments.plan.as_deref());
+    let wanted = WantedPlan { log, file, begin: &begin, call: &call, has_run: false };
+    let (machine, sources) = plan(&wanted, &target)?;
     let until = arguments.until.as_deref().map(run_time).transpose()?;
     let terms = ReplayTerms { until, goes_on: arguments.plan.is_some() };
     let mut replay = (linked.replay)(&machine, &sources, &target, &begin, records)?;
@@ -46,8 +49,7 @@ pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
     }
     let outcome = replayed(&mut *replay, terms)?;
     let plan = arguments.plan.as_ref().and_then(|plan| plan.file_name()).map(|name| name.to_string_lossy());
-    tell(&outcome, plan.as_deref().unwrap_or_default())
-        .map_err(|error| Failure::Usage(format!("standard output cannot be written: {error}")))?;
+    tell(&outcome, plan.as_deref().unwrap_or_default()).map_err(|error| failure::unprinted(&error))?;
     match outcome {
         Outcome::Unread(_, error @ ReadError::System(_)) => Err(unread(&arguments.log, &error)),
         Outcome::Same { .. } => Ok(ExitCode::SUCCESS),
@@ -99,31 +101,62 @@ fn opened(path: &Path) -> io::Result<Box<dyn Read>> {
     Err(io::Error::other("expected a file or a pipe"))
 }
 
-/// Compiles the plan of a record, or the plan of the same name in `file`.
+/// The plan that is wanted for a record.
+pub(crate) struct WantedPlan<'a> {
+    pub(crate) log: &'a Path,
+    /// Its file; `None` for the text in the record.
+    pub(crate) file: Option<&'a Path>,
+    pub(crate) begin: &'a Begin,
+    /// The call without `--plan`, for messages.
+    pub(crate) call: &'a str,
+    /// `true` if it has to be the plan that ran.
+    pub(crate) has_run: bool,
+}
+
+/// Compiles the plan of a record, or the plan of the same name in a file.
 ///
 /// # Errors
-/// The plan cannot be read or has errors, or the record has no text of it.
-pub(crate) fn plan(
-    log: &Path,
-    file: Option<&Path>,
-    begin: &Begin,
-    target: &Target,
-) -> Result<(Machine, Sources), Failure> {
+/// The plan cannot be read, has errors or is not that of the record, or the record has no text of it.
+pub(crate) fn plan(wanted: &WantedPlan<'_>, target: &Target) -> Result<(Machine, Sources), Failure> {
+    let WantedPlan { log, file, begin, call, has_run } = *wanted;
     let Some(path) = file else {
         if begin.files.is_empty() {
             return Err(Failure::Usage(format!(
-                "the record of an executable does not have the text of its plan\nhelp: name its file, as in `mdle replay \
-                 {} --plan PLAN.mdle`",
-                log.display()
+                "the record of an executable does not have the text of its plan\nhelp: name its file, as in `{call} --plan \
+                 PLAN.mdle`"
             )));
         }
         return recorded_files::compiled(&begin.files, Some(&begin.plan), target);
     };
     let mut input = read_plan(path, target)?;
-    input.must_have(&begin.plan)?;
+    input.must_have(&begin.plan).map_err(|error| Failure::OtherPlan(error.to_string()))?;
     let (plans, diagnostics) = input.compile(&target.alphabet, Some(&begin.plan));
+    if has_run && let Some(difference) = difference(&input, begin) {
+        return Err(Failure::OtherPlan(format!(
+            "{} is not the plan that ran: {difference}\nhelp: leave `--plan` out: the record has the text of its plan; \
+             `mdle replay {} --plan {0}` runs this one on the outputs of the record",
+            path.display(),
+            log.display()
+        )));
+    }
     let machine = recorded_files::only(plans, &diagnostics, &input.sources, Some(&begin.plan))?;
     Ok((machine, input.sources))
+}
+
+/// Returns the first place at which the texts of a plan differ from those in the record, if it has any.
+fn difference(input: &Input, begin: &Begin) -> Option<String> {
+    if begin.files.is_empty() {
+        return None;
+    }
+    let mut recorded = begin.files.iter().map(|(_, text)| text);
+    for (path, text) in input.files().zip(input.texts()) {
+        let Some(recorded) = recorded.next() else { return Some(format!("it did not use {}", path.display())) };
+        if text != recorded {
+            let same = text.lines().zip(recorded.lines()).take_while(|(own, recorded)| own == recorded).count();
+            return Some(format!("line {} of {} differs from the record", same + 1, path.display()));
+        }
+    }
+    recorded.next().map(|_| "it uses fewer files".to_owned())
 }
 
 /// Prints the outcome for a plan of this name.

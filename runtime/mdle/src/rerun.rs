@@ -12,7 +12,7 @@ use mdle_compiler::plan::Condition;
 use mdle_files::Target;
 use mdle_host::{Texts, Transitions};
 use mdle_record::{Message, MessageKind, ReadError, RecordedTurn, Step, TurnsWithMessages};
-use mdle_runtime::{Alphabet, Machine, Nanos, Sensed, Stamp, Stamps, Turn, Twist};
+use mdle_runtime::{Alphabet, Machine, Nanos, Plan, Sensed, Stamp, Stamps, Turn, Twist};
 
 use crate::failure::Failure;
 use crate::replayed::Record;
@@ -41,10 +41,21 @@ pub(crate) struct RerunTurn {
 pub(crate) enum Stop {
     /// The record cannot be read.
     Unread(ReadError),
-    /// The transitions of this turn are not those of the record.
-    Differs(u64),
+    /// This turn is not that of the record, by a difference in words.
+    Differs(u64, String),
     /// From this time on another plan ran.
     OtherPlan(Nanos),
+}
+
+/// The laws that run when the turns of a record are made again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum RerunLaws {
+    /// The laws on which transitions depend.
+    Needed,
+    /// All laws, for the inputs of the plan; those that were sent may be others.
+    All,
+    /// All laws, whose inputs have to be those that were sent.
+    Compared,
 }
 
 /// The record of a run whose turns are made again, on any robot.
@@ -59,7 +70,7 @@ pub(crate) trait Rerun {
     fn is_whole(&self) -> bool;
 }
 
-/// Loads the plan of a machine, to make the turns of a record again. All laws are run if `with_laws`.
+/// Loads the plan of a machine, to make the turns of a record again with these laws.
 ///
 /// # Errors
 /// The robot of the bound alphabet has other quarks.
@@ -68,7 +79,7 @@ pub(crate) fn rerun<A>(
     sources: &Sources,
     target: &Target,
     record: Record,
-    with_laws: bool,
+    laws: RerunLaws,
 ) -> Result<Box<dyn Rerun>, Failure>
 where
     A: Alphabet<Output = Sensed, Input = Twist> + 'static,
@@ -76,7 +87,7 @@ where
     let loaded = Arc::new(load::load::<A>(machine, sources, &target.alphabet)?);
     // `stuck` reads the progress of laws.
     let lasts = machine.elements().any(|element| element.condition().any(&|part: &Condition| part.lasting().is_some()));
-    let runs = machine.atoms().map(|atom| with_laws || lasts || atom.law().completes).collect();
+    let runs = machine.atoms().map(|atom| laws != RerunLaws::Needed || lasts || atom.law().completes).collect();
     let texts = loaded.plan();
     let entered = Entered::Stamps(Stamps::new(vec![Stamp::START; machine.depth()].into(), machine.frames().into()));
     Ok(Box::new(RerunOf {
@@ -84,6 +95,7 @@ where
         texts,
         entered,
         runs,
+        is_compared: laws == RerunLaws::Compared,
         record: record.with_messages(),
         machine: None,
         event: String::new(),
@@ -101,6 +113,8 @@ struct RerunOf<A: Alphabet> {
     texts: LoadedPlan<A>,
     entered: Entered,
     runs: Vec<bool>,
+    /// `true` if inputs and the texts of transitions have to be those of the record.
+    is_compared: bool,
     record: TurnsWithMessages<BufReader<Box<dyn Read>>>,
     machine: Option<Machine<Examining<A>>>,
     /// The last event of the turns that were made.
@@ -114,8 +128,8 @@ impl<A: Alphabet<Output = Sensed, Input = Twist>> Rerun for RerunOf<A> {
             Err(error) => return Some(Err(Stop::Unread(error))),
         };
         let next = self.record.next_time();
-        if let Some(event) = messages.into_iter().rfind(is_standing) {
-            self.event = event.json;
+        if let Some(event) = messages.iter().rfind(|message| is_standing(message)) {
+            self.event.clone_from(&event.json);
         }
         if recorded.plan != 1 {
             return Some(Err(Stop::OtherPlan(recorded.t)));
@@ -129,7 +143,12 @@ impl<A: Alphabet<Output = Sensed, Input = Twist>> Rerun for RerunOf<A> {
         let computed = machine.turn(y, *t, &mut transitions);
         let steps = transitions.iter().map(|(made, fired)| Step::new(made, fired.iter().map(|(number, _)| *number)));
         if recorded.state != machine.state() || !steps.eq(recorded.steps.iter().cloned()) {
-            return Some(Err(Stop::Differs(recorded.number)));
+            return Some(Err(Stop::Differs(recorded.number, "it makes other transitions".to_owned())));
+        }
+        if self.is_compared
+            && let Some(difference) = difference(machine.plan(), (&recorded, &messages), &transitions, computed)
+        {
+            return Some(Err(Stop::Differs(recorded.number, difference)));
         }
         let moments = machine.plan().moments();
         let event = self.event.clone();
@@ -143,4 +162,29 @@ impl<A: Alphabet<Output = Sensed, Input = Twist>> Rerun for RerunOf<A> {
     fn is_whole(&self) -> bool {
         self.record.is_whole()
     }
+}
+
+/// Returns how the texts of transitions, or the input, differ from those of the record.
+fn difference(
+    plan: &impl Plan<Input = Twist>,
+    (recorded, messages): (&RecordedTurn, &[Message]),
+    transitions: &Transitions,
+    computed: Turn<Twist>,
+) -> Option<String> {
+    let texts = messages.iter().filter(|message| message.kind == MessageKind::Transition);
+    for ((transition, _), message) in transitions.iter().zip(texts) {
+        let Ok(known) = serde_json::from_str::<serde_json::Value>(&message.json) else { continue };
+        let own = [
+            ("by", transition.cause.by(plan.condition(transition.scope))),
+            ("law", transition.atom.map_or("", |atom| plan.law(atom))),
+        ];
+        for (key, own) in own {
+            let known = known.get(key).and_then(serde_json::Value::as_str).unwrap_or_default();
+            if known != own {
+                return Some(format!("it has `{own}` in place of `{known}`"));
+            }
+        }
+    }
+    let bits = |input: Twist| [input.v.0, input.omega.0].map(f64::to_bits);
+    (bits(computed.input()) != bits(recorded.sent)).then(|| "it sends another input".to_owned())
 }

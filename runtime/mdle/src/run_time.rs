@@ -12,7 +12,8 @@ use crate::failure::Failure;
 pub(crate) fn run_time(text: &str) -> Result<Nanos, Failure> {
     let seconds = Quantity::Time.read(text, "s").map_err(Failure::Usage)?;
     if seconds < 0.0 {
-        return Err(Failure::Usage(format!("`{text}` is before the start of the run")));
+        let help = "a time of the run is 0 or more, as in `12.3` or `2min`";
+        return Err(Failure::Usage(format!("`{text}` is before the start of the run\nhelp: {help}")));
     }
     // Conversion to an integer saturates.
     Ok(Nanos(libm::round(seconds * 1e9) as u64))

@@ -20,7 +20,7 @@ use crate::failure::Failure;
 use crate::plans::{self, texts};
 use crate::replayed::Record;
 use crate::replayer::{RecordedRun, replay};
-use crate::rerun::{Rerun, rerun};
+use crate::rerun::{Rerun, RerunLaws, rerun};
 use crate::safety::{Guarded, SafetyFile};
 use crate::session::Seat;
 
@@ -45,8 +45,8 @@ type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Bo
 /// Runs the plan of a machine on the outputs of a record.
 type ReplayRecord = fn(&Machine, &Sources, &Arc<Target>, &Begin, Record) -> Result<Box<dyn RecordedRun>, Failure>;
 
-/// Loads the plan of a machine, to make the turns of a record again, with all laws or with those alone that complete.
-type RerunRecord = fn(&Machine, &Sources, &Target, Record, bool) -> Result<Box<dyn Rerun>, Failure>;
+/// Loads the plan of a machine, to make the turns of a record again.
+type RerunRecord = fn(&Machine, &Sources, &Target, Record, RerunLaws) -> Result<Box<dyn Rerun>, Failure>;
 
 /// A plan that is ready to run.
 pub(crate) trait Ready {

@@ -9,7 +9,7 @@ use super::asked;
 use super::scripted::{outputs, ping, write};
 
 /// Writes a record and returns the answers to questions about it: a time, or `--not` and an atom.
-fn answers(name: &str, plan: &str, outputs: &[Sensed], questions: &[&str]) -> String {
+pub(super) fn answers(name: &str, plan: &str, outputs: &[Sensed], questions: &[&str]) -> String {
     let folder = folder(&format!("why-{name}"));
     let target = mdle_files::target(Some("sim")).unwrap();
     write(&folder, name, &target, plan, outputs);

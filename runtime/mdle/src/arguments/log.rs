@@ -64,11 +64,13 @@ pub(crate) fn log() -> Command {
             Arg::new("time")
                 .value_name("TIME")
                 .help("Time of the last turn, in seconds or with a unit, as in 12.3 or 2min")
+                .allow_hyphen_values(true)
                 .required(true),
         )
         .arg(file("File of the new record, which must not exist").required(true));
     let export = Command::new("export")
         .about("Write the turns of a record as a table, or as a script")
+        .override_usage("mdle log export --csv [OPTIONS] <LOG>\n       mdle log export --script [OPTIONS] <LOG>")
         .arg(log())
         .arg(
             Arg::new("csv")
@@ -97,5 +99,8 @@ pub(crate) fn log() -> Command {
         .subcommand(info)
         .subcommand(cut)
         .subcommand(export)
-        .after_help("Exit status: 0; 1 if the record was changed or is damaged; 2 for wrong usage or a file that cannot be read")
+        .after_help(
+            "Exit status: 0; 1 if the record was changed, or the plan has errors or is not that of the record; 2 for wrong usage \
+             or a file that cannot be read or written",
+        )
 }

@@ -61,5 +61,7 @@ pub(crate) fn plot() -> Command {
                 .value_name("PLAN")
                 .help("File of the plan that ran, for the record of an executable [default: the text in the record]"),
         )
-        .after_help("Exit status: 0; 1 if the record was changed or is not that of the plan; 2 for wrong usage or a file that cannot be read or written")
+        .after_help("Exit status: 0; 1 if the record was changed, or the plan has errors or is not that of the record; 2 for wrong usage or a \
+             file that cannot be read or written",
+        )
 }

@@ -22,7 +22,7 @@ pub(crate) struct Why {
 pub(crate) enum Question {
     /// Why this ran at a time, as it was typed.
     At(String),
-    /// Why this atom did not begin.
+    /// Why this atom or behavior did not begin.
     Not(String),
 }
 
@@ -43,6 +43,7 @@ impl Why {
 pub(crate) fn why() -> Command {
     Command::new("why")
         .about("Explain what a recorded run did at a time, or why it did not do something")
+        .override_usage("mdle why [OPTIONS] <LOG> <TIME>\n       mdle why [OPTIONS] <LOG> --not <ATOM>")
         .long_about(
             "Explain what a recorded run did at a time, or why it did not do something\n\nThe plan makes its turns again \
              with the recorded outputs of the robot. The answer has the condition of every scope around the atom with the \
@@ -64,7 +65,8 @@ pub(crate) fn why() -> Command {
                 .conflicts_with("not"),
         )
         .arg(Arg::new("not").long("not").value_name("ATOM").help(
-            "Explain why this atom did not begin: its law, as in 'go 20 0', its line, or the name of a scope around it",
+            "Explain why this atom or behavior did not begin: a law, as in 'go 20 0', the name of a law or of a behavior, or a \
+             line",
         ))
         .arg(
             Arg::new("plan")
@@ -75,7 +77,7 @@ pub(crate) fn why() -> Command {
         )
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print a JSON object"))
         .after_help(
-            "Exit status: 0; 1 if the record was changed or the plan is not that of the record; 2 for wrong usage, a time \
-             outside the record, or a file that cannot be read",
+            "Exit status: 0; 1 if the record was changed, or the plan has errors or is not that of the record; 2 for wrong \
+             usage, a time outside the record, or a file that cannot be read",
         )
 }

@@ -9,7 +9,7 @@ use mdle_record::{Begin, Message, MessageKind, RecordFile, RecordedTurn};
 use mdle_runtime::Nanos;
 
 use super::{created, damaged, unwritten};
-use crate::failure::Failure;
+use crate::failure::{self, Failure};
 use crate::replay;
 
 /// Writes the turns up to `until` as a record of its own.
@@ -34,8 +34,7 @@ pub(super) fn cut(log: &Path, until: Nanos, file: &Path) -> Result<ExitCode, Fai
         part.turn(&begin, turn, messages).map_err(|error| unwritten(&file.display(), &error))?;
     }
     let turns = part.end().map_err(|error| unwritten(&file.display(), &error))?;
-    writeln!(io::stdout().lock(), "{}: {turns} turns", file.display())
-        .map_err(|error| unwritten(&"standard output", &error))?;
+    writeln!(io::stdout().lock(), "{}: {turns} turns", file.display()).map_err(|error| failure::unprinted(&error))?;
     Ok(ExitCode::SUCCESS)
 }
 

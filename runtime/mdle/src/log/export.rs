@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use mdle_record::{Message, MessageKind, RecordedTurn};
@@ -10,7 +10,7 @@ use mdle_runtime::SONARS;
 use mdle_runtime::trace::Seconds;
 
 use super::{created, damaged, unwritten};
-use crate::failure::Failure;
+use crate::failure::{self, Failure};
 use crate::replay;
 
 /// Writes the turns of a record as CSV to a file, or to standard output.
@@ -38,7 +38,8 @@ pub(super) fn export(log: &Path, file: Option<&Path>) -> Result<ExitCode, Failur
 /// Lines that go to a file or to standard output.
 pub(super) struct Table {
     out: Box<dyn Write>,
-    name: String,
+    /// The file; `None` for standard output.
+    file: Option<PathBuf>,
 }
 
 impl Table {
@@ -51,7 +52,7 @@ impl Table {
             Some(file) => Box::new(BufWriter::new(created(file)?)),
             None => Box::new(BufWriter::new(io::stdout().lock())),
         };
-        Ok(Self { out, name: file.map_or("standard output".to_owned(), |file| file.display().to_string()) })
+        Ok(Self { out, file: file.map(Path::to_owned) })
     }
 
     /// Writes a line with its end.
@@ -59,7 +60,7 @@ impl Table {
     /// # Errors
     /// That of the system.
     pub(super) fn write(&mut self, line: &str) -> Result<(), Failure> {
-        self.out.write_all(line.as_bytes()).map_err(|error| unwritten(&self.name, &error))
+        self.out.write_all(line.as_bytes()).map_err(|error| self.failed(&error))
     }
 
     /// Writes what is still held back.
@@ -67,7 +68,14 @@ impl Table {
     /// # Errors
     /// That of the system.
     pub(super) fn close(mut self) -> Result<(), Failure> {
-        self.out.flush().map_err(|error| unwritten(&self.name, &error))
+        self.out.flush().map_err(|error| self.failed(&error))
+    }
+
+    fn failed(&self, error: &io::Error) -> Failure {
+        match &self.file {
+            Some(file) => unwritten(&file.display(), error),
+            None => failure::unprinted(error),
+        }
     }
 }
 

@@ -8,8 +8,8 @@ use mdle_host::Clocked;
 use mdle_runtime::Nanos;
 use mdle_runtime::{Printable, trace::Seconds};
 
-use super::{damaged, unwritten};
-use crate::failure::Failure;
+use super::damaged;
+use crate::failure::{self, Failure};
 use crate::replay;
 
 /// Prints what a record contains.
@@ -49,7 +49,7 @@ pub(super) fn info(log: &Path) -> Result<ExitCode, Failure> {
     ];
     let mut out = io::stdout().lock();
     for (name, value) in lines.into_iter().filter(|(_, value)| !value.is_empty()) {
-        writeln!(out, "{name:<12} {}", Printable(value)).map_err(|error| unwritten(&"standard output", &error))?;
+        writeln!(out, "{name:<12} {}", Printable(value)).map_err(|error| failure::unprinted(&error))?;
     }
     error.map_or(Ok(ExitCode::SUCCESS), |error| damaged(log, &error))
 }

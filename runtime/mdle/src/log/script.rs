@@ -12,7 +12,7 @@ use serde_json::json;
 
 use super::export::Table;
 use crate::failure::Failure;
-use crate::replay;
+use crate::replay::{self, WantedPlan};
 use crate::rerun::{Moment, RerunTurn};
 use crate::why;
 
@@ -23,7 +23,9 @@ use crate::why;
 /// The record or the plan cannot be read, a turn cannot be told by a script, or the file cannot be written.
 pub(super) fn script(log: &Path, plan: Option<&Path>, file: Option<&Path>) -> Result<ExitCode, Failure> {
     let (begin, record) = replay::record(log)?;
-    let (machine, mut rerun) = why::reruns(log, plan, &begin, record)?;
+    let call = format!("mdle log export --script {}", log.display());
+    let wanted = WantedPlan { log, file: plan, begin: &begin, call: &call, has_run: true };
+    let (machine, mut rerun) = why::reruns(&wanted, record)?;
     let mut table = Table::created(file)?;
     let mut way = Nanometers(0);
     while let Some(turn) = rerun.turn(&mut |_, _| true) {
@@ -31,7 +33,7 @@ pub(super) fn script(log: &Path, plan: Option<&Path>, file: Option<&Path>) -> Re
             Ok(turn) => turn,
             Err(stop) => {
                 table.close()?;
-                return why::stopped(&stop, &log.display().to_string());
+                return why::stopped(&stop, &log.display().to_string(), plan);
             }
         };
         way = turn.moments.first().and_then(|moment| moment.scopes.first()).map_or(way, |plan| plan.way);

@@ -1,6 +1,6 @@
 //! The course of a run: the atoms that began, the transitions, and how it ended.
 
-use mdle_compiler::fsm::{ElementKind, Machine};
+use mdle_compiler::fsm::Machine;
 use mdle_host::{Operand, Transitions};
 use mdle_runtime::{Cause, Nanos, Pose, Transition, Words};
 
@@ -157,10 +157,4 @@ pub(super) fn atom_words(machine: &Machine, words: &dyn Words, atom: Option<u32>
     let atom = machine.atom(atom);
     let line = words.bracket(atom.element().number()).map_or(0, |bracket| bracket.at.line);
     format!("{} (line {line})", atom.law().text)
-}
-
-/// Returns the names of the scopes around an atom, from the inside.
-pub(super) fn scope_names(machine: &Machine, atom: u32) -> impl Iterator<Item = &str> {
-    let around = machine.atom(atom).element().outwards();
-    around.filter(|element| matches!(element.kind(), ElementKind::Scope)).map(|element| element.name())
 }

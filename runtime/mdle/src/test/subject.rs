@@ -3,17 +3,16 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::diagnostic::{Diagnostic, Severity, judged};
-use mdle_compiler::fsm::{self, Machine, PlanWords};
+use mdle_compiler::fsm::{self, Element, Machine, PlanWords};
 use mdle_compiler::load::{self, Loaded};
 use mdle_compiler::{Compiled, compile};
 use mdle_files::{Input, Known, Settings, Target, read_plan};
 use mdle_runtime::{Condition, Words as _};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 
-use super::course::scope_names;
 use super::file::TestFile;
+use crate::elements_named::elements_named;
 use crate::failure::{self, Failure};
 
 /// Target of tests if nothing names another one.
@@ -85,44 +84,15 @@ impl Subject {
         &self.compiled.machine
     }
 
-    /// Returns the atoms that a text names, `true` for each: by the law, by the law's name, or by the name of a scope
-    /// around them.
+    /// Returns the atoms that a text names, `true` for each: by the law, by the law's name, or by the name of an
+    /// enclosing scope.
     ///
     /// # Errors
     /// The plan has no such atom: a sentence and a help.
     pub(super) fn atoms(&self, text: &str) -> Result<Vec<bool>, (String, String)> {
-        let text = text.trim();
-        let law = self.law(text);
-        let first_word = |law: &str| law.split(' ').next().unwrap_or_default().to_owned();
-        let candidates: [&dyn Fn(u32) -> bool; 3] = [
-            &|atom| Some(&self.machine().atom(atom).law().text) == law.as_ref(),
-            &|atom| first_word(&self.machine().atom(atom).law().text) == text,
-            &|atom| !text.is_empty() && scope_names(self.machine(), atom).any(|name| name == text),
-        ];
-        let count = u32::try_from(self.machine().atoms().len()).unwrap_or(u32::MAX);
-        for is_named in candidates {
-            let atoms: Vec<bool> = (0..count).map(is_named).collect();
-            if atoms.contains(&true) {
-                return Ok(atoms);
-            }
-        }
-        let mut known: Vec<String> = self.machine().atoms().map(|atom| atom.law().text.clone()).collect();
-        known.dedup();
-        let scopes = self.machine().elements().map(|element| element.name()).filter(|name| !name.is_empty());
-        let names = known.iter().map(String::as_str).chain(scopes).collect::<Vec<_>>();
-        let near = did_you_mean(text, &names);
-        let listed = known.iter().map(|law| format!("`{law}`")).collect::<Vec<_>>().join(", ");
-        Err((format!("the plan has no atom `{text}`{near}"), format!("the laws of its atoms are {listed}")))
-    }
-
-    /// Returns the text of a law as the plan has it, whatever units and spaces it is written with.
-    fn law(&self, text: &str) -> Option<String> {
-        let plan = format!("{{ Law (Atom (null) ({text})) }}");
-        let mut sources = self.target.sources();
-        let source = sources.add("law", plan.as_str());
-        let (plans, _) = compile(source, &plan, &self.target.alphabet, None);
-        let atom = plans.first().and_then(|plan| plan.machine.atoms().next().map(|atom| atom.law().text.clone()));
-        atom.filter(|_| !text.contains(['(', ')', '{', '}', ';']) && text.trim() == text)
+        let named = elements_named(self.machine(), &self.target, text)?;
+        let is_inside = |element: Element<'_>| element.outwards().any(|element| named.contains(&element.number()));
+        Ok(self.machine().atoms().map(|atom| is_inside(atom.element())).collect())
     }
 
     /// Compiles a condition on the output of one turn.

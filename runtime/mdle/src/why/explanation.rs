@@ -156,7 +156,7 @@ impl<'m> Explainer<'m> {
 
     /// Returns the facts that operands read at a moment of a turn.
     pub(crate) fn facts(turn: &RerunTurn, moment: &Moment) -> Facts {
-        Facts { ages: ages(&turn.recorded.y), stalled: moment.stalled }
+        Facts { ages: ages(&turn.recorded.y), stalled: moment.stalled, is_new: moment.is_new() }
     }
 
     /// Returns the causes of the transitions of a turn, and the atoms to which they led.
@@ -208,7 +208,7 @@ impl<'m> Explainer<'m> {
         let element = self.machine.element(scope.bracket);
         let words = plan.source();
         let bracket = words.bracket(scope.bracket);
-        let examination = examination(self.machine, element, scope, facts, words);
+        let mut examination = examination(self.machine, element, scope, facts, words);
         let is_removed = element.interrupt().is_some_and(|interrupt| interrupt.removed);
         let is_cause = moment.cause.is_some_and(|cause| cause.level() == scope.level);
         let part = match moment.cause {
@@ -219,6 +219,9 @@ impl<'m> Explainer<'m> {
             Some(_) if examination.fired => Part::Shadowed,
             Some(_) | None => Part::Waits,
         };
+        if part != Part::Ended {
+            examination.operands.iter_mut().for_each(|operand| operand.decided = false);
+        }
         let removed = element.interrupt().filter(|_| is_removed).map(|interrupt| interrupt.text.clone());
         let condition = bracket.map_or_else(String::new, |words| words.condition.to_owned());
         Scope {

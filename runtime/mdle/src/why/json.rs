@@ -4,7 +4,7 @@ use mdle_runtime::{Measured, Nanos, Twist};
 use serde_json::{Value, json};
 
 use super::explanation::{AtomWords, Ended, Explanation, Part, Runs, Scope};
-use super::never::{Chance, Never, Stay, Turned};
+use super::never::{Beginnings, Chance, Never, Skips, Stay, Turned};
 use super::operands::Operand;
 use super::{Answer, Next};
 
@@ -79,12 +79,13 @@ fn scope(scope: &Scope) -> Value {
 }
 
 fn operand(operand: &Operand) -> Value {
-    let Operand { written, words, fired, decides, measured, lack, stale, inside } = operand;
+    let Operand { written, words, fired, decided, suffices, measured, lack, stale, inside } = operand;
     json!({
         "operand": written,
         "words": words,
         "fired": fired,
-        "decides": decides,
+        "decided": decided,
+        "suffices": suffices,
         "value": match measured {
             Measured::Nothing => Value::Null,
             Measured::Compared { left, .. } => json!(left),
@@ -105,19 +106,25 @@ fn input(input: Twist) -> Value {
     json!({ "v": input.v.0, "omega": input.omega.0 })
 }
 
-/// Returns the answer why an atom did not begin as a JSON object.
+/// Returns the answer why an atom or a scope did not begin as a JSON object.
 pub(super) fn absence(never: &Never) -> Value {
-    let Never { atom, ran, skipped, chance, end, last } = never;
+    let Never { asked, began, runs, skipped, chance, follows, end, last } = never;
     let turned = |(turn, t): &Turned| json!({ "turn": turn, "t": t.seconds() });
+    let caused = |((turn, t), cause): &(Turned, String)| json!({ "turn": turn, "t": t.seconds(), "cause": cause });
     json!({
-        "atom": atom,
-        "ran": ran.as_ref().map(|(turn, cause)| json!({ "turn": turn.0, "t": turn.1.seconds(), "cause": cause })),
-        "skipped": skipped.as_ref().map(stay),
-        "chance": chance.as_ref().map(|Chance { begins, scope, first, last }| {
-            json!({ "begins": begins, "scope": scope, "first": stay(first), "last": stay(last) })
+        "asked": asked,
+        "began": began.as_ref().map(|Beginnings { times, first, last }| {
+            json!({ "times": times, "first": caused(first), "last": caused(last) })
         }),
-        "end": turned(end),
-        "last": last.as_ref().map(words),
+        "runs": runs,
+        "skipped": skipped.as_ref().map(|Skips { times, first, last }| {
+            json!({ "times": times, "first": stay(first), "last": turned(last) })
+        }),
+        "chance": chance.as_ref().map(|Chance { begins, times, scopes, first, last }| {
+            json!({ "begins": begins, "times": times, "scopes": scopes, "first": stay(first), "last": stay(last) })
+        }),
+        "follows": follows,
+        "end": json!({ "turn": end.0, "t": end.1.seconds(), "atom": last.as_ref().map(words) }),
     })
 }
 

@@ -13,6 +13,8 @@ pub(crate) struct Values<'v> {
     pub(crate) way: Nanometers,
     /// Time for which the law of the turn before has made no progress; `None` if it has no goal.
     pub(crate) stalled: Option<Nanos>,
+    /// `true` if the atom was entered in this turn.
+    pub(crate) is_new: bool,
     /// Unit in which the operand's first value is shown, and its SI value.
     pub(crate) unit: Option<(&'v str, f64)>,
     /// `true` if the first value is the range of a sonar.
@@ -27,9 +29,11 @@ pub(crate) fn lack(
     inner: Option<(&Condition, Examined)>,
     values: &Values<'_>,
 ) -> String {
-    let Values { since, way, stalled, .. } = *values;
+    let Values { since, way, stalled, is_new, .. } = *values;
     if let Some((_, due)) = condition.lasting() {
         return match stalled {
+            _ if since == Nanos::ZERO => "the law has not begun".to_owned(),
+            None if is_new => "the law before had no goal".to_owned(),
             None => "the law has no goal".to_owned(),
             Some(_) if part.fired => String::new(),
             Some(stalled) => {

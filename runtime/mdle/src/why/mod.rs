@@ -4,6 +4,7 @@ mod explanation;
 mod json;
 mod lack;
 mod never;
+mod never_text;
 mod operands;
 mod text;
 
@@ -12,7 +13,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use mdle_compiler::fsm::Machine;
-use mdle_host::Clocked;
+use mdle_host::{Clocked, quoted};
 use mdle_record::{Begin, ReadError};
 use mdle_runtime::{Nanos, Printable, PrintableLines};
 
@@ -20,9 +21,9 @@ use explanation::{AtomWords, Explainer, Explanation};
 
 use crate::arguments::{Question, Why};
 use crate::failure::{self, Failure};
-use crate::replay;
+use crate::replay::{self, WantedPlan};
 use crate::replayed::Record;
-use crate::rerun::{Rerun, RerunTurn, Stop};
+use crate::rerun::{Rerun, RerunLaws, RerunTurn, Stop};
 use crate::run_time::run_time;
 use crate::targets;
 
@@ -56,7 +57,13 @@ enum Next {
 pub(crate) fn why(arguments: &Why) -> Result<ExitCode, Failure> {
     let (begin, record) = replay::record(&arguments.log)?;
     let name = arguments.log.display().to_string();
-    let (machine, mut rerun) = reruns(&arguments.log, arguments.plan.as_deref(), &begin, record)?;
+    let call = match &arguments.question {
+        Question::At(time) => format!("mdle why {name} {time}"),
+        Question::Not(atom) => format!("mdle why {name} --not {}", quoted(atom)),
+    };
+    let (log, file) = (arguments.log.as_path(), arguments.plan.as_deref());
+    let wanted = WantedPlan { log, file, begin: &begin, call: &call, has_run: true };
+    let (machine, mut rerun) = reruns(&wanted, record)?;
     let with_laws = !begin.beside.is_empty();
     let asked = Asked { name: &name, begin: &begin, machine: &machine, with_laws };
     let answer = match &arguments.question {
@@ -65,46 +72,44 @@ pub(crate) fn why(arguments: &Why) -> Result<ExitCode, Failure> {
             answer.map(|answer| if arguments.is_json { json::object(&answer).to_string() } else { text::text(&answer) })
         }
         Question::Not(atom) => {
-            let never = never::never(&machine, atom, &mut *rerun).map_err(Failure::Usage)?;
-            never.map(
-                |never| {
-                    if arguments.is_json { json::absence(&never).to_string() } else { text::absence(&never, &name) }
-                },
-            )
+            let target = mdle_files::target(Some(&begin.target))?;
+            let never = never::never(&machine, &target, atom, &mut *rerun).map_err(Failure::Usage)?;
+            never.map(|never| {
+                if arguments.is_json { json::absence(&never).to_string() } else { never_text::text(&never, &name) }
+            })
         }
     };
     match answer {
         Ok(answer) => {
             let text = PrintableLines(answer.trim_end()).to_string();
-            let written = writeln!(io::stdout().lock(), "{text}");
-            written.map_err(|error| Failure::Usage(format!("standard output cannot be written: {error}")))?;
+            writeln!(io::stdout().lock(), "{text}").map_err(|error| failure::unprinted(&error))?;
             Ok(ExitCode::SUCCESS)
         }
-        Err(stop) => stopped(&stop, &name),
+        Err(stop) => stopped(&stop, &name, arguments.plan.as_deref()),
     }
 }
 
-/// Loads the plan of a record, or that of the same name in the file `plan`, to make the turns of the record again.
+/// Loads the plan that has run, to make the turns of the record again.
 ///
 /// # Errors
-/// The plan cannot be read or has errors, or the run depended on more than the record has.
-pub(crate) fn reruns(
-    log: &Path,
-    plan: Option<&Path>,
-    begin: &Begin,
-    record: Record,
-) -> Result<(Machine, Box<dyn Rerun>), Failure> {
+/// The plan cannot be read, has errors or is not that of the record, or the run depended on more than the record has.
+pub(crate) fn reruns(wanted: &WantedPlan<'_>, record: Record) -> Result<(Machine, Box<dyn Rerun>), Failure> {
+    let begin = wanted.begin;
     if begin.beside.contains("modules") {
-        return Err(Failure::Usage(format!(
-            "the record {} cannot be explained: the run depended on modules as well, which a record does not have",
-            log.display()
-        )));
+        return Err(Failure::Usage(
+            "the record cannot be explained: the run depended on modules as well, which a record does not have"
+                .to_owned(),
+        ));
     }
     let linked = targets::linked(&begin.target).map_err(Failure::Usage)?;
     let target = mdle_files::target(Some(&begin.target))?;
-    let (machine, sources) = replay::plan(log, plan, begin, &target)?;
-    // Laws have no part in what runs next; only their inputs are wanted, where safety rules may have changed them.
-    let rerun = (linked.rerun)(&machine, &sources, &target, record, !begin.beside.is_empty())?;
+    let (machine, sources) = replay::plan(wanted, &target)?;
+    let laws = match (begin.beside.is_empty(), begin.files.is_empty()) {
+        (true, true) => RerunLaws::Compared,
+        (true, false) => RerunLaws::Needed,
+        (false, _) => RerunLaws::All,
+    };
+    let rerun = (linked.rerun)(&machine, &sources, &target, record, laws)?;
     Ok((machine, rerun))
 }
 
@@ -139,24 +144,47 @@ fn at(asked: &Asked<'_>, time: &str, rerun: &mut dyn Rerun) -> Result<Result<Ans
     };
     let explanation = explainer.explained(&found, rerun.texts(), asked.with_laws);
     let safety = event(&found.event, "safety").filter(|text| !text.is_empty());
-    let next = next(&mut explainer, found, rerun);
+    let next = match next(&mut explainer, found, rerun) {
+        Ok(next) => next,
+        Err(stop) => return Ok(Err(stop)),
+    };
+    if asked.begin.files.is_empty()
+        && let Some(stop) = differing(rerun)
+    {
+        return Ok(Err(stop));
+    }
     Ok(Ok(Answer { explanation, asked: time, next, safety }))
 }
 
+/// Makes the turns up to the end of the record; returns the reason if the plan is another one.
+fn differing(rerun: &mut dyn Rerun) -> Option<Stop> {
+    loop {
+        match rerun.turn(&mut |_, _| false)? {
+            Ok(_) => {}
+            Err(stop @ Stop::Differs(..)) => return Some(stop),
+            Err(Stop::Unread(_) | Stop::OtherPlan(_)) => return None,
+        }
+    }
+}
+
 /// Finds the next turn with a transition.
-fn next(explainer: &mut Explainer<'_>, found: RerunTurn, rerun: &mut dyn Rerun) -> Next {
+///
+/// # Errors
+/// The plan is another one.
+fn next(explainer: &mut Explainer<'_>, found: RerunTurn, rerun: &mut dyn Rerun) -> Result<Next, Stop> {
     let (mut t, mut last) = (found.recorded.t, found.event);
     loop {
         match rerun.turn(&mut |_, _| false) {
             Some(Ok(turn)) if !turn.transitions.is_empty() => {
                 let (number, t) = (turn.recorded.number, turn.recorded.t);
-                return Next::Turn { turn: number, t, steps: explainer.steps(&turn, rerun.texts()) };
+                return Ok(Next::Turn { turn: number, t, steps: explainer.steps(&turn, rerun.texts()) });
             }
             Some(Ok(turn)) => (t, last) = (turn.recorded.t, turn.event),
-            Some(Err(stop)) => return Next::End { t, why: format!(": {}", sentence(&stop)) },
+            Some(Err(stop @ Stop::Differs(..))) => return Err(stop),
+            Some(Err(stop)) => return Ok(Next::End { t, why: format!(": {}", sentence(&stop)) }),
             None => {
                 let why = event(&last, "end").map_or_else(String::new, |why| format!(": {why}"));
-                return Next::End { t, why };
+                return Ok(Next::End { t, why });
             }
         }
     }
@@ -184,26 +212,29 @@ fn outside(asked: &Asked<'_>, time: Nanos, last: Option<(u64, Nanos)>, is_whole:
 fn sentence(stop: &Stop) -> String {
     match stop {
         Stop::Unread(error) => error.to_string(),
-        Stop::Differs(turn) => format!("turn {turn} is not that of this plan"),
+        Stop::Differs(turn, difference) => format!("turn {turn} is not that of this plan: {difference}"),
         Stop::OtherPlan(t) => format!("from {} on another plan ran, which the record does not have", Clocked(*t)),
     }
 }
 
-/// Prints why the turns of the record of this name are not made again.
+/// Prints why the turns of the record of this name are not made again, with the plan in this file or that of the record.
 ///
 /// # Errors
 /// The record cannot be read.
-pub(crate) fn stopped(stop: &Stop, name: &str) -> Result<ExitCode, Failure> {
+pub(crate) fn stopped(stop: &Stop, name: &str, plan: Option<&Path>) -> Result<ExitCode, Failure> {
     let sentence = sentence(stop);
     match stop {
         Stop::Unread(ReadError::System(_)) => {
             return Err(Failure::Usage(format!("the record {name} cannot be read: {sentence}")));
         }
         Stop::Unread(_) | Stop::OtherPlan(_) => failure::error(&format!("the record {}: {sentence}", Printable(name))),
-        Stop::Differs(_) => failure::error(&format!(
-            "the record {}: {sentence}\nhelp: `mdle replay` prints what differs; `--plan FILE` names the plan that ran",
-            Printable(name)
-        )),
+        Stop::Differs(..) => {
+            let help = match plan {
+                Some(_) => "`--plan` has to name the plan that ran".to_owned(),
+                None => format!("`mdle replay {name}` prints what differs"),
+            };
+            failure::error(&format!("the record {}: {sentence}\nhelp: {help}", Printable(name)));
+        }
     }
     Ok(ExitCode::from(DIFFERS))
 }

@@ -23,8 +23,10 @@ pub(crate) struct Operand {
     pub(crate) words: String,
     /// `true` if it has fired.
     pub(crate) fired: bool,
-    /// `true` if its condition would have the other value if this operand alone had.
-    pub(crate) decides: bool,
+    /// `true` if its condition ended a scope, and would not have fired if this operand alone had not.
+    pub(crate) decided: bool,
+    /// `true` if its condition has not fired, and would have if this operand alone had.
+    pub(crate) suffices: bool,
     /// The values from which it was evaluated.
     pub(crate) measured: Measured,
     /// Time or value that is missing until it fires, or reason why it has not; empty if nothing can be said.
@@ -42,6 +44,8 @@ pub(crate) struct Facts {
     pub(crate) ages: [Option<Nanos>; SONARS],
     /// Time for which the law of the turn before has made no progress; `None` if it has no goal.
     pub(crate) stalled: Option<Nanos>,
+    /// `true` if the atom was entered in this turn, so that the law of the turn before is that of another atom.
+    pub(crate) is_new: bool,
 }
 
 /// The condition of a scope in a turn.
@@ -73,9 +77,9 @@ pub(crate) fn examination(
     let mut joined = Vec::new();
     node.joined(&mut joined);
     let operands = joined.iter().map(|part| {
-        let decides = node.value(None) != node.value(part.number);
+        let turns = node.value(None) != node.value(part.number);
         let words = part.number.and_then(|number| source.get(number as usize));
-        explaining.operand(part, words, decides)
+        explaining.operand(part, words, turns)
     });
     let operands: Vec<_> = operands.collect();
     let fired = node.part.fired;
@@ -165,7 +169,8 @@ struct Explaining<'e> {
 }
 
 impl Explaining<'_> {
-    fn operand(&self, node: &Node<'_>, words: Option<&OperandWords<'_>>, decides: bool) -> Operand {
+    /// Explains an operand; `turns` if the condition would have the other value if this operand alone had.
+    fn operand(&self, node: &Node<'_>, words: Option<&OperandWords<'_>>, turns: bool) -> Operand {
         let Examined { fired, measured } = node.part;
         let is_about_another = matches!(node.condition, Condition::Not(_) | Condition::Rising { .. });
         let inner = node.parts.first().filter(|_| is_about_another);
@@ -186,12 +191,14 @@ impl Explaining<'_> {
             since: self.scope.since,
             way: self.scope.way,
             stalled: self.facts.stalled,
+            is_new: self.facts.is_new,
             unit,
             is_range: self.sonars(node.condition).0,
         };
         let lack = lack(node.condition, node.part, inner.map(|inner| (inner.condition, inner.part)), &values);
         let stale = self.stale(node.condition);
-        Operand { written, words: shown, fired, decides, measured, lack, stale, inside }
+        let (decided, suffices) = (turns && fired, turns && !fired);
+        Operand { written, words: shown, fired, decided, suffices, measured, lack, stale, inside }
     }
 
     /// Returns remarks about the sonars that a condition reads and that have not pinged for long.

@@ -6,7 +6,6 @@ use mdle_host::{Clocked, rounded};
 use mdle_runtime::{Nanos, Twist};
 
 use super::explanation::{AtomWords, Ended, Explanation, Part, Runs, Scope};
-use super::never::{Chance, Never, Stay, Turned};
 use super::operands::Operand;
 use super::{Answer, Next};
 
@@ -66,7 +65,7 @@ fn run(text: &mut String, runs: &Runs, t: Nanos) {
 }
 
 /// Writes a scope and the operands of its condition.
-fn scope(text: &mut String, scope: &Scope) {
+pub(super) fn scope(text: &mut String, scope: &Scope) {
     let Scope { name, is_atom, line, condition, since, part, examination, .. } = scope;
     let name = name.as_deref().unwrap_or(if *is_atom { "atom" } else { "scope" });
     let _ = write!(text, "  {name} ({line}), for {}", Clocked(*since));
@@ -86,10 +85,10 @@ fn scope(text: &mut String, scope: &Scope) {
         return;
     }
     let fired = operands.iter().filter(|operand| operand.fired).count();
-    let is_any = operands.iter().all(|operand| !operand.fired && operand.decides);
+    let is_any = operands.iter().all(|operand| operand.suffices);
     let marks = operands.len() > 1 && (examination.fired || !is_any);
     operands.iter().for_each(|shown| operand(text, shown, 4, marks));
-    if examination.fired && fired > 1 && !operands.iter().any(|operand| operand.decides) {
+    if *part == Part::Ended && fired > 1 && !operands.iter().any(|operand| operand.decided) {
         *text += "    none of them decided alone\n";
     }
     if !examination.missing.is_empty() && !is_any {
@@ -99,14 +98,16 @@ fn scope(text: &mut String, scope: &Scope) {
 
 /// Writes an operand; `marks` if that which decides is marked.
 fn operand(text: &mut String, operand: &Operand, indent: usize, marks: bool) {
-    let Operand { words, fired, decides, lack, stale, inside, .. } = operand;
+    let Operand { words, fired, decided, suffices, lack, stale, inside, .. } = operand;
     let _ = write!(text, "{:indent$}{}  {words}", "", if *fired { "yes" } else { "no " });
     if !lack.is_empty() {
         let _ = write!(text, ": {lack}");
     }
     stale.iter().for_each(|remark| *text += &format!(" [{remark}]"));
-    if marks && *decides {
-        *text += if *fired { "  <- decided alone" } else { "  <- alone missing" };
+    if marks && *decided {
+        *text += "  <- decided alone";
+    } else if marks && *suffices {
+        *text += "  <- alone missing";
     }
     *text += "\n";
     inside.iter().for_each(|part| self::operand(text, part, indent + 5, false));
@@ -146,46 +147,6 @@ fn following(text: &mut String, next: &Next, now: Nanos) {
             let _ = writeln!(text, "next: no transition up to the end of the record at {}{why}", Clocked(*t));
         }
     }
-}
-
-/// Returns the text of the answer why an atom did not begin, in the record of this name.
-pub(super) fn absence(never: &Never, log: &str) -> String {
-    let Never { atom, ran, skipped, chance, end, last } = never;
-    let turned = |(turn, t): &Turned| format!("turn {turn} at {}", Clocked(*t));
-    if let Some((turn, cause)) = ran {
-        let cause = if cause.is_empty() { "the start of the plan" } else { cause };
-        let time = rounded(turn.1.0);
-        return format!(
-            "`{atom}` did begin, first in {}  <- {cause}\nhelp: `mdle why {log} {time}` explains that turn\n",
-            turned(turn)
-        );
-    }
-    let mut text = format!("`{atom}` did not begin\n");
-    if let Some(Stay { turned: turn, atom, scopes, cause }) = skipped {
-        let _ = writeln!(text, "\n{} was entered in {} and skipped  <- {cause}", named(atom), turned(turn));
-        scopes.iter().for_each(|around| scope(&mut text, around));
-        return text;
-    }
-    let Some(Chance { begins, scope: number, first, last: latest }) = chance else {
-        let last = last.as_ref().map_or_else(|| "the plan was over".to_owned(), |last| format!("{} ran", named(last)));
-        let _ = writeln!(text, "\nno atom ran that it could have followed; at the end, in {}, {last}", turned(end));
-        return text;
-    };
-    let begins = begins.as_ref().map_or_else(String::new, |name| match name.as_str() {
-        "" => ", as the first atom of the scope around it".to_owned(),
-        name => format!(", with `{name}`"),
-    });
-    let _ =
-        writeln!(text, "\nit could first have begun in {}{begins}, if this scope had ended:", turned(&first.turned));
-    first.scopes.iter().skip(*number).take(1).for_each(|around| scope(&mut text, around));
-    let _ = writeln!(text, "\nthe last such turn was {}: {}", turned(&latest.turned), named(&latest.atom));
-    latest.scopes.iter().for_each(|around| scope(&mut text, around));
-    if latest.cause.is_empty() {
-        let _ = writeln!(text, "  then the record ended");
-    } else {
-        let _ = writeln!(text, "  then another scope ended  <- {}", latest.cause);
-    }
-    text
 }
 
 /// Returns an atom with its place.
