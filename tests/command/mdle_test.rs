@@ -63,7 +63,7 @@ fn failures_show_test_plan_and_transitions() {
         "expect.atoms = [\"go 20 0\", \"turn 90\"]",
         "expect.atoms = [\"go 20 0\"]",
         "expect.atoms = [\"go 20 0\", \"go 5 0\", \"turn 90\", \"go 5 0\"]",
-        "expect.order = [\"go 20 0\", \"turn 90\", \"go 20 0\"]",
+        "expect.order = [\"go 20 0\", \"turn 90\", \"go 5 0\"]",
         "expect.transitions = [{ from = \"go 20 0\", by = \"wait 20s\" }]",
         "expect.transitions = [{ from = \"go 20 0\", to = \"Shake\", by = \"r0 < 0.6\", within = \"2s\" }]",
         "expect.never = [\"turn 90\"]",
@@ -152,6 +152,8 @@ fn faulty_files_of_tests_have_a_help() {
         "world = \"room\"\nstart = \"0,0,0\"",
         "body = \"tank\"",
         "seeds = 0",
+        "seeds = -2",
+        "battery = 1.5",
         "faults = [{ fault = \"bumber\" }]",
         "faults = [{ fault = \"sonar\", sonar = 16, range = \"1m\" }]",
         "faults = [{ fault = \"battery\" }]",
@@ -163,15 +165,45 @@ fn faulty_files_of_tests_have_a_help() {
         "script = [{ t = 0 }]\nexpect.never = [\"closer than 1m\"]",
         "script = [{ t = 0 }]\nexpect.pose = \"1,1,1\"",
         "[[test]]\nname = \"one\"",
+        "world = \"room\"",
+        "expect.never = []\nexpect.order = []\nexpect.transitions = []",
+        "expect.most-turns = 0",
+        "expect.transitions = [{}]",
+        "expect.transitions = [{ from = \"go 20 0\", to = \"turn 90\" }]",
+        "expect.transitions = [{ from = \"turn 90\", by = \"r0 < 60cm\" }]",
+        "expect.transitions = [{ to = \"end\", by = \"wait 20s\", within = \"9s\" }]",
+        "expect.transitions = [{ to = \"go 20 0\" }]",
+        "expect.order = [\"Shake\", \"go 20 0\"]",
+        "expect.atoms = [\"go 20 0\", \"turn 90\", \"turn 90\", \"go 20 0\"]",
     ];
     let reports = tests.map(|test| of_one("refused", &format!("{test}\n")));
     assert!(reports.iter().all(|report| report.ends_with("[2]\n")), "{}", reports.join("\n"));
     insta::assert_snapshot!(reports.join("\n"));
 }
 
+/// The plan's name, its file and the target have a place in the file of tests.
+#[test]
+fn what_tests_name_in_vain_has_its_place() {
+    let heads = ["plan = \"nix.mdle\"", "plan = \".\"", "name = \"Dokc\"", "target = \"smi\"", "target = \"../robot\""];
+    let reports = heads.map(|head| {
+        let test = "[[test]]\nname = \"one\"\nexpect.end = \"bumper\"\n";
+        report(&with("places", DOCK, &format!("# Of a plan.\n{head}\n{test}")), &[])
+    });
+    assert!(reports.iter().all(|report| report.ends_with("[2]\n")), "{}", reports.join("\n"));
+    insta::assert_snapshot!(reports.join("\n"));
+}
+
+/// The time of a fault is that of the turn that has no answer.
+#[test]
+fn a_fault_has_the_time_of_its_turn() {
+    let fault = "faults = [{ fault = \"robot\", from = \"2s\" }]";
+    let text = of_one("fault-time", &format!("world = \"room\"\n{fault}\nexpect.end = \"running\"\n"));
+    assert!(text.contains("one (20 turns, a fault at 2.0 s)"), "{text}");
+}
+
 #[test]
 fn files_that_are_not_there_are_named() {
-    let folder = with("files", DOCK, "[[test]]\nname = \"one\"\nscript = [{ t = 0 }]\n");
+    let folder = with("files", DOCK, "[[test]]\nname = \"one\"\nscript = [{ t = 0 }]\nexpect.end = \"running\"\n");
     fs::create_dir_all(folder.join("empty")).unwrap();
     fs::write(folder.join("lost.test.toml"), "[[test]]\nname = \"one\"\n").unwrap();
     fs::write(folder.join("bad.mdle"), "{ P (bumber) (Atom (null) stop) }\n").unwrap();

@@ -56,16 +56,19 @@ pub(crate) fn command() -> Command {
         .arg(
             option("seeds", "N")
                 .help("Number of runs of each test with a seed, with consecutive seeds [default: that of the test]")
+                .allow_negative_numbers(true)
                 .value_parser(value_parser!(u64).range(1..=MOST_SEEDS)),
         )
         .arg(
             option("seed", "N")
                 .help("First seed of each test with a seed [default: that of the test]")
+                .allow_negative_numbers(true)
                 .value_parser(value_parser!(u64)),
         )
         .arg(
             option("jobs", "N")
                 .help("Number of parallel runs; results do not depend on it [default: number of processors]")
+                .allow_negative_numbers(true)
                 .value_parser(value_parser!(u64).range(1..=1024)),
         )
         .arg(flag("coverage").help("Print which atoms, ends and operands of the plans the tests have reached"))

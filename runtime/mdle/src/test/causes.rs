@@ -10,6 +10,7 @@ use super::file::{At, TestFileError};
 use super::subject::Subject;
 
 /// A cause that a text names.
+#[derive(Clone)]
 pub(super) enum Cause {
     /// The completion of a law.
     Completed,
@@ -53,7 +54,15 @@ pub(super) fn cause(text: &At<String>, subject: &Subject) -> Result<Cause, TestF
 /// The cause ends a part of the plan only.
 pub(super) fn ending(text: &At<String>, cause: Cause, subject: &Subject) -> Result<Cause, TestFileError> {
     let (cause, is_left) = match cause {
-        Cause::Completed => (Cause::Completed, true),
+        Cause::Completed => {
+            let mut laws = subject.machine().elements().filter(|element| element.completes());
+            if !laws.any(|element| ends_plan(subject, element.number())) {
+                let message = "no law at the end of the plan completes";
+                let help = "expect the operand that ends the plan, or `running`";
+                return Err(TestFileError::at(text.span(), message).help(help));
+            }
+            (Cause::Completed, true)
+        }
         Cause::Operands(mut operands) => {
             operands.retain(|(element, _)| ends_plan(subject, *element));
             let is_left = !operands.is_empty();

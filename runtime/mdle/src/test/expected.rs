@@ -9,6 +9,7 @@ use mdle_sim::Goal;
 
 use super::causes::{Cause, cause, ending};
 use super::file::{At, ExpectText, TestFileError, TransitionText};
+use super::possible::{can_be_made, in_order};
 use super::subject::{Subject, TestCondition};
 
 /// Maximum time in a test.
@@ -33,6 +34,7 @@ pub(super) struct Expected {
 }
 
 /// Atoms that a text names.
+#[derive(Clone)]
 pub(super) struct AtomsNamed {
     pub(super) place: Place,
     pub(super) text: String,
@@ -41,6 +43,7 @@ pub(super) struct AtomsNamed {
 }
 
 /// A transition that has to be made.
+#[derive(Clone)]
 pub(super) struct ExpectedTransition {
     pub(super) from: Option<AtomsNamed>,
     /// The atoms of which one is entered; `Some(None)` for the end of the plan.
@@ -89,7 +92,7 @@ impl Expected {
             list.transpose()
         };
         let number = |most: &Option<At<u64>>| most.as_ref().map(|most| (most.span(), *most.get_ref()));
-        let transitions = text.transitions.iter().map(|at| Ok((at.span(), transition(at.get_ref(), subject)?)));
+        let transitions = text.transitions.iter().map(|at| Ok((at.span(), transition(at, subject)?)));
         let never = text.never.iter().map(|text| Ok((text.span(), never(text, subject, is_script)?)));
         let pose = text.pose.as_ref().map(|pose| {
             if is_script {
@@ -102,9 +105,15 @@ impl Expected {
             let goal = goal.map_err(|sentence| TestFileError::at(pose.span(), sentence.replace("`world`, or ", "")))?;
             Ok((pose.span(), pose.get_ref().clone(), goal))
         });
+        let (atoms, order) = (list(&text.atoms)?, list(&text.order)?);
+        [&atoms, &order].into_iter().flatten().try_for_each(|(_, atoms)| in_order(atoms, subject))?;
+        if let Some(most) = text.most_turns.as_ref().filter(|most| *most.get_ref() == 0) {
+            let error = TestFileError::at(most.span(), "every run has a turn");
+            return Err(error.help("`most-turns` is 1 or more"));
+        }
         Ok(Self {
-            atoms: list(&text.atoms)?,
-            order: list(&text.order)?,
+            atoms,
+            order,
             transitions: transitions.collect::<Result<_, _>>()?,
             never: never.collect::<Result<_, _>>()?,
             end: text.end.as_ref().map(|text| Ok((text.span(), end(text, subject)?))).transpose()?,
@@ -129,7 +138,13 @@ fn named(text: &At<String>, subject: &Subject) -> Result<AtomsNamed, TestFileErr
     Ok(AtomsNamed { place: text.span(), text: text.get_ref().trim().to_owned(), atoms })
 }
 
-fn transition(text: &TransitionText, subject: &Subject) -> Result<ExpectedTransition, TestFileError> {
+fn transition(at: &At<TransitionText>, subject: &Subject) -> Result<ExpectedTransition, TestFileError> {
+    let text = at.get_ref();
+    let TransitionText { from, to, by, after, within } = text;
+    if [from, to, by, after, within].iter().all(|key| key.is_none()) {
+        let error = TestFileError::at(at.span(), "a transition needs `from`, `to`, `by` or a time");
+        return Err(error.help("as in `{ to = \"end\", within = \"10s\" }`"));
+    }
     let from = text.from.as_ref().map(|from| named(from, subject)).transpose()?;
     let to = text.to.as_ref().map(|to| match to.get_ref().as_str() {
         "end" => Ok(None),
@@ -143,7 +158,9 @@ fn transition(text: &TransitionText, subject: &Subject) -> Result<ExpectedTransi
         let message = "nothing is both after the one time and within the other";
         return Err(TestFileError::at(text.span(), message).help("`within` has to be later than `after`"));
     }
-    Ok(ExpectedTransition { from, to: to.transpose()?, by, after, within })
+    let wanted = ExpectedTransition { from, to: to.transpose()?, by, after, within };
+    can_be_made(&wanted, at.span(), subject)?;
+    Ok(wanted)
 }
 
 fn end(text: &At<String>, subject: &Subject) -> Result<End, TestFileError> {

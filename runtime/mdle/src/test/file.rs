@@ -10,6 +10,8 @@ use toml::Spanned;
 
 /// Ending of the name of a file of tests.
 pub(super) const ENDING: &str = ".test.toml";
+/// Words for a number without a sign, in messages.
+const COUNT: &str = "a whole number from 0 on";
 /// Maximum size of a file of tests, in bytes.
 const LARGEST: u64 = 4_000_000;
 
@@ -118,6 +120,17 @@ pub(super) struct TransitionText {
     pub(super) within: Option<At<String>>,
 }
 
+impl ExpectText {
+    /// Returns `true` if nothing is expected.
+    pub(super) fn is_empty(&self) -> bool {
+        let Self { atoms, order, transitions, never, end, pose, most_turns, most_transitions, most_time } = self;
+        let order = order.as_ref().is_none_or(|order| order.get_ref().is_empty());
+        let texts = [end, pose, most_time].iter().all(|text| text.is_none());
+        let most = [most_turns, most_transitions].iter().all(|most| most.is_none());
+        atoms.is_none() && order && texts && most && transitions.is_empty() && never.is_empty()
+    }
+}
+
 impl TestText {
     /// Returns the options of the simulator that the test gives, each with the place of its value.
     pub(super) fn options(&self) -> Vec<(&'static str, String, Range<usize>)> {
@@ -203,7 +216,7 @@ pub(super) fn read(text: &str) -> Result<TestFile, TestFileError> {
 /// Returns the error about what TOML refuses; an unknown key gets the name of a near one.
 fn refused(error: &toml::de::Error) -> TestFileError {
     let place = error.span();
-    let words = [("a sequence", "a list"), ("map", "a table"), ("u64", "a whole number"), ("u8", "a whole number")];
+    let words = [("a sequence", "a list"), ("map", "a table"), ("u64", COUNT), ("u8", COUNT)];
     let message = error.message().replace('\n', "; ");
     let message = words.iter().fold(message, |message, (type_name, word)| match message.starts_with("invalid ") {
         true => message.replace(type_name, word),

@@ -182,9 +182,9 @@ impl Judge<'_> {
             let (place, never) = expected.never.get(breach.number)?;
             let at = format!("at {} s", Seconds(breach.t));
             let (message, got) = match never {
-                Never::Closer(_) => {
-                    let gap = breach.gap.unwrap_or(0.0).max(0.0) * 100.0;
-                    ("the robot came too close to an obstacle".to_owned(), format!("{gap:.1} cm {at}"))
+                Never::Closer(least) => {
+                    let gap = centimetres(breach.gap.unwrap_or(0.0).max(0.0), *least);
+                    ("the robot came too close to an obstacle".to_owned(), format!("{gap} cm {at}"))
                 }
                 Never::While { words, .. } => (format!("`{words}` was the case"), format!("it was {at}")),
             };
@@ -251,7 +251,15 @@ impl Judge<'_> {
     }
 }
 
-fn transition_words(wanted: &ExpectedTransition) -> String {
+/// Returns a distance in centimetres, with as many decimals as it takes to be below `least`; both are in metres.
+fn centimetres(gap: f64, least: f64) -> String {
+    let text = |decimals: usize| format!("{:.decimals$}", gap * 100.0);
+    let is_below = |text: &String| text.parse::<f64>().is_ok_and(|shown| shown < least * 100.0);
+    (1..9).map(text).find(is_below).unwrap_or_else(|| text(9))
+}
+
+/// Returns an expected transition in words.
+pub(super) fn transition_words(wanted: &ExpectedTransition) -> String {
     let mut words = String::from("a transition");
     if let Some(from) = &wanted.from {
         words += &format!(" from `{}`", from.text);
@@ -278,4 +286,16 @@ pub(super) fn pose_words(pose: &Pose) -> String {
     // No zero has a sign.
     let shown = |value: f64| format!("{:.2}", value + 0.0).replace("-0.00", "0.00");
     format!("{},{},{:.0}", shown(pose.x.0), shown(pose.y.0), libm::round(pose.theta.degrees()) + 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_distance_differs_from_its_limit() {
+        let shown =
+            [(0.01996, 0.02), (0.0199999, 0.02), (0.5, 0.6), (0.0, 0.02)].map(|(gap, least)| centimetres(gap, least));
+        assert_eq!(shown, ["1.996", "1.99999", "50.0", "0.0"]);
+    }
 }

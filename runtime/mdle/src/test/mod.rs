@@ -10,6 +10,7 @@ mod faults;
 mod file;
 mod judge;
 mod messages;
+mod possible;
 mod report;
 mod results;
 mod runner;
@@ -102,7 +103,7 @@ impl Suites {
     fn read(arguments: &Test) -> Result<(Self, u8), Failure> {
         let (mut suites, mut inputs, mut status) = (Vec::new(), Vec::new(), 0);
         for file in files(&arguments.files)? {
-            match Suite::read(&file) {
+            match Suite::read(&file, arguments.update) {
                 Ok((suite, input)) => {
                     suites.push(suite);
                     inputs.push(input);

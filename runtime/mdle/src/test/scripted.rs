@@ -2,8 +2,8 @@
 
 use mdle_compiler::fsm::Machine;
 use mdle_compiler::trace::{Counted, Reports, Script};
-use mdle_host::{Operand, Transitions};
-use mdle_runtime::{Transition, Turn};
+use mdle_host::{CauseText, Transitions};
+use mdle_runtime::Turn;
 
 use super::course::{Course, Ending, Recorder};
 use super::coverage::Coverage;
@@ -37,7 +37,9 @@ pub(super) fn run(subject: &Subject, expected: &Expected, script: &Script, cover
         transitions.clear();
         let turn = counted.watched(reports, &mut transitions);
         let atom = counted.atom();
-        recorder.turn(reports.t, atom, &transitions, |transition, operands| cause(subject, transition, operands));
+        recorder.turn(reports.t, atom, &transitions, |transition, operands| {
+            CauseText { plan: subject, transition, operands }.to_string()
+        });
         coverage.turn(machine, atom, &transitions, |scope, tell| counted.operands(scope, reports, tell));
         breaches(expected, reports, atom, &mut recorder);
         if turn == Turn::Over {
@@ -67,19 +69,4 @@ fn fires(machine: &Machine, reports: &Reports) -> bool {
     Counted::new(machine).watched(reports, &mut transitions);
     // Its law may complete as well.
     transitions.iter().any(|(transition, _)| matches!(transition.cause, mdle_runtime::Cause::Fired(_)))
-}
-
-/// The cause of a transition without values, as in `bumper (dock.mdle:4)`.
-fn cause(subject: &Subject, transition: &Transition, operands: &[Operand]) -> String {
-    use mdle_runtime::Words as _;
-
-    let words = &subject.words;
-    let Some(bracket) = words.bracket(transition.scope) else { return String::new() };
-    let operands = operands.iter().filter_map(|(number, _)| words.operand(transition.scope, *number));
-    let written: Vec<String> = operands.map(|operand| operand.written.to_owned()).collect();
-    let by = match transition.cause {
-        mdle_runtime::Cause::Completed(_) => mdle_runtime::trace::COMPLETED.to_owned(),
-        mdle_runtime::Cause::Fired(_) => written.join(" and "),
-    };
-    format!("{by} ({}:{})", words.file(bracket.at), bracket.at.line)
 }

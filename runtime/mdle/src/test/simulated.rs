@@ -129,6 +129,8 @@ impl Driven<'_> {
         let (period, timeout) = (nanos(self.simulation.trials.period), nanos(self.simulation.timeout));
         for number in 0.. {
             let t = Nanos(u64::saturating_mul(number, period));
+            // A fault in this turn is one at this time.
+            recorder.course.t = t;
             let y = match self.exchange(t) {
                 Ok(y) => y,
                 Err(fault) => return Ending::Failed(fault),

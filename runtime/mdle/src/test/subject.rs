@@ -1,5 +1,6 @@
 //! The plan that is tested: compiled, with its words, and loaded for the simulator.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -7,11 +8,12 @@ use mdle_compiler::diagnostic::{Diagnostic, Severity, judged};
 use mdle_compiler::fsm::{self, Element, Machine, PlanWords};
 use mdle_compiler::load::{self, Loaded};
 use mdle_compiler::{Compiled, compile};
-use mdle_files::{Input, Known, Settings, Target, read_plan};
-use mdle_runtime::{Condition, Words as _};
+use mdle_files::{Input, InputError, Known, Settings, Target, read_plan};
+use mdle_host::Texts;
+use mdle_runtime::{Condition, Fsm, Words};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 
-use super::file::TestFile;
+use super::file::{TestFile, TestFileError};
 use crate::elements_named::elements_named;
 use crate::failure::{self, Failure};
 
@@ -43,11 +45,15 @@ pub(super) struct TestCondition {
 
 impl Subject {
     /// Compiles the plan of the file of tests at `path`; returns it with its files. Messages of the compiler go to
-    /// standard error.
+    /// standard error; `refused` reports an error of the file of tests.
     ///
     /// # Errors
     /// The plan cannot be read or has errors.
-    pub(super) fn read(path: &Path, tests: &TestFile) -> Result<(Self, Input), Failure> {
+    pub(super) fn read(
+        path: &Path,
+        tests: &TestFile,
+        refused: &dyn Fn(&TestFileError) -> Failure,
+    ) -> Result<(Self, Input), Failure> {
         let file = plan_file(path, tests);
         let settings = Settings::beside(&file)?;
         let given = tests.target.as_ref().map(|target| target.get_ref().as_str());
@@ -55,11 +61,16 @@ impl Subject {
         let is_simulated = tests.test.iter().any(|test| test.script.is_none());
         let option = given.or_else(|| (is_simulated && !settings.names_target(None)).then_some(SIM));
         let target_name = settings.name_of_target(option).unwrap_or_default();
-        let target = settings.target(option)?;
-        let mut input = read_plan(&file, &target)?;
+        let placed = |place: Option<Range<usize>>, error| {
+            placed(place, error).map_or_else(Failure::Input, |error| refused(&error))
+        };
+        let target = settings.target(option);
+        let target = target.map_err(|error| placed(tests.target.as_ref().map(|target| target.span()), error))?;
+        let input = read_plan(&file, &target);
+        let mut input = input.map_err(|error| placed(tests.plan.as_ref().map(|plan| plan.span()), error))?;
         let wanted = tests.name.as_ref().map(|name| name.get_ref().as_str());
-        if let Some(name) = wanted {
-            input.must_have(name)?;
+        if let Some(name) = &tests.name {
+            input.must_have(name.get_ref()).map_err(|error| placed(Some(name.span()), error))?;
         }
         let (plans, diagnostics) = input.compile(&target.alphabet, wanted);
         let errors: Vec<_> = diagnostics.iter().filter(|found| is_error(found)).cloned().collect();
@@ -128,6 +139,44 @@ impl Subject {
         elements.flat_map(move |element| {
             (0..).map_while(move |number| Some((element, number, self.words.operand(element, number)?)))
         })
+    }
+}
+
+/// Returns the error at its place in the file of tests, if it has one and its own file has no errors.
+///
+/// # Errors
+/// The error itself.
+fn placed(place: Option<Range<usize>>, error: InputError) -> Result<TestFileError, InputError> {
+    let Some(place) = place.filter(|_| !matches!(error, InputError::Faulty(_))) else { return Err(error) };
+    let message = error.to_string();
+    let unread = "`plan` names a file, relative to the folder of the file of tests";
+    let (message, help) = message.split_once("\nhelp: ").unwrap_or((&message, unread));
+    Ok(TestFileError::at(place, message).help(help))
+}
+
+impl Texts for Subject {
+    fn fsm(&self) -> Fsm<'_> {
+        self.machine().tables()
+    }
+
+    fn law(&self, atom: u32) -> &str {
+        &self.machine().atom(atom).law().text
+    }
+
+    fn condition(&self, scope: u32) -> &str {
+        self.machine().element(scope).condition_text()
+    }
+
+    fn name(&self, scope: u32) -> &str {
+        self.machine().element(scope).name()
+    }
+
+    fn source(&self) -> &dyn Words {
+        &self.words
+    }
+
+    fn paths(&self) -> &[&'static str] {
+        &[]
     }
 }
 

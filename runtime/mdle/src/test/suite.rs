@@ -42,23 +42,23 @@ pub(super) enum RunsOn {
 
 impl Suite {
     /// Reads a file of tests and compiles its plan; returns the tests with the files of the plan, to which the file of
-    /// tests is added. Messages go to standard error.
+    /// tests is added. Tests without expectations are taken if `is_recorded`. Messages go to standard error.
     ///
     /// # Errors
     /// The file or the plan cannot be read, or has errors.
-    pub(super) fn read(path: &Path) -> Result<(Self, Input), Failure> {
+    pub(super) fn read(path: &Path, is_recorded: bool) -> Result<(Self, Input), Failure> {
         let text = file::text(path).map_err(|error| Failure::Usage(error.message))?;
         let tests = file::read(&text).map_err(|error| refused(path, &text, &error))?;
-        let (subject, mut input) = Subject::read(path, &tests)?;
+        let (subject, mut input) = Subject::read(path, &tests, &|error| refused(path, &text, error))?;
         let source = input.sources.add(path.display().to_string(), text.clone());
-        let cases = tests.test.into_iter().map(|test| Case::read(test, path, &subject));
+        let cases = tests.test.into_iter().map(|test| Case::read(test, path, &subject, is_recorded));
         let cases = cases.collect::<Result<_, _>>().map_err(|error| refused(path, &text, &error))?;
         Ok((Self { path: path.to_owned(), source, subject, cases }, input))
     }
 }
 
 impl Case {
-    fn read(text: TestText, path: &Path, subject: &Subject) -> Result<Self, TestFileError> {
+    fn read(text: TestText, path: &Path, subject: &Subject, is_recorded: bool) -> Result<Self, TestFileError> {
         let expected = Expected::read(&text.expect, subject, text.script.is_some())?;
         let runs_on = match &text.script {
             None => RunsOn::Simulation(Box::new(Simulation::read(&text, path, subject)?)),
@@ -76,6 +76,12 @@ impl Case {
         if let Some(seeds) = text.seeds.as_ref().filter(|seeds| !(1..=MOST_SEEDS).contains(seeds.get_ref())) {
             let message = format!("a test runs at least once and at most {MOST_SEEDS} times");
             return Err(TestFileError::at(seeds.span(), message));
+        }
+        if text.expect.is_empty() && !is_recorded {
+            let message = format!("the test `{}` expects nothing", Printable(text.name.get_ref()));
+            let help = "write what it expects, as in `expect.end = \"completed\"`, or let `mdle test --update` record what a \
+                        run does";
+            return Err(TestFileError::at(text.name.span(), message).help(help));
         }
         Ok(Self { name: text.name.get_ref().clone(), text, expected, runs_on })
     }

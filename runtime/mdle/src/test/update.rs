@@ -56,7 +56,7 @@ pub(super) fn write(path: &Path, text: &str) -> Result<(), String> {
 fn edits(text: &str, test: &Tested<'_>) -> Vec<Edit> {
     let Some(RunResult::Judged(course, _)) = test.runs.first().map(|run| &run.result) else { return Vec::new() };
     let (case, subject) = (test.case, &test.suite.subject);
-    if is_empty(case) {
+    if case.text.expect.is_empty() {
         let lines = recorded(case, subject, course);
         let after = text.get(case.text.name.span().end..).and_then(|rest| rest.find('\n'));
         let place = after.map_or(text.len(), |line| case.text.name.span().end + line + 1);
@@ -94,14 +94,6 @@ fn edits(text: &str, test: &Tested<'_>) -> Vec<Edit> {
         }
     }
     edits
-}
-
-fn is_empty(case: &Case) -> bool {
-    let expected = &case.text.expect;
-    let lists = [&expected.atoms, &expected.order].iter().all(|list| list.is_none());
-    let texts = [&expected.end, &expected.pose, &expected.most_time].iter().all(|text| text.is_none());
-    let most = [&expected.most_turns, &expected.most_transitions].iter().all(|most| most.is_none());
-    lists && texts && most && expected.transitions.is_empty() && expected.never.is_empty()
 }
 
 /// The first expectations of a test.
