@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use crate::places::{Place, between};
 use crate::session::Session;
 use crate::stack::{Frame, frames};
-use crate::why::why;
+use crate::why::{sentence, why};
 
 /// Number of the only thread.
 pub(crate) const THREAD: i64 = 1;
@@ -203,13 +203,16 @@ fn evaluate(session: &mut Session<'_, '_, '_>, asked: &Evaluate) -> Result<Value
     let from = asked.frame_id.unwrap_or(1).saturating_sub(1).min(frames.len());
     let (inside, outwards) = frames.split_at(from);
     let mut found = outwards.iter().chain(inside);
-    let reason = found.find_map(|frame| why(session.loaded, &session.run, frame, &asked.expression));
-    let reason = reason.ok_or_else(|| {
+    let reasons = found.find_map(|frame| why(session.loaded, &session.run, frame, &asked.expression));
+    let reasons = reasons.ok_or_else(|| {
         format!(
             "`{}` is no condition of the atom or of a scope around it, and no operand of one",
             asked.expression.trim()
         )
     })?;
-    let reference = session.lists.reason(&reason)["variablesReference"].clone();
-    Ok(json!({ "result": reason.sentence(), "variablesReference": reference }))
+    let references: Vec<Value> =
+        reasons.iter().map(|reason| session.lists.reason(reason)["variablesReference"].clone()).collect();
+    // Comparisons have no operands to be listed.
+    let reference = references.into_iter().next().unwrap_or_default();
+    Ok(json!({ "result": sentence(&reasons, &asked.expression), "variablesReference": reference }))
 }

@@ -17,28 +17,43 @@ pub(crate) struct Reason {
     pub(crate) holds: bool,
     /// Reason for the verdict, such as the time that has passed; empty if it is the operands.
     pub(crate) detail: String,
+    /// `true` for a comparison, of which the first word is a number and no condition.
+    is_comparison: bool,
     pub(crate) operands: Vec<Reason>,
 }
 
-/// Returns the reason for the condition of a frame, or for an operand of it, that `expression` names: by its text in
-/// the file, by its condition text, or by its first word.
-pub(crate) fn why(loaded: &Loaded, run: &Run<'_>, frame: &Frame, expression: &str) -> Option<Reason> {
+/// Returns the reasons for the condition of a frame, or for an operand of it, that `expression` names: by its text in
+/// the file, by its condition text, or by its first word. A signal names all its comparisons.
+pub(crate) fn why(loaded: &Loaded, run: &Run<'_>, frame: &Frame, expression: &str) -> Option<Vec<Reason>> {
     let (plan, reports) = (&loaded.compiled.plan, run.reports());
     let open = run.open().nth(frame.open)?;
     let interrupt = open.part().interrupt()?;
     let meant = plain(expression);
     let whole = reason(plan, open, &interrupt.condition, reports);
     if meant == plain(loaded.slice(interrupt.span)) || meant == interrupt.text {
-        return Some(whole);
+        return Some(vec![whole]);
     }
     let is_meant = |first: &OperandPlace, last: &OperandPlace| meant == plain(loaded.slice(first.span.to(last.span)));
     if let Some(part) = written(&interrupt.condition, &mut interrupt.operands.iter(), &is_meant) {
-        return Some(reason(plan, open, part, reports));
+        return Some(vec![reason(plan, open, part, reports)]);
     }
-    let named = whole.find(&|part| part.text == meant);
-    named
-        .or_else(|| whole.find(&|part| part.operands.is_empty() && part.text.split(' ').next() == Some(&meant)))
-        .cloned()
+    if let Some(named) = whole.find(&|part| part.text == meant) {
+        return Some(vec![named.clone()]);
+    }
+    let leaves = whole.leaves().into_iter();
+    let named: Vec<Reason> = leaves.filter(|part| part.text.split(' ').next() == Some(&meant)).cloned().collect();
+    let comparisons: Vec<Reason> = named.iter().filter(|part| part.is_comparison).cloned().collect();
+    if comparisons.is_empty() { named.into_iter().next().map(|first| vec![first]) } else { Some(comparisons) }
+}
+
+/// Returns the sentence about reasons: the value of a single condition, and of comparisons each with its text, since
+/// their number has no value that is true or false.
+pub(crate) fn sentence(reasons: &[Reason], expression: &str) -> String {
+    let expression = plain(expression);
+    match reasons {
+        [only] if !only.is_comparison || only.text.split(' ').next() != Some(&expression) => only.sentence(),
+        _ => reasons.iter().map(|part| format!("`{}` {}", part.text, part.value())).collect::<Vec<_>>().join("; "),
+    }
 }
 
 /// Returns the part of a condition that `is_meant` accepts by its first and its last operand.
@@ -88,6 +103,17 @@ pub(crate) fn reason(plan: &Plan, part: OpenPart<'_, '_>, condition: &Condition,
         text: condition_text(condition, &|id| plan.quark(id).text.clone()),
         holds: part.holds(condition, reports),
         detail: detail(part, condition, reports),
+        is_comparison: match condition {
+            Condition::Quark(quark) => plan.quark(*quark).comparison.is_some(),
+            Condition::Elapsed { .. } | Condition::Driven { .. } => true,
+            Condition::Null
+            | Condition::Wait { .. }
+            | Condition::Not(_)
+            | Condition::Rising { .. }
+            | Condition::After(_)
+            | Condition::Or(_)
+            | Condition::And(_) => false,
+        },
         operands: operands.iter().map(|operand| reason(plan, part, operand, reports)).collect(),
     }
 }
@@ -125,7 +151,7 @@ impl Reason {
     }
 
     /// Returns the value, followed by those of the operands that decide it.
-    pub(crate) fn sentence(&self) -> String {
+    fn sentence(&self) -> String {
         let mut sentence = self.value();
         let operands: Vec<String> =
             self.leaves().iter().map(|leaf| format!("`{}` {}", leaf.text, leaf.value())).collect();

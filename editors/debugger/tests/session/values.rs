@@ -50,6 +50,36 @@ fn a_condition_says_which_of_its_operands_hold() {
     );
 }
 
+/// A signal is a number: the conditions on it are what holds or not.
+#[test]
+fn a_number_shows_its_comparisons() {
+    let plan = "{ P (r0 < 60cm OR NOT r0 < 3m AND bumper OR t > 9s)\n  (Atom (way > 2m) (go 20 0))\n}\n";
+    let script = "{\"t\": 0}\n{\"t\": 1, \"fired\": [\"r0 < 3\"], \"way\": 1.5}\n{\"t\": 2, \"way\": 1.5}\n";
+    let mut session = Session::of("numbers", plan, script, &json!({ "stopOnEntry": true }));
+    session.requests(&["configurationDone", "next", "next"]);
+    let expressions = ["r0", "t", "way", "r0 < 3", "way > 2m", "60cm", "60", "r1"];
+    let ask = |expression: &&str| session.request("evaluate", json!({ "expression": expression, "frameId": 1 }));
+    let seqs: Vec<i64> = expressions.iter().map(ask).collect();
+    let messages = session.end();
+    let shown = seqs.into_iter().map(|seq| match messages.response(seq)["success"] == true {
+        true => messages.body(seq)["result"].as_str().unwrap().to_owned(),
+        false => "error".to_owned(),
+    });
+    assert_eq!(
+        shown.collect::<Vec<_>>(),
+        [
+            "`r0 < 0.6` does not hold; `r0 < 3` holds",
+            "`t > 9` does not hold: 1 s have passed",
+            "`way > 2` does not hold: 1.5 m were driven",
+            "holds",
+            "does not hold: 1.5 m were driven",
+            "error",
+            "error",
+            "error",
+        ]
+    );
+}
+
 #[test]
 fn memories_and_records_are_seen() {
     let found = evaluated("memory", 4, &["RISING bumper", "wait 1s"]);
