@@ -63,6 +63,33 @@ fn a_part_of_a_record_is_a_record() {
     assert_eq!(refused[0].1, "error: part.mcap exists already\n");
 }
 
+/// Viewers refuse messages without the keys that the schemas of Foxglove require.
+#[test]
+fn messages_for_viewers_are_complete() {
+    let folder = recorded("viewers");
+    let record = fs::read(folder.join("square.mcap")).unwrap();
+    let schemas = ["pose", "ranges"].map(|name| {
+        let schema = fs::read(root().join(format!("runtime/record/src/schemas/{name}.json"))).unwrap();
+        let schema: serde_json::Value = serde_json::from_slice(&schema).unwrap();
+        schema["required"].as_array().unwrap().iter().map(|key| key.as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    });
+    let start = b"{\"timestamp\":{\"sec\":";
+    let starts = (0..record.len()).filter(|at| record[*at..].starts_with(start));
+    let messages = starts.map(|at| {
+        let mut values = serde_json::Deserializer::from_slice(&record[at..]).into_iter::<serde_json::Value>();
+        values.next().unwrap().unwrap()
+    });
+    let (scans, poses): (Vec<_>, Vec<_>) = messages.partition(|message| message["ranges"].is_array());
+    assert_eq!((poses.len(), scans.len()), (333, 333));
+    for (messages, required) in [(&poses, &schemas[0]), (&scans, &schemas[1])] {
+        assert!(messages.iter().all(|message| required.iter().all(|key| message.get(key).is_some())), "{messages:?}");
+    }
+    // A scan is drawn where the robot was.
+    assert!(
+        poses.iter().zip(&scans).all(|(pose, scan)| pose["pose"] == scan["pose"] && scan["frame_id"] == "odometry")
+    );
+}
+
 /// A negative time is no option.
 #[test]
 fn times_before_the_run_have_a_help() {

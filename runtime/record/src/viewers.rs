@@ -51,36 +51,40 @@ fn time(t: Nanos) -> String {
     format!("{{\"sec\":{},\"nsec\":{}}}", t.0 / 1_000_000_000, t.0 % 1_000_000_000)
 }
 
-/// The pose by odometry, in metres; the heading as a quaternion.
-fn pose(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
+/// A number to the thousandth: millimetres suffice for a picture.
+fn short(value: f64) -> Number {
+    // No zero has a sign.
+    Number(libm::round(value * 1e3) / 1e3 + 0.0)
+}
+
+/// The time, and the pose by odometry, in metres and as a quaternion; the begin of a message.
+fn begin(turn: &RecordedTurn) -> String {
     let pose = &turn.y.odometry;
     let (sin, cos) = libm::sincos(pose.theta.0 / 2.0);
-    write!(
-        to,
+    let [z, w] = [sin, cos].map(|part| Number(libm::round(part * 1e4) / 1e4 + 0.0));
+    format!(
         "{{\"timestamp\":{},\"frame_id\":\"odometry\",\"pose\":{{\"position\":{{\"x\":{},\"y\":{},\"z\":0}},\
-         \"orientation\":{{\"x\":0,\"y\":0,\"z\":{},\"w\":{}}}}}}}",
+         \"orientation\":{{\"x\":0,\"y\":0,\"z\":{z},\"w\":{w}}}}}",
         time(turn.t),
-        Number(pose.x.0),
-        Number(pose.y.0),
-        Number(sin),
-        Number(cos)
+        short(pose.x.0),
+        short(pose.y.0),
     )
 }
 
+/// The pose by odometry.
+fn pose(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
+    write!(to, "{}}}", begin(turn))
+}
+
 /// The last range of each sonar from the middle of the robot, in metres and counter-clockwise from the front; 0 if no
-/// echo came back.
+/// echo came back. Viewers draw it at the pose of the robot.
 fn ranges(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
     let last = core::f64::consts::TAU * (SONARS - 1) as f64 / SONARS as f64;
-    write!(
-        to,
-        "{{\"timestamp\":{},\"frame_id\":\"robot\",\"start_angle\":0,\"end_angle\":{last},\"ranges\":[",
-        time(turn.t)
-    )?;
+    write!(to, "{},\"start_angle\":0,\"end_angle\":{last},\"ranges\":[", begin(turn))?;
     for (sonar, pings) in turn.y.pings.iter().enumerate() {
         let range = pings.newest_first().next().and_then(|ping| ping.range);
         let range = range.map_or(0.0, |range| range.0 + turn.y.shape.ring_radius.0);
-        // Millimetres suffice for a picture.
-        write!(to, "{}{}", if sonar == 0 { "" } else { "," }, Number(libm::round(range * 1e3) / 1e3))?;
+        write!(to, "{}{}", if sonar == 0 { "" } else { "," }, short(range))?;
     }
     to.write_str("],\"intensities\":[]}")
 }
