@@ -79,7 +79,7 @@ fn pose(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
 /// The last range of each sonar from the middle of the robot, in metres and counter-clockwise from the front; 0 if no
 /// echo came back. Viewers draw it at the pose of the robot.
 fn ranges(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
-    let last = core::f64::consts::TAU * (SONARS - 1) as f64 / SONARS as f64;
+    let last = libm::round(core::f64::consts::TAU * (SONARS - 1) as f64 / SONARS as f64 * 1e6) / 1e6;
     write!(to, "{},\"start_angle\":0,\"end_angle\":{last},\"ranges\":[", begin(turn))?;
     for (sonar, pings) in turn.y.pings.iter().enumerate() {
         let range = pings.newest_first().next().and_then(|ping| ping.range);
