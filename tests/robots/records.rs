@@ -312,6 +312,32 @@ fn a_full_disk_ends_the_run() {
     assert_eq!(message, expected);
 }
 
+/// With `--log-best-effort` it ends the log alone: also when the reader of a pipe goes away.
+#[test]
+fn a_log_of_best_effort_ends_without_the_run() {
+    let folder = folder("effort");
+    fs::write(folder.join("rounds.mdle"), PLAN).unwrap();
+    let common =
+        ["run", "rounds.mdle", "--target", "sim", "--speed", "max", "--period", "0.02", "--log-best-effort", "--log"];
+    for ending in ["mcap", "jsonl"] {
+        let (full, pipe) = (format!("full.{ending}"), format!("pipe.{ending}"));
+        symlink("/dev/full", folder.join(&full)).unwrap();
+        assert!(Command::new("mkfifo").arg(folder.join(&pipe)).status().unwrap().success());
+        let mut reader = Command::new("head");
+        reader.args(["-c", "9000"]).arg(&pipe).current_dir(&folder).stdout(Stdio::piped());
+        let reader = reader.spawn().unwrap();
+        let outputs = [full, pipe].map(|log| run(&folder, &[&common[..], &[&log]].concat()));
+        assert_eq!(reader.wait_with_output().unwrap().stdout.len(), 9000);
+        let errors = ["No space left on device (os error 28)", "Broken pipe (os error 32)"];
+        for (output, error) in outputs.into_iter().zip(errors) {
+            let message = String::from_utf8(output.stderr).unwrap();
+            let expected = format!("warning: the run log ends here, as it cannot be written: {error}\n");
+            assert_eq!((message, output.status.code()), (expected, Some(0)), "{ending}");
+            assert!(String::from_utf8(output.stdout).unwrap().ends_with("plan over: wait 60s (rounds.mdle:1)\n"));
+        }
+    }
+}
+
 /// As a run in real time writes it: each second reaches the file at once.
 #[test]
 fn the_record_of_a_killed_run_can_be_read() {

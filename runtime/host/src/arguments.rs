@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
 use crate::call::Call;
 use crate::target_options::TargetOptions;
@@ -42,6 +42,8 @@ pub(crate) struct Options {
     pub(crate) turns: Option<u64>,
     /// File of the run log.
     pub(crate) log: Option<PathBuf>,
+    /// `true` if the run goes on when its log cannot be written.
+    pub(crate) log_best_effort: bool,
     /// File of the recorded path.
     pub(crate) path: Option<PathBuf>,
 }
@@ -85,6 +87,13 @@ pub(crate) fn command(target: &TargetOptions, program: Program<'_>, call: &Call)
                      name ends in `.mcap` is a record, which `mdle replay` re-executes",
                 )
                 .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            Arg::new("log-best-effort")
+                .long("log-best-effort")
+                .action(ArgAction::SetTrue)
+                .requires("log")
+                .help("Let the run go on without its log if that cannot be written, and say so"),
         );
     let command = match call.several_words() {
         Some(words) => required::argument(command).bin_name(words),
@@ -111,6 +120,7 @@ pub(crate) fn options(target: &TargetOptions, matches: &ArgMatches) -> Options {
         timeout: matches.get_one("timeout").copied(),
         turns: matches.get_one("turns").copied(),
         log: matches.get_one("log").cloned(),
+        log_best_effort: matches.get_flag("log-best-effort"),
         path: paths::recording(target, matches),
     }
 }

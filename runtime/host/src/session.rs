@@ -24,7 +24,7 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::required::{Required, scopes};
 use crate::run_end::{self, RunEnd, RunFault, say};
-use crate::run_log::{RunLog, is_record};
+use crate::run_log::{Format, RunLog, is_record};
 use crate::runs::{self, Runs, Terms};
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
@@ -345,11 +345,12 @@ fn begun(
     prompt: bool,
     signals: &Signals,
 ) -> io::Result<RunLog> {
-    if !options.log.as_deref().is_some_and(is_record) {
-        return file.begin(prompt, signals.patience()).map(RunLog::Lines);
-    }
-    let file = file.recorded(signals.patience())?;
-    Ok(RunLog::Record(Box::new(Record::new(file, begin, prompt))))
+    let format = if options.log.as_deref().is_some_and(is_record) {
+        Format::Record(Box::new(Record::new(file.recorded(signals.patience())?, begin, prompt)))
+    } else {
+        Format::Lines(file.begin(prompt, signals.patience())?)
+    };
+    Ok(RunLog::new(format, options.log_best_effort))
 }
 
 /// Reports that a signal ended the run while the robot was opened; returns the exit status.

@@ -131,6 +131,9 @@ impl Turns for OnePlan<'_, '_, '_> {
             let written = log.turn_without_plan(&UnmadeTurn { number, t, plan: *plan, supervised });
             written.map_err(|error| RunEnd::Log(error.to_string()))?;
         }
+        if let Some(message) = witnesses.log.as_mut().and_then(|log| log.take_message()) {
+            witnesses.say(&message);
+        }
         let step = self.step(turn)?;
         self.at_break(number.saturating_add(1), t, step == Step::Over)?;
         Ok(step)

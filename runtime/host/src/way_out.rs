@@ -6,7 +6,7 @@ use crate::Judgement;
 use crate::drive::Drive;
 use crate::report::Report;
 use crate::required::Required;
-use crate::run_end::{RunEnd, RunFault};
+use crate::run_end::{RunEnd, RunFault, say};
 use crate::run_log::RunLog;
 use crate::safety::{Panicked, shielded};
 
@@ -87,7 +87,10 @@ pub(crate) fn tell(
 ) -> u8 {
     let is_stopped = !faults.iter().any(|fault| matches!(fault, RunFault::Stop(_)));
     // Without a word on a broken log the reader of a short one would take it for a whole run.
-    let logged = files.log.map_or(Ok(()), |mut log| log.close());
+    let (logged, ended_before) = match files.log {
+        Some(mut log) => (log.close(), log.take_message()),
+        None => (Ok(()), None),
+    };
     faults.extend(logged.err().filter(|_| !matches!(ending, RunEnd::Log(_))).map(RunFault::Log));
     faults.extend(files.path.map(RunFault::Path));
     report.flush();
@@ -97,6 +100,9 @@ pub(crate) fn tell(
         let finished = shielded(|| drive.observer().map_or(Ok(()), |observer| observer.finish()));
         let finished = finished.unwrap_or_else(|Panicked(message)| Err(format!("a panic: {message}")));
         faults.extend(finished.err().map(RunFault::Finish));
+    }
+    if let Some(message) = ended_before {
+        say(err, format_args!("{message}"));
     }
     faults.iter().for_each(|fault| fault.tell(is_stopped, err));
     ending.status(&faults)

@@ -5,6 +5,7 @@
 mod log;
 mod manual;
 mod plot;
+mod replay;
 mod why;
 
 use std::ffi::OsString;
@@ -21,6 +22,7 @@ use crate::new_module::NewModule;
 use crate::test::arguments::{self as test, Test};
 pub(crate) use log::Log;
 pub(crate) use plot::Plot;
+pub(crate) use replay::Replay;
 pub(crate) use why::{Question, Why};
 
 /// The command that was given.
@@ -44,21 +46,6 @@ pub(crate) enum Asked {
     Completions(Shell),
     /// `mdle man`: the words of a command.
     Man(Vec<String>),
-}
-
-/// The arguments of `mdle replay`.
-#[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Replay {
-    /// The record; `-` is standard input.
-    pub(crate) log: PathBuf,
-    /// File of the plan; `None` for that of the record.
-    pub(crate) plan: Option<PathBuf>,
-    /// Time of the last turn, as it was typed; `None` for all turns.
-    pub(crate) until: Option<String>,
-    /// `true` if the turns are made one by one, as commands ask for them.
-    pub(crate) steps: bool,
-    /// File of these commands; `None` for standard input.
-    pub(crate) commands: Option<PathBuf>,
 }
 
 /// The arguments of `mdle run`.
@@ -123,13 +110,7 @@ pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
             let name = new.get_one("name").cloned().unwrap_or_default();
             Ok(Asked::NewModule(NewModule { name, checkout: new.get_one("checkout").cloned() }))
         }
-        Some(("replay", replay)) => Ok(Asked::Replay(Replay {
-            log: replay.get_one("log").cloned().unwrap_or_default(),
-            plan: replay.get_one("plan").cloned(),
-            until: replay.get_one("until").cloned(),
-            steps: replay.get_flag("step"),
-            commands: replay.get_one("commands").cloned(),
-        })),
+        Some(("replay", matches)) => Ok(Asked::Replay(Replay::of(matches))),
         Some(("why", matches)) => Ok(Asked::Why(Why::of(matches))),
         Some(("log", matches)) => Ok(Asked::Log(Log::of(matches))),
         Some(("plot", matches)) => Ok(Asked::Plot(Plot::of(matches))),
@@ -212,7 +193,7 @@ pub(crate) fn command() -> Command {
         .subcommand(run())
         .subcommand(shell())
         .subcommand(new_module())
-        .subcommand(replay())
+        .subcommand(replay::replay())
         .subcommand(why::why())
         .subcommand(log::log())
         .subcommand(plot::plot())
@@ -238,56 +219,6 @@ fn new_module() -> Command {
                 .value_parser(value_parser!(PathBuf)),
         )
         .after_help("Exit status: 0, or 2 if the folder cannot be created")
-}
-
-fn replay() -> Command {
-    Command::new("replay")
-        .about("Re-execute a recorded run and compare it with the record")
-        .long_about(
-            "Re-execute a recorded run and compare it with the record\n\nThe plan makes its turns again with the recorded \
-             outputs of the robot. The first turn that differs in a bit is printed, with what differs.",
-        )
-        .arg(
-            Arg::new("log")
-                .value_name("LOG")
-                .help("Record that `--log FILE.mcap` has written; `-` reads standard input")
-                .required(true)
-                .value_parser(value_parser!(PathBuf)),
-        )
-        .arg(
-            Arg::new("plan")
-                .long("plan")
-                .value_name("PLAN")
-                .help("File of the plan to run [default: the text in the record]")
-                .value_parser(value_parser!(PathBuf)),
-        )
-        .arg(
-            Arg::new("until")
-                .long("until")
-                .value_name("TIME")
-                .help("Time of the last turn to make, in seconds or with a unit [default: that of the record]")
-                .allow_hyphen_values(true),
-        )
-        .arg(
-            Arg::new("step")
-                .long("step")
-                .action(ArgAction::SetTrue)
-                .help("Show the turns one by one, forth and back, as commands ask for them; `help` lists these"),
-        )
-        .arg(
-            Arg::new("commands")
-                .short('c')
-                .long("commands")
-                .value_name("FILE")
-                .requires("step")
-                .help("File of commands [default: standard input]")
-                .value_parser(value_parser!(PathBuf)),
-        )
-        .after_help(
-            "Exit status: 0 if all turns are those of the record; 1 if a turn differs, the record was changed, or the plan has \
-             errors or is not in its file; 2 for wrong usage or a file that cannot be read. With `--step` it is 1 also if \
-             a command that was not typed was refused",
-        )
 }
 
 fn shell() -> Command {

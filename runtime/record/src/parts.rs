@@ -71,16 +71,14 @@ impl<R: Read> Parts<R> {
                     self.reader.notify_read(read);
                 }
                 Some(Ok(LinearReadEvent::Record { opcode, data })) => {
-                    match mcap::parse_record(opcode, data).map_err(|error| damage(&error))? {
-                        Record::Chunk { header, data } => {
-                            if !header.compression.is_empty() {
-                                return Err(Unreadable::Damaged("its chunks are compressed".to_owned()));
-                            }
-                            let is_sound = crc32fast::hash(&data) == header.uncompressed_crc;
-                            self.chunk = Some(Chunk { data: data.into_owned(), at: 0, is_sound });
+                    let record = mcap::parse_record(opcode, data).map_err(|error| damage(&error))?;
+                    self.is_whole |= matches!(record, Record::Footer(_));
+                    if let Record::Chunk { header, data } = record {
+                        if !header.compression.is_empty() {
+                            return Err(Unreadable::Damaged("its chunks are compressed".to_owned()));
                         }
-                        Record::Footer(_) => self.is_whole = true,
-                        _ => {}
+                        let is_sound = crc32fast::hash(&data) == header.uncompressed_crc;
+                        self.chunk = Some(Chunk { data: data.into_owned(), at: 0, is_sound });
                     }
                 }
                 // The file ends in the middle of a chunk: all chunks before it have been read.
@@ -121,10 +119,9 @@ impl Chunk {
 
 /// The damage of a file, as far as an error of the library says it.
 fn damage(error: &McapError) -> Unreadable {
-    Unreadable::Damaged(match error {
-        McapError::BadDataCrc { .. } => {
-            "the sum of the file differs, so that bytes outside of its chunks were changed".to_owned()
-        }
-        error => error.to_string(),
+    Unreadable::Damaged(if let McapError::BadDataCrc { .. } = error {
+        "the sum of the file differs, so that bytes outside of its chunks were changed".to_owned()
+    } else {
+        error.to_string()
     })
 }

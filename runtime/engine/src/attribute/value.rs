@@ -188,7 +188,8 @@ impl Value {
         }
     }
 
-    /// Returns the value of this kind with these bits; for a kind that plans do not read, a value that they do not read.
+    /// Returns the value of this kind with these bits; for a kind that plans do not read, a value that they do not read
+    /// either.
     pub(crate) fn of_bits(kind: AttributeKind, bits: u64) -> Self {
         let number = f64::from_bits(bits);
         match kind {
