@@ -83,7 +83,7 @@ type Property = fn(&[u8]);
 
 #[test]
 fn files_that_are_no_plans_are_read_or_refused() {
-    let properties: [(&str, Property); 7] = [
+    let properties: [(&str, Property); 8] = [
         ("alphabet", any_file::alphabet),
         ("machine", any_file::machine),
         ("script", any_file::script),
@@ -91,6 +91,7 @@ fn files_that_are_no_plans_are_read_or_refused() {
         ("map", any_file::map),
         ("path", any_file::path),
         ("configuration", any_file::configuration),
+        ("record", any_file::record),
     ];
     for (folder, property) in properties {
         let kept = fs::read_dir(root().join("tests/fuzz/files").join(folder)).unwrap();

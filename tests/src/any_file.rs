@@ -1,9 +1,10 @@
 //! The properties of all bytes of a file that is no plan: an alphabet, a machine, a script, a world, a map, a path, a
-//! robot's configuration. libFuzzer searches for bytes without these properties, and a test tries the corpus.
+//! robot's configuration, a record. libFuzzer searches for bytes without these properties, and a test tries the corpus.
 //!
 //! Each function panics if a property does not hold.
 
 use std::fs;
+use std::io::Write as _;
 use std::sync::LazyLock;
 
 use mdle_compiler::alphabet::{self, AlphabetFile};
@@ -11,6 +12,8 @@ use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
 use mdle_compiler::trace::{Counted, Script, run};
 use mdle_compiler::{Compiled, builtin, compile, rust};
 use mdle_host::setpoints;
+use mdle_record::frames::{Frames, TurnMade};
+use mdle_record::{RecordFile, RecordedTurn, Records};
 use mdle_runtime::{MetersPerSecond, Radians, RadiansPerSecond, Twist};
 use mdle_sim::{Place, Walls, World};
 use mdle_theory::theorem;
@@ -112,6 +115,27 @@ pub fn path(bytes: &[u8]) {
         setpoints.iter().all(|setpoint| setpoint.speed.0.abs() < 0.6 && setpoint.heading.0.is_finite()),
         "{setpoints:?}"
     );
+}
+
+/// A record is read or has an error; one that is read whole and written again has the same turns.
+pub fn record(bytes: &[u8]) {
+    let Ok((begin, turns)) = Records::open(bytes) else { return };
+    let Ok(turns) = turns.collect::<Result<Vec<_>, _>>() else { return };
+    let Some(first) = turns.first() else { return };
+    let (mut frames, mut written, mut file) = (Frames::default(), Vec::new(), Vec::new());
+    frames.begin(&begin, &first.y, &mut written);
+    for turn in &turns {
+        let RecordedTurn { number, t, sent, applied, plan, state, .. } = *turn;
+        let (changes, overruled) = (turn.changes.as_slice(), turn.overruled.as_ref());
+        let made = TurnMade { number, t, sent, applied, plan, state, changes, overruled };
+        frames.turn(made, &turn.y, turn.steps.iter().cloned(), &mut written);
+    }
+    frames.end(&mut written);
+    RecordFile::new(&mut file).write_all(&written).expect("a record that was read can be written");
+    let (again, same) = Records::open(file.as_slice()).expect("a record");
+    let same: Vec<_> = same.map(|turn| turn.expect("a turn")).collect();
+    // As text, in which a NaN is equal to another.
+    assert_eq!(format!("{again:?} {same:?}"), format!("{begin:?} {turns:?}"));
 }
 
 /// A robot's configuration is read or has an error; what is shown of one that is read is the same configuration.

@@ -12,6 +12,8 @@ mod exact;
 pub mod frames;
 mod parts;
 mod reader;
+#[cfg(test)]
+mod tests;
 mod turn;
 mod viewers;
 mod writer;
