@@ -80,11 +80,10 @@ fn late_turns_replay_to_the_bit() {
     let mut again = engine(Time::Stepped(Pace::Max)).repeating(None);
     for (number, Made { y, t, changes, outcome }) in (0..).zip(&turns) {
         for change in changes {
-            match change {
-                Change::Armed { when, .. } => {
-                    again.plans_mut().replace(loaded(SECOND).plan(), When::of_number(*when).unwrap());
-                }
-                other => again.repeat(other),
+            if let Change::Armed { when, .. } = change {
+                again.plans_mut().replace(loaded(SECOND).plan(), When::of_number(*when).unwrap());
+            } else {
+                again.repeat(change);
             }
         }
         assert_eq!(turn(&mut again, y, number), *outcome, "turn {number} at {t:?} after {changes:?}");
