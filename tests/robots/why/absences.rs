@@ -1,5 +1,5 @@
-//! Why an atom or a behavior did not begin, or not again: in loops, in behaviors that ran, and by all names that tests of
-//! plans take.
+//! Why an atom or a behavior did not begin, or not again: in loops, in behaviors that ran, and by all names that tests
+//! of plans take.
 
 use super::questions::answers;
 use super::scripted::{outputs, ping};

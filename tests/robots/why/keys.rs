@@ -1,5 +1,5 @@
-//! The reference lists the keys of the answers of `mdle why`, all of them and no others (docs/src/reference/interfaces.md,
-//! 6.8).
+//! The reference lists the keys of the answers of `mdle why`, all of them and no others
+//! (docs/src/reference/interfaces.md, 6.8).
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -19,8 +19,8 @@ fn documented(head: &str, end: &str) -> BTreeSet<String> {
     cells.flat_map(|cell| cell.split(',').map(|key| key.trim().trim_matches('`').to_owned())).collect()
 }
 
-/// Removes from `unused` the keys of an object that is reached by the keys in `path`, and of all inside it; `others` gets
-/// those that are not documented. The longest documented end of a path counts.
+/// Removes from `unused` the keys of an object that is reached by the keys in `path`, and of all inside it; `others`
+/// gets those that are not documented. The longest documented end of a path counts.
 fn look(
     value: &Value,
     path: &str,

@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use mdle_host::Quantity;
 use mdle_runtime::Nanos;
+use mdle_runtime::trace::Seconds;
 use mdle_sim::Goal;
 
 use super::causes::{Cause, cause, ending};
 use super::file::{At, ExpectText, TestFileError, TransitionText};
-use super::possible::{can_be_made, in_order};
 use super::subject::{Subject, TestCondition};
 
 /// Maximum time in a test.
@@ -71,6 +71,31 @@ pub(super) enum End {
     Failed,
 }
 
+impl ExpectedTransition {
+    /// Returns the transition in words.
+    pub(super) fn words(&self) -> String {
+        let mut words = String::from("a transition");
+        if let Some(from) = &self.from {
+            words += &format!(" from `{}`", from.text);
+        }
+        match &self.to {
+            Some(Some(to)) => words += &format!(" to `{}`", to.text),
+            Some(None) => words += " to the end of the plan",
+            None => {}
+        }
+        if let Some((by, _)) = &self.by {
+            words += &format!(" by `{by}`");
+        }
+        if let Some(after) = self.after {
+            words += &format!(" not before {} s", Seconds(after));
+        }
+        if let Some(within) = self.within {
+            words += &format!(" within {} s", Seconds(within));
+        }
+        words
+    }
+}
+
 impl AtomsNamed {
     /// Returns `true` if an atom is among those that are named.
     pub(super) fn holds(&self, atom: u32) -> bool {
@@ -106,7 +131,6 @@ impl Expected {
             Ok((pose.span(), pose.get_ref().clone(), goal))
         });
         let (atoms, order) = (list(&text.atoms)?, list(&text.order)?);
-        [&atoms, &order].into_iter().flatten().try_for_each(|(_, atoms)| in_order(atoms, subject))?;
         if let Some(most) = text.most_turns.as_ref().filter(|most| *most.get_ref() == 0) {
             let error = TestFileError::at(most.span(), "every run has a turn");
             return Err(error.help("`most-turns` is 1 or more"));
@@ -158,9 +182,7 @@ fn transition(at: &At<TransitionText>, subject: &Subject) -> Result<ExpectedTran
         let message = "nothing is both after the one time and within the other";
         return Err(TestFileError::at(text.span(), message).help("`within` has to be later than `after`"));
     }
-    let wanted = ExpectedTransition { from, to: to.transpose()?, by, after, within };
-    can_be_made(&wanted, at.span(), subject)?;
-    Ok(wanted)
+    Ok(ExpectedTransition { from, to: to.transpose()?, by, after, within })
 }
 
 fn end(text: &At<String>, subject: &Subject) -> Result<End, TestFileError> {

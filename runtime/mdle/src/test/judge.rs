@@ -156,7 +156,7 @@ impl Judge<'_> {
         if candidates.iter().any(is_in_time) {
             return None;
         }
-        let words = transition_words(wanted);
+        let words = wanted.words();
         let (message, got, step) = match candidates.first() {
             Some(step) => ("a transition was made at another time", format!("at {} s", Seconds(step.t)), Some(*step)),
             None => ("a transition was not made", "no such transition".to_owned(), None),
@@ -256,29 +256,6 @@ fn centimetres(gap: f64, least: f64) -> String {
     let text = |decimals: usize| format!("{:.decimals$}", gap * 100.0);
     let is_below = |text: &String| text.parse::<f64>().is_ok_and(|shown| shown < least * 100.0);
     (1..9).map(text).find(is_below).unwrap_or_else(|| text(9))
-}
-
-/// Returns an expected transition in words.
-pub(super) fn transition_words(wanted: &ExpectedTransition) -> String {
-    let mut words = String::from("a transition");
-    if let Some(from) = &wanted.from {
-        words += &format!(" from `{}`", from.text);
-    }
-    match &wanted.to {
-        Some(Some(to)) => words += &format!(" to `{}`", to.text),
-        Some(None) => words += " to the end of the plan",
-        None => {}
-    }
-    if let Some((by, _)) = &wanted.by {
-        words += &format!(" by `{by}`");
-    }
-    if let Some(after) = wanted.after {
-        words += &format!(" not before {} s", Seconds(after));
-    }
-    if let Some(within) = wanted.within {
-        words += &format!(" within {} s", Seconds(within));
-    }
-    words
 }
 
 /// The place and the heading of a pose, as `--start` takes them.

@@ -7,16 +7,22 @@ use mdle_compiler::plan::Condition;
 use mdle_runtime::trace::COMPLETED;
 
 use super::causes::Cause;
-use super::expected::{AtomsNamed, ExpectedTransition, Place};
+use super::expected::{AtomsNamed, Expected, ExpectedTransition, Place};
 use super::file::TestFileError;
-use super::judge::transition_words;
 use super::subject::Subject;
 
-/// Checks that each of the atoms can begin after the one before it.
+/// Checks that the plan can do what is expected: make the transitions, and begin the atoms in their order.
 ///
 /// # Errors
-/// One cannot: a sentence with its place.
-pub(super) fn in_order(atoms: &[AtomsNamed], subject: &Subject) -> Result<(), TestFileError> {
+/// It cannot: a sentence with its place.
+pub(super) fn possible(expected: &Expected, subject: &Subject) -> Result<(), TestFileError> {
+    let Expected { atoms, order, transitions, .. } = expected;
+    [atoms, order].into_iter().flatten().try_for_each(|(_, atoms)| in_order(atoms, subject))?;
+    transitions.iter().try_for_each(|(place, wanted)| can_be_made(wanted, place.clone(), subject))
+}
+
+/// Checks that each of the atoms can begin after the one before it.
+fn in_order(atoms: &[AtomsNamed], subject: &Subject) -> Result<(), TestFileError> {
     let possible = PossibleTransitions::new(subject.machine());
     let mut before: Option<&AtomsNamed> = None;
     for named in atoms {
@@ -34,10 +40,7 @@ pub(super) fn in_order(atoms: &[AtomsNamed], subject: &Subject) -> Result<(), Te
 }
 
 /// Checks that the plan can make a transition.
-///
-/// # Errors
-/// It cannot: a sentence with its place.
-pub(super) fn can_be_made(wanted: &ExpectedTransition, place: Place, subject: &Subject) -> Result<(), TestFileError> {
+fn can_be_made(wanted: &ExpectedTransition, place: Place, subject: &Subject) -> Result<(), TestFileError> {
     let possible = PossibleTransitions::new(subject.machine());
     let is_from = |atom| wanted.from.as_ref().is_none_or(|from| from.holds(atom));
     let entered = possible.entered(is_from, wanted.by.as_ref().map(|(_, cause)| cause));
@@ -49,7 +52,7 @@ pub(super) fn can_be_made(wanted: &ExpectedTransition, place: Place, subject: &S
     if is_met {
         return Ok(());
     }
-    let words = transition_words(&ExpectedTransition { after: None, within: None, ..wanted.clone() });
+    let words = ExpectedTransition { after: None, within: None, ..wanted.clone() }.words();
     let help = if entered.is_empty() {
         let known = possible.ending(is_from).into_iter().flat_map(|element| {
             let operands = subject.operands().filter(move |(scope, ..)| *scope == element.number());
@@ -96,8 +99,8 @@ impl<'m> PossibleTransitions<'m> {
         Self { machine }
     }
 
-    /// Returns the atoms that can be entered from the atoms of which `is_from` is true, by one transition with this cause;
-    /// `None` is the end of the plan.
+    /// Returns the atoms that can be entered from the atoms of which `is_from` is true, by one transition with this
+    /// cause; `None` is the end of the plan.
     fn entered(&self, is_from: impl Fn(u32) -> bool, cause: Option<&Cause>) -> BTreeSet<Option<u32>> {
         let mut entered = BTreeSet::new();
         for atom in self.machine.atoms().filter(|atom| is_from(atom.number())) {

@@ -12,6 +12,7 @@ use super::arguments::MOST_SEEDS;
 use super::expected::Expected;
 use super::file::{self, TestFileError, TestText};
 use super::messages;
+use super::possible::possible;
 use super::scripted;
 use super::simulated::Simulation;
 use super::subject::Subject;
@@ -60,6 +61,7 @@ impl Suite {
 impl Case {
     fn read(text: TestText, path: &Path, subject: &Subject, is_recorded: bool) -> Result<Self, TestFileError> {
         let expected = Expected::read(&text.expect, subject, text.script.is_some())?;
+        possible(&expected, subject)?;
         let runs_on = match &text.script {
             None => RunsOn::Simulation(Box::new(Simulation::read(&text, path, subject)?)),
             Some(turns) => {

@@ -217,7 +217,8 @@ fn sentence(stop: &Stop) -> String {
     }
 }
 
-/// Prints why the turns of the record of this name are not made again, with the plan in this file or that of the record.
+/// Prints why the turns of the record of this name are not made again, with the plan in this file or that of the
+/// record.
 ///
 /// # Errors
 /// The record cannot be read.

@@ -293,8 +293,8 @@ impl Search<'_> {
     }
 }
 
-/// Returns the last atoms of the elements that an element can follow: of the one before it, and of a loop of which it is
-/// the first.
+/// Returns the last atoms of the elements that an element can follow: of the one before it, and of a loop of which it
+/// is the first.
 fn before(element: Element<'_>) -> Vec<u32> {
     let mut before = Vec::new();
     for inner in element.outwards() {
