@@ -16,6 +16,7 @@ mod mdle_shell;
 mod mdle_terminal;
 mod mdle_test;
 mod mdle_test_outputs;
+mod mdle_test_random;
 mod newcomer;
 mod other_machines;
 mod proposals;
