@@ -1,7 +1,7 @@
 //! Capabilities: one trait for each capability that an alphabet can name, implemented by the robot's output.
-//! `state_link` has no trait yet, so no robot can offer it. See docs/src/reference/interfaces.md, 7.2.
+//! See docs/src/reference/interfaces.md, 7.2.
 
-use crate::{Meters, Nanos, Output, Pings, Pose, PublishedNumber, Radians, Setpoint, SonarId, Twist, Volts};
+use crate::{Meters, Nanos, Output, Peer, Pings, Pose, PublishedNumber, Radians, Setpoint, SonarId, Twist, Volts};
 
 /// `odometry`: the robot knows where it is and how fast it moves, in axes that stay put while it is switched on.
 pub trait Odometry: Output {
@@ -98,4 +98,10 @@ pub trait Paths: Output {
 pub trait Modules: Output {
     /// Returns the number that this module has published last under this name; `None` before the first.
     fn published(&self, module: &str, attribute: &str) -> Option<PublishedNumber>;
+}
+
+/// `state_link`: an engine runs the plan, with a link by which robots tell each other their states.
+pub trait StateLink: Output {
+    /// Returns another robot that the plan names; `None` if the link knows no robot of this name.
+    fn peer(&self, robot: &str) -> Option<&Peer>;
 }

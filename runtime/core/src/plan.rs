@@ -1,7 +1,7 @@
 //! Answers of a plan to the machine: the enclosing scope that ends, and the cause (docs/src/reference/semantics.md,
 //! 5.2).
 
-use crate::{Begin, Cursor, Entries, Follows, Fsm, Measured, ModuleRead, Nanos, Output, Slots, Source, Words};
+use crate::{Begin, Cursor, Entries, Follows, Fsm, Measured, Meeting, ModuleRead, Nanos, Output, Slots, Source, Words};
 
 /// Meaning of the atoms and the scopes of a plan on one robot: emitted by `mdlec`, or loaded from text.
 ///
@@ -80,6 +80,16 @@ pub trait Plan {
 
     /// Returns the attributes of modules that it reads: it begins once all of them have been published.
     fn reads(&self) -> &'static [ModuleRead] {
+        &[]
+    }
+
+    /// Returns the names of the other robots that it reads by the state link.
+    fn robots(&self) -> &[&'static str] {
+        &[]
+    }
+
+    /// Returns its scopes that wait for other robots by `rendezvous`, in their order.
+    fn meetings(&self) -> &[Meeting] {
         &[]
     }
 }

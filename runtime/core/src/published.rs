@@ -1,6 +1,7 @@
 //! Numbers that modules publish for a plan: those alone that the plan reads, with their times (paper, section III-B).
+//! And the other robots that the plan names.
 
-use crate::Nanos;
+use crate::{Links, Nanos};
 
 /// Maximum number of attributes of modules that one plan reads.
 pub const PUBLISHED: usize = 16;
@@ -34,6 +35,7 @@ pub struct Published {
     numbers: [Option<PublishedNumber>; PUBLISHED],
     /// Age of the oldest number that somebody waits for.
     oldest: Nanos,
+    links: Links,
 }
 
 impl Published {
@@ -44,7 +46,7 @@ impl Published {
     /// none.
     #[must_use]
     pub const fn new(names: &'static [ModuleRead]) -> Self {
-        Self { names, numbers: [None; PUBLISHED], oldest: Nanos::ZERO }
+        Self { names, numbers: [None; PUBLISHED], oldest: Nanos::ZERO, links: Links::NONE }
     }
 
     /// Sets the age of the oldest number that a plan or a safety rule reads.
@@ -57,6 +59,18 @@ impl Published {
     #[must_use]
     pub const fn oldest(&self) -> Nanos {
         self.oldest
+    }
+
+    /// Sets what the state link knows of other robots.
+    #[must_use]
+    pub const fn with_links(self, links: Links) -> Self {
+        Self { links, ..self }
+    }
+
+    /// Returns what the state link knows of other robots.
+    #[must_use]
+    pub const fn links(&self) -> &Links {
+        &self.links
     }
 
     /// Sets the number of the attribute at this place among the names.

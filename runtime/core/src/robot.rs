@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use crate::{Nanometers, Nanos, Pose, Published};
+use crate::{Links, Nanometers, Nanos, Pose, Published, Twist};
 
 /// A robot: takes an input, gives the output that follows it, and can be stopped.
 ///
@@ -54,6 +54,16 @@ pub trait Output {
     /// Takes the numbers that modules have published for the plan. An engine calls it before each turn; an output whose
     /// quarks read no modules ignores them.
     fn take_published(&mut self, _published: Published) {}
+
+    /// Takes what the state link knows of other robots. An engine calls it before each turn; an output whose quarks
+    /// name no robots ignores it.
+    fn take_links(&mut self, _links: Links) {}
+
+    /// Returns the velocities of the robot, which it tells others by the state link; at rest on a robot that does not
+    /// measure them.
+    fn velocities(&self) -> Twist {
+        Twist::default()
+    }
 
     /// Returns the age of the oldest number of a module that the plan or a safety rule reads; zero if they read none.
     fn oldest_published(&self) -> Nanos {

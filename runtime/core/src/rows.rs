@@ -6,7 +6,7 @@ use crate::condition::Reading;
 use crate::fsm::Kind;
 use crate::{
     Alphabet, Begin, Cause, Completes, Condition, Control, Cursor, Ending, Entries, Fsm, Guard, Interrupt, Law, LawRow,
-    MarkRow, Measured, Memory, ModuleRead, Nanos, Plan, Radians, Slots, Table, Words,
+    MarkRow, Measured, Meeting, Memory, ModuleRead, Nanos, Plan, Radians, Slots, Table, Words,
 };
 
 pub use examined::Examined;
@@ -235,6 +235,14 @@ impl<T: Table, E: Entries + Clone, P: Slots<u64> + Clone, M: Memory> Plan for In
 
     fn reads(&self) -> &'static [ModuleRead] {
         self.table.reads()
+    }
+
+    fn robots(&self) -> &[&'static str] {
+        self.table.robots()
+    }
+
+    fn meetings(&self) -> &[Meeting] {
+        self.table.meetings()
     }
 }
 

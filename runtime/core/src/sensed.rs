@@ -1,10 +1,10 @@
 //! The output of a robot on two driven wheels with odometry, bumper switches, sixteen sonars, a battery and a store of
 //! paths: the values, and the capabilities that they give it (`y = h(x)`, paper, Eq. 1).
 
-use crate::capability::{Bumpers, DiffDrive, Modules, Odometry, Paths, Power, SonarRing, Steering};
+use crate::capability::{Bumpers, DiffDrive, Modules, Odometry, Paths, Power, SonarRing, StateLink, Steering};
 use crate::{
-    Compass, Meters, Nanos, Output, PathStore, Pings, Pose, Published, PublishedNumber, Radians, SONARS, Setpoint,
-    Shape, SonarId, Twist, Volts,
+    Compass, Links, Meters, Nanos, Output, PathStore, Peer, Pings, Pose, Published, PublishedNumber, Radians, SONARS,
+    Setpoint, Shape, SonarId, Twist, Volts,
 };
 
 /// The output of one turn.
@@ -29,7 +29,7 @@ pub struct Sensed {
     pub shape: Shape,
     /// The paths that the plan can replay; empty on a robot without paths.
     pub paths: PathStore,
-    /// The numbers of modules that the plan reads, which an engine fills in.
+    /// The numbers of modules and the other robots that the plan reads, which an engine fills in.
     pub published: Published,
 }
 
@@ -50,7 +50,15 @@ impl Output for Sensed {
     }
 
     fn take_published(&mut self, published: Published) {
-        self.published = published;
+        self.published = published.with_links(*self.published.links());
+    }
+
+    fn take_links(&mut self, links: Links) {
+        self.published = self.published.with_links(links);
+    }
+
+    fn velocities(&self) -> Twist {
+        self.velocity
     }
 
     fn oldest_published(&self) -> Nanos {
@@ -143,5 +151,11 @@ impl Paths for Sensed {
 impl Modules for Sensed {
     fn published(&self, module: &str, attribute: &str) -> Option<PublishedNumber> {
         self.published.number(module, attribute)
+    }
+}
+
+impl StateLink for Sensed {
+    fn peer(&self, robot: &str) -> Option<&Peer> {
+        self.published.links().peer(robot)
     }
 }

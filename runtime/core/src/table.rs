@@ -4,7 +4,7 @@
 //! tables. A row costs rustc next to nothing, and a turn reads as many rows as there are scopes that enclose the
 //! current atom.
 
-use crate::{Alphabet, Condition, Fact, Follows, Fsm, MarkRow, ModuleRead, Radians, Source, Words};
+use crate::{Alphabet, Condition, Fact, Follows, Fsm, MarkRow, Meeting, ModuleRead, Radians, Source, Words};
 
 /// The tables of a plan: [`Rows`] of constants, or tables that a loaded plan owns.
 pub trait Table {
@@ -36,6 +36,16 @@ pub trait Table {
 
     /// Returns the attributes of modules that the plan reads.
     fn reads(&self) -> &'static [ModuleRead] {
+        &[]
+    }
+
+    /// Returns the names of the other robots that the plan reads by the state link.
+    fn robots(&self) -> &[&'static str] {
+        &[]
+    }
+
+    /// Returns the scopes that wait for other robots by `rendezvous`, in their order.
+    fn meetings(&self) -> &[Meeting] {
         &[]
     }
 }

@@ -17,6 +17,11 @@ impl Passes {
 
     /// Counts the passes of the loops that begin with a transition.
     pub fn step(&mut self, fsm: Fsm<'_>, transition: &Transition) {
+        self.step_into(fsm, transition, |_| ());
+    }
+
+    /// Counts the passes as [`Passes::step`] does, and calls `begins` with each bracket that begins with the transition.
+    pub fn step_into(&mut self, fsm: Fsm<'_>, transition: &Transition, mut begins: impl FnMut(u32)) {
         self.0.resize(fsm.brackets.len(), 1);
         let own = transition.atom.and_then(|atom| fsm.atoms.get(atom as usize));
         let (Some(own), Some(ended)) = (own, fsm.brackets.get(transition.scope as usize)) else { return };
@@ -29,6 +34,7 @@ impl Passes {
             }
         }
         for (number, begun) in outwards(fsm, own.scope).take_while(|(number, _)| *number != goes_on) {
+            begins(number);
             match (begun.kind, self.0.get_mut(number as usize)) {
                 (Kind::Loop { .. }, Some(pass)) => *pass = 1,
                 (Kind::Loop { .. } | Kind::Scope { .. }, _) => {}

@@ -9,6 +9,7 @@ mod machine;
 mod matrices;
 mod observation;
 mod reads;
+mod robots;
 mod rows;
 #[cfg(test)]
 mod tests;
@@ -23,6 +24,7 @@ pub use machine::{Atom, Element, ElementKind, Exit, Machine, Visit};
 pub use matrices::{Matrices, Matrix, Transition, UnitVector, matrices};
 pub use observation::observation1;
 pub use reads::{AttributeRead, module_reads};
+pub use robots::{Rendezvous, meetings, other_robots};
 pub use rows::{Rows, replayed_files, rows};
 pub use validation::validate;
 pub use words::{BracketText, OperandText, PlanWords, words};

@@ -8,7 +8,7 @@ mod table;
 use std::error::Error;
 use std::fmt;
 
-use mdle_runtime::{Guard, LawRow, PUBLISHED};
+use mdle_runtime::{Guard, LawRow, Meeting, PEERS, PUBLISHED};
 
 use crate::alphabet;
 use crate::diagnostic::Sources;
@@ -29,6 +29,8 @@ pub enum LoadError {
     TooManyNames,
     /// The plan reads more than [`PUBLISHED`] attributes of modules: the number.
     TooManyReads(usize),
+    /// The plan names more than [`PEERS`] other robots: the number.
+    TooManyRobots(usize),
 }
 
 impl fmt::Display for LoadError {
@@ -43,6 +45,9 @@ impl fmt::Display for LoadError {
                 "the plans of this program have more than {} kB of names of files and modules, which is the most",
                 MOST_NAMES / 1000
             ),
+            Self::TooManyRobots(count) => {
+                write!(f, "the plan names {count} other robots, and {PEERS} is the most")
+            }
             Self::TooManyReads(count) => {
                 write!(f, "the plan reads {count} attributes of modules, and {PUBLISHED} is the most")
             }
@@ -91,8 +96,14 @@ pub fn with_rows<A: mdle_runtime::Alphabet>(
     let (guards, operands, laws) =
         (guards.collect::<Result<_, _>>()?, operands.collect::<Result<_, _>>()?, laws.collect::<Result<_, _>>()?);
     let reads = names::reads(fsm::module_reads(machine, alphabet))?;
-    Ok(Loaded::new(
-        machine,
-        table::Owned { guards, operands, laws, marks, facts, words, paths: paths.collect::<Result<_, _>>()?, reads },
-    ))
+    let robots = fsm::other_robots(machine).into_iter().map(names::interned).collect::<Result<Vec<_>, _>>()?;
+    if robots.len() > PEERS {
+        return Err(LoadError::TooManyRobots(robots.len()));
+    }
+    let meetings = fsm::meetings(machine).into_iter().map(|fsm::Rendezvous { element, robot }| {
+        names::interned(robot).map(|robot| Meeting { scope: element, robot })
+    });
+    let (paths, meetings) = (paths.collect::<Result<_, _>>()?, meetings.collect::<Result<_, _>>()?);
+    let owned = table::Owned { guards, operands, laws, marks, facts, words, paths, reads, robots, meetings };
+    Ok(Loaded::new(machine, owned))
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use mdle_runtime::fsm::{Atom, Bracket};
 use mdle_runtime::{
-    Alphabet, Condition, Fact, Fsm, Guard, InRows, LawRow, MarkRow, Memories, ModuleRead, Table, Words,
+    Alphabet, Condition, Fact, Fsm, Guard, InRows, LawRow, MarkRow, Meeting, Memories, ModuleRead, Table, Words,
 };
 
 use super::Entered;
@@ -35,6 +35,8 @@ pub(super) struct Owned<A: Alphabet> {
     pub(super) words: PlanWords,
     pub(super) paths: Vec<&'static str>,
     pub(super) reads: &'static [ModuleRead],
+    pub(super) robots: Vec<&'static str>,
+    pub(super) meetings: Vec<Meeting>,
 }
 
 /// Tables that several machines may run, each from its own position.
@@ -128,6 +130,14 @@ impl<A: Alphabet> Table for Shared<A> {
 
     fn reads(&self) -> &'static [ModuleRead] {
         self.0.owned.reads
+    }
+
+    fn robots(&self) -> &[&'static str] {
+        &self.0.owned.robots
+    }
+
+    fn meetings(&self) -> &[Meeting] {
+        &self.0.owned.meetings
     }
 }
 

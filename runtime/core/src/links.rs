@@ -1,0 +1,106 @@
+//! What a robot knows of other robots by its state link: those alone that its plan names (paper, section IV-A).
+
+use crate::{Nanos, Pose, Twist};
+
+/// Maximum number of other robots that one plan names.
+pub const PEERS: usize = 8;
+
+/// Age from which the state of another robot is no longer fresh: the link to it counts as down.
+pub const STALE: Nanos = Nanos(500_000_000);
+
+/// The newest state of another robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PeerState {
+    /// Pose of the robot, in the axes of the receiver's own odometry.
+    pub pose: Pose,
+    /// Measured velocities of the robot.
+    pub velocity: Twist,
+    /// Time since the state arrived.
+    pub age: Nanos,
+    /// Number of scopes with a `rendezvous` with the receiver that the robot had entered.
+    pub rounds: u64,
+}
+
+/// Another robot that a plan names.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Peer {
+    /// Name of the robot.
+    pub name: &'static str,
+    /// Number of scopes with a `rendezvous` with it that the receiver had entered by the end of the turn before.
+    pub rounds: u64,
+    /// The newest state that has arrived; `None` before the first.
+    pub state: Option<PeerState>,
+}
+
+impl Peer {
+    /// Returns the state of the robot while it is fresh: less than [`STALE`] old.
+    #[must_use]
+    pub fn fresh(&self) -> Option<&PeerState> {
+        self.state.as_ref().filter(|state| state.age < STALE)
+    }
+
+    /// Returns `true` if the robot has entered at least as many scopes with a `rendezvous` as the receiver has.
+    #[must_use]
+    pub fn meets(&self) -> bool {
+        self.state.is_some_and(|state| state.rounds >= self.rounds)
+    }
+}
+
+/// A scope of a plan whose interrupt has a `rendezvous` with another robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Meeting {
+    /// The scope, by its bracket.
+    pub scope: u32,
+    /// Name of the other robot.
+    pub robot: &'static str,
+}
+
+/// The robots that a plan names, as the state link knows them. Without a link there are none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Links([Option<Peer>; PEERS]);
+
+impl Links {
+    /// No other robot.
+    pub const NONE: Self = Self([None; PEERS]);
+
+    /// Adds another robot; returns `false` if there are [`PEERS`] of them already.
+    pub fn add(&mut self, peer: Peer) -> bool {
+        let Some(place) = self.0.iter_mut().find(|place| place.is_none()) else { return false };
+        *place = Some(peer);
+        true
+    }
+
+    /// Returns the robot of this name.
+    #[must_use]
+    pub fn peer(&self, name: &str) -> Option<&Peer> {
+        self.0.iter().flatten().find(|peer| peer.name == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_peer_is_found_by_its_name() {
+        let mut links = Links::NONE;
+        let peer = |name| Peer { name, rounds: 0, state: None };
+        for name in ["a", "b", "c", "d", "e", "f", "g", "h"] {
+            assert!(links.add(peer(name)));
+        }
+        assert!(!links.add(peer("i")), "there is no ninth place");
+        assert_eq!(
+            ["a", "h", "i", ""].map(|name| links.peer(name).map(|peer| peer.name)),
+            [Some("a"), Some("h"), None, None]
+        );
+    }
+
+    #[test]
+    fn a_state_is_fresh_for_half_a_second_and_counts_for_ever() {
+        let state = PeerState { pose: Pose::ORIGIN, velocity: Twist::default(), age: Nanos(499_999_999), rounds: 2 };
+        let peer = |age, rounds| Peer { name: "a", rounds, state: Some(PeerState { age: Nanos(age), ..state }) };
+        assert!(peer(499_999_999, 1).fresh().is_some() && peer(500_000_000, 1).fresh().is_none());
+        assert_eq!([1, 2, 3].map(|rounds| peer(9_000_000_000, rounds).meets()), [true, true, false]);
+        assert!(!Peer { name: "a", rounds: 0, state: None }.meets());
+    }
+}
