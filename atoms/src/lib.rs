@@ -1,8 +1,7 @@
 //! The paper's quarks (section IV-A), for any robot whose output has what they need.
 //!
 //! A quark is a type that holds its arguments, in the order of `alphabet.mdle`, and asks for the capabilities that the
-//! alphabet names. `wait` is no type here: time is the machine's business. There is none yet for `sync`, `rendezvous`
-//! and `Follow`, whose capability no robot can offer yet either.
+//! alphabet names. `wait` is no type here: time is the machine's business.
 //!
 //! No allocation, no unsafe code, no path that panics; trigonometry from `libm`, so a law computes the same bits on
 //! every machine.
@@ -19,6 +18,7 @@ mod at_isection;
 mod bumper;
 mod crossing;
 mod directions;
+mod follow;
 mod gains;
 mod go;
 mod go_avoid;
@@ -34,6 +34,7 @@ mod signals;
 mod stop;
 mod stuck;
 mod swept;
+mod sync;
 mod tangent;
 #[cfg(test)]
 mod trial;
@@ -45,6 +46,7 @@ pub use advance::{Advance, Advancing};
 pub use align::{Align, Aligning};
 pub use at_isection::AtIsection;
 pub use bumper::Bumper;
+pub use follow::{Follow, Pursuing};
 pub use go::Go;
 pub use go_avoid::{GoAvoid, GoingRound};
 pub use modules::{Age2, Bearing, Following, GoAvoid2, Range};
@@ -54,4 +56,5 @@ pub use rotate::{Rotate, Rotating};
 pub use signals::{Age, Omega, R, Theta, V, X, Y};
 pub use stop::Stop;
 pub use stuck::Stuck;
+pub use sync::{Rendezvous, Sync};
 pub use turn::{Turn, Turning};

@@ -2,9 +2,9 @@
 
 use core::f64::consts::PI;
 
-use mdle_runtime::capability::{Bumpers, DiffDrive, Modules, Odometry, Paths, Power, SonarRing};
+use mdle_runtime::capability::{Bumpers, DiffDrive, Modules, Odometry, Paths, Power, SonarRing, StateLink};
 use mdle_runtime::{
-    Begin, Completes, Frame, Law, Meters, Mount, Nanos, Output, PathStore, Ping, Pings, Pose, Published,
+    Begin, Completes, Frame, Law, Links, Meters, Mount, Nanos, Output, PathStore, Peer, Ping, Pings, Pose, Published,
     PublishedNumber, Radians, SONARS, Setpoint, SonarId, Supply, Twist, Volts,
 };
 
@@ -59,6 +59,13 @@ impl Sensed {
     pub(crate) fn ping_at(&mut self, sonar: SonarId, range: Option<f64>, at: Nanos) {
         let ping = Ping { range: range.map(Meters), at, pose: self.pose, mount: Mount::default() };
         self.pings.get_mut(sonar.number()).expect("one of the sixteen").push(ping);
+    }
+
+    /// Makes this robot the only other one that the state link knows.
+    pub(crate) fn link(&mut self, peer: Peer) {
+        let mut links = Links::NONE;
+        assert!(links.add(peer));
+        self.published = self.published.with_links(links);
     }
 
     /// Moves the robot for one period of an ideal drive.
@@ -147,6 +154,12 @@ impl Power for Sensed {
 impl Modules for Sensed {
     fn published(&self, module: &str, attribute: &str) -> Option<PublishedNumber> {
         self.published.number(module, attribute)
+    }
+}
+
+impl StateLink for Sensed {
+    fn peer(&self, robot: &str) -> Option<&Peer> {
+        self.published.links().peer(robot)
     }
 }
 

@@ -29,6 +29,14 @@ fn messages(folder: &Path, example: &Example, format: &str) -> String {
     String::from_utf8(run_mdlec(folder, &arguments).stderr).expect("UTF-8")
 }
 
+/// Writes the files that examples name.
+fn write_files(folder: &Path) {
+    fs::write(folder.join("corridors.mdle"), "{ Corridor (Atom (wait 5) (go 20 0)) }\n").unwrap();
+    fs::create_dir_all(folder.join("cart")).unwrap();
+    let cart = "target cart : crate cart, period 100ms;\ncapability diff_drive, odometry;\nuse atoms;\n";
+    fs::write(folder.join("cart/alphabet.mdle"), cart).unwrap();
+}
+
 /// Returns the codes of the messages about an example, and the messages as JSON.
 fn codes(folder: &Path, example: &Example) -> (BTreeSet<String>, String) {
     let messages = messages(folder, example, "json");
@@ -42,7 +50,7 @@ fn codes(folder: &Path, example: &Example) -> (BTreeSet<String>, String) {
 #[test]
 fn wrong_examples_have_just_that_code_and_right_ones_none() {
     let folder = folder("explain");
-    fs::write(folder.join("corridors.mdle"), "{ Corridor (Atom (wait 5) (go 20 0)) }\n").unwrap();
+    write_files(&folder);
     for code in with_examples() {
         let explanation = code.explanation();
         let wrong = explanation.wrong().unwrap_or_else(|| panic!("{code} has no wrong example"));
@@ -58,7 +66,7 @@ fn wrong_examples_have_just_that_code_and_right_ones_none() {
 #[test]
 fn every_code_is_shown_to_people_and_to_programs() {
     let folder = folder("explain_shown");
-    fs::write(folder.join("corridors.mdle"), "{ Corridor (Atom (wait 5) (go 20 0)) }\n").unwrap();
+    write_files(&folder);
     let mut shown = String::new();
     for code in with_examples() {
         let wrong = code.explanation().wrong().unwrap_or_else(|| panic!("{code} has no wrong example"));

@@ -3,8 +3,9 @@
 pub use crate::{Input, Output};
 pub use crate::quarks::{Go, Advance, GoAvoid};
 pub use ::mdle_atoms::{
-    Bumper, AtIsection, LowBattery, Charger, Stuck, Stop, Rotate, Turn, GoAvoid2, Align,
-    Path, R, Age, X, Y, Theta, V, Omega, Battery, Bearing, Range, Age2,
+    Bumper, AtIsection, LowBattery, Charger, Sync, Rendezvous, Stuck, Stop, Rotate, Turn,
+    GoAvoid2, Align, Follow, Path, R, Age, X, Y, Theta, V, Omega, Battery, Bearing,
+    Range, Age2,
 };
 use ::mdle_atoms::alphabet as atoms;
 use ::mdle_runtime as runtime;
@@ -13,7 +14,7 @@ pub const NAME: &str = "atrv";
 /// The default period of a turn.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Identifies this alphabet: a plan that was compiled for another alphabet does not compile.
-pub const HASH: u64 = 0x89a14eac3e8752ff;
+pub const HASH: u64 = 0xc19c8f855d87c8a7;
 /// `go <v in cm/s> <omega in rad/s>`: Drives with a forward speed and a turn rate, counter-clockwise positive, for ever.
 const fn go(arguments: &[runtime::Argument<'_>]) -> Option<Go> {
     let &[runtime::Argument::Speed(v), runtime::Argument::AngularRate(omega)] = arguments
@@ -44,6 +45,7 @@ runtime::alphabet! {
         "paths" as Paths,
         "power" as Power,
         "modules" as Modules,
+        "state_link" as StateLink,
     ];
     limits: [
         "stuck" "duration" in 0.0..10000000000.0,
@@ -59,6 +61,8 @@ runtime::alphabet! {
         "atIsection" => AtIsection(atoms::at_isection),
         "lowBattery" => LowBattery(atoms::low_battery),
         "charger" => Charger(atoms::charger),
+        "sync" => Sync(atoms::sync),
+        "rendezvous" => Rendezvous(atoms::rendezvous),
         "stuck" => Stuck(atoms::stuck),
     ];
     signals: [
@@ -83,6 +87,7 @@ runtime::alphabet! {
         "goAvoid" => GoAvoid(go_avoid) completes,
         "goAvoid" => GoAvoid2(atoms::go_avoid2),
         "align" => Align(atoms::align) completes,
+        "Follow" => Follow(atoms::follow) completes,
         "path" => Path(atoms::path) completes,
     ];
 }

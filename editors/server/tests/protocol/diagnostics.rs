@@ -55,15 +55,15 @@ fn the_robot_is_that_of_the_settings() {
     let folder = folder("robot");
     let uri = format!("file://{}", folder.join("plan.mdle").display());
     let mut client = Client::with_options(json!({ "target": "atrv" }));
-    let text = "{ P (Atom (sync sun) stop) }";
+    let text = "{ P (Atom (wait 5) (go 150 0)) }";
     client.open(&uri, text);
-    assert_eq!(codes(&client.diagnostics(&uri, Some(1))), ["E0401"]);
+    assert_eq!(codes(&client.diagnostics(&uri, Some(1))), ["E0402"]);
     client.notify("workspace/didChangeConfiguration", json!({ "settings": { "mdle": { "target": "" } } }));
     assert_eq!(codes(&client.diagnostics(&uri, Some(1))), [""; 0]);
     // The file beside the plan wins.
     fs::write(folder.join("mdle.toml"), "target = \"atrv\"\n").unwrap();
     client.notify("textDocument/didSave", json!({ "textDocument": { "uri": uri } }));
-    assert_eq!(codes(&client.diagnostics(&uri, Some(1))), ["E0401"]);
+    assert_eq!(codes(&client.diagnostics(&uri, Some(1))), ["E0402"]);
     fs::write(folder.join("mdle.toml"), "target = \"atrw\"\n").unwrap();
     client.notify("textDocument/didSave", json!({ "textDocument": { "uri": uri } }));
     let found = client.diagnostics(&uri, Some(1));

@@ -40,7 +40,7 @@ fn our_own_alphabets_are_read() {
         head.capabilities.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "),
         "diff_drive sonar[16] bumper odometry paths power"
     );
-    assert_eq!(head.engine.iter().map(ToString::to_string).collect::<Vec<_>>(), ["modules"]);
+    assert_eq!(head.engine.iter().map(ToString::to_string).collect::<Vec<_>>(), ["modules", "state_link"]);
 }
 
 #[test]
@@ -95,8 +95,8 @@ fn a_value_of_a_unit_is_exact_in_si_units() {
 fn capabilities_have_a_size() {
     let need = |name: &str, size| Capability { name: name.into(), size };
     assert!(sim().has(&need("sonar", Some(8))) && sim().has(&need("bumper", None)));
-    assert!(!sim().has(&need("sonar", Some(17))) && !sim().has(&need("state_link", None)));
-    assert!(Alphabet::shared(good(ATOMS)).has(&need("state_link", None)));
+    assert!(!sim().has(&need("sonar", Some(17))) && !sim().has(&need("arm", None)));
+    assert!(Alphabet::shared(good(ATOMS)).has(&need("arm", None)));
 }
 
 #[test]

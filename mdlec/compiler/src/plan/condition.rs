@@ -157,7 +157,13 @@ impl Condition {
         Self::And(vec![Self::Quark(quark), Self::Wait { nanos, quark }])
     }
 
-    /// Returns the quark and the nanoseconds of a condition `stuck T`, which is joined of that quark and a timer.
+    /// The condition of `rendezvous R`: its quark has fired, and its scope was entered in an earlier turn.
+    pub(super) fn later(quark: QuarkId) -> Self {
+        Self::stuck(quark, 1)
+    }
+
+    /// Returns the quark and the nanoseconds of a condition `stuck T` or `rendezvous R`, which is joined of that quark
+    /// and a timer.
     #[must_use]
     pub fn lasting(&self) -> Option<(QuarkId, u64)> {
         let Self::And(operands) = self else { return None };

@@ -108,7 +108,9 @@ impl<'a> Quarks<'a> {
         let quark = &declaration.name;
         let needs_engine = |capability| self.alphabet.has(capability) || self.alphabet.needs_engine(capability);
         if declaration.needs.iter().all(needs_engine) {
-            let message = format!("`{quark}` reads modules, and an executable has none");
+            let is_link = declaration.needs.iter().any(|capability| capability.name == "state_link");
+            let what = if is_link { "needs the state link" } else { "reads modules" };
+            let message = format!("`{quark}` {what}, and an executable has none");
             let report = Diagnostic::new(Code::E0403, message, call.span, "needs an engine");
             return Err(vec![report.help(format!("`mdle run PLAN --target {}` runs the plan", self.alphabet.name))]);
         }

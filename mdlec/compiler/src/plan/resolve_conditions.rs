@@ -187,6 +187,7 @@ impl Resolving<'_, '_, '_> {
                     Some(Value::Infinity(_)) => Condition::Wait { nanos: FOR_EVER, quark: id },
                     Some(_) | None => Condition::Quark(id),
                 },
+                Some(quark) if quark.name == "rendezvous" => Condition::later(id),
                 Some(_) | None => Condition::Quark(id),
             },
             Err(found) => {

@@ -144,9 +144,9 @@ fn loop_counts() {
 }
 
 #[test]
-fn what_a_robot_lacks_and_what_it_cannot_do() {
+fn what_a_robot_cannot_do() {
     assert_judged!(
-        "{ P (sync ada)
+        "{ P (bumper)
   (Atom (wait 5) go 500 0)
   (Atom (wait 5) go 0 -7)
   (Atom (wait 5) goAvoid(heading module))

@@ -72,6 +72,7 @@ pub(super) fn capability_trait(capability: &Capability) -> Option<Ident> {
         "paths" => "Paths",
         "power" => "Power",
         "modules" => "Modules",
+        "state_link" => "StateLink",
         _ => return None,
     };
     Some(format_ident!("{name}"))
