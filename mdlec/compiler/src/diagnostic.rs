@@ -132,6 +132,7 @@ codes! {
     W0206 "timer that an outer timer precedes",
     W0207 "`FRAME here` without effect",
     W0208 "drive without a limit of time",
+    W0209 "wait for a robot without a limit of time",
     W0301 "loop that can be skipped in one turn",
     W0302 "element that is always skipped",
     W0303 "element that is always true on entry",

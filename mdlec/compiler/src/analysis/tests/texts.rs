@@ -28,7 +28,7 @@ fn conditions_that_are_always_or_never_true() {
 }"
     );
     assert_silent(&[
-        "{ P (Atom (rendezvous ada OR NOT rendezvous ada) stop) }",
+        "{ P (wait 60) (Atom (rendezvous ada OR NOT rendezvous ada) stop) }",
         "{ P (Atom (wait 5 AND NOT wait 9) stop) (Atom (wait inf OR bumper) stop) }",
         "{ P (Atom (atIsection 1000 AND atIsection 1000) stop) }",
     ]);
@@ -62,7 +62,7 @@ fn neighbours_that_are_always_skipped() {
         // It may have ended because it was done; or the condition may be true no more.
         "{ P (Atom (bumper) rotate 90) (Atom (bumper) go 5 0) }",
         "{ P (Atom (wait 5) stop) (Atom (wait 5) stop) (Atom (bumper OR wait 5) stop) (Atom (bumper OR wait 5) stop) }",
-        "{ P (Atom (rendezvous ada) stop) (Atom (rendezvous ada) stop) }",
+        "{ P (wait 60) (Atom (rendezvous ada) stop) (Atom (rendezvous ada) stop) }",
     ]);
 }
 

@@ -8,6 +8,7 @@ mod numbers;
 mod skipped;
 #[cfg(test)]
 mod tests;
+mod unanswered;
 mod unlimited;
 
 use std::collections::BTreeSet;
@@ -26,6 +27,7 @@ pub fn lints(plan: &Nondegenerate) -> Vec<Diagnostic> {
     frames::check(plan, &mut found);
     skipped::check(plan, &mut found);
     unlimited::check(plan, &mut found);
+    unanswered::check(plan, &mut found);
     let mut places: BTreeSet<(Option<Span>, Code)> = BTreeSet::new();
     found.retain(|lint| places.insert((lint.span(), lint.code)));
     found

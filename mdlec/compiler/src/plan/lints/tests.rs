@@ -67,6 +67,23 @@ fn a_drive_that_may_never_arrive() {
 }
 
 #[test]
+fn a_wait_for_a_robot_that_may_never_come() {
+    assert_judged!(
+        "{ P (bumper)
+  (Atom (sync ada) stop)
+  { Q (bumper) (Atom (sync ada AND rendezvous bob) stop)^2 }
+  (Atom (rendezvous ada OR bumper) (go 20 0))
+}"
+    );
+    assert_silent(&[
+        "{ P (bumper) (Atom (rendezvous ada OR wait 2min) stop) }",
+        "{ P (bumper OR wait 10min) { Q (null) ((Atom (sync ada AND rendezvous bob) stop))^2 } }",
+        "{ P (bumper) { Q (t > 60) (Atom (sync ada) stop) } (Atom (NOT sync ada) stop) }",
+        "{ P (bumper) (Atom (sync ada) turn 90) }",
+    ]);
+}
+
+#[test]
 fn what_is_never_reached() {
     assert_judged!(
         "{ P (bumper)
