@@ -9,6 +9,7 @@ mod board;
 mod engine;
 mod fork;
 mod library;
+pub mod link;
 mod module;
 mod plans;
 mod process;

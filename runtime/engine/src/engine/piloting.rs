@@ -12,6 +12,7 @@ use super::loading::{Loading, NewModule};
 use super::modules::{Modules, Service};
 use crate::fork::Threads;
 use crate::library::Library;
+use crate::link::StateLink;
 use crate::module::{Candidate, Declare, Refusal};
 use crate::plans::{EngineAlphabet, NoTrial, PlanTurn, Plans, reads};
 use crate::replay::{History, Repeats};
@@ -35,6 +36,7 @@ pub struct Engine<A: EngineAlphabet> {
     history: Option<History>,
     /// The recorded run that is made again.
     repeats: Option<Repeats>,
+    link: Option<StateLink>,
 }
 
 impl<A: EngineAlphabet> Engine<A> {
@@ -64,6 +66,7 @@ impl<A: EngineAlphabet> Engine<A> {
             messages: Vec::new(),
             history: None,
             repeats: None,
+            link: None,
         };
         engine.load_plan_module();
         for candidate in library.candidates(&terms.request) {
@@ -123,6 +126,12 @@ impl<A: EngineAlphabet> Engine<A> {
                 }
             }
         }
+    }
+
+    /// Lets the robot tell others its state, and plans read theirs.
+    #[must_use]
+    pub fn linked(self, link: StateLink) -> Self {
+        Self { link: Some(link), ..self }
     }
 
     /// Returns the plans.
@@ -308,18 +317,25 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
         Moment { y, t, number }: Moment<'_, A::Output>,
         transitions: &mut Transitions,
     ) -> Result<Turn<A::Input>, PilotFault> {
+        let mut complete = y.clone();
+        if let Some(link) = &mut self.link {
+            link.sense(&mut complete, self.plans.robots(), t);
+        }
         let published = self.plans.take_off(y, t, self.modules.board()).map_err(PilotFault::Stopped)?;
-        let mut y = y.clone();
         if let Some(published) = published {
-            y.take_published(published);
+            complete.take_published(published);
         }
         let deadline = self.patience.map(|patience| Instant::now() + patience);
         if self.repeats.as_ref().is_none_or(Repeats::makes_turn) {
-            self.modules.turn(y, number, t, deadline);
+            self.modules.turn(complete, number, t, deadline);
         }
         let turn = self.land(t, published.is_some(), transitions)?;
         if let Some(repeats) = &mut self.repeats {
             repeats.end_turn();
+        }
+        if let Some(link) = &mut self.link {
+            let plan = self.plans.machine().map(|machine| (self.plans.number().into(), machine));
+            link.tell(y, plan, transitions, t);
         }
         self.modules.settle();
         self.turn_break()?;
@@ -361,6 +377,9 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
 
     fn messages(&mut self, say: &mut dyn FnMut(&str)) {
         self.messages.drain(..).for_each(|message| say(&message));
+        if let Some(link) = &mut self.link {
+            link.messages(say);
+        }
     }
 
     fn record(&mut self) {

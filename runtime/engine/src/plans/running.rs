@@ -45,6 +45,8 @@ pub(crate) struct Running<A: Alphabet> {
     pub(crate) zero: Nanos,
     /// Attributes of modules that it reads.
     pub(crate) reads: &'static [ModuleRead],
+    /// Other robots that it names.
+    pub(crate) robots: Box<[&'static str]>,
     /// Time since which it waits for what it reads.
     waits_since: Option<Nanos>,
     /// `true` if it was suspended before this turn.
@@ -54,7 +56,7 @@ pub(crate) struct Running<A: Alphabet> {
 impl<A: Alphabet> Running<A> {
     /// Returns a plan before its first turn.
     pub(crate) fn new(ticket: u32, plan: LoadedPlan<A>) -> Self {
-        let reads = Plan::reads(&plan);
+        let (reads, robots) = (Plan::reads(&plan), Plan::robots(&plan).into());
         let name = Plan::name(&plan, 0).into();
         Self {
             ticket,
@@ -64,6 +66,7 @@ impl<A: Alphabet> Running<A> {
             machine: None,
             zero: Nanos::ZERO,
             reads,
+            robots,
             waits_since: None,
             is_back: false,
         }

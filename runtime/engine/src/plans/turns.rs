@@ -157,6 +157,13 @@ impl<A: EngineAlphabet> Plans<A> {
         current.chain(armed).chain(suspended).flatten()
     }
 
+    /// Returns the other robots that plans name: the plan that drives, and the next one.
+    pub(crate) fn robots(&self) -> impl Iterator<Item = &'static str> {
+        let current = self.current.iter().map(|flight| &flight.current);
+        let plans = current.chain(self.armed.iter().map(|(armed, _)| armed));
+        plans.flat_map(|plan| plan.robots.iter().copied())
+    }
+
     /// Returns the module that makes the turns of these plans.
     pub(crate) fn module(&self) -> PlanModule<A> {
         PlanModule(Arc::clone(&self.desk))

@@ -1,0 +1,160 @@
+//! The link between robots of one process: states that are late, lost or doubled, by a random seed.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use mdle_runtime::Nanos;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::{Link, State};
+
+/// Maximum number of states on their way to one robot: one that makes no more turns reads none.
+const UNREAD: usize = 4096;
+
+/// Faults of the link between two robots.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Faults {
+    /// The least time that a state takes, and the most.
+    pub latency: (Nanos, Nanos),
+    /// Probability that a state is lost.
+    pub loss: f64,
+    /// Probability that a state arrives twice.
+    pub duplication: f64,
+}
+
+/// The end of one robot of a link between the robots of one process.
+///
+/// A state arrives in a later turn than that in which it was sent, so that the order in which robots make their turns
+/// changes nothing. The faults between two robots have a stream of random numbers of their own.
+pub struct Air {
+    own: usize,
+    faults: Faults,
+    /// Random numbers for the states to each robot.
+    randoms: Vec<ChaCha8Rng>,
+    mail: Arc<[Mutex<Vec<Letter>>]>,
+}
+
+/// A state on its way.
+struct Letter {
+    state: State,
+    sent: Nanos,
+    due: Nanos,
+}
+
+impl Air {
+    /// Returns the ends of a link between so many robots.
+    #[must_use]
+    pub fn new(robots: usize, faults: Faults, seed: u64) -> Vec<Self> {
+        let mail: Arc<[Mutex<Vec<Letter>>]> = (0..robots).map(|_| Mutex::default()).collect();
+        let stream = |own: usize, other: usize| {
+            let mut random = ChaCha8Rng::seed_from_u64(seed);
+            random.set_stream((own.wrapping_mul(robots).wrapping_add(other)) as u64);
+            random
+        };
+        let end = |own| {
+            let randoms = (0..robots).map(|other| stream(own, other)).collect();
+            Self { own, faults, randoms, mail: Arc::clone(&mail) }
+        };
+        (0..robots).map(end).collect()
+    }
+}
+
+impl Faults {
+    /// Returns the time that a state takes.
+    fn delay(&self, random: &mut ChaCha8Rng) -> u64 {
+        let (least, most) = (self.latency.0.0, self.latency.1.0.max(self.latency.0.0));
+        least.saturating_add((unit(random) * (most - least) as f64) as u64)
+    }
+}
+
+/// Returns a number from 0 to less than 1.
+fn unit(random: &mut ChaCha8Rng) -> f64 {
+    (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+}
+
+fn lock(letters: &Mutex<Vec<Letter>>) -> MutexGuard<'_, Vec<Letter>> {
+    letters.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Link for Air {
+    fn send(&mut self, state: &State, now: Nanos) {
+        let Self { own, faults, randoms, mail } = self;
+        for ((other, letters), random) in mail.iter().enumerate().zip(randoms) {
+            if other == *own {
+                continue;
+            }
+            // As many numbers for each state, so that one fault does not move the others.
+            let (is_lost, is_doubled) = (unit(random) < faults.loss, unit(random) < faults.duplication);
+            let delays = [faults.delay(random), faults.delay(random)];
+            let copies = if is_lost { 0 } else { 1 + usize::from(is_doubled) };
+            for delay in delays.into_iter().take(copies) {
+                let due = Nanos(now.0.saturating_add(delay));
+                let mut letters = lock(letters);
+                if letters.len() < UNREAD {
+                    letters.push(Letter { state: state.clone(), sent: now, due });
+                }
+            }
+        }
+    }
+
+    fn receive(&mut self, now: Nanos, take: &mut dyn FnMut(State)) {
+        let Some(letters) = self.mail.get(self.own) else { return };
+        lock(letters).retain(|letter| {
+            let arrives = letter.sent < now && letter.due <= now;
+            if arrives {
+                take(letter.state.clone());
+            }
+            !arrives
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mdle_runtime::{Pose, Twist};
+
+    use super::*;
+
+    const TURN: u64 = 100_000_000;
+
+    fn state(number: u64) -> State {
+        State { name: "ada".to_owned(), number, pose: Pose::ORIGIN, velocity: Twist::default(), rounds: Vec::new() }
+    }
+
+    /// The numbers of the states that arrive in each turn, of one that is sent in each.
+    fn heard(faults: Faults, turns: u64, seed: u64) -> Vec<Vec<u64>> {
+        let [mut ada, mut bob] = Air::new(2, faults, seed).try_into().ok().unwrap();
+        let turn = |number| {
+            let now = Nanos(number * TURN);
+            ada.send(&state(number), now);
+            let mut heard = Vec::new();
+            bob.receive(now, &mut |state| heard.push(state.number));
+            heard
+        };
+        (0..turns).map(turn).collect()
+    }
+
+    #[test]
+    fn a_state_arrives_in_the_next_turn_or_after_its_latency() {
+        assert_eq!(heard(Faults::default(), 4, 1), [vec![], vec![0], vec![1], vec![2]]);
+        let late = Faults { latency: (Nanos(2 * TURN), Nanos(2 * TURN)), ..Faults::default() };
+        assert_eq!(heard(late, 4, 1), [vec![], vec![], vec![0], vec![1]]);
+    }
+
+    #[test]
+    fn states_are_lost_and_doubled_as_often_as_asked_for() {
+        let count = |faults| heard(faults, 10_000, 1).concat().len();
+        assert!((8_900..9_100).contains(&count(Faults { loss: 0.1, ..Faults::default() })));
+        assert!((11_900..12_100).contains(&count(Faults { duplication: 0.2, ..Faults::default() })));
+        assert_eq!(count(Faults { loss: 1.0, ..Faults::default() }), 0);
+    }
+
+    #[test]
+    fn the_seed_decides_and_latency_overtakes() {
+        let faults = Faults { latency: (Nanos::ZERO, Nanos(5 * TURN)), loss: 0.3, duplication: 0.3 };
+        assert_eq!(heard(faults, 200, 7), heard(faults, 200, 7));
+        assert_ne!(heard(faults, 200, 7), heard(faults, 200, 8));
+        let order = heard(faults, 200, 7).concat();
+        assert!(order.windows(2).any(|pair| pair[0] > pair[1]), "a later state arrives first");
+    }
+}

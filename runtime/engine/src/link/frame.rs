@@ -1,0 +1,195 @@
+//! A state as bytes on a line: a length, then version, checksum, proof of the key, and the state
+//! (docs/src/reference/interfaces.md, 6.5).
+
+use mdle_runtime::{Meters, MetersPerSecond, PEERS, Pose, Radians, RadiansPerSecond, Twist};
+
+use super::State;
+
+/// First bytes of every frame.
+const MAGIC: [u8; 4] = *b"MDLe";
+/// Version of frames.
+pub(super) const VERSION: u8 = 1;
+/// Maximum length of a frame, in bytes, without the four of the length.
+pub(super) const LONGEST: usize = 2048;
+/// Maximum length of a robot's name, in bytes.
+pub(super) const NAME: usize = 64;
+/// Bytes before the state: magic, version, checksum, and proof.
+const HEAD: usize = 4 + 1 + 4 + 16;
+
+/// A key that all robots of a link have.
+#[derive(Clone)]
+pub(super) struct Key([u8; 32]);
+
+impl Key {
+    pub(super) fn of(text: &str) -> Self {
+        Self(blake3::derive_key("mdle state link 1", text.as_bytes()))
+    }
+
+    /// Returns the proof that a robot which has the key has written these bytes.
+    fn proof(&self, body: &[u8]) -> [u8; 16] {
+        blake3::keyed_hash(&self.0, body).as_bytes().first_chunk().copied().unwrap_or_default()
+    }
+}
+
+/// Reason why a frame is refused.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Refused {
+    /// The bytes are no frame, or were changed on the way.
+    Garbage,
+    /// The frame has another version: its number.
+    Version(u8),
+    /// The sender has another key.
+    Key,
+}
+
+/// Returns the frame of a state, length included.
+pub(super) fn written(state: &State, key: &Key) -> Vec<u8> {
+    let mut body = Vec::with_capacity(256);
+    put_name(&mut body, &state.name);
+    body.extend(state.number.to_le_bytes());
+    let Pose { x, y, theta } = state.pose;
+    let Twist { v, omega } = state.velocity;
+    [x.0, y.0, theta.0, v.0, omega.0].iter().for_each(|number| body.extend(number.to_le_bytes()));
+    let rounds = state.rounds.get(..state.rounds.len().min(PEERS)).unwrap_or_default();
+    body.push(rounds.len() as u8);
+    for (robot, count) in rounds {
+        put_name(&mut body, robot);
+        body.extend(count.to_le_bytes());
+    }
+    let length = (HEAD + body.len()) as u32;
+    let mut frame = length.to_le_bytes().to_vec();
+    frame.extend(MAGIC);
+    frame.push(VERSION);
+    frame.extend(checksum(&body));
+    frame.extend(key.proof(&body));
+    frame.extend(body);
+    frame
+}
+
+fn checksum(body: &[u8]) -> [u8; 4] {
+    blake3::hash(body).as_bytes().first_chunk().copied().unwrap_or_default()
+}
+
+fn put_name(to: &mut Vec<u8>, name: &str) {
+    let bytes = name.as_bytes();
+    let bytes = bytes.get(..bytes.len().min(NAME)).unwrap_or_default();
+    to.push(bytes.len() as u8);
+    to.extend(bytes);
+}
+
+/// Reads the frame of a state, without its length.
+///
+/// # Errors
+/// The bytes are no frame of a robot with this key.
+pub(super) fn read(frame: &[u8], key: &Key) -> Result<State, Refused> {
+    let mut from = Bytes(frame);
+    if from.take() != Some(MAGIC) {
+        return Err(Refused::Garbage);
+    }
+    match from.take::<1>() {
+        Some([VERSION]) => {}
+        Some([other]) => return Err(Refused::Version(other)),
+        None => return Err(Refused::Garbage),
+    }
+    let (Some(sum), Some(proof)) = (from.take::<4>(), from.take::<16>()) else { return Err(Refused::Garbage) };
+    if checksum(from.0) != sum {
+        return Err(Refused::Garbage);
+    }
+    // Only somebody who has the key knows the proof, so nobody gains from the time that the comparison takes.
+    if key.proof(from.0) != proof {
+        return Err(Refused::Key);
+    }
+    state(&mut from).ok_or(Refused::Garbage)
+}
+
+fn state(from: &mut Bytes<'_>) -> Option<State> {
+    let name = from.name()?;
+    let number = from.number()?;
+    let mut real = || from.take().map(f64::from_le_bytes).filter(|number| number.is_finite());
+    let pose = Pose { x: Meters(real()?), y: Meters(real()?), theta: Radians(real()?) };
+    let velocity = Twist { v: MetersPerSecond(real()?), omega: RadiansPerSecond(real()?) };
+    let [count] = from.take()?;
+    let rounds = (0..count).map(|_| Some((from.name()?, from.number()?))).collect::<Option<Vec<_>>>()?;
+    from.0.is_empty().then_some(State { name, number, pose, velocity, rounds })
+}
+
+/// Bytes that are read from the front.
+struct Bytes<'b>(&'b [u8]);
+
+impl Bytes<'_> {
+    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (first, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(*first)
+    }
+
+    fn number(&mut self) -> Option<u64> {
+        self.take().map(u64::from_le_bytes)
+    }
+
+    fn name(&mut self) -> Option<String> {
+        let [length] = self.take()?;
+        let (name, rest) = self.0.split_at_checked(usize::from(length))?;
+        self.0 = rest;
+        String::from_utf8(name.to_vec()).ok().filter(|name| !name.is_empty() && name.len() <= NAME)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sent() -> State {
+        State {
+            name: "ada".to_owned(),
+            number: 7,
+            pose: Pose { x: Meters(1.5), y: Meters(-2.0), theta: Radians(0.25) },
+            velocity: Twist { v: MetersPerSecond(0.5), omega: RadiansPerSecond(-0.1) },
+            rounds: vec![("bob".to_owned(), 3), ("eve".to_owned(), u64::MAX)],
+        }
+    }
+
+    #[test]
+    fn a_state_is_read_as_it_was_written() {
+        let key = Key::of("a key");
+        let frame = written(&sent(), &key);
+        let (length, rest) = frame.split_first_chunk().unwrap();
+        assert_eq!(u32::from_le_bytes(*length) as usize, rest.len());
+        assert!(rest.len() < LONGEST);
+        assert_eq!(read(rest, &key), Ok(sent()));
+    }
+
+    #[test]
+    fn any_other_bytes_are_refused() {
+        let key = Key::of("a key");
+        let frame = written(&sent(), &key)[4..].to_vec();
+        assert_eq!(read(&frame, &Key::of("another")), Err(Refused::Key));
+        for length in 0..frame.len() {
+            assert_eq!(read(&frame[..length], &key), Err(Refused::Garbage), "the first {length} bytes");
+        }
+        for place in 0..frame.len() {
+            let mut changed = frame.clone();
+            changed[place] ^= 1;
+            let refused = read(&changed, &key).unwrap_err();
+            let expected = match place {
+                4 => Refused::Version(VERSION ^ 1),
+                9..25 => Refused::Key,
+                _ => Refused::Garbage,
+            };
+            assert_eq!(refused, expected, "byte {place}");
+        }
+        let mut not_finite = sent();
+        not_finite.pose.x.0 = f64::NAN;
+        assert_eq!(read(&written(&not_finite, &key)[4..], &key), Err(Refused::Garbage));
+    }
+
+    #[test]
+    fn names_and_rounds_have_limits() {
+        let key = Key::of("");
+        let long = State { name: "n".repeat(300), rounds: vec![("r".repeat(300), 1); 20], ..sent() };
+        let frame = written(&long, &key);
+        assert!(frame.len() < LONGEST, "{}", frame.len());
+        let state = read(&frame[4..], &key).unwrap();
+        assert_eq!((state.name.len(), state.rounds.len()), (NAME, PEERS));
+    }
+}

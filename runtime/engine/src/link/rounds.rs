@@ -1,0 +1,57 @@
+//! Rounds of `rendezvous`: the number of scopes with one that a robot's plan has entered, for each other robot
+//! (docs/src/reference/semantics.md, 2.6).
+
+use mdle_host::{Passes, Texts, Transitions, outwards};
+use mdle_runtime::Plan;
+
+/// The rounds of a robot.
+#[derive(Debug, Default)]
+pub(super) struct Rounds {
+    counts: Vec<(&'static str, u64)>,
+    passes: Passes,
+    /// Number of the plan whose scopes were counted last, from 1; 0 before the first.
+    plan: u64,
+}
+
+impl Rounds {
+    /// Returns the count for each robot.
+    pub(super) fn counts(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        self.counts.iter().copied()
+    }
+
+    /// Returns the count for the robot of this name.
+    pub(super) fn with(&self, robot: &str) -> u64 {
+        self.counts.iter().find(|(name, _)| *name == robot).map_or(0, |(_, count)| *count)
+    }
+
+    /// Counts the scopes that were entered in a turn of the plan of this number.
+    pub(super) fn turn<P: Plan>(&mut self, number: u64, plan: &P, transitions: &Transitions) {
+        if plan.meetings().is_empty() {
+            return;
+        }
+        let fsm = Texts::fsm(plan);
+        if number != self.plan {
+            self.passes = Passes::default();
+            let first = fsm.atoms.first().map_or(0, |atom| atom.scope);
+            // A plan that goes on after it was suspended enters nothing.
+            if number > self.plan {
+                outwards(fsm, first).for_each(|(scope, _)| count(&mut self.counts, plan, scope));
+            }
+            self.plan = number;
+        }
+        for (transition, _) in transitions.iter() {
+            let counts = &mut self.counts;
+            self.passes.step_into(fsm, transition, |scope| count(counts, plan, scope));
+        }
+    }
+}
+
+/// Counts a scope that was entered.
+fn count<P: Plan>(counts: &mut Vec<(&'static str, u64)>, plan: &P, scope: u32) {
+    for meeting in plan.meetings().iter().filter(|meeting| meeting.scope == scope) {
+        match counts.iter_mut().find(|(robot, _)| *robot == meeting.robot) {
+            Some((_, count)) => *count = count.saturating_add(1),
+            None => counts.push((meeting.robot, 1)),
+        }
+    }
+}

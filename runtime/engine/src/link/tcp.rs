@@ -1,0 +1,143 @@
+//! The link over TCP between processes and machines. The robot's turn only puts a state down and takes states up: all
+//! that may wait is done by threads.
+//!
+//! A robot connects to each of its peers to send, and listens to receive. Each connection has a sender that writes the
+//! newest state alone, so a peer that reads slowly or never delays nobody.
+
+mod receiver;
+mod sender;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+use std::io;
+use std::net::{SocketAddr, TcpListener};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use mdle_runtime::Nanos;
+
+use super::frame::{self, Key};
+use super::{Link, State};
+use receiver::listen;
+use sender::Slot;
+
+/// Maximum number of messages that wait for the operator.
+const MESSAGES: usize = 32;
+
+/// Addresses and key of a link over TCP.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TcpSettings {
+    /// Name of the robot.
+    pub name: String,
+    /// Address at which the robot listens.
+    pub listen: SocketAddr,
+    /// Name and address of each other robot.
+    pub peers: Vec<(String, SocketAddr)>,
+    /// Key that all robots of the link have.
+    pub key: String,
+}
+
+/// The end of one robot of a link over TCP.
+pub struct Tcp {
+    shared: Arc<Shared>,
+    /// The newest state for each peer.
+    slots: Vec<Arc<Slot>>,
+    key: Key,
+}
+
+/// Data that the threads share with the turns.
+struct Shared {
+    /// Names of the robots from which states are taken.
+    peers: Vec<String>,
+    key: Key,
+    /// The newest state of each robot that has arrived since the last turn.
+    arrived: Mutex<BTreeMap<String, State>>,
+    messages: Mutex<Vec<String>>,
+    /// `true` once the robot's run has ended.
+    is_over: AtomicBool,
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Shared {
+    /// Reports a message to the operator, unless too many wait.
+    fn say(&self, message: String) {
+        let mut messages = lock(&self.messages);
+        if messages.len() < MESSAGES {
+            messages.push(message);
+        }
+    }
+
+    fn is_over(&self) -> bool {
+        self.is_over.load(Ordering::Relaxed)
+    }
+
+    /// Takes a state that has arrived.
+    fn take(&self, state: State) {
+        let mut arrived = lock(&self.arrived);
+        match arrived.get(&state.name) {
+            Some(known) if known.number >= state.number => {}
+            Some(_) | None => {
+                arrived.insert(state.name.clone(), state);
+            }
+        }
+    }
+}
+
+impl Tcp {
+    /// Listens, and begins to connect to the peers.
+    ///
+    /// # Errors
+    /// The address cannot be listened at, or the system gives no threads.
+    pub fn open(settings: &TcpSettings) -> io::Result<Self> {
+        let listener = TcpListener::bind(settings.listen)?;
+        Self::on(listener, settings)
+    }
+
+    /// Returns the link of a robot that listens by `listener`.
+    fn on(listener: TcpListener, settings: &TcpSettings) -> io::Result<Self> {
+        let TcpSettings { peers, key, .. } = settings;
+        let key = Key::of(key);
+        let shared = Arc::new(Shared {
+            peers: peers.iter().map(|(name, _)| name.clone()).collect(),
+            key: key.clone(),
+            arrived: Mutex::default(),
+            messages: Mutex::default(),
+            is_over: AtomicBool::new(false),
+        });
+        let mut link = Self { shared, slots: Vec::new(), key };
+        listen(listener, &link.shared)?;
+        for (name, address) in peers {
+            link.slots.push(sender::begin(name.clone(), *address, &link.shared)?);
+        }
+        Ok(link)
+    }
+}
+
+impl Link for Tcp {
+    fn send(&mut self, state: &State, _: Nanos) {
+        let frame: Arc<[u8]> = frame::written(state, &self.key).into();
+        self.slots.iter().for_each(|slot| slot.put(Arc::clone(&frame)));
+    }
+
+    fn receive(&mut self, _: Nanos, take: &mut dyn FnMut(State)) {
+        let arrived = std::mem::take(&mut *lock(&self.shared.arrived));
+        arrived.into_values().for_each(take);
+    }
+
+    fn messages(&mut self, say: &mut dyn FnMut(&str)) {
+        let messages = std::mem::take(&mut *lock(&self.shared.messages));
+        messages.iter().for_each(|message| say(message));
+    }
+}
+
+impl Drop for Tcp {
+    fn drop(&mut self) {
+        // The threads look at it several times a second; nobody waits for them.
+        self.shared.is_over.store(true, Ordering::Relaxed);
+        self.slots.iter().for_each(|slot| slot.wake());
+    }
+}

@@ -1,0 +1,126 @@
+//! The receiver: a listener, and a thread for each connection, which reads frames within limits.
+
+use std::io::{self, ErrorKind, Read};
+use std::net::{TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::Shared;
+use crate::link::frame::{self, LONGEST, Refused, VERSION};
+
+/// Time between two looks for a connection, and longest time that a read waits.
+const LOOK: Duration = Duration::from_millis(20);
+/// Time within which a connection has to bring a whole frame.
+const SILENT: Duration = Duration::from_secs(2);
+/// Maximum number of frames that a connection brings in a second: a robot with turns of a millisecond sends as many.
+const FRAMES: u32 = 2000;
+/// Maximum number of connections for each peer: the old one may still be open when it connects anew.
+const CONNECTIONS: usize = 4;
+
+/// Begins to listen.
+///
+/// # Errors
+/// The system gives no thread.
+pub(super) fn listen(listener: TcpListener, shared: &Arc<Shared>) -> io::Result<()> {
+    listener.set_nonblocking(true)?;
+    let shared = Arc::clone(shared);
+    thread::Builder::new().name("state link".to_owned()).spawn(move || accept(&listener, &shared))?;
+    Ok(())
+}
+
+fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
+    let open = Arc::new(AtomicUsize::new(0));
+    let most = CONNECTIONS * (shared.peers.len() + 1);
+    while !shared.is_over() {
+        let Ok((stream, from)) = listener.accept() else {
+            thread::sleep(LOOK);
+            continue;
+        };
+        if open.load(Ordering::Relaxed) >= most {
+            shared
+                .say(format!("warning: state link: {from} is refused: {most} connections are open, which is the most"));
+            continue;
+        }
+        open.fetch_add(1, Ordering::Relaxed);
+        let (own, count) = (Arc::clone(shared), Arc::clone(&open));
+        let begun = thread::Builder::new().name(format!("from {from}")).spawn(move || {
+            if let Err(why) = receive(stream, &own) {
+                own.say(format!("warning: state link: {from} is refused: {why}"));
+            }
+            count.fetch_sub(1, Ordering::Relaxed);
+        });
+        if begun.is_err() {
+            open.fetch_sub(1, Ordering::Relaxed);
+            shared.say(format!("warning: state link: {from} is refused: the system gives no thread"));
+        }
+    }
+}
+
+/// Takes the states of a connection until it ends.
+///
+/// # Errors
+/// The connection brings something else than states of a peer: the end of a sentence.
+fn receive(mut stream: TcpStream, shared: &Shared) -> Result<(), String> {
+    let set = stream.set_nonblocking(false).and_then(|()| stream.set_read_timeout(Some(LOOK)));
+    set.map_err(|error| error.to_string())?;
+    let (mut second, mut count) = (Instant::now(), 0);
+    loop {
+        let Some(frame) = next(&mut stream, shared)? else { return Ok(()) };
+        let state = frame::read(&frame, &shared.key).map_err(|refused| match refused {
+            Refused::Garbage => "it sends no states".to_owned(),
+            Refused::Version(other) => format!("its version of the link is {other}, and this one has {VERSION}"),
+            Refused::Key => "it has another key".to_owned(),
+        })?;
+        if !shared.peers.contains(&state.name) {
+            return Err(format!("its robot `{}` is none of {}", state.name, shared.peers.join(", ")));
+        }
+        shared.take(state);
+        count += 1;
+        if second.elapsed() >= Duration::from_secs(1) {
+            (second, count) = (Instant::now(), 0);
+        }
+        if count > FRAMES {
+            return Err(format!("it sends more than {FRAMES} states a second"));
+        }
+    }
+}
+
+/// Reads a frame; returns `None` if the connection or the run has ended before one began.
+fn next(stream: &mut TcpStream, shared: &Shared) -> Result<Option<Vec<u8>>, String> {
+    let mut length = [0; 4];
+    if !fill(stream, &mut length, shared)? {
+        return Ok(None);
+    }
+    let length = u32::from_le_bytes(length) as usize;
+    if length > LONGEST {
+        return Err("it sends no states".to_owned());
+    }
+    let mut frame = vec![0; length];
+    if fill(stream, &mut frame, shared)? { Ok(Some(frame)) } else { Err("it ended within a state".to_owned()) }
+}
+
+/// Fills `bytes`; returns `false` if the connection ended before, or the run.
+fn fill(stream: &mut TcpStream, bytes: &mut [u8], shared: &Shared) -> Result<bool, String> {
+    let (begun, mut filled) = (Instant::now(), 0);
+    while filled < bytes.len() {
+        if shared.is_over() {
+            return Ok(false);
+        }
+        if begun.elapsed() >= SILENT {
+            return Err(format!("it sends nothing for {} s", SILENT.as_secs()));
+        }
+        let Some(rest) = bytes.get_mut(filled..) else { return Ok(false) };
+        match stream.read(rest) {
+            Ok(0) if filled == 0 => return Ok(false),
+            Ok(0) => return Err("it ended within a state".to_owned()),
+            Ok(count) => filled += count,
+            Err(error)
+                if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
+            // A peer that went away is no fault of this robot's; its state grows old.
+            Err(_) => return Ok(false),
+        }
+    }
+    Ok(true)
+}

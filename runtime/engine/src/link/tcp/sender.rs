@@ -1,0 +1,103 @@
+//! The sender to one peer: it connects, and writes the newest state alone.
+
+use std::io::{self, Write as _};
+use std::net::{SocketAddr, TcpStream};
+use std::sync::{Arc, Condvar, Mutex};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::{Shared, lock};
+
+/// Time for which a connection is tried.
+const CONNECTS: Duration = Duration::from_millis(500);
+/// Time between two tries.
+const AGAIN: Duration = Duration::from_millis(200);
+/// Time after which a peer that reads nothing is given up, and connected to anew.
+const WRITES: Duration = Duration::from_millis(500);
+/// Time without a new state after which the last one is sent again, so that the connection stays open.
+const HEARTBEAT: Duration = Duration::from_millis(500);
+
+/// The newest state for a peer.
+#[derive(Default)]
+pub(super) struct Slot {
+    frame: Mutex<Option<Arc<[u8]>>>,
+    is_new: Condvar,
+}
+
+impl Slot {
+    /// Replaces the state, without waiting.
+    pub(super) fn put(&self, frame: Arc<[u8]>) {
+        *lock(&self.frame) = Some(frame);
+        self.is_new.notify_one();
+    }
+
+    /// Wakes the sender.
+    pub(super) fn wake(&self) {
+        self.is_new.notify_all();
+    }
+
+    /// Waits for a state that has not been sent, for a while.
+    fn next(&self) -> Option<Arc<[u8]>> {
+        let frame = lock(&self.frame);
+        let (mut frame, _) = self
+            .is_new
+            .wait_timeout_while(frame, HEARTBEAT, |frame| frame.is_none())
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        frame.take()
+    }
+}
+
+/// Begins to send to the peer of this name.
+///
+/// # Errors
+/// The system gives no thread.
+pub(super) fn begin(name: String, address: SocketAddr, shared: &Arc<Shared>) -> io::Result<Arc<Slot>> {
+    let slot = Arc::<Slot>::default();
+    let (own, shared) = (Arc::clone(&slot), Arc::clone(shared));
+    thread::Builder::new().name(format!("to {name}")).spawn(move || keep_sending(&name, address, &own, &shared))?;
+    Ok(slot)
+}
+
+/// Connects and sends until the run is over. A peer that cannot be reached is reported once, until it was reached.
+fn keep_sending(name: &str, address: SocketAddr, slot: &Slot, shared: &Shared) {
+    let mut is_known_as_down = false;
+    while !shared.is_over() {
+        let begun = Instant::now();
+        let failure = match connect(address) {
+            Ok(stream) => {
+                if is_known_as_down {
+                    shared.say(format!("state link: connected to {name} again"));
+                }
+                is_known_as_down = false;
+                send(stream, slot, shared)
+            }
+            Err(error) => error,
+        };
+        if !is_known_as_down && !shared.is_over() {
+            shared.say(format!("warning: state link: {name} at {address} cannot be reached: {failure}"));
+            is_known_as_down = true;
+        }
+        thread::sleep(AGAIN.saturating_sub(begun.elapsed()));
+    }
+}
+
+fn connect(address: SocketAddr) -> io::Result<TcpStream> {
+    let stream = TcpStream::connect_timeout(&address, CONNECTS)?;
+    stream.set_nodelay(true)?;
+    stream.set_write_timeout(Some(WRITES))?;
+    Ok(stream)
+}
+
+/// Sends states until that fails; returns why.
+fn send(mut stream: TcpStream, slot: &Slot, shared: &Shared) -> io::Error {
+    let mut last: Option<Arc<[u8]>> = None;
+    while !shared.is_over() {
+        last = slot.next().or(last);
+        let Some(frame) = &last else { continue };
+        // A frame that was written in part would shift all that follow: the connection is made anew.
+        if let Err(error) = stream.write_all(frame) {
+            return error;
+        }
+    }
+    io::ErrorKind::Interrupted.into()
+}

@@ -1,0 +1,206 @@
+//! Links over TCP on this machine: what arrives, and what is refused.
+
+use std::io::{Read as _, Write as _};
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use mdle_runtime::{Meters, Nanos, Pose, Twist};
+
+use super::*;
+use crate::link::frame::{LONGEST, written};
+
+/// Longest time for which a test waits.
+const SOON: Duration = Duration::from_secs(20);
+
+fn bound() -> TcpListener {
+    TcpListener::bind("127.0.0.1:0").unwrap()
+}
+
+fn address(listener: &TcpListener) -> SocketAddr {
+    listener.local_addr().unwrap()
+}
+
+fn settings(name: &str, peers: &[(&str, SocketAddr)], key: &str) -> TcpSettings {
+    let peers = peers.iter().map(|(name, address)| ((*name).to_owned(), *address)).collect();
+    TcpSettings { name: name.to_owned(), listen: "127.0.0.1:0".parse().unwrap(), peers, key: key.to_owned() }
+}
+
+fn state(name: &str, number: u64) -> State {
+    let pose = Pose { x: Meters(number as f64), ..Pose::ORIGIN };
+    State { name: name.to_owned(), number, pose, velocity: Twist::default(), rounds: vec![("bob".to_owned(), number)] }
+}
+
+/// The link of `bob`, whose peer is `ada`, and its address; nobody listens at ada's.
+fn bob() -> (Tcp, SocketAddr) {
+    let (own, nobody) = (bound(), address(&bound()));
+    let place = address(&own);
+    (Tcp::on(own, &settings("bob", &[("ada", nobody)], "key")).unwrap(), place)
+}
+
+/// Calls `happens` until it returns something.
+fn wait<T>(mut happens: impl FnMut() -> Option<T>) -> T {
+    let begun = Instant::now();
+    loop {
+        if let Some(value) = happens() {
+            return value;
+        }
+        assert!(begun.elapsed() < SOON, "it has not happened");
+        sleep(Duration::from_millis(5));
+    }
+}
+
+fn received(link: &mut Tcp) -> Vec<State> {
+    let mut states = Vec::new();
+    link.receive(Nanos::ZERO, &mut |state| states.push(state));
+    states
+}
+
+/// Waits for a message with these words.
+fn message(link: &mut Tcp, words: &str) -> String {
+    wait(|| {
+        let mut found = None;
+        link.messages(&mut |message| {
+            if message.contains(words) {
+                found = Some(message.to_owned());
+            }
+        });
+        found
+    })
+}
+
+/// Asserts that states of a good peer still arrive.
+fn assert_goes_on(link: &mut Tcp, place: SocketAddr) {
+    let mut peer = TcpStream::connect(place).unwrap();
+    peer.write_all(&written(&state("ada", 77), &Key::of("key"))).unwrap();
+    let states = wait(|| Some(received(link)).filter(|states| !states.is_empty()));
+    assert_eq!(states, [state("ada", 77)]);
+}
+
+#[test]
+fn states_go_both_ways_and_the_newest_counts() {
+    let (one, other) = (bound(), bound());
+    let (at_ada, at_bob) = (address(&one), address(&other));
+    let mut ada = Tcp::on(one, &settings("ada", &[("bob", at_bob)], "key")).unwrap();
+    let mut bob = Tcp::on(other, &settings("bob", &[("ada", at_ada)], "key")).unwrap();
+    let mut number = 0;
+    let (mut heard_by_bob, mut heard_by_ada) = (0, 0);
+    wait(|| {
+        number += 1;
+        ada.send(&state("ada", number), Nanos::ZERO);
+        bob.send(&state("bob", number), Nanos::ZERO);
+        sleep(Duration::from_millis(2));
+        for (link, last) in [(&mut ada, &mut heard_by_ada), (&mut bob, &mut heard_by_bob)] {
+            for state in received(link) {
+                assert!(state.number >= *last && state.number <= number, "{} after {last}", state.number);
+                *last = state.number;
+            }
+        }
+        (heard_by_ada > 20 && heard_by_bob > 20).then_some(())
+    });
+}
+
+#[test]
+fn a_peer_that_comes_back_is_connected_to_again() {
+    let listener = bound();
+    let at_ada = address(&listener);
+    let mut bob = Tcp::on(bound(), &settings("bob", &[("ada", at_ada)], "key")).unwrap();
+    let accept = |listener: &TcpListener| {
+        let (mut stream, _) = listener.accept().unwrap();
+        let mut length = [0; 4];
+        stream.read_exact(&mut length).unwrap();
+        u32::from_le_bytes(length)
+    };
+    bob.send(&state("bob", 1), Nanos::ZERO);
+    assert!(accept(&listener) > 0);
+    drop(listener);
+    let mut number = 1;
+    wait(|| {
+        number += 1;
+        bob.send(&state("bob", number), Nanos::ZERO);
+        let mut is_down = false;
+        bob.messages(&mut |message| is_down |= message.contains("ada") && message.contains("cannot be reached"));
+        is_down.then_some(())
+    });
+    let again = TcpListener::bind(at_ada).unwrap();
+    assert!(accept(&again) > 0);
+    message(&mut bob, "connected to ada again");
+}
+
+#[test]
+fn what_is_no_state_of_a_peer_is_refused() {
+    let (mut bob, place) = bob();
+    let key = Key::of("key");
+    let mut version = written(&state("ada", 1), &key);
+    version[8] = 9;
+    let half = |frame: Vec<u8>| frame[..frame.len() / 2].to_vec();
+    let cases = [
+        (b"GET / HTTP/1.1\r\n\r\n".to_vec(), "it sends no states"),
+        (u32::MAX.to_le_bytes().to_vec(), "it sends no states"),
+        ((LONGEST as u32).to_le_bytes().into_iter().chain([0; LONGEST]).collect(), "it sends no states"),
+        (version, "its version of the link is 9"),
+        (written(&state("ada", 1), &Key::of("another")), "it has another key"),
+        (written(&state("eve", 1), &key), "its robot `eve` is none of ada"),
+        (half(written(&state("ada", 1), &key)), "it ended within a state"),
+        (vec![7], "it ended within a state"),
+    ];
+    for (bytes, words) in cases {
+        let mut stranger = TcpStream::connect(place).unwrap();
+        stranger.write_all(&bytes).unwrap();
+        stranger.shutdown(std::net::Shutdown::Write).unwrap();
+        let message = message(&mut bob, words);
+        assert!(message.starts_with("warning: state link: 127.0.0.1:"), "{message}");
+        assert_eq!(received(&mut bob), []);
+    }
+    assert_goes_on(&mut bob, place);
+}
+
+#[test]
+fn a_flood_and_silence_are_refused() {
+    let (mut bob, place) = bob();
+    let silent: Vec<_> = (0..3).map(|_| TcpStream::connect(place).unwrap()).collect();
+    let mut flood = TcpStream::connect(place).unwrap();
+    let frame = written(&state("ada", 1), &Key::of("key"));
+    let many = frame.repeat(100);
+    wait(|| flood.write_all(&many).is_err().then_some(()));
+    message(&mut bob, "more than 2000 states a second");
+    message(&mut bob, "it sends nothing for 2 s");
+    drop(silent);
+    received(&mut bob);
+    assert_goes_on(&mut bob, place);
+}
+
+#[test]
+fn too_many_connections_are_refused() {
+    let (mut bob, place) = bob();
+    let strangers: Vec<_> = (0..12).map(|_| TcpStream::connect(place).unwrap()).collect();
+    message(&mut bob, "8 connections are open, which is the most");
+    drop(strangers);
+    wait(|| {
+        let mut peer = TcpStream::connect(place).unwrap();
+        // Refused while the strangers are still counted.
+        let _ = peer.write_all(&written(&state("ada", 77), &Key::of("key")));
+        sleep(Duration::from_millis(100));
+        (!received(&mut bob).is_empty()).then_some(())
+    });
+}
+
+#[test]
+fn a_peer_that_never_reads_delays_no_turn() {
+    let (listener, own) = (bound(), bound());
+    let (at_ada, place) = (address(&listener), address(&own));
+    let mut bob = Tcp::on(own, &settings("bob", &[("ada", at_ada)], "key")).unwrap();
+    let (deaf, _) = listener.accept().unwrap();
+    let (begun, mut number, mut longest) = (Instant::now(), 0, Duration::ZERO);
+    while begun.elapsed() < Duration::from_secs(2) {
+        number += 1;
+        let turn = Instant::now();
+        bob.send(&state("bob", number), Nanos::ZERO);
+        received(&mut bob);
+        longest = longest.max(turn.elapsed());
+        // As fast as it goes: the buffers of the system are full soon.
+    }
+    assert!(longest < Duration::from_millis(500) && number > 1000, "{longest:?} in {number} turns");
+    assert_goes_on(&mut bob, place);
+    drop(deaf);
+}
