@@ -12,9 +12,9 @@ mod watch;
 mod whole_file;
 
 pub use mdle_simulator::{
-    Body, Charger, Drawing, Fault, Footprint, Form, Goal, Heard, Input, Make, Outline, Output, Part, Place, Schedule,
-    Sensed, SignalCurve, Simulated, Start, StartError, Stop, Thing, TimeChart, Walls, World, WorldError, Zone,
-    alphabet,
+    Body, Charger, Drawing, Fault, FleetDrawing, Footprint, Form, Goal, Heard, Input, Make, Outline, Output, Part,
+    Place, Schedule, Sensed, SignalCurve, Simulated, Start, StartError, StartNoise, Stop, Thing, TimeChart,
+    TripDrawing, Walls, World, WorldError, Zone, alphabet,
 };
 pub use observed::Observed;
 pub use target::Sim;

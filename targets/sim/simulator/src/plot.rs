@@ -18,8 +18,10 @@ mod strip;
 mod tests;
 mod things;
 mod title;
+mod trips;
 mod view;
 
 pub use chart::{SignalCurve, TimeChart};
 pub(crate) use drawing::svg;
 pub(crate) use record::animated;
+pub use trips::TripDrawing;

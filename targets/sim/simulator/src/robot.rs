@@ -231,6 +231,43 @@ impl Simulated {
         }
     }
 
+    /// Drives for one period with `input`: the first half of an exchange. Robots that share a world all move before any
+    /// of them takes its output.
+    ///
+    /// # Errors
+    /// The input is not finite.
+    pub fn moves(&mut self, input: &Twist) -> Result<(), Fault> {
+        if !(input.v.0.is_finite() && input.omega.0.is_finite()) {
+            return Err(Fault::Input);
+        }
+        let standstill = Twist::default();
+        self.drive(if self.battery.is_empty() { &standstill } else { input }, self.now());
+        if self.exchanges > 0 {
+            let (is_plugged, seconds) = (self.is_plugged(), self.period.as_secs_f64());
+            self.battery.passed(seconds, self.body.wheels() * seconds, is_plugged);
+        }
+        Ok(())
+    }
+
+    /// Takes the output after [`Simulated::moves`]: the second half of an exchange.
+    pub fn senses(&mut self) -> Sensed {
+        let now = self.now();
+        self.exchanges = self.exchanges.saturating_add(1);
+        self.compass.take(&self.ring.pings, self.body.odometry(), &self.shape);
+        Sensed {
+            at: now,
+            odometry: self.body.odometry(),
+            velocity: self.body.velocity(),
+            switches: self.body.pressed(self.switches, &self.walls),
+            pings: self.ring.pings,
+            compass: self.compass,
+            supply: self.supplied(),
+            shape: self.shape,
+            paths: self.paths,
+            published: Published::NONE,
+        }
+    }
+
     /// Moves the robot and the moving objects of the world.
     fn advance(&mut self, input: &Twist, seconds: f64) {
         if seconds <= 0.0 {
@@ -254,30 +291,8 @@ impl Robot for Simulated {
     type Error = Fault;
 
     fn exchange(&mut self, input: &Twist) -> Result<Sensed, Fault> {
-        if !(input.v.0.is_finite() && input.omega.0.is_finite()) {
-            return Err(Fault::Input);
-        }
-        let now = self.now();
-        let standstill = Twist::default();
-        self.drive(if self.battery.is_empty() { &standstill } else { input }, now);
-        if self.exchanges > 0 {
-            let (is_plugged, seconds) = (self.is_plugged(), self.period.as_secs_f64());
-            self.battery.passed(seconds, self.body.wheels() * seconds, is_plugged);
-        }
-        self.exchanges = self.exchanges.saturating_add(1);
-        self.compass.take(&self.ring.pings, self.body.odometry(), &self.shape);
-        Ok(Sensed {
-            at: now,
-            odometry: self.body.odometry(),
-            velocity: self.body.velocity(),
-            switches: self.body.pressed(self.switches, &self.walls),
-            pings: self.ring.pings,
-            compass: self.compass,
-            supply: self.supplied(),
-            shape: self.shape,
-            paths: self.paths,
-            published: Published::NONE,
-        })
+        self.moves(input)?;
+        Ok(self.senses())
     }
 
     fn stop(&mut self) -> Result<(), Fault> {

@@ -42,6 +42,18 @@ pub(crate) struct Trail {
     ended: Option<Nanos>,
     /// Frames of an animated picture, if one is recorded.
     pub(crate) frames: Option<Frames>,
+    /// The bodies of all robots of a fleet; none where one robot drives alone.
+    pub(crate) companions: Vec<Companion>,
+    /// Name for that which drove a way: `atom`, or `robot` in a fleet.
+    pub(crate) kind: &'static str,
+}
+
+/// A robot of a fleet.
+#[derive(Debug, Clone)]
+pub(crate) struct Companion {
+    pub(crate) form: Form,
+    pub(crate) start: Pose,
+    pub(crate) here: Pose,
 }
 
 /// Descriptions of a run, for titles.
@@ -73,6 +85,8 @@ impl Trail {
             sensed: None,
             ended: None,
             frames: None,
+            companions: Vec::new(),
+            kind: "atom",
         }
     }
 

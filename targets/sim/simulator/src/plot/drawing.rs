@@ -14,7 +14,7 @@ use super::sizes::{LEFT, MARGIN};
 use super::{floor, labels, legend, things};
 use crate::footprint::{Footprint, Form};
 use crate::place::Place;
-use crate::trail::Trail;
+use crate::trail::{Companion, Trail};
 use crate::world::World;
 
 /// Distance between two points of the way that callouts avoid, in pixels.
@@ -26,6 +26,9 @@ const SQUARE: f64 = 8.0;
 /// The plot of a trail on the floor of `world`.
 pub(crate) fn svg(world: &World, trail: &Trail) -> String {
     let layout = Layout::of(world, trail);
+    let companions = trail.companions.iter().fold(Group::new(), |group, Companion { form, start, here }| {
+        group.add(body(&layout, start, *form, "faint")).add(body(&layout, here, *form, "ink"))
+    });
     let document = document(&layout, layout.height)
         .add(floor::drawn(&layout, world, layout.height))
         .add(floor::clipped().add(things::drawn(&layout, world, trail)).add(echoes(&layout, trail)))
@@ -33,6 +36,7 @@ pub(crate) fn svg(world: &World, trail: &Trail) -> String {
         .add(way(&layout, trail))
         .add(contacts(&layout, trail))
         .add(body(&layout, &trail.here, trail.form, "ink"))
+        .add(companions)
         .add(marks(&layout, trail))
         .add(legend::drawn(&layout, world, trail));
     format!("{document}\n")

@@ -21,7 +21,7 @@ pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
     let mut legend = Group::new().set("font-size", LETTERS);
     if let Some(first) = layout.rows.first() {
         let head = |name, x, anchor| text(name, (x, layout.line(0)), anchor).set("class", "quiet").set("font-size", 12);
-        legend = legend.add(head("atom", indented, "start")).add(head("total", right, "end"));
+        legend = legend.add(head(trail.kind, indented, "start")).add(head("total", right, "end"));
         if !first.times.is_empty() {
             legend = legend.add(head("times", before_last, "end"));
         }

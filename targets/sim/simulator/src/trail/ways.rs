@@ -85,6 +85,13 @@ impl Ways {
         }
     }
 
+    /// Adds the way that a robot of a fleet drove, until this time.
+    pub(crate) fn drove(&mut self, number: u64, name: &str, way: &[Place], until: Nanos) {
+        let Some(place) = way.first().copied() else { return };
+        self.marks.push(Mark { atom: Some(self.atoms.len()), t: Nanos::ZERO, way: way.to_vec() });
+        self.atoms.push(Atom { number, law: name.to_owned(), place, times: 1, total: until });
+    }
+
     /// Returns the way of the current pass of an atom.
     fn last(&mut self) -> &mut Vec<Place> {
         self.marks.last_mut().map_or(&mut self.before, |mark| &mut mark.way)
