@@ -59,6 +59,8 @@ pub(crate) struct Run {
     pub(crate) plan: Option<String>,
     /// File of the safety rules.
     pub(crate) safety: Option<PathBuf>,
+    /// File of the link to other robots.
+    pub(crate) link: Option<PathBuf>,
     /// Child processes to load as modules: the name of each, and its command line.
     pub(crate) modules: Vec<(String, String)>,
     /// Point of the module `heading`, in metres, if it is to be loaded.
@@ -89,7 +91,8 @@ pub(crate) struct SessionOptions {
 }
 
 /// Options of `mdle` itself that have a value.
-const WITH_VALUE: [&str; 8] = ["--target", "--plan", "--safety", "--module", "--point", "-c", "--commands", "--role"];
+const WITH_VALUE: [&str; 9] =
+    ["--target", "--plan", "--safety", "--link", "--module", "--point", "-c", "--commands", "--role"];
 /// Options that ask for help.
 const HELP: [&str; 2] = ["-h", "--help"];
 /// Options of `mdle` itself without a value.
@@ -138,6 +141,7 @@ fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: O
         target: run.get_one("target").cloned(),
         plan: run.get_one("plan").cloned(),
         safety: run.get_one("safety").cloned(),
+        link: run.get_one("link").cloned(),
         modules: run.get_many("module").into_iter().flatten().cloned().collect(),
         point: run.get_one("point").copied(),
         deny_warnings: run.get_flag("deny-warnings"),
@@ -281,7 +285,7 @@ fn with_plan(command: Command) -> Command {
         .arg(
             Arg::new("file")
                 .value_name("PLAN")
-                .help("Plan to run; `-` reads standard input")
+                .help("Plan to run, or a scenario of several robots (FILE.toml); `-` reads standard input")
                 .required(true)
                 .value_parser(value_parser!(PathBuf)),
         )
@@ -302,6 +306,13 @@ fn with_plan(command: Command) -> Command {
                 .long("safety")
                 .value_name("FILE")
                 .help("File of safety rules, which lie between the plan and the robot [default: none]")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            Arg::new("link")
+                .long("link")
+                .value_name("FILE")
+                .help("File of the link to other robots: their addresses, and a key [default: none]")
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(

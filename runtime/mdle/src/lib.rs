@@ -7,8 +7,10 @@
 mod arguments;
 mod elements_named;
 mod failure;
+mod link;
 mod log;
 mod manual;
+mod messages;
 mod modules;
 mod new_module;
 mod plans;
@@ -21,6 +23,7 @@ mod rerun;
 mod run;
 mod run_time;
 mod safety;
+mod scenario;
 mod session;
 mod step;
 mod targets;

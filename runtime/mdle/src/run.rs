@@ -12,9 +12,11 @@ use mdle_runtime::Sensed;
 
 use crate::arguments::Run;
 use crate::failure::{self, Failure};
+use crate::link::LinkFile;
 use crate::modules;
 use crate::plans::texts;
 use crate::safety::SafetyFile;
+use crate::scenario;
 use crate::session;
 use crate::targets::{self, LinkedTarget, Ready};
 
@@ -23,14 +25,20 @@ use crate::targets::{self, LinkedTarget, Ready};
 /// # Errors
 /// The plan does not run.
 pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitCode, Failure> {
+    if scenario::is_scenario(&arguments.file) {
+        return scenario::run(&arguments, library);
+    }
     let settings = Settings::beside(&arguments.file)?;
     modules::of_settings(&settings, &arguments, library);
     let name = settings.name_of_target(arguments.target.as_deref()).ok_or(InputError::NoTarget)?;
     let linked = targets::linked(&name).map_err(Failure::Usage)?;
     let target = Arc::new(settings.target(arguments.target.as_deref())?);
     let safety = arguments.safety.as_deref().map(SafetyFile::read).transpose()?;
+    let link = arguments.link.as_deref().map(LinkFile::read).transpose()?;
     let mut input = read_plan(&arguments.file, &target)?;
-    let (plan, ready) = compiled(&arguments, &linked, &target, &mut input, safety.as_ref())?;
+    let (plan, mut ready) = compiled(&arguments, &linked, &target, &mut input, safety.as_ref())?;
+    let linked_by = link.as_ref().map(|link| link.path().to_owned());
+    ready.link(link)?;
     let program = Program { plan: &plan, version: "" };
     let given: Vec<_> = arguments.options.iter().map(|option| option.to_string_lossy().into_owned()).collect();
     let mut options: Vec<OsString> = Vec::new();
@@ -45,7 +53,8 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
         safety: ready.safety().cloned(),
     };
     options.extend(arguments.options);
-    let read = input.inputs(&target).into_iter().chain(safety.iter().flat_map(SafetyFile::files)).collect();
+    let read = input.inputs(&target).into_iter().chain(safety.iter().flat_map(SafetyFile::files)).chain(linked_by);
+    let read = read.collect();
     drop(input);
     let call = Call { words: arguments.words, options, read, recorded };
     let Some(session) = &arguments.session else { return Ok(ready.run(&plan, call, library)) };
@@ -59,10 +68,11 @@ fn no_call() -> Call {
 
 /// Names the causes of inputs besides the plan and the robot's outputs; empty if there are none.
 fn beside(arguments: &Run, ready: &dyn Ready) -> String {
-    let parts = [
+    let parts: [(bool, &str); 4] = [
         (arguments.safety.is_some(), "safety rules"),
         (arguments.session.is_some(), "the commands of a session"),
         (ready.reads_modules(), "modules"),
+        (arguments.link.is_some(), "the state link"),
     ];
     parts.into_iter().filter_map(|(is_there, words)| is_there.then_some(words)).collect::<Vec<_>>().join(" and ")
 }

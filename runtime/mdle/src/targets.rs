@@ -17,6 +17,7 @@ use mdle_record::{Begin, SafetyTexts};
 use mdle_runtime::{Alphabet, Plan as _, Robot, Sensed, Twist};
 
 use crate::failure::Failure;
+use crate::link::{self, LinkFile};
 use crate::plans::{self, texts};
 use crate::replayed::Record;
 use crate::replayer::{RecordedRun, replay};
@@ -55,6 +56,12 @@ pub(crate) trait Ready {
 
     /// Returns the texts of the safety rules.
     fn safety(&self) -> Option<&SafetyTexts>;
+
+    /// Lets runs of the plan be linked with other robots.
+    ///
+    /// # Errors
+    /// The plan names a robot that the link does not know.
+    fn link(&mut self, link: Option<LinkFile>) -> Result<(), Failure>;
 
     /// Runs the plan of this name, with these modules.
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode;
@@ -111,6 +118,7 @@ struct PlanFor<T, A: Alphabet> {
     /// The target, for other plans.
     known: Arc<Target>,
     safety: Option<Guarded<A>>,
+    link: Option<LinkFile>,
     target: std::marker::PhantomData<fn() -> T>,
 }
 
@@ -118,6 +126,10 @@ impl<T, A: EngineAlphabet<Output = Sensed>> PlanFor<T, A> {
     /// Makes the engine of a run.
     fn engine(&self, library: &Library<Sensed>, terms: &RunTerms) -> Result<Engine<A>, Refusal> {
         let engine = Engine::new(self.loaded.plan(), library, terms)?;
+        let engine = match &self.link {
+            Some(link) => engine.linked(link.open()?),
+            None => engine,
+        };
         match &self.safety {
             Some(safety) => engine.under_rules(safety.reads()),
             None => Ok(engine),
@@ -136,6 +148,17 @@ where
 
     fn safety(&self) -> Option<&SafetyTexts> {
         self.safety.as_ref().map(Guarded::texts)
+    }
+
+    fn link(&mut self, link: Option<LinkFile>) -> Result<(), Failure> {
+        let plan = self.loaded.plan();
+        match (&link, plan.robots().first()) {
+            (Some(link), _) => link.check(plan.robots())?,
+            (None, Some(robot)) => return Err(link::missing(robot)),
+            (None, None) => {}
+        }
+        self.link = link;
+        Ok(())
     }
 
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode {
@@ -183,5 +206,6 @@ where
     let loaded = Arc::new(load::load::<A>(machine, &input.sources, &target.alphabet)?);
     let safety = safety.map(|safety| safety.compile(target)).transpose()?;
     let files = texts(input).into();
-    Ok(Box::new(PlanFor::<T, A> { loaded, files, known: Arc::clone(target), safety, target: std::marker::PhantomData }))
+    let (known, target) = (Arc::clone(target), std::marker::PhantomData);
+    Ok(Box::new(PlanFor::<T, A> { loaded, files, known, safety, link: None, target }))
 }

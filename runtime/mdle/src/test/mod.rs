@@ -9,7 +9,6 @@ mod expected;
 mod faults;
 mod file;
 mod judge;
-mod messages;
 mod possible;
 mod report;
 mod results;

@@ -12,9 +12,9 @@ use mdle_runtime::trace::Seconds;
 
 use super::course::{Course, Ending, Step, atom_words};
 use super::judge::Failure;
-use super::messages;
 use super::runner::{Job, Made, RunResult};
 use super::suite::{Case, RunsOn, Suite};
+use crate::messages;
 
 /// Maximum number of transitions before a failure that are shown.
 const STEPS: usize = 5;

@@ -11,12 +11,12 @@ use mdle_runtime::Printable;
 use super::arguments::MOST_SEEDS;
 use super::expected::Expected;
 use super::file::{self, TestFileError, TestText};
-use super::messages;
 use super::possible::possible;
 use super::scripted;
 use super::simulated::Simulation;
 use super::subject::Subject;
 use crate::failure::{self, Failure};
+use crate::messages;
 
 /// A file of tests.
 pub(super) struct Suite {

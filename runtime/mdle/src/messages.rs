@@ -7,7 +7,7 @@ use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use mdle_compiler::diagnostic::{SourceId, Sources};
 
 /// Prints a report, in colours on a terminal.
-pub(super) fn write(sources: &Sources, report: Diagnostic<SourceId>) {
+pub(crate) fn write(sources: &Sources, report: Diagnostic<SourceId>) {
     let choice = if io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
     // Nobody is left to be told when standard error is closed.
     let _ = sources.write_report(report, &mut StandardStream::stderr(choice));

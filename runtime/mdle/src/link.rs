@@ -1,0 +1,156 @@
+//! The file of `--link`: the robot's name, its address and key, and the other robots (docs/src/many_robots.md).
+
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+
+use mdle_compiler::alphabet::did_you_mean;
+use mdle_engine::link::{StateLink, Tcp, TcpSettings};
+use mdle_host::Refusal;
+use mdle_runtime::Pose;
+use mdle_sim::Start;
+use serde::Deserialize;
+
+use crate::failure::Failure;
+
+/// Maximum size of the file, in bytes.
+const LARGEST: u64 = 1_000_000;
+
+/// A file of a link, as written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LinkText {
+    name: String,
+    listen: String,
+    key: String,
+    start: Option<String>,
+    robot: Vec<PeerText>,
+}
+
+/// Another robot, as written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PeerText {
+    name: String,
+    address: String,
+}
+
+/// A file of a link that was read.
+#[derive(Debug)]
+pub(crate) struct LinkFile {
+    path: PathBuf,
+    settings: TcpSettings,
+    /// Pose at which the robot's odometry begins, in the axes that all robots share.
+    start: Pose,
+}
+
+impl LinkFile {
+    /// Reads the file.
+    ///
+    /// # Errors
+    /// It cannot be read, or is no file of a link.
+    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
+        let name = path.display();
+        let unread = |error| Failure::Usage(format!("the file {name} of the link cannot be read: {error}"));
+        let text = mdle_host::read_text(path, LARGEST).map_err(unread)?;
+        let read = read(&text).map_err(|sentence| Failure::Usage(format!("{name}: {sentence}")))?;
+        let (settings, start) = read;
+        Ok(Self { path: path.to_owned(), settings, start })
+    }
+
+    /// Returns the path of the file.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Checks that the link knows the robots that a plan names.
+    ///
+    /// # Errors
+    /// It does not know one.
+    pub(crate) fn check(&self, robots: &[&str]) -> Result<(), Failure> {
+        let names: Vec<&str> = self.settings.peers.iter().map(|(name, _)| name.as_str()).collect();
+        let Some(unknown) = robots.iter().find(|robot| !names.contains(*robot)) else { return Ok(()) };
+        let near = did_you_mean(unknown, &names);
+        Err(Failure::Usage(format!(
+            "the plan names the robot `{unknown}`, which is not in {}{near}\nhelp: its robots are {}",
+            self.path.display(),
+            names.join(", ")
+        )))
+    }
+
+    /// Opens the link.
+    ///
+    /// # Errors
+    /// The address cannot be listened at (exit status 2).
+    pub(crate) fn open(&self) -> Result<StateLink, Refusal> {
+        let TcpSettings { name, listen, .. } = &self.settings;
+        let refused =
+            |error| Refusal::Usage(format!("{}: nothing can listen at {listen}: {error}", self.path.display()));
+        let link = Tcp::open(&self.settings).map_err(refused)?;
+        Ok(StateLink::new(Box::new(link), name, self.start))
+    }
+}
+
+/// Returns the refusal of a plan that names robots without a link.
+pub(crate) fn missing(robot: &str) -> Failure {
+    Failure::Usage(format!(
+        "the plan names the robot `{robot}`, and there is no link to it\nhelp: `--link FILE.toml` names the robots and their \
+         addresses; `mdle run SCENARIO.toml` runs several simulated robots"
+    ))
+}
+
+/// Reads the text of a file.
+///
+/// # Errors
+/// A sentence.
+fn read(text: &str) -> Result<(TcpSettings, Pose), String> {
+    let file: LinkText = toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())?;
+    let LinkText { name, listen, key, start, robot } = file;
+    let listen = address(&listen)?;
+    let mut peers: Vec<(String, SocketAddr)> = Vec::new();
+    for PeerText { name: other, address: at } in robot {
+        if other == name || peers.iter().any(|(known, _)| *known == other) {
+            return Err(format!("two robots have the name `{other}`"));
+        }
+        peers.push((other, address(&at)?));
+    }
+    if key.is_empty() {
+        return Err("the key is empty: write the same one for all robots".to_owned());
+    }
+    let start = start.map_or(Ok(Start(Pose::ORIGIN)), |start| start.parse());
+    let Start(start) = start.map_err(|error| format!("start: {error}"))?;
+    Ok((TcpSettings { name, listen, peers, key }, start))
+}
+
+/// Reads a literal address: a name would have to be looked up, which may take long.
+fn address(text: &str) -> Result<SocketAddr, String> {
+    text.parse().map_err(|_| format!("`{text}` is no address: write numbers and a port, as in `192.168.1.7:7400`"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = "name = \"ada\"\nlisten = \"127.0.0.1:7401\"\nkey = \"k\"\nstart = \"1, 0, 90\"\n\
+                        [[robot]]\nname = \"bob\"\naddress = \"[::1]:7402\"\n";
+
+    #[test]
+    fn a_file_names_the_robots_and_their_addresses() {
+        let (settings, start) = read(GOOD).unwrap();
+        assert_eq!((settings.name.as_str(), settings.peers.len(), start.x.0), ("ada", 1, 1.0));
+    }
+
+    #[test]
+    fn a_wrong_file_is_refused() {
+        for (from, to, words) in [
+            ("127.0.0.1:7401", "localhost:7401", "`localhost:7401` is no address"),
+            ("[::1]:7402", "10.0.0.1", "`10.0.0.1` is no address"),
+            ("\"bob\"", "\"ada\"", "two robots have the name `ada`"),
+            ("\"k\"", "\"\"", "the key is empty"),
+            ("1, 0, 90", "1, 0", "start: expected x,y,heading"),
+            ("listen", "listens", "unknown field `listens`"),
+        ] {
+            let refused = read(&GOOD.replace(from, to)).unwrap_err();
+            assert!(refused.contains(words), "{to}: {refused}");
+        }
+    }
+}

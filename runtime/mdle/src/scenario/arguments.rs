@@ -1,0 +1,109 @@
+//! The options of a scenario, which follow its file on the command line.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Arg, ArgMatches, Command, value_parser};
+use mdle_host::{Quantity, output_format};
+
+use crate::arguments::Run;
+use crate::failure::Failure;
+
+/// The options of a scenario.
+#[derive(Debug, Default)]
+pub(super) struct Options {
+    pub(super) seed: Option<u64>,
+    pub(super) timeout: Option<Duration>,
+    /// File of the log.
+    pub(super) log: Option<PathBuf>,
+    /// File of the table of poses.
+    pub(super) trail: Option<PathBuf>,
+    /// File of the picture.
+    pub(super) plot: Option<PathBuf>,
+    /// File of the picture of the ways of `path` and `Follow`.
+    pub(super) trips: Option<PathBuf>,
+    /// Folder of the paths that robots record.
+    pub(super) recorded_paths: Option<PathBuf>,
+}
+
+impl Options {
+    /// Reads the options of a scenario.
+    ///
+    /// # Errors
+    /// An option is unknown, has a wrong value, or is one of a plan; or the options ask for help.
+    pub(super) fn read(run: &Run) -> Result<Self, Failure> {
+        let of_a_plan = [
+            (run.target.is_some(), "--target"),
+            (run.plan.is_some(), "--plan"),
+            (run.safety.is_some(), "--safety"),
+            (run.link.is_some(), "--link"),
+            (run.session.is_some(), "shell"),
+            (!run.modules.is_empty(), "--module"),
+            (run.point.is_some(), "--point"),
+        ];
+        if let Some((_, name)) = of_a_plan.into_iter().find(|(is_given, _)| *is_given) {
+            let sentence = "is for one robot, and a scenario names the plan of each";
+            return Err(Failure::Usage(format!("{name} {sentence}\nhelp: leave it out")));
+        }
+        let words = [std::ffi::OsString::from("mdle run SCENARIO.toml")].into_iter().chain(run.options.clone());
+        let matches = command().try_get_matches_from(words).map_err(Failure::Unparsed)?;
+        Ok(Self::of(&matches))
+    }
+
+    fn of(matches: &ArgMatches) -> Self {
+        let file = |name: &str| matches.get_one::<PathBuf>(name).cloned();
+        Self {
+            seed: matches.get_one("seed").copied(),
+            timeout: matches.get_one("timeout").copied(),
+            log: file("log"),
+            trail: file("trail"),
+            plot: file("plot"),
+            trips: file("trips"),
+            recorded_paths: file("recorded-paths"),
+        }
+    }
+}
+
+fn command() -> Command {
+    let option = |name: &'static str, value: &'static str, help: &'static str| {
+        Arg::new(name).long(name).value_name(value).help(help)
+    };
+    Command::new("mdle run SCENARIO.toml")
+        .about("Run the robots of a scenario in one world, as fast as possible")
+        .override_usage("mdle run <SCENARIO.toml> [OPTIONS]")
+        .arg(
+            option("seed", "SEED", "Random seed for the errors of all robots and of the link [default: that of the file]")
+                .value_parser(value_parser!(u64)),
+        )
+        .arg(
+            option("timeout", "TIME", "Time after which the run ends, in seconds or with a unit [default: that of the file]")
+                .value_parser(timeout),
+        )
+        .arg(option("log", "FILE.jsonl", "File for a line of JSON for each turn of each robot").value_parser(output_format("JSON lines", "jsonl")))
+        .arg(option("trail", "FILE.csv", "File for the poses of all robots: time, robot, x, y, heading").value_parser(output_format("CSV", "csv")))
+        .arg(option("plot", "FILE.svg", "File for a picture of the floor with the ways of all robots").value_parser(output_format("SVG", "svg")))
+        .arg(
+            option("trips", "FILE.svg", "File for a picture of the ways that `path` and `Follow` drove, a floor for each robot")
+                .value_parser(output_format("SVG", "svg")),
+        )
+        .arg(
+            option("recorded-paths", "FOLDER", "Folder for the paths that robots record, each in a folder of the robot's name")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .after_help(
+            "Exit status: 0 if all plans are over; 1 if a plan has errors; 2 for wrong usage or a file that cannot be read; 3 \
+             if a fault stopped a robot, or a file could not be written; 4 if a plan still ran at the end",
+        )
+}
+
+fn timeout(text: &str) -> Result<Duration, String> {
+    Quantity::duration(text, "s", Duration::ZERO, Duration::from_secs(1_000_000_000))
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_options_are_sound() {
+        super::command().debug_assert();
+    }
+}

@@ -1,0 +1,165 @@
+//! A file of a scenario: its keys and values, as written (docs/src/many_robots.md).
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use mdle_compiler::alphabet::did_you_mean;
+use mdle_runtime::Printable;
+use serde::Deserialize;
+use toml::Spanned;
+
+/// Maximum size of a file of a scenario, in bytes.
+const LARGEST: u64 = 4_000_000;
+
+/// A value with its place in the file.
+pub(super) type At<T> = Spanned<T>;
+
+/// A file of a scenario.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct ScenarioText {
+    pub(super) world: Option<At<String>>,
+    pub(super) seed: Option<At<u64>>,
+    pub(super) timeout: Option<At<String>>,
+    pub(super) period: Option<At<String>>,
+    #[serde(default)]
+    pub(super) link: LinkText,
+    /// The robots, the first of which moves first.
+    #[serde(default)]
+    pub(super) robot: Vec<RobotText>,
+}
+
+/// The link between the robots, as written.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct LinkText {
+    /// Time that a state takes, or the least and the most with `..` between them.
+    pub(super) latency: Option<At<String>>,
+    /// Probability that a state is lost.
+    pub(super) loss: Option<At<f64>>,
+    /// Probability that a state arrives twice.
+    pub(super) duplication: Option<At<f64>>,
+}
+
+/// A robot, as written.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct RobotText {
+    pub(super) name: At<String>,
+    /// File of the plan, relative to the folder of the scenario.
+    pub(super) file: At<PathBuf>,
+    /// Name of the plan, for a file with several.
+    pub(super) plan: Option<At<String>>,
+    pub(super) start: At<String>,
+    pub(super) start_noise: Option<At<String>>,
+    pub(super) body: Option<At<String>>,
+    pub(super) seed: Option<At<u64>>,
+    /// Folder of the paths that the plan replays, relative to that of the scenario.
+    pub(super) paths: Option<At<PathBuf>>,
+    /// Name of the path that the way back of each `path` and `Follow` replaces.
+    pub(super) records: Option<At<String>>,
+    /// Time at which the robot's program dies.
+    pub(super) killed: Option<At<String>>,
+}
+
+/// An error in a file of a scenario.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct ScenarioError {
+    /// Byte range in the file; `None` for the whole file.
+    pub(super) place: Option<Range<usize>>,
+    /// A sentence.
+    pub(super) message: String,
+    /// Text to type instead; empty if there is none.
+    pub(super) help: String,
+}
+
+impl ScenarioError {
+    /// Returns an error at a place of the file.
+    pub(super) fn at(place: Range<usize>, message: impl Into<String>) -> Self {
+        Self { place: Some(place), message: message.into(), help: String::new() }
+    }
+
+    /// Adds a help.
+    pub(super) fn help(self, help: impl Into<String>) -> Self {
+        Self { help: help.into(), ..self }
+    }
+}
+
+/// Returns the text of a file of a scenario.
+///
+/// # Errors
+/// The file cannot be read: a sentence.
+pub(super) fn text(path: &Path) -> Result<String, String> {
+    mdle_host::read_text(path, LARGEST).map_err(|error| format!("{} cannot be read: {error}", path.display()))
+}
+
+/// Reads a file of a scenario.
+///
+/// # Errors
+/// The text is no TOML, has unknown keys or values of the wrong type, no robot, or two of one name.
+pub(super) fn read(text: &str) -> Result<ScenarioText, ScenarioError> {
+    let file: ScenarioText = toml::from_str(text).map_err(|error| refused(&error))?;
+    let is_name = |name: &str| {
+        let mut letters = name.chars();
+        letters.next().is_some_and(|first| first.is_ascii_alphabetic())
+            && letters.all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
+    };
+    for (number, robot) in file.robot.iter().enumerate() {
+        let (name, place) = (robot.name.get_ref(), robot.name.span());
+        if !is_name(name) {
+            let message = format!("`{}` is no name of a robot", Printable(name));
+            return Err(ScenarioError::at(place, message).help("a name is a letter, then letters, digits and `_`"));
+        }
+        if file.robot.iter().take(number).any(|before| before.name.get_ref() == name) {
+            let message = format!("there is another robot with the name `{name}`");
+            return Err(ScenarioError::at(place, message).help("give each robot a name of its own"));
+        }
+    }
+    if file.robot.is_empty() {
+        let help = "write `[[robot]]`, then `name = \"…\"`, `file = \"….mdle\"` and `start = \"x, y, degrees\"`";
+        let message = "the scenario has no robot".to_owned();
+        return Err(ScenarioError { place: None, message, help: help.to_owned() });
+    }
+    Ok(file)
+}
+
+/// Returns the error about what TOML refuses; an unknown key gets the name of a near one.
+fn refused(error: &toml::de::Error) -> ScenarioError {
+    let place = error.span();
+    let message = error.message().replace('\n', "; ");
+    let Some((unknown, known)) = message.strip_prefix("unknown field `").and_then(|rest| rest.split_once('`')) else {
+        return ScenarioError { place, message, help: String::new() };
+    };
+    let known: Vec<&str> = known.split('`').skip(1).step_by(2).collect();
+    let message = format!("there is no key `{}`{}", Printable(unknown), did_you_mean(unknown, &known));
+    ScenarioError { place, message, help: format!("the keys are {}", known.join(", ")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(text: &str) -> String {
+        let ScenarioError { place, message, help } = read(text).unwrap_err();
+        format!("{:?} {message} | {help}", place.map(|place| &text[place]))
+    }
+
+    #[test]
+    fn a_wrong_file_is_refused_with_place_and_cure() {
+        let robot = |name: &str| format!("[[robot]]\nname = \"{name}\"\nfile = \"a.mdle\"\nstart = \"0,0,0\"\n");
+        insta::assert_snapshot!(
+            [
+                String::new(),
+                robot("a") + &robot("b") + &robot("a"),
+                robot("a b"),
+                robot("a") + "strat = \"0,0,0\"\n",
+                "wrold = \"room\"\n".to_owned() + &robot("a"),
+                "[link]\nlos = 0.1\n".to_owned() + &robot("a"),
+                "[[robot]]\nname = \"a\"\nfile = \"a.mdle\"\n".to_owned(),
+                "seed = \"many\"\n".to_owned() + &robot("a"),
+            ]
+            .map(|text| message(&text))
+            .join("\n")
+        );
+    }
+}

@@ -1,0 +1,134 @@
+//! The turns of all robots of a scenario, by one clock (docs/src/many_robots.md).
+
+use std::time::Duration;
+
+use mdle_engine::Library;
+use mdle_engine::link::Air;
+use mdle_runtime::{Nanos, Plan as _, Sensed};
+use mdle_sim::Footprint;
+
+use super::member::{Runner, Standing};
+use super::output::Output;
+use super::setup::Scenario;
+
+/// Exit status of a run in which a plan is not over.
+const TIMED_OUT: u8 = 4;
+
+/// Distance beyond which the gap between robots is not measured, in metres.
+const FAR: f64 = 100.0;
+
+/// The robots of a scenario.
+pub(super) struct Fleet {
+    runners: Vec<Runner>,
+    period: Duration,
+    /// The least gap between two robots in any turn, with the numbers of the two.
+    nearest: Option<(f64, usize, usize)>,
+}
+
+impl Fleet {
+    /// Returns the robots before their first turn.
+    ///
+    /// # Errors
+    /// A module is refused: a sentence.
+    pub(super) fn new(mut scenario: Scenario, library: &Library<Sensed>) -> Result<Self, String> {
+        let members = std::mem::take(&mut scenario.members);
+        let ends = Air::new(members.len(), scenario.faults, scenario.seed.unwrap_or_default());
+        let runners = members.into_iter().zip(ends).map(|(member, air)| Runner::new(member, air, &scenario, library));
+        Ok(Self { runners: runners.collect::<Result<_, _>>()?, period: scenario.period, nearest: None })
+    }
+
+    /// Makes turns until all plans are over, or at `timeout`; returns the exit status.
+    ///
+    /// In each turn the robots move, one after the other in the order of the file, each among the others where they
+    /// are; then all sense; then all plans make their turns, with what the link brought from earlier turns.
+    pub(super) fn run(mut self, timeout: Duration, output: &mut Output) -> u8 {
+        let nanos = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
+        let (period, timeout) = (nanos(self.period), nanos(timeout));
+        for number in 0.. {
+            let t = Nanos(u64::saturating_mul(number, period));
+            let outputs = self.exchange();
+            self.measure();
+            for (runner, y) in self.runners.iter_mut().zip(&outputs) {
+                let made = runner.turn(y, t, number);
+                output.turn(runner, y, t, number, &made);
+            }
+            let are_driven = self.runners.iter().any(|runner| runner.standing == Standing::Drives);
+            if !are_driven || t.0 >= timeout || output.has_failed() {
+                self.ends(t, output);
+                break;
+            }
+        }
+        self.status()
+    }
+
+    /// Moves all robots for a period, then takes their outputs.
+    fn exchange(&mut self) -> Vec<Sensed> {
+        for number in 0..self.runners.len() {
+            self.look(number);
+            if let Some(runner) = self.runners.get_mut(number) {
+                runner.moves();
+            }
+        }
+        let count = self.runners.len();
+        let outputs = (0..count).filter_map(|number| {
+            self.look(number);
+            Some(self.runners.get_mut(number)?.robot.senses())
+        });
+        outputs.collect()
+    }
+
+    /// Lets a robot see the others where they are.
+    fn look(&mut self, number: usize) {
+        let others = self.runners.iter().enumerate().filter(|(other, _)| *other != number);
+        let others: Vec<Footprint> = others.map(|(_, other)| other.robot.footprint()).collect();
+        if let Some(runner) = self.runners.get_mut(number) {
+            runner.robot.see(&others);
+        }
+    }
+
+    /// Measures the gaps between robots.
+    fn measure(&mut self) {
+        let bodies: Vec<Footprint> = self.runners.iter().map(|runner| runner.robot.footprint()).collect();
+        for (number, body) in bodies.iter().enumerate() {
+            for (other, beside) in bodies.iter().enumerate().skip(number + 1) {
+                let gap = body.gap(beside);
+                if gap < self.nearest.map_or(FAR, |(least, ..)| least) {
+                    self.nearest = Some((gap, number, other));
+                }
+            }
+        }
+    }
+
+    /// Reports the end of a run at time `t`, and stops the robots that are still driven.
+    fn ends(&mut self, t: Nanos, output: &mut Output) {
+        for runner in &mut self.runners {
+            let law = runner.law();
+            if runner.standing == Standing::Drives {
+                output.line(t, &runner.name, &runner.standing.words(law.as_deref()));
+            }
+            runner.stop();
+        }
+        let name = |number: usize| self.runners.get(number).map_or("", |runner| runner.name.as_str());
+        if let Some((gap, one, other)) = self.nearest {
+            let centimetres = libm::round(gap * 1000.0) / 10.0 + 0.0;
+            output.text(&format!("least gap between robots: {centimetres:.1} cm ({} and {})", name(one), name(other)));
+        }
+    }
+
+    fn status(&self) -> u8 {
+        let has = |is_so: fn(&Standing) -> bool| self.runners.iter().any(|runner| is_so(&runner.standing));
+        match (has(|standing| matches!(standing, Standing::Failed(_))), has(|standing| *standing != Standing::Over)) {
+            (true, _) => super::FAULT,
+            (false, true) => TIMED_OUT,
+            (false, false) => 0,
+        }
+    }
+}
+
+impl Runner {
+    /// Returns the law that runs.
+    fn law(&self) -> Option<String> {
+        let machine = self.machine()?;
+        machine.atom().map(|atom| machine.plan().law(atom).to_owned())
+    }
+}

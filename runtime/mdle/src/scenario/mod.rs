@@ -1,0 +1,79 @@
+//! `mdle run SCENARIO.toml`: several robots in one world and one process (docs/src/many_robots.md).
+
+mod arguments;
+mod file;
+mod fleet;
+mod member;
+mod output;
+mod setup;
+mod way_back;
+
+use std::io::{self, Write as _};
+use std::path::Path;
+use std::process::ExitCode;
+
+use codespan_reporting::diagnostic::{Diagnostic, Label};
+use mdle_compiler::diagnostic::Sources;
+use mdle_engine::Library;
+use mdle_runtime::{Printable, Sensed};
+
+use crate::arguments::Run;
+use crate::failure::{self, Failure};
+use arguments::Options;
+use file::ScenarioError;
+use fleet::Fleet;
+use output::Output;
+use setup::{Scenario, SetupError};
+
+/// Exit status of a scenario in which something was not done, such as a file that could not be written.
+const FAULT: u8 = 3;
+
+/// Returns `true` if this file is a scenario rather than a plan.
+pub(crate) fn is_scenario(file: &Path) -> bool {
+    file.extension().is_some_and(|extension| extension == "toml")
+}
+
+/// Runs a scenario with these modules in each robot; returns the exit status.
+///
+/// # Errors
+/// The scenario does not run.
+pub(crate) fn run(arguments: &Run, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
+    let options = Options::read(arguments)?;
+    let path = &arguments.file;
+    let text = file::text(path).map_err(Failure::Usage)?;
+    let read = file::read(&text).map_err(SetupError::File);
+    let scenario = read.and_then(|file| Scenario::read(file, path, options.seed));
+    let scenario = scenario.map_err(|error| match error {
+        SetupError::Plan(failure) => failure,
+        SetupError::File(error) => refused(path, &text, &error),
+    })?;
+    let mut output = Output::open(&options, &scenario).map_err(Failure::Usage)?;
+    let timeout = options.timeout.unwrap_or(scenario.timeout);
+    let fleet = Fleet::new(scenario, library).map_err(Failure::Usage)?;
+    let status = fleet.run(timeout, &mut output);
+    match output.close() {
+        Ok(()) => Ok(ExitCode::from(status)),
+        Err(sentence) => {
+            let _ = writeln!(io::stderr(), "error: {sentence}");
+            Ok(ExitCode::from(FAULT))
+        }
+    }
+}
+
+/// Prints what is wrong with a file of a scenario.
+fn refused(path: &Path, text: &str, error: &ScenarioError) -> Failure {
+    let mut sources = Sources::default();
+    let source = sources.add(path.display().to_string(), text);
+    let Some(place) = &error.place else {
+        let help = if error.help.is_empty() { String::new() } else { format!("\nhelp: {}", error.help) };
+        return Failure::Usage(format!("{}: {}{help}", path.display(), error.message));
+    };
+    let label = Label::primary(source, place.clone());
+    let mut report = Diagnostic::error().with_message(&error.message).with_labels(vec![label]);
+    if !error.help.is_empty() {
+        report = report.with_notes(vec![format!("help: {}", error.help)]);
+    }
+    crate::messages::write(&sources, report);
+    failure::error(&format!("the scenario {} has errors", Printable(&path.display().to_string())));
+    Failure::TestFile
+}

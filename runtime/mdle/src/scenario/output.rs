@@ -1,0 +1,182 @@
+//! What a scenario writes: the report on standard output, and the files that options name.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use mdle_host::Clocked;
+use mdle_runtime::trace::{Json, Seconds};
+use mdle_runtime::{Nanos, Printable, Sensed};
+use mdle_sim::{FleetDrawing, TripDrawing};
+
+use super::arguments::Options;
+use super::member::{Runner, TurnMade};
+use super::setup::Scenario;
+
+/// Reports and files of a run.
+pub(super) struct Output {
+    out: BufWriter<io::Stdout>,
+    log: Option<Table>,
+    trail: Option<Table>,
+    plot: Option<(PathBuf, FleetDrawing)>,
+    trips: Option<(PathBuf, TripDrawing)>,
+    paths: Option<PathBuf>,
+    /// The first error, after which the run ends.
+    failed: Option<String>,
+}
+
+/// A file that grows during the run.
+struct Table {
+    path: PathBuf,
+    file: BufWriter<File>,
+}
+
+impl Table {
+    fn create(path: &Path) -> Result<Self, String> {
+        let file = File::create(path).map_err(|error| unwritten(path, &error))?;
+        Ok(Self { path: path.to_owned(), file: BufWriter::new(file) })
+    }
+
+    fn line(&mut self, line: &str) -> Result<(), String> {
+        writeln!(self.file, "{line}").map_err(|error| unwritten(&self.path, &error))
+    }
+}
+
+fn unwritten(path: &Path, error: &io::Error) -> String {
+    format!("{} cannot be written: {error}", path.display())
+}
+
+impl Output {
+    /// Opens the files that the options name.
+    ///
+    /// # Errors
+    /// One cannot be written: a sentence.
+    pub(super) fn open(options: &Options, scenario: &Scenario) -> Result<Self, String> {
+        let table = |path: &Option<PathBuf>| path.as_deref().map(Table::create).transpose();
+        let title = setup(scenario);
+        let mut output = Self {
+            out: BufWriter::new(io::stdout()),
+            log: table(&options.log)?,
+            trail: table(&options.trail)?,
+            plot: options.plot.clone().map(|path| (path, FleetDrawing::of(&scenario.world, &title))),
+            trips: options.trips.clone().map(|path| (path, TripDrawing::of(&title))),
+            paths: options.recorded_paths.clone(),
+            failed: None,
+        };
+        if let Some(trail) = &mut output.trail {
+            trail.line("t,robot,x,y,heading")?;
+        }
+        for path in [&options.plot, &options.trips].into_iter().flatten() {
+            // Nobody wants to hear after the run that there is no such folder.
+            File::create(path).map_err(|error| unwritten(path, &error))?;
+        }
+        Ok(output)
+    }
+
+    /// Takes a turn of a robot, which gave this output.
+    pub(super) fn turn(&mut self, runner: &Runner, y: &Sensed, t: Nanos, number: u64, made: &TurnMade) {
+        for line in &made.lines {
+            self.line(t, &runner.name, line);
+        }
+        let pose = runner.robot.pose();
+        let (x, side, heading) = (pose.x.0, pose.y.0, pose.theta.degrees());
+        if let Some(trail) = &mut self.trail {
+            let written = trail.line(&format!("{},{},{x},{side},{heading}", Seconds(t), runner.name));
+            self.note(written);
+        }
+        if let Some(log) = &mut self.log {
+            let (state, law) = made.law.as_ref().map_or((0, ""), |(state, law)| (*state, law.as_str()));
+            let lines: Vec<String> = made.lines.iter().map(|line| Json(line).to_string()).collect();
+            let written = log.line(&format!(
+                "{{\"turn\":{number},\"t\":{},\"robot\":{},\"state\":{state},\"law\":{},\"x\":{x},\"y\":{side},\
+                 \"heading\":{heading},\"pressed\":{},\"events\":[{}]}}",
+                Seconds(t),
+                Json(&runner.name),
+                Json(law),
+                y.switches != 0,
+                lines.join(","),
+            ));
+            self.note(written);
+        }
+        if let Some((_, drawing)) = &mut self.plot {
+            drawing.went(&runner.name, &runner.robot, y.switches != 0);
+        }
+        if let Some((_, drawing)) = &mut self.trips {
+            let law = made.law.as_ref().map_or("", |(_, law)| law.as_str());
+            drawing.went(&runner.name, &pose, law, !made.lines.is_empty());
+        }
+        if let (Some(folder), Some((path, text))) = (&self.paths, &made.path) {
+            let written = record(&folder.join(&runner.name), path, text);
+            self.note(written);
+        }
+    }
+
+    /// Writes a line about a robot at time `t`.
+    pub(super) fn line(&mut self, t: Nanos, robot: &str, line: &str) {
+        self.text(&format!("{}  {robot}: {line}", Clocked(t)));
+    }
+
+    /// Writes a line of the report. A reader that has gone is no error.
+    pub(super) fn text(&mut self, line: &str) {
+        if let Err(error) = writeln!(self.out, "{}", Printable(line))
+            && error.kind() != io::ErrorKind::BrokenPipe
+        {
+            self.note(Err(format!("standard output cannot be written: {error}")));
+        }
+    }
+
+    fn note(&mut self, written: Result<(), String>) {
+        if let (Err(sentence), None) = (written, &self.failed) {
+            self.failed = Some(sentence);
+        }
+    }
+
+    /// Returns `true` if a file could not be written.
+    pub(super) fn has_failed(&self) -> bool {
+        self.failed.is_some()
+    }
+
+    /// Writes the pictures, and the rest of all files.
+    ///
+    /// # Errors
+    /// What could not be written: a sentence.
+    pub(super) fn close(mut self) -> Result<(), String> {
+        let pictures = [
+            self.plot.take().map(|(path, drawing)| (path, drawing.picture())),
+            self.trips.take().map(|(path, drawing)| (path, drawing.picture())),
+        ];
+        for (path, picture) in pictures.into_iter().flatten() {
+            let written = fs::write(&path, picture).map_err(|error| unwritten(&path, &error));
+            self.note(written);
+        }
+        for table in [self.log.take(), self.trail.take()].into_iter().flatten() {
+            let Table { path, mut file } = table;
+            let written = file.flush().map_err(|error| unwritten(&path, &error));
+            self.note(written);
+        }
+        let flushed = match self.out.flush() {
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+                Err(format!("standard output cannot be written: {error}"))
+            }
+            Ok(()) | Err(_) => Ok(()),
+        };
+        self.note(flushed);
+        self.failed.map_or(Ok(()), Err)
+    }
+}
+
+/// Describes a scenario for titles.
+fn setup(scenario: &Scenario) -> String {
+    let robots = scenario.members.iter().map(|member| format!("{} ({})", member.name, member.body));
+    let seed = scenario.seed.map_or_else(|| "no errors".to_owned(), |seed| format!("seed {seed}"));
+    format!("world {}, {}, {seed}", scenario.world_name, robots.collect::<Vec<_>>().join(", "))
+}
+
+/// Replaces the file of a path in this folder: whoever reads it meanwhile has the old path or the new one.
+fn record(folder: &Path, name: &str, text: &str) -> Result<(), String> {
+    let file = folder.join(if Path::new(name).extension().is_some() { name.to_owned() } else { format!("{name}.csv") });
+    let unfinished = file.with_extension(format!("{}.tmp", std::process::id()));
+    let written = fs::create_dir_all(folder).and_then(|()| fs::write(&unfinished, text));
+    let written = written.and_then(|()| fs::rename(&unfinished, &file));
+    written.map_err(|error| unwritten(&file, &error))
+}

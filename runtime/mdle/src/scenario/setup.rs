@@ -1,0 +1,286 @@
+//! A scenario that is ready to run: its plans are compiled, and its robots stand in their world.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+use mdle_compiler::alphabet::did_you_mean;
+use mdle_compiler::diagnostic::judged;
+use mdle_compiler::load::{self, Loaded};
+use mdle_engine::link::Faults;
+use mdle_files::{Settings, read_plan};
+use mdle_host::{Quantity, Target as _, read_file, read_text, setpoints};
+use mdle_runtime::{Nanos, Plan as _, Pose, Setpoint};
+use mdle_sim::alphabet::Alphabet as SimAlphabet;
+use mdle_sim::{Body, Make, Sim, Simulated, Start, StartNoise, Walls, World};
+
+use super::file::{At, LinkText, RobotText, ScenarioError, ScenarioText};
+use crate::failure::{self, Failure};
+
+/// Maximum size of a file of a path or a world, in bytes.
+const LARGEST: u64 = 10_000_000;
+/// Time after which a scenario ends that is given no other limit.
+const TIMEOUT: Duration = Duration::from_secs(3600);
+/// Name of the target of all robots.
+const SIM: &str = "sim";
+
+/// A scenario.
+pub(super) struct Scenario {
+    pub(super) world: World,
+    /// Name of the world.
+    pub(super) world_name: String,
+    pub(super) seed: Option<u64>,
+    pub(super) timeout: Duration,
+    pub(super) period: Duration,
+    /// Faults of the link.
+    pub(super) faults: Faults,
+    pub(super) members: Vec<Member>,
+}
+
+/// A robot of a scenario.
+pub(super) struct Member {
+    pub(super) name: String,
+    /// Name of its body.
+    pub(super) body: Body,
+    pub(super) robot: Simulated,
+    /// Pose at which its odometry is said to begin, in the world.
+    pub(super) start: Pose,
+    pub(super) loaded: Arc<Loaded<SimAlphabet>>,
+    /// The paths that its plan replays; one that is recorded may come later.
+    pub(super) paths: Vec<(&'static str, Vec<Setpoint>)>,
+    /// Name of the path that it records.
+    pub(super) records: Option<&'static str>,
+    /// Time at which its program dies.
+    pub(super) killed: Option<Nanos>,
+}
+
+/// Error of a scenario: in its file, or in a plan, which was reported.
+pub(super) enum SetupError {
+    File(ScenarioError),
+    Plan(Failure),
+}
+
+impl From<ScenarioError> for SetupError {
+    fn from(error: ScenarioError) -> Self {
+        Self::File(error)
+    }
+}
+
+impl<F: Into<Failure>> From<F> for SetupError {
+    fn from(failure: F) -> Self {
+        Self::Plan(failure.into())
+    }
+}
+
+impl Scenario {
+    /// Makes the robots of the scenario of the file at `path`. Messages about plans go to standard error.
+    ///
+    /// # Errors
+    /// A value of the file makes no sense, a file that it names cannot be read, or a plan has errors.
+    pub(super) fn read(text: ScenarioText, path: &Path, seed: Option<u64>) -> Result<Self, SetupError> {
+        let seed = seed.or(text.seed.as_ref().map(|seed| *seed.get_ref()));
+        let period = text.period.as_ref().map(|period| duration(period, 0.001, 1.0)).transpose()?;
+        let timeout = text.timeout.as_ref().map(|timeout| duration(timeout, 0.0, 1e9)).transpose()?;
+        let (world, world_name) = world(text.world.as_ref(), path)?;
+        let faults = faults(&text.link)?;
+        let mut scenario = Self {
+            world,
+            world_name,
+            seed,
+            timeout: timeout.unwrap_or(TIMEOUT),
+            period: period.unwrap_or(Sim::PERIOD),
+            faults,
+            members: Vec::new(),
+        };
+        let names: Vec<&str> = text.robot.iter().map(|robot| robot.name.get_ref().as_str()).collect();
+        for robot in &text.robot {
+            let member = scenario.member(robot, path, &names)?;
+            scenario.members.push(member);
+        }
+        Ok(scenario)
+    }
+
+    /// Makes a robot, which may not stand in one of those before it.
+    fn member(&self, text: &RobotText, path: &Path, names: &[&str]) -> Result<Member, SetupError> {
+        let name = text.name.get_ref();
+        let loaded = plan(text, path)?;
+        let plan = loaded.plan();
+        for other in plan.robots() {
+            if other == name || !names.contains(other) {
+                return Err(unknown_peer(text, other, names).into());
+            }
+        }
+        let body = body(text.body.as_ref())?;
+        let number = self.members.len() as u64;
+        let own_seed = self.seed.map(|seed| seed.wrapping_mul(names.len() as u64).wrapping_add(number));
+        let seed = text.seed.as_ref().map(|seed| *seed.get_ref()).or(own_seed);
+        let make = Make { body, without: Vec::new(), seed };
+        let start: Result<Start, _> = text.start.get_ref().parse();
+        let Start(start) = start.map_err(|error| ScenarioError::at(text.start.span(), error.to_string()))?;
+        let begins = self.begins(text, &make, start, seed.unwrap_or_default())?;
+        let robot = Simulated::with(&make, &self.world, begins, self.period);
+        let robot = robot.map_err(|error| ScenarioError::at(text.start.span(), error.to_string()))?;
+        let footprint = robot.footprint();
+        if let Some(other) = self.members.iter().find(|other| other.robot.footprint().overlaps(&footprint)) {
+            let message = format!("the robot `{name}` would stand in the robot `{}`", other.name);
+            let help = "begin with a gap between them: a Scout is 0.41 m across";
+            return Err(ScenarioError::at(text.start.span(), message).help(help).into());
+        }
+        let records = text.records.as_ref().map(|records| recorded(records, plan.paths())).transpose()?;
+        let paths = paths(text, path, plan.paths(), records)?;
+        let killed = text.killed.as_ref().map(|killed| duration(killed, 0.0, 1e9)).transpose()?;
+        let killed = killed.map(|killed| Nanos(u64::try_from(killed.as_nanos()).unwrap_or(u64::MAX)));
+        Ok(Member { name: name.clone(), body, robot, start, loaded, paths, records, killed })
+    }
+
+    /// Returns the pose at which a robot begins, which is said to begin at `start`.
+    fn begins(&self, text: &RobotText, make: &Make, start: Pose, seed: u64) -> Result<Pose, ScenarioError> {
+        let Some(noise) = &text.start_noise else { return Ok(start) };
+        let read = StartNoise::read(noise.get_ref());
+        let read = read.map_err(|sentence| ScenarioError::at(noise.span(), sentence))?;
+        let pose = read.pose(&start, seed, make.form(), &self.world, &Walls::of(&self.world));
+        pose.map_err(|error| ScenarioError::at(noise.span(), error.to_string()))
+    }
+}
+
+/// Compiles and loads the plan of a robot.
+fn plan(text: &RobotText, path: &Path) -> Result<Arc<Loaded<SimAlphabet>>, SetupError> {
+    let file = path.with_file_name("").join(text.file.get_ref());
+    let target = Settings::beside(&file)?.target(Some(SIM))?;
+    let mut input = read_plan(&file, &target)?;
+    let wanted = text.plan.as_ref().map(|plan| plan.get_ref().as_str());
+    if let Some(name) = wanted {
+        input.must_have(name)?;
+    }
+    let (plans, diagnostics) = input.compile(&target.alphabet, wanted);
+    failure::print(&input.sources, &diagnostics);
+    if let Err(sentence) = judged(&diagnostics, false) {
+        failure::error(&sentence);
+        return Err(SetupError::Plan(Failure::Plan));
+    }
+    let named = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine)).collect();
+    let machine = input.only(named)?;
+    Ok(Arc::new(load::load(&machine, &input.sources, &target.alphabet)?))
+}
+
+/// Returns the error about a robot that a plan names and that is not there.
+fn unknown_peer(text: &RobotText, other: &str, names: &[&str]) -> ScenarioError {
+    let name = text.name.get_ref();
+    if other == name {
+        return ScenarioError::at(text.file.span(), format!("the plan of the robot `{name}` names that robot itself"));
+    }
+    let others: Vec<&str> = names.iter().copied().filter(|known| known != name).collect();
+    let near = did_you_mean(other, &others);
+    let message = format!("the plan of `{name}` names the robot `{other}`, and the scenario has none{near}");
+    ScenarioError::at(text.file.span(), message).help(format!("the robots of the scenario are {}", names.join(", ")))
+}
+
+/// Returns the world of this name or file, and its name.
+fn world(text: Option<&At<String>>, path: &Path) -> Result<(World, String), ScenarioError> {
+    let Some(text) = text else {
+        let world = World::parse("the empty floor", "");
+        let world =
+            world.map_err(|error| ScenarioError { place: None, message: error.to_string(), help: String::new() });
+        return Ok((world?, "empty".to_owned()));
+    };
+    let refused = |message: String| ScenarioError::at(text.span(), message);
+    let name = text.get_ref();
+    let file = path.with_file_name(name);
+    let world = match World::named(name).filter(|_| !file.exists()) {
+        Some(world) => world,
+        None if !file.exists() => {
+            let worlds = World::names().collect::<Vec<_>>();
+            let near = did_you_mean(name, &worlds);
+            let message = format!("there is no world or file `{name}`{near}");
+            return Err(refused(message).help(format!("the worlds are {}", worlds.join(", "))));
+        }
+        None => {
+            let shown = file.display().to_string();
+            let text =
+                read_text(&file, LARGEST).map_err(|error| refused(format!("{shown} cannot be read: {error}")))?;
+            World::parse(&shown, &text)
+        }
+    };
+    let world = world.map_err(|error| refused(error.to_string()))?;
+    if !world.things.is_empty() {
+        return Err(refused("a world with things that move is for one robot".to_owned()).help("leave them out"));
+    }
+    Ok((world, name.clone()))
+}
+
+fn body(text: Option<&At<String>>) -> Result<Body, ScenarioError> {
+    let Some(text) = text else { return Ok(Body::Ideal) };
+    let body = [Body::Ideal, Body::Scout, Body::Atrv].into_iter().find(|body| body.to_string() == *text.get_ref());
+    body.ok_or_else(|| ScenarioError::at(text.span(), "expected `ideal`, `scout` or `atrv`"))
+}
+
+fn faults(text: &LinkText) -> Result<Faults, ScenarioError> {
+    let share = |share: &Option<At<f64>>| {
+        let Some(text) = share else { return Ok(0.0) };
+        let is_share = (0.0..=1.0).contains(text.get_ref());
+        is_share
+            .then_some(*text.get_ref())
+            .ok_or_else(|| ScenarioError::at(text.span(), "expected a number from 0 to 1"))
+    };
+    let latency = text.latency.as_ref().map(latency).transpose()?.unwrap_or_default();
+    Ok(Faults { latency, loss: share(&text.loss)?, duplication: share(&text.duplication)? })
+}
+
+/// Reads a time, or the least and the most with `..` between them.
+fn latency(text: &At<String>) -> Result<(Nanos, Nanos), ScenarioError> {
+    let (least, most) = text.get_ref().split_once("..").unwrap_or((text.get_ref(), text.get_ref()));
+    let time = |part: &str| {
+        let read = Quantity::duration(part.trim(), "s", Duration::ZERO, Duration::from_secs(60));
+        let read = read.map_err(|sentence| ScenarioError::at(text.span(), sentence));
+        read.map(|time| Nanos(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)))
+    };
+    let (least, most) = (time(least)?, time(most)?);
+    if most < least {
+        return Err(ScenarioError::at(text.span(), "the least latency comes first, as in `0ms..200ms`"));
+    }
+    Ok((least, most))
+}
+
+fn duration(text: &At<String>, least: f64, most: f64) -> Result<Duration, ScenarioError> {
+    let [least, most] = [least, most].map(Duration::from_secs_f64);
+    let read = Quantity::duration(text.get_ref(), "s", least, most);
+    read.map_err(|sentence| ScenarioError::at(text.span(), sentence))
+}
+
+/// Returns the path that is recorded, which has to be one that the plan replays.
+fn recorded(text: &At<String>, replayed: &[&'static str]) -> Result<&'static str, ScenarioError> {
+    let name = text.get_ref();
+    replayed.iter().copied().find(|path| path == name).ok_or_else(|| {
+        let near = did_you_mean(name, replayed);
+        ScenarioError::at(text.span(), format!("the plan replays no path `{name}`{near}"))
+    })
+}
+
+/// Reads the paths that a plan replays. One that is recorded may be missing.
+fn paths(
+    text: &RobotText,
+    path: &Path,
+    names: &[&'static str],
+    records: Option<&'static str>,
+) -> Result<Vec<(&'static str, Vec<Setpoint>)>, ScenarioError> {
+    let folder = path.with_file_name("");
+    let folder = text.paths.as_ref().map_or(folder.clone(), |own| folder.join(own.get_ref()));
+    let place = text.paths.as_ref().map_or(text.file.span(), At::span);
+    let Some(fastest) = Sim::PATHS.map(|replays| replays.fastest) else { return Ok(Vec::new()) };
+    let mut paths = Vec::new();
+    for name in names {
+        let file =
+            folder.join(if Path::new(name).extension().is_some() { (*name).to_owned() } else { format!("{name}.csv") });
+        if !file.exists() && records == Some(name) {
+            continue;
+        }
+        let shown = file.display().to_string();
+        let bytes = read_file(&file, LARGEST).map_err(|error| {
+            let message = format!("the path {shown} cannot be read: {error}");
+            ScenarioError::at(place.clone(), message).help("the plan replays it; `paths = \"FOLDER\"` says where it is")
+        })?;
+        let read = setpoints(&shown, &bytes, fastest).map_err(|sentence| ScenarioError::at(place.clone(), sentence))?;
+        paths.push((*name, read));
+    }
+    Ok(paths)
+}

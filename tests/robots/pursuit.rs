@@ -1,0 +1,206 @@
+//! Local pursuit by three robots (paper, section IV-D, Fig. 12): the iterated ways become straight, over random seeds.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use mdle_tests::chance::repeated;
+use mdle_tests::executable::{folder, mdle};
+use mdle_tests::repository::root;
+use serde_json::Value;
+
+/// Number of trips: four laps there and back.
+const TRIPS: usize = 8;
+
+/// A folder with the scenario of the book, to which `more` is added.
+fn scenario(test: &str, more: &str) -> PathBuf {
+    let folder = folder(test);
+    let plans = root().join("plans/pursuit");
+    fs::create_dir_all(folder.join("robot1")).unwrap();
+    for file in ["first_robot.mdle", "second_robot.mdle", "third_robot.mdle", "robot1/lastPath.csv"] {
+        fs::copy(plans.join(file), folder.join(file)).unwrap();
+    }
+    let text = fs::read_to_string(plans.join("pursuit.toml")).unwrap();
+    fs::write(folder.join("pursuit.toml"), text + more).unwrap();
+    folder
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    let arguments = ["run", "pursuit.toml"].iter().chain(arguments);
+    Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap()
+}
+
+/// The ways that a robot drove by `path` and `Follow`, in order, by the log of a run.
+struct Trips {
+    /// For each trip, if the robot led it, and its places.
+    trips: Vec<(bool, Vec<[f64; 2]>)>,
+}
+
+impl Trips {
+    fn of(log: &[Value], robot: &str) -> Self {
+        let mut trips: Vec<(bool, Vec<[f64; 2]>)> = Vec::new();
+        let mut last = 0;
+        for turn in log.iter().filter(|turn| turn["robot"] == robot) {
+            let (state, law) = (turn["state"].as_u64().unwrap(), turn["law"].as_str().unwrap());
+            let is_led = law.starts_with("path");
+            if is_led || law.starts_with("Follow") {
+                if state != last {
+                    trips.push((is_led, Vec::new()));
+                }
+                let place = ["x", "y"].map(|axis| turn[axis].as_f64().unwrap());
+                trips.last_mut().unwrap().1.push(place);
+            }
+            last = state;
+        }
+        Self { trips }
+    }
+
+    /// Returns the places of the trips that the robot led.
+    fn led(&self) -> impl Iterator<Item = &Vec<[f64; 2]>> {
+        self.trips.iter().filter(|(is_led, _)| *is_led).map(|(_, way)| way)
+    }
+}
+
+fn distance(one: [f64; 2], other: [f64; 2]) -> f64 {
+    libm::hypot(one[0] - other[0], one[1] - other[1])
+}
+
+/// By how much a way is longer than the distance of its ends, in percent.
+fn excess(way: &[[f64; 2]]) -> f64 {
+    let length: f64 = way.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
+    (length / distance(way[0], way[way.len() - 1]) - 1.0) * 100.0
+}
+
+/// The greatest distance of a way from the line between its ends, in metres.
+fn bulge(way: &[[f64; 2]]) -> f64 {
+    let (from, to) = (way[0], way[way.len() - 1]);
+    let off = |at: &[f64; 2]| {
+        let cross = (to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0]);
+        (cross / distance(from, to)).abs()
+    };
+    way.iter().map(off).fold(0.0, f64::max)
+}
+
+/// Figures of a run: time of its end in seconds, least gap in centimetres, and for the trips the excess of the leader
+/// and of the second robot, and how far the leader was from the line between the ends.
+struct Figures {
+    seconds: f64,
+    gap: f64,
+    leader: Vec<f64>,
+    second: Vec<f64>,
+    bulges: Vec<f64>,
+}
+
+/// Runs the scenario with this seed, and checks what holds for each run.
+fn figures(folder: &Path, seed: u64) -> Figures {
+    let log = format!("{seed}.jsonl");
+    let output = run(folder, &["--seed", &seed.to_string(), "--log", &log]);
+    let report = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0), "seed {seed}: {report}{}", String::from_utf8_lossy(&output.stderr));
+    let log = fs::read_to_string(folder.join(&log)).unwrap();
+    let log: Vec<Value> = log.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert!(log.iter().all(|turn| turn["pressed"] == false), "seed {seed}: a contact");
+    let [first, second, third] = ["robot1", "robot2", "robot3"].map(|robot| Trips::of(&log, robot));
+    let mut led = first.led().zip(third.led()).flat_map(|(there, back)| [there, back]);
+    let ways: Vec<_> = led.by_ref().collect();
+    assert_eq!((ways.len(), second.trips.len()), (TRIPS, TRIPS), "seed {seed}: {report}");
+    let gap = report.lines().last().unwrap().strip_prefix("least gap between robots: ").unwrap();
+    Figures {
+        seconds: log.last().unwrap()["t"].as_f64().unwrap(),
+        gap: gap.split(' ').next().unwrap().parse().unwrap(),
+        leader: ways.iter().map(|way| excess(way)).collect(),
+        second: second.trips.iter().map(|(_, way)| excess(way)).collect(),
+        bulges: ways.iter().map(|way| bulge(way)).collect(),
+    }
+}
+
+/// Checks what is promised of each run, and prints the figures of all.
+fn assert_converge(test: &str, more: &str, first: u64) {
+    let folder = scenario(test, more);
+    let seeds = first..first + repeated(5);
+    let all: Vec<_> = seeds.clone().map(|seed| (seed, figures(&folder, seed))).collect();
+    for (seed, Figures { seconds, gap, leader, second, bulges }) in &all {
+        let figures = format!("seed {seed}: {seconds} s, {gap} cm, {leader:?}, {second:?}, {bulges:?}");
+        assert!(*gap > 0.0 && *seconds < 180.0, "{figures}");
+        assert!(leader[..5].windows(2).all(|pair| pair[1] < pair[0]), "{figures}");
+        assert!(leader.windows(3).all(|trips| trips[2] < trips[0]), "{figures}");
+        assert!(leader[0] >= 20.0 && leader[4] <= 2.0 && leader[6] <= 1.0, "{figures}");
+        assert!(bulges[6] <= 0.3 && second[..6].windows(2).all(|pair| pair[1] < pair[0]), "{figures}");
+    }
+    let mean = |of: &dyn Fn(&Figures) -> f64| all.iter().map(|(_, run)| of(run)).sum::<f64>() / all.len() as f64;
+    let greatest = |of: &dyn Fn(&Figures) -> f64| all.iter().map(|(_, run)| of(run)).fold(f64::MIN, f64::max);
+    let least = |of: &dyn Fn(&Figures) -> f64| -greatest(&|run| -of(run));
+    println!(
+        "{test}, {} seeds: at most {:.1} s, gap at least {:.1} cm",
+        all.len(),
+        greatest(&|run| run.seconds),
+        least(&|run| run.gap)
+    );
+    for trip in 0..TRIPS {
+        println!(
+            "trip {}: leader {:.1} % (at most {:.1}), second {:.1} %, {:.0} cm from the line (at most {:.0})",
+            trip + 1,
+            mean(&|run| run.leader[trip]),
+            greatest(&|run| run.leader[trip]),
+            mean(&|run| run.second[trip]),
+            mean(&|run| run.bulges[trip] * 100.0),
+            greatest(&|run| run.bulges[trip] * 100.0),
+        );
+    }
+}
+
+#[test]
+fn the_ways_become_straight() {
+    assert_converge("pursuit_clean", "", 100);
+}
+
+#[test]
+fn the_ways_become_straight_by_a_bad_link() {
+    assert_converge("pursuit_bad_link", "[link]\nlatency = \"0ms..200ms\"\nloss = 0.1\nduplication = 0.1\n", 200);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes() {
+    let folder = scenario("pursuit_bytes", "[link]\nlatency = \"0ms..200ms\"\nloss = 0.1\n");
+    let bytes = |name: &str| {
+        let [log, trail, plot, trips] =
+            [format!("{name}.jsonl"), format!("{name}.csv"), format!("{name}.svg"), format!("{name}-trips.svg")];
+        let options = ["--seed", "5", "--log", &log, "--trail", &trail, "--plot", &plot, "--trips", &trips];
+        let output = run(&folder, &[&options[..], &["--recorded-paths", name]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let files = [&log, &trail, &plot, &trips].map(|file| fs::read(folder.join(file)).unwrap());
+        let paths =
+            ["robot1", "robot3"].map(|robot| fs::read(folder.join(name).join(robot).join("lastPath.csv")).unwrap());
+        (output.stdout, files, paths)
+    };
+    let (one, other) = (bytes("one"), bytes("other"));
+    assert!(one == other, "two runs of one seed differ");
+    let original = fs::read(root().join("plans/pursuit/robot1/lastPath.csv")).unwrap();
+    assert_eq!(fs::read(folder.join("robot1/lastPath.csv")).unwrap(), original, "the scenario's own path stays");
+    assert!(one.2[0] != original, "the recorded path is another one");
+}
+
+#[test]
+fn a_robot_that_dies_leaves_nobody_waiting() {
+    for (number, time) in (0..repeated(6)).zip([0.0f64, 7.0, 23.0, 41.0].into_iter().cycle()) {
+        let victim = ["robot1", "robot2", "robot3"][number as usize % 3];
+        let folder = scenario(&format!("pursuit_killed_{number}"), "");
+        let file = folder.join("pursuit.toml");
+        let text = fs::read_to_string(&file).unwrap().replace("180s", "700s");
+        let time = time + number as f64 * 1.7;
+        let named = format!("name = \"{victim}\"\n");
+        fs::write(&file, text.replace(&named, &format!("{named}killed = \"{time}s\"\n"))).unwrap();
+        let output = run(&folder, &["--seed", &number.to_string()]);
+        let report = String::from_utf8(output.stdout).unwrap();
+        // The status says that a plan is not over: that of the robot that died.
+        assert_eq!(output.status.code(), Some(4), "{report}");
+        let over: Vec<_> = report.lines().filter(|line| line.contains(": plan over: ")).collect();
+        assert_eq!(over.len(), 2, "{victim} at {time} s: {report}");
+        for line in over {
+            assert!(line.contains("wait 10min") || line.contains("bumper") || line.contains("completed"), "{line}");
+        }
+        assert!(report.contains(&format!("{victim}: its program was killed\n")), "{report}");
+    }
+}
