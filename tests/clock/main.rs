@@ -1,6 +1,7 @@
 //! Executables on emulated robots by the clock: signals, suspension and faults. Nothing else runs beside these tests.
 
 mod faults;
+mod links;
 mod signalled;
 mod stands;
 

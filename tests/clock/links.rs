@@ -1,0 +1,98 @@
+//! Three robots in three processes that are linked over TCP, on the clock.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::io::Write as _;
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use mdle_tests::executable::{folder, mdle};
+
+const NAMES: [&str; 3] = ["ada", "bob", "eve"];
+
+/// Writes the file of each robot's link; returns their addresses.
+fn with_links(folder: &Path, key_of_eve: &str) -> [SocketAddr; 3] {
+    let listeners = NAMES.map(|_| TcpListener::bind("127.0.0.1:0").unwrap());
+    let addresses = listeners.map(|listener| listener.local_addr().unwrap());
+    for (name, address) in NAMES.into_iter().zip(addresses) {
+        let key = if name == "eve" { key_of_eve } else { "key" };
+        let mut text = format!("name = \"{name}\"\nlisten = \"{address}\"\nkey = \"{key}\"\n");
+        for (other, at) in NAMES.into_iter().zip(addresses).filter(|(other, _)| *other != name) {
+            text += &format!("[[robot]]\nname = \"{other}\"\naddress = \"{at}\"\n");
+        }
+        fs::write(folder.join(format!("{name}.toml")), text).unwrap();
+    }
+    addresses
+}
+
+fn begin(folder: &Path, name: &str, plan: &str) -> Child {
+    fs::write(folder.join(format!("{name}.mdle")), plan).unwrap();
+    let line = format!("run {name}.mdle --target sim --link {name}.toml --world room --log {name}.jsonl");
+    let mut command = Command::new(mdle());
+    let command = command.args(line.split(' ')).current_dir(folder);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// The report and the messages of a robot whose plan is over.
+fn ended(child: Child) -> String {
+    let Output { status, stdout, stderr } = child.wait_with_output().unwrap();
+    let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    assert_eq!(status.code(), Some(0), "{out}{err}");
+    out + &err
+}
+
+#[test]
+fn three_processes_meet_and_go_on_when_one_is_killed() {
+    let folder = folder("links");
+    let addresses = with_links(&folder, "key");
+    let waits = "{ P (wait 30s) (Atom (rendezvous bob AND rendezvous eve) stop) (Atom (NOT sync eve) stop) \
+                 (Atom (sync bob) stop) }";
+    let mut eve = begin(&folder, "eve", &waits.replace("bob", "ada").replace("eve)", "bob)"));
+    let ada = begin(&folder, "ada", waits);
+    sleep(Duration::from_millis(700));
+    let meets = "{ P (wait 30s) (Atom (rendezvous ada AND rendezvous eve) stop) (Atom (wait 4) stop) }";
+    let bob = begin(&folder, "bob", meets);
+    // A stranger, while they meet.
+    let mut stranger = TcpStream::connect(addresses[0]).unwrap();
+    stranger.write_all(b"GET / HTTP/1.1\r\n\r\n").unwrap();
+    sleep(Duration::from_millis(1500));
+    eve.kill().unwrap();
+    eve.wait().unwrap();
+    let [ada, bob] = [ada, bob].map(ended);
+    assert!(ada.contains("<- rendezvous bob and rendezvous eve"), "{ada}");
+    assert!(ada.contains("<- NOT sync eve") && ada.contains("plan over: sync bob"), "{ada}");
+    assert!(ada.contains("is refused: it sends no states"), "{ada}");
+    assert!(bob.contains("<- rendezvous ada and rendezvous eve") && bob.contains("plan over: wait 4"), "{bob}");
+}
+
+#[test]
+fn a_robot_with_another_key_is_no_peer() {
+    let folder = folder("link_keys");
+    with_links(&folder, "another");
+    let ada = begin(&folder, "ada", "{ P (wait 2) (Atom (sync eve) stop) }");
+    let eve = begin(&folder, "eve", "{ P (wait 2) (Atom (sync ada) stop) }");
+    for report in [ada, eve].map(ended) {
+        assert!(report.contains("plan over: wait 2") && report.contains("it has another key"), "{report}");
+    }
+}
+
+#[test]
+fn a_plan_with_unknown_robots_is_refused() {
+    let folder = folder("link_unknown");
+    with_links(&folder, "key");
+    fs::write(folder.join("plan.mdle"), "{ P (wait 2) (Atom (sync bop) stop) }").unwrap();
+    for (link, words) in [
+        (" --link ada.toml", "did you mean `bob`?"),
+        ("", "there is no link to it"),
+        (" --link no.toml", "cannot be read"),
+    ] {
+        let line = format!("run plan.mdle --target sim{link}");
+        let output = Command::new(mdle()).args(line.split(' ')).current_dir(&folder).output().unwrap();
+        let refused = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && refused.contains(words), "{line}: {refused}");
+    }
+}
