@@ -20,9 +20,9 @@ const NEAR: f64 = 0.05;
 /// Speed under which the leader is at rest, in m/s.
 const AT_REST: f64 = 0.02;
 
-/// `u_f = v_leader + k_v (ρ − d)`, at most `v` and less while the leader is not ahead; `u_θ = k(φ − θ)`, with the leader
-/// at the distance `ρ` in the direction `φ`. The paper's `u_f` is the constant `v`: with it the follower runs into a
-/// leader that stops.
+/// `u_f = v_leader + k_v (ρ − d)`, at most `v` and less while the leader is not ahead; `u_θ = k(φ − θ)`, with the
+/// leader at the distance `ρ` in the direction `φ`. The paper's `u_f` is the constant `v`: with it the follower runs
+/// into a leader that stops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Follow(&'static str);
 

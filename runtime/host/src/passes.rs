@@ -20,7 +20,8 @@ impl Passes {
         self.step_into(fsm, transition, |_| ());
     }
 
-    /// Counts the passes as [`Passes::step`] does, and calls `begins` with each bracket that begins with the transition.
+    /// Counts the passes as [`Passes::step`] does, and calls `begins` with each bracket that begins with the
+    /// transition.
     pub fn step_into(&mut self, fsm: Fsm<'_>, transition: &Transition, mut begins: impl FnMut(u32)) {
         self.0.resize(fsm.brackets.len(), 1);
         let own = transition.atom.and_then(|atom| fsm.atoms.get(atom as usize));

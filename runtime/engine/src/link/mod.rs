@@ -1,7 +1,8 @@
 //! The state link: robots tell each other their poses, velocities and rounds (paper, sections III and IV-D).
 //!
-//! A [`Link`] carries states: [`Air`] between robots of one process, [`Tcp`] between processes and machines. [`StateLink`] is the module of one robot: before a
-//! turn it gives the output what has arrived, after the turn it sends the robot's own state. Neither ever waits.
+//! A [`Link`] carries states: [`Air`] between robots of one process, [`Tcp`] between processes and machines.
+//! [`StateLink`] is the module of one robot: before a turn it gives the output what has arrived, after the turn it
+//! sends the robot's own state. Neither ever waits.
 
 mod air;
 mod frame;

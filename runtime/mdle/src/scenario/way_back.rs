@@ -153,7 +153,10 @@ mod tests {
 
     #[test]
     fn the_way_back_leads_to_where_the_way_began() {
-        let bend = |s: f64| [3.75 * s, 0.75 * s * s * (3.0 - 2.0 * s) + 1.3 * libm::sin(3.14159 * s).powi(2)];
+        let bend = |s: f64| {
+            let sine = libm::sin(std::f64::consts::PI * s);
+            [3.75 * s, 0.75 * s * s * (3.0 - 2.0 * s) + 1.3 * sine * sine]
+        };
         let there = || (0..=100).map(|number| bend(f64::from(number) / 100.0));
         for frame in [0.0, 1.0, -3.0] {
             let text = way(there()).back(Radians(frame)).unwrap();

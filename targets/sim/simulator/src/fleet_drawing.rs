@@ -70,7 +70,9 @@ impl FleetDrawing {
         trail.about.plan = format!("{} robots", self.robots.len());
         for (number, robot) in (1..).zip(&self.robots) {
             trail.ways.drove(number, &robot.name, &robot.way, robot.until);
-            trail.companions.push(Companion { form: robot.form, start: robot.start, here: robot.here });
+            if number > 1 {
+                trail.companions.push(Companion { form: robot.form, start: robot.start, here: robot.here });
+            }
         }
         trail.contacts.clone_from(&self.contacts);
         plot::svg(&self.world, &trail)

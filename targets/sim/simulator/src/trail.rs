@@ -42,7 +42,7 @@ pub(crate) struct Trail {
     ended: Option<Nanos>,
     /// Frames of an animated picture, if one is recorded.
     pub(crate) frames: Option<Frames>,
-    /// The bodies of all robots of a fleet; none where one robot drives alone.
+    /// The other robots of a fleet; none where one robot drives alone.
     pub(crate) companions: Vec<Companion>,
     /// Name for that which drove a way: `atom`, or `robot` in a fleet.
     pub(crate) kind: &'static str,

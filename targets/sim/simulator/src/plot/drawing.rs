@@ -26,19 +26,17 @@ const SQUARE: f64 = 8.0;
 /// The plot of a trail on the floor of `world`.
 pub(crate) fn svg(world: &World, trail: &Trail) -> String {
     let layout = Layout::of(world, trail);
-    let companions = trail.companions.iter().fold(Group::new(), |group, Companion { form, start, here }| {
-        group.add(body(&layout, start, *form, "faint")).add(body(&layout, here, *form, "ink"))
-    });
     let document = document(&layout, layout.height)
         .add(floor::drawn(&layout, world, layout.height))
         .add(floor::clipped().add(things::drawn(&layout, world, trail)).add(echoes(&layout, trail)))
         .add(body(&layout, &trail.start, trail.form, "faint"))
         .add(way(&layout, trail))
         .add(contacts(&layout, trail))
-        .add(body(&layout, &trail.here, trail.form, "ink"))
-        .add(companions)
-        .add(marks(&layout, trail))
-        .add(legend::drawn(&layout, world, trail));
+        .add(body(&layout, &trail.here, trail.form, "ink"));
+    let document = trail.companions.iter().fold(document, |document, Companion { form, start, here }| {
+        document.add(body(&layout, start, *form, "faint")).add(body(&layout, here, *form, "ink"))
+    });
+    let document = document.add(marks(&layout, trail)).add(legend::drawn(&layout, world, trail));
     format!("{document}\n")
 }
 
