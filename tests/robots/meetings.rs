@@ -86,7 +86,7 @@ fn a_follower_stops_behind_its_leader_and_hears_it() {
     assert!(gap.starts_with("least gap between robots: ") && gap.ends_with("(ada and bob)"), "{gap}");
     let ada = "{ A (wait 1min) (Atom (r0 < 2.7m AND t > 1) stop) }";
     let report = meets("hears", "", &ada.replace("r0", "r8"), "{ B (Atom (wait 3) stop) }");
-    assert!(report.contains("ada: plan over: r8 = 2.59"), "the other is behind: {report}");
+    assert!(report.contains("ada: plan over: r8 = 2.6 m"), "the other is behind: {report}");
 }
 
 #[test]
