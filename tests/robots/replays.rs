@@ -31,7 +31,7 @@ const RUNS: u64 = 50;
 
 /// The files of all runs. `Rounds` has a loop, a memory, a rising condition and a frame; `Sound` and `Ears` read
 /// modules; `Back` is what a safety rule diverts to, and uses another file.
-const FILES: [(&str, &str); 8] = [
+const FILES: [(&str, &str); 10] = [
     (
         "rounds.mdle",
         "{ Rounds (wait 30s)
@@ -68,11 +68,12 @@ for number, line in enumerate(sys.stdin):
         "rules.toml",
         "[limits]\nspeed = \"40cm/s\"\nturn_rate = \"90deg/s\"\nacceleration = \"50cm/s2\"\n
 [[fence]]\ninside = [[-3, -3], [3, -3], [3, 3], [-3, 3]]\nmargin = \"3cm\"\ndeceleration = \"0.5m/s2\"\n
-[contact]\nthen = \"back.mdle\"\n
 [guards.near]\nwhen = \"r0 < 30cm AND v > 5cm/s\"\nthen = \"hold forward\"\n
-[guards.slow]\nwhen = \"range(heading module) < 1m AND omega > 1rad/s\"\nthen = \"hold\"\n
-[guards.far]\nwhen = \"x > 2.5m\"\nthen = \"end\"\n",
+[guards.slow]\nwhen = \"range(heading module) < 1.8m AND v > 25cm/s\"\nthen = \"hold\"\n
+[guards.far]\nwhen = \"x > 80cm\"\nthen = \"end\"\n",
     ),
+    ("push.mdle", "{ Push (wait 60s)\n  (Atom (null) (go 60 0))\n}\n"),
+    ("push.toml", "[limits]\nacceleration = \"50cm/s2\"\n\n[contact]\nthen = \"back.mdle\"\n"),
 ];
 
 /// A folder with the files, and the random plan and commands of this number.
@@ -124,7 +125,7 @@ fn arguments(number: u64) -> String {
         2 => format!("run sound.mdle {sim} --point 2,1"),
         3 => format!("run ears.mdle {sim} --module {}", "ears=exec\u{a0}python3\u{a0}ears.py"),
         4 => format!("run rounds.mdle {sim} --safety rules.toml --point 1,1"),
-        5 => format!("run go.mdle {sim} --safety rules.toml --point 3,0"),
+        5 => format!("run push.mdle {sim} --safety push.toml"),
         6 => format!("shell rounds.mdle {sim} {session} --point 2,0"),
         7 => format!("shell sound.mdle {sim} {session} --point -2,1 --safety rules.toml"),
         8 => format!("shell rounds.mdle --target scout {line} {session} --point 2,0"),
@@ -209,7 +210,15 @@ fn count(record: &[u8], text: &str) -> usize {
 
 #[test]
 fn runs_of_every_kind_replay_to_the_bit() {
-    let (mut plans, mut interventions, mut rollbacks) = (0, 0, 0);
+    const WORDS: [&str; 6] = [
+        "\"kind\":\"plan\"",
+        "\"kind\":\"safety\"",
+        ": rolled back\"",
+        "\"diverted: contact\"",
+        "\"ended: far\"",
+        "\"held: ",
+    ];
+    let mut counts = [0; WORDS.len()];
     for number in 0..repeated(RUNS) {
         let (folder, report) = recorded(number);
         // The record needs no other file.
@@ -221,11 +230,23 @@ fn runs_of_every_kind_replay_to_the_bit() {
         let turns: u64 = turns.unwrap_or_else(|| panic!("{number}: {text}{report}")).parse().unwrap();
         assert!(turns > 0 && status == 0, "{number}: {text}{report}");
         let record = fs::read(folder.join("run.mcap")).unwrap();
-        plans += count(&record, "\"kind\":\"plan\"");
-        interventions += count(&record, "\"kind\":\"safety\"");
-        rollbacks += count(&record, ": rolled back\"");
+        counts.iter_mut().zip(WORDS).for_each(|(sum, word)| *sum += count(&record, word));
         fs::remove_dir_all(&folder).unwrap();
     }
-    let runs = repeated(RUNS) as usize;
-    assert!(plans > runs / 2 && interventions > runs && rollbacks > runs / 10, "{plans} {interventions} {rollbacks}");
+    assert!(counts.iter().all(|count| *count > 1), "{WORDS:?}: {counts:?}");
+}
+
+/// The rule ends the plan on trial, and not the run: the plan before goes on, as it does in the replay.
+#[test]
+fn a_trial_that_a_rule_ends_replays_to_the_bit() {
+    let folder = prepared(1000);
+    fs::write(folder.join("stand.mdle"), "{ Stand (wait 20s)\n  (Atom (null) stop)\n}\n").unwrap();
+    fs::write(folder.join("far.toml"), "[guards.far]\nwhen = \"x > 60cm AND v > 50cm/s\"\nthen = \"end\"\n").unwrap();
+    fs::write(folder.join("commands"), "load_plan go.mdle\nstep 3\nset /usr/mdle/main Go\nwait 4s\n").unwrap();
+    let options = "--target sim --world hall --speed max --paused -c commands --safety far.toml --log run.mcap";
+    let (report, status) = run(&folder, &format!("shell stand.mdle {options}"));
+    assert!(report.contains("warning: the plan Go on trial is ended: the safety rule far ends it"), "{report}");
+    let (text, replayed) = run(&folder, "replay run.mcap");
+    assert!(text.starts_with("the same to the bit, ") && (status, replayed) == (0, 0), "{text}{report}");
+    assert_eq!(count(&fs::read(folder.join("run.mcap")).unwrap(), "plan 1: rolled back"), 1);
 }
