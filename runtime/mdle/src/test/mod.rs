@@ -8,6 +8,8 @@ mod coverage_table;
 mod expected;
 mod faults;
 mod file;
+#[cfg(test)]
+mod hostile;
 mod judge;
 mod possible;
 mod report;
