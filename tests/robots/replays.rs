@@ -244,8 +244,8 @@ fn runs_of_every_kind_replay_to_the_bit() {
 #[test]
 fn a_run_in_real_time_replays_to_the_bit() {
     let folder = prepared(1001);
-    let commands = "load_plan sound.mdle\nload_plan ears.mdle\nwait 500ms\nset /usr/mdle/main Ears\nwait 1s\n\
-                    set /usr/mdle/main Sound\nwait 1s\nrollback\nwait 500ms\n";
+    let commands = "load_plan sound.mdle\nload_plan ears.mdle\nwait 500ms\nset /usr/mdle/main Sound\nwait 1s\n\
+                    rollback\nwait 500ms\nset /usr/mdle/main Ears\nwait 1s\n";
     fs::write(folder.join("commands"), commands).unwrap();
     let arguments = "shell rounds.mdle --target scout -c commands --point 2,0 --module ears=exec\u{a0}python3\u{a0}ears.py \
                      --log run.mcap";
