@@ -207,6 +207,20 @@ fn a_replay_needs_the_changes_of_a_record() {
     }
 }
 
+/// A record has the values alone that the run has read: a plan that reads another one waits for it.
+#[test]
+fn another_plan_reads_what_the_run_has_read() {
+    let (folder, _) = recorded(72);
+    let plan = |reads: &str| format!("{{ Sound (wait 20s) (Atom ({reads}) (go 0 0.3)) (Atom (null) stop) }}");
+    let replay = |reads: &str| {
+        fs::write(folder.join("other.mdle"), plan(reads)).unwrap();
+        run(&folder, "replay run.mcap --plan other.mdle").0
+    };
+    let (known, unknown) = (replay("range(heading module) < 60cm"), replay("range(ears module) < 60cm"));
+    assert!(known.contains("replayed: 0 m/s, 0.3 rad/s\n"), "{known}");
+    assert!(unknown.contains("input by\n  recorded: the law of the atom\n  replayed: the null input\n"), "{unknown}");
+}
+
 /// Returns how often something is in a record.
 fn count(record: &[u8], text: &str) -> usize {
     record.windows(text.len()).filter(|bytes| *bytes == text.as_bytes()).count()
