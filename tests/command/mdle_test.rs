@@ -210,7 +210,7 @@ fn files_that_are_not_there_are_named() {
     fs::write(folder.join("bad.test.toml"), "[[test]]\nname = \"one\"\n").unwrap();
     fs::write(folder.join("scout.test.toml"), "plan = \"dock.mdle\"\ntarget = \"scout\"\n[[test]]\nname = \"one\"\n")
         .unwrap();
-    let calls: [&[&str]; 10] = [
+    let calls: [&[&str]; 12] = [
         &["dock.mdle"],
         &["dock.test.toml", "dock.mdle"],
         &["missing.mdle"],
@@ -221,6 +221,8 @@ fn files_that_are_not_there_are_named() {
         &["scout.test.toml"],
         &["dock.mdle", "--test", "on"],
         &["dock.mdle", "--seeds", "0"],
+        &["dock.mdle", "--seeds", "-2"],
+        &["dock.mdle", "--jobs", "-1"],
     ];
     insta::assert_snapshot!(calls.map(|call| report(&folder, call)).join("\n"));
 }

@@ -57,7 +57,7 @@ pub(crate) fn command() -> Command {
             option("seeds", "N")
                 .help("Number of runs of each test with a seed, with consecutive seeds [default: that of the test]")
                 .allow_negative_numbers(true)
-                .value_parser(value_parser!(u64).range(1..=MOST_SEEDS)),
+                .value_parser(value_parser!(i64).range(1..=MOST_SEEDS.cast_signed())),
         )
         .arg(
             option("seed", "N")
@@ -69,7 +69,7 @@ pub(crate) fn command() -> Command {
             option("jobs", "N")
                 .help("Number of parallel runs; results do not depend on it [default: number of processors]")
                 .allow_negative_numbers(true)
-                .value_parser(value_parser!(u64).range(1..=1024)),
+                .value_parser(value_parser!(i64).range(1..=1024)),
         )
         .arg(flag("coverage").help("Print which atoms, ends and operands of the plans the tests have reached"))
         .arg(
@@ -96,12 +96,14 @@ pub(crate) fn command() -> Command {
 
 /// Reads the arguments.
 pub(crate) fn read(matches: &ArgMatches) -> Test {
+    // A type with a sign, so that the message about a negative number has the range.
+    let count = |name: &str| matches.get_one::<i64>(name).map(|count| count.unsigned_abs());
     Test {
         files: matches.get_many("files").into_iter().flatten().cloned().collect(),
         only: matches.get_one("test").cloned(),
-        seeds: matches.get_one("seeds").copied(),
+        seeds: count("seeds"),
         seed: matches.get_one("seed").copied(),
-        jobs: matches.get_one("jobs").copied(),
+        jobs: count("jobs"),
         coverage: matches.get_flag("coverage"),
         pictures: matches.get_one("pictures").cloned(),
         junit: matches.get_one("junit").cloned(),
