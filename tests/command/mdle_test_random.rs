@@ -20,8 +20,8 @@ const PLANS: u64 = 60;
 /// Number of scripts of each plan.
 const SCRIPTS: usize = 4;
 
-/// Returns a test that expects what the plan does on a script, with the number of transitions that it expects; `None` if
-/// a turn is cut, since then an atom is entered whose law is not applied.
+/// Returns a test that expects what the plan does on a script, with the number of transitions that it expects; `None`
+/// if a turn is cut, since then an atom is entered whose law is not applied.
 fn test(compiled: &Compiled, number: usize, script: &str) -> Option<(String, usize)> {
     let (mut atoms, mut transitions) = (Vec::new(), Vec::new());
     let mut before: Option<String> = None;
