@@ -126,7 +126,8 @@ pub(super) fn read(text: &str) -> Result<ScenarioText, ScenarioError> {
 /// Returns the error about what TOML refuses; an unknown key gets the name of a near one.
 fn refused(error: &toml::de::Error) -> ScenarioError {
     let place = error.span();
-    let message = error.message().replace('\n', "; ");
+    let message = error.message().replace('\n', "; ").replace("expected u64", "expected a whole number");
+    let message = message.replace("missing field", "there has to be a key");
     let Some((unknown, known)) = message.strip_prefix("unknown field `").and_then(|rest| rest.split_once('`')) else {
         return ScenarioError { place, message, help: String::new() };
     };

@@ -61,6 +61,8 @@ pub(super) fn begin(name: String, address: SocketAddr, shared: &Arc<Shared>) -> 
 /// Connects and sends until the run is over. A peer that cannot be reached is reported once, until it was reached.
 fn keep_sending(name: &str, address: SocketAddr, slot: &Slot, shared: &Shared) {
     let mut is_known_as_down = false;
+    // The last state that was taken, which a new connection begins with.
+    let mut last = None;
     while !shared.is_over() {
         let begun = Instant::now();
         let failure = match connect(address) {
@@ -69,7 +71,7 @@ fn keep_sending(name: &str, address: SocketAddr, slot: &Slot, shared: &Shared) {
                     shared.say(format!("state link: connected to {name} again"));
                 }
                 is_known_as_down = false;
-                send(stream, slot, shared)
+                send(stream, slot, &mut last, shared)
             }
             Err(error) => error,
         };
@@ -88,12 +90,11 @@ fn connect(address: SocketAddr) -> io::Result<TcpStream> {
     Ok(stream)
 }
 
-/// Sends states until that fails; returns why.
-fn send(mut stream: TcpStream, slot: &Slot, shared: &Shared) -> io::Error {
-    let mut last: Option<Arc<[u8]>> = None;
+/// Sends states until that fails; returns why. `last` is the state that was taken last.
+fn send(mut stream: TcpStream, slot: &Slot, last: &mut Option<Arc<[u8]>>, shared: &Shared) -> io::Error {
     while !shared.is_over() {
-        last = slot.next().or(last);
-        let Some(frame) = &last else { continue };
+        *last = slot.next().or(last.take());
+        let Some(frame) = last else { continue };
         // A frame that was written in part would shift all that follow: the connection is made anew.
         if let Err(error) = stream.write_all(frame) {
             return error;

@@ -107,6 +107,7 @@ fn a_peer_that_comes_back_is_connected_to_again() {
     let mut bob = Tcp::on(bound(), &settings("bob", &[("ada", at_ada)], "key")).unwrap();
     let accept = |listener: &TcpListener| {
         let (mut stream, _) = listener.accept().unwrap();
+        stream.set_read_timeout(Some(SOON)).unwrap();
         let mut length = [0; 4];
         stream.read_exact(&mut length).unwrap();
         u32::from_le_bytes(length)
