@@ -17,9 +17,9 @@ use crate::way::Ahead;
 
 /// Distance from the goal below which it is reached.
 const ARRIVED: Meters = Meters(0.12);
-/// Distance from the goal below which the robot is near enough if something keeps it from coming nearer: odometry
-/// drifts, so a goal near a wall comes to lie in the wall.
-const NEAR: Meters = Meters(0.3);
+/// Distance between the body and the goal, in metres, below which the robot is near enough if something keeps it from
+/// coming nearer: odometry drifts, so a goal near a wall comes to lie in the wall.
+const NEAR: f64 = 0.1;
 /// Time for which something must have kept the robot from coming nearer.
 const KEPT_OFF: Nanos = Nanos(1_000_000_000);
 /// Maximum turn rate, in rad/s.
@@ -88,6 +88,8 @@ pub struct GoingRound {
     axis: Radians,
     speed: MetersPerSecond,
     look_ahead: Meters,
+    /// Distance from the goal at which the robot is near enough.
+    near: Meters,
     previous: Option<Radians>,
     detour: Option<Detour>,
     approach: Approach,
@@ -150,7 +152,7 @@ impl GoingRound {
     fn notice(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) {
         let Meters(distance) = here.distance(&self.goal);
         let is_in_the_way = obstacles.free(self.direction(here)).0 < distance - ARRIVED.0 || self.narrow.stands();
-        let is_kept_off = distance <= NEAR.0 && is_in_the_way;
+        let is_kept_off = distance <= self.near.0 && is_in_the_way;
         self.kept_off = self.kept_off.or(Some(t)).filter(|_| is_kept_off);
     }
 
@@ -287,6 +289,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
             axis: begin.frame.outward(Radians(0.0)),
             speed: self.speed,
             look_ahead: Gains::of(y).look_ahead,
+            near: Meters(y.body_radius().0 + NEAR),
             previous: None,
             detour: None,
             approach: Approach::default(),
