@@ -254,9 +254,11 @@ impl GoingRound {
         if stalled < HELD_UP && !self.narrow.follows() {
             return None;
         }
-        if self.gives_way.is_some() || stalled.0 % (SQUEEZES.0 + GOES_ROUND.0) >= SQUEEZES.0 {
+        let goes_round = stalled.0 % (SQUEEZES.0 + GOES_ROUND.0) >= SQUEEZES.0;
+        if self.gives_way.is_some() || goes_round {
             self.narrow.leave();
-            return None;
+            let keeps_off = goes_round.then(|| self.narrow.round(y, here, chosen.direction, self.speed));
+            return keeps_off.flatten();
         }
         let distance = here.distance(&self.goal);
         let asked = Meters(self.look_ahead.0.min(distance.0));

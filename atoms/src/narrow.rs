@@ -2,7 +2,7 @@
 //! which the body, a disc or a rectangle, touches nothing on the map.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
-use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Twist};
+use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, Twist};
 
 use crate::map::Map;
 use crate::swept::Surroundings;
@@ -58,6 +58,22 @@ impl Narrow {
     /// Forgets the way, for a robot that gives way to a person.
     pub(crate) fn leave(&mut self) {
         (self.way, self.stands) = (None, None);
+    }
+
+    /// The input that keeps a robot off what it no longer hears, as it goes round obstacles in this direction; `None`
+    /// where there is room.
+    pub(crate) fn round<Y: DiffDrive>(
+        &self,
+        y: &Y,
+        here: Pose,
+        chosen: Radians,
+        speed: MetersPerSecond,
+    ) -> Option<Twist> {
+        if self.has_room(y, here) {
+            return None;
+        }
+        let there = here.towards(chosen, AHEAD);
+        self.towards(y, here, Next { x: there.x.0, y: there.y.0, is_straight: false }, speed, false)
     }
 
     /// The input of a robot at `here`; `None` where the tangent rule is enough.
