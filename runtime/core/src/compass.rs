@@ -56,7 +56,7 @@ const OF_WAYS: f64 = 2e-4;
 const ALIGNED: f64 = 0.02;
 /// Greatest angle, in radians, of the first walls from the axes of odometry: a plan that begins further off them does not
 /// take walls for its axes.
-const ALONG_AXES: f64 = 0.12;
+const ALONG_AXES: f64 = 0.17;
 /// Greatest drift from an axis of a frame that is not one of odometry: further off, the frame lies askew in the room.
 const MOST: Radians = Radians::from_degrees(20.0);
 
