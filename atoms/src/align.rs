@@ -43,7 +43,7 @@ impl Align {
 /// difference that is left is that of the signals `r` of the two sonars.
 ///
 /// A sonar that misses an echo now and then is waited for. While one sonar hears nothing for longer, the robot looks
-/// for the wall, once round at most; then it stops without being done, and the plan must end the atom by other means.
+/// for the wall, once round at most. If it has heard none by the time of a slow full circle, it is done where it stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aligning {
     sonars: Align,
@@ -183,8 +183,12 @@ impl<Y: DiffDrive + SonarRing> Law<Y> for Aligning {
         if let Some(sample) = self.equal(y) {
             self.ends_at(sample.heading);
         }
-        if let Some(best) = self.best.filter(|_| self.changes >= CHANGES || t.since(self.began).seconds() > LONGEST) {
-            self.ends_at(best.heading);
+        let is_late = t.since(self.began).seconds() > LONGEST;
+        if self.changes >= CHANGES || is_late {
+            let best = self.best.map(|best| best.heading);
+            if let Some(heading) = best.or(is_late.then_some(y.here().theta)) {
+                self.ends_at(heading);
+            }
         }
         let Some(end) = &mut self.end else {
             let omega = RadiansPerSecond(self.towards(y, sample, t));
@@ -316,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn beside_a_dead_sonar_it_looks_round_once_and_then_stands_still() {
+    fn beside_a_dead_sonar_it_looks_round_once_and_is_done() {
         for confirmation in [3, 2] {
             let mut y = Sensed { confirmation, ..Sensed::default() };
             let mut law = Align::new(SonarId::new(7), SonarId::new(9)).begin(&y, begun());
@@ -325,7 +329,8 @@ mod tests {
                 y.ping(SonarId::new(7), Some(0.6));
                 y.ping(SonarId::new(9), None);
                 let t = Nanos(turn * 100_000_000);
-                assert!(!law.completed(&y, t));
+                // 79 s are a full circle at the slowest turn.
+                assert_eq!(law.completed(&y, t), turn > 786, "{}", t.seconds());
                 let input = law.input(&y, t);
                 turned += input.omega.0.to_degrees() * crate::trial::PERIOD;
                 y.drive(input);
@@ -382,10 +387,13 @@ mod tests {
     }
 
     #[test]
-    fn without_any_echo_it_stands_still_and_is_not_done() {
+    fn without_any_echo_it_stands_still_and_ends_in_time() {
         let y = Sensed::default();
         let mut law = Align::new(SonarId::new(7), SonarId::new(9)).begin(&y, begun());
-        assert_eq!(law.input(&y, Nanos(0)), Twist::default());
-        assert!(!law.completed(&y, Nanos(0)));
+        for (seconds, is_done) in [(0, false), (60, false), (80, true)] {
+            let t = Nanos(seconds * 1_000_000_000);
+            assert_eq!(law.input(&y, t), Twist::default());
+            assert_eq!(law.completed(&y, t), is_done, "after {seconds} s");
+        }
     }
 }
