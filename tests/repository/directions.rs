@@ -37,8 +37,9 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("mdlec/theory", &["mdle-runtime", "mdle-compiler"]),
     ("mdlec/files", &["mdle-runtime", "mdle-compiler"]),
     ("mdlec/embed", &["mdle-runtime", "mdle-compiler", "mdle-files"]),
-    ("editors/server", &["mdle-runtime", "mdle-compiler", "mdle-files"]),
-    ("editors/debugger", &["mdle-runtime", "mdle-compiler", "mdle-files", "mdle-language-server"]),
+    ("editors/service", &["mdle-compiler"]),
+    ("editors/server", &["mdle-runtime", "mdle-compiler", "mdle-files", "mdle-language-service"]),
+    ("editors/debugger", &["mdle-runtime", "mdle-compiler", "mdle-files", "mdle-language-service"]),
     ("mdlec", &["mdle-runtime", "mdle-compiler", "mdle-theory", "mdle-files", "mdle-language-server", "mdle-debugger"]),
     ("targets/sim/simulator", &["mdle-runtime", "mdle-quantity", "mdle-atoms"]),
     // The conformance of robots is there for their tests alone.
@@ -114,6 +115,7 @@ const PURE: &[&str] = &[
     "atoms/conformance",
     "mdlec/compiler",
     "mdlec/theory",
+    "editors/service",
     "targets/sim/simulator",
 ];
 

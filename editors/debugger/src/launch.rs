@@ -9,7 +9,7 @@ use mdle_compiler::plan::{Condition, RecordId};
 use mdle_compiler::trace::{Reports, Script};
 use mdle_files::read::LARGEST_DATA;
 use mdle_files::{Input, InputError, Settings};
-use mdle_language_server::lines::Lines;
+use mdle_language_service::lines::Lines;
 use serde::Deserialize;
 
 /// Arguments of `launch`.

@@ -4,18 +4,19 @@ use std::ops::Range;
 
 use serde_json::{Value, json};
 
-use crate::completion::ItemKind;
+use crate::commands;
 use crate::convert::{self, Converter};
-use crate::diagnostics::findings;
 use crate::documents::{At, Document, Documents, Plan, Positions};
-use crate::formatting::TextEdit;
-use crate::lines::{Lines, Position};
-use crate::outline::{Symbol, SymbolKind};
 use crate::params::{Params, Refusal};
-use crate::tokens as colours;
-use crate::view::{View, view};
-use crate::{
-    commands, completion, fixes as quick, formatting as layout, hints as inlay, hover as about, lenses as lens, outline,
+use mdle_language_service::completion::ItemKind;
+use mdle_language_service::diagnostics::findings;
+use mdle_language_service::formatting::TextEdit;
+use mdle_language_service::lines::{Lines, Position};
+use mdle_language_service::outline::{Symbol, SymbolKind};
+use mdle_language_service::tokens as colours;
+use mdle_language_service::view::{View, view};
+use mdle_language_service::{
+    completion, fixes as quick, formatting as layout, hints as inlay, hover as about, lenses as lens, outline,
 };
 
 /// A document that a request is about.
@@ -57,7 +58,7 @@ impl Asked<'_> {
 impl Plan {
     /// Shows the plan to a feature.
     pub(crate) fn view<T>(&mut self, feature: impl FnOnce(&View<'_>) -> T) -> T {
-        view(self.input.source, &mut self.input, &self.target.alphabet, feature)
+        view(self.input.source, &mut self.input, |input| &input.sources, &self.target.alphabet, feature)
     }
 }
 

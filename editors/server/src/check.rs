@@ -8,9 +8,9 @@ use mdle_files::{FaultyFile, InputError};
 use serde_json::Value;
 
 use crate::convert::{self, Converter};
-use crate::diagnostics::findings;
 use crate::documents::{Document, Documents, is_alphabet};
-use crate::lines::Lines;
+use mdle_language_service::diagnostics::findings;
+use mdle_language_service::lines::Lines;
 
 /// Diagnostics of one check.
 #[derive(Debug, Default)]
@@ -51,7 +51,7 @@ fn of_alphabet(document: &Document) -> Vec<Value> {
     let (text, lines) = (document.text.as_str(), Lines::of(&document.text));
     let source = sources.add("alphabet.mdle", text);
     let (_, found) = alphabet::read(source, text);
-    let diagnostic = |finding: crate::diagnostics::Finding| {
+    let diagnostic = |finding: mdle_language_service::diagnostics::Finding| {
         let mut value = convert::unplaced(&finding.message);
         value["range"] = convert::range(text, &lines, &finding.place.range);
         value["code"] = finding.code.name().into();

@@ -6,9 +6,9 @@ use std::ops::Range;
 use mdle_compiler::diagnostic::SourceId;
 use serde_json::{Value, json};
 
-use crate::diagnostics::{Finding, Place};
 use crate::documents::{Documents, Plan};
-use crate::lines::{Lines, Position};
+use mdle_language_service::diagnostics::{Finding, Place};
+use mdle_language_service::lines::{Lines, Position};
 
 /// Converts places of a plan's files; finds the lines of each file once.
 #[derive(Debug)]

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use mdle_files::{Input, InputError, Settings, Target, Unsaved, place, plan, target};
 use serde::Deserialize;
 
-use crate::lines::{Lines, Position};
 use crate::uri;
+use mdle_language_service::lines::{Lines, Position};
 
 /// A document that is open in the editor.
 #[derive(Debug, Clone)]

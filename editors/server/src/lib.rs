@@ -1,38 +1,22 @@
 //! The language server of MDLe, for every editor that speaks the Language Server Protocol 3.17; `mdlec lsp` runs it on
 //! standard input and output.
 //!
-//! A feature is a function from a [`View`](view::View), a checked document, to an answer in places of bytes, and knows
-//! nothing of the protocol. `requests` and `convert` translate between both, with positions in UTF-16.
+//! The features are those of `mdle-language-service`, which answers in places of bytes. `requests` and `convert` translate
+//! between it and the protocol, with positions in UTF-16.
 
 mod answers;
-mod brackets;
 mod check;
 mod commands;
-pub mod completion;
-pub mod context;
 mod convert;
-pub mod diagnostics;
 mod documents;
-pub mod fixes;
-pub mod formatting;
 mod guard;
-pub mod hints;
-pub mod hover;
-pub mod lenses;
-pub mod lines;
-pub mod mentions;
-pub mod outline;
 mod params;
 mod publishing;
 mod refactoring;
-pub mod rename;
 mod requests;
 mod server;
 mod synchronization;
-pub mod tokens;
 mod uri;
-pub mod view;
-mod words;
 
 use std::io;
 

@@ -10,11 +10,11 @@ use serde_json::{Value, json};
 
 use crate::answers::Asked;
 use crate::convert;
-use crate::diagnostics::Place;
 use crate::documents::{Document, Documents, Plan};
-use crate::lines::Lines;
 use crate::params::{Params, Refusal};
-use crate::rename::{self as names, Named};
+use mdle_language_service::diagnostics::Place;
+use mdle_language_service::lines::Lines;
+use mdle_language_service::rename::{self as names, Named};
 
 /// Place of a definition: the place of its file, and the byte range of the name.
 type Definition = (PathBuf, Range<usize>);
@@ -129,11 +129,11 @@ fn seen(documents: &Documents, path: &Path, text: String, definition: &Definitio
     // The places of definitions are compared after the view, which has the input's files.
     let (all, meanings) = plan.view(|view| {
         let places = view.sources;
-        let all: Vec<_> = crate::mentions::mentions(view.files, view.alphabet)
+        let all: Vec<_> = mdle_language_service::mentions::mentions(view.files, view.alphabet)
             .into_iter()
             .filter_map(|mention| {
-                let defined = crate::diagnostics::place(places, mention.defined?);
-                Some((crate::diagnostics::place(places, mention.span), defined))
+                let defined = mdle_language_service::diagnostics::place(places, mention.defined?);
+                Some((mdle_language_service::diagnostics::place(places, mention.span), defined))
             })
             .collect();
         (all, names::meanings(view))

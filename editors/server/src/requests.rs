@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 use crate::answers::{self, Asked};
 use crate::documents::{Documents, is_alphabet};
 use crate::params::{Params, Refusal};
-use crate::{commands, refactoring, tokens};
+use crate::{commands, refactoring};
+use mdle_language_service::tokens;
 
 /// Lists the abilities of the server, as `initialize` answers.
 pub(crate) fn capabilities() -> Value {

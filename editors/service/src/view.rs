@@ -51,29 +51,19 @@ impl View<'_> {
     }
 }
 
-/// Files with their texts, as the loader of a document.
-pub trait Texts: Loader {
-    /// Texts of the files that were read.
-    fn sources(&self) -> &Sources;
-}
-
-impl Texts for mdle_files::Input {
-    fn sources(&self) -> &Sources {
-        &self.sources
-    }
-}
-
-/// Parses the document `source` and shows it to `feature`.
-pub fn view<T>(
+/// Parses the document `source` and shows it to `feature`; `loader` reads the files that it uses, and `sources` returns
+/// their texts.
+pub fn view<L: Loader, T>(
     source: SourceId,
-    texts: &mut impl Texts,
+    loader: &mut L,
+    sources: fn(&L) -> &Sources,
     alphabet: &Alphabet,
     feature: impl FnOnce(&View<'_>) -> T,
 ) -> T {
-    let text = texts.sources().text(source).to_owned();
+    let text = sources(loader).text(source).to_owned();
     let arena = arena_for(&text);
     let (file, _) = parse(source, &text, &arena);
-    let (files, _) = parse_with(source, &text, &arena, texts);
-    let sources = texts.sources();
+    let (files, _) = parse_with(source, &text, &arena, loader);
+    let sources = sources(loader);
     feature(&View { source, text: &text, file: &file, files: &files, alphabet, sources })
 }

@@ -1,0 +1,22 @@
+//! The features of MDLe for editors: the language server has them, and the playground in the browser.
+//!
+//! A feature is a function from a [`View`](view::View), a checked document, to an answer in places of bytes. It does no
+//! I/O, and knows no protocol and no operating system.
+#![forbid(unsafe_code)]
+
+mod brackets;
+pub mod completion;
+pub mod context;
+pub mod diagnostics;
+pub mod fixes;
+pub mod formatting;
+pub mod hints;
+pub mod hover;
+pub mod lenses;
+pub mod lines;
+pub mod mentions;
+pub mod outline;
+pub mod rename;
+pub mod tokens;
+pub mod view;
+mod words;
