@@ -10,7 +10,7 @@ use mdle_tests::repository::{TextFile, files, names_from, root};
 /// Packages of the workspace that each package may use. A folder that is not listed may not hold a package.
 const PACKAGES: &[(&str, &[&str])] = &[
     ("runtime/core", &[]),
-    ("runtime/quantity", &[]),
+    ("runtime/quantity", &["mdle-runtime"]),
     ("runtime/record", &["mdle-runtime"]),
     ("runtime/host", &["mdle-runtime", "mdle-quantity", "mdle-record"]),
     ("runtime/engine", &["mdle-runtime", "mdle-host", "mdle-compiler", "mdle-quantity", "mdle-record"]),

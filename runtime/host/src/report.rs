@@ -6,9 +6,9 @@ use std::io::{self, Write};
 use mdle_runtime::trace::COMPLETED;
 use mdle_runtime::{Cause, Measured, Nanos, Printable, Transition};
 
+use crate::Clocked;
 use crate::cause::{CauseText, place};
 use crate::position::Texts;
-use crate::rounded::Clocked;
 use crate::standing::Course;
 use crate::supervised::Supervised;
 use crate::transitions::{Operand, Transitions};

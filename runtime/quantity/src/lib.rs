@@ -1,6 +1,13 @@
-//! Quantities in the values of options: a number and its unit, written as in a plan, or a number alone.
+//! Quantities as people write and read them: in the values of options, a number and its unit as in a plan, or a number
+//! alone; and measured values in the words of a plan.
+
+mod measured;
+mod rounded;
 
 use std::time::Duration;
+
+pub use measured::operand_words;
+pub use rounded::{Clocked, rounded};
 
 /// A kind of quantity that options take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
