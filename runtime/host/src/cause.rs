@@ -1,12 +1,11 @@
 //! The words of a transition: the operands that have fired with their values, as the plan's author wrote them, and
 //! their places.
 
-use std::fmt::{self, Write as _};
+use std::fmt;
 
-use mdle_quantity::operand_words;
+use mdle_quantity::{cause_text, file_line};
 use mdle_runtime::fsm::Kind;
-use mdle_runtime::trace::COMPLETED;
-use mdle_runtime::{Cause, Plan, SourceLine, Transition};
+use mdle_runtime::{Plan, Transition};
 
 use crate::passes::{Passes, outwards};
 use crate::position::Texts;
@@ -25,34 +24,13 @@ pub struct CauseText<'a> {
 impl fmt::Display for CauseText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { plan, transition, operands } = *self;
-        let Transition { scope, cause, .. } = *transition;
-        let source = plan.source();
-        let Some(bracket) = source.bracket(scope) else {
-            // A plan that was written in Rust has no text.
-            let name = plan.name(scope);
-            let by = cause.by(plan.condition(scope));
-            return if name.is_empty() { f.write_str(by) } else { write!(f, "{by} ({name})") };
-        };
-        if matches!(cause, Cause::Completed(_)) {
-            return write!(f, "{COMPLETED} ({})", FileLine(source.file(bracket.at), bracket.at));
+        if let Some(words) = cause_text(plan.source(), transition, operands) {
+            return f.write_str(&words);
         }
-        let mut words: Vec<String> = Vec::new();
-        let mut at = bracket.at;
-        for (number, measured) in operands {
-            let Some(operand) = source.operand(scope, *number) else { continue };
-            let text = operand_words(&operand, *measured, true);
-            if words.is_empty() {
-                at = operand.at;
-            }
-            if !words.contains(&text) {
-                words.push(text);
-            }
-        }
-        write!(f, "{} ({}", words.join(" and "), FileLine(source.file(at), at))?;
-        if bracket.count > 1 {
-            write!(f, ", of \"{}\"", bracket.condition)?;
-        }
-        f.write_char(')')
+        // A plan that was written in Rust has no text.
+        let name = plan.name(transition.scope);
+        let by = transition.cause.by(plan.condition(transition.scope));
+        if name.is_empty() { f.write_str(by) } else { write!(f, "{by} ({name})") }
     }
 }
 
@@ -75,16 +53,7 @@ pub fn place(plan: &dyn Texts, passes: &Passes, atom: u32) -> String {
         Kind::Loop { times, .. } => Some(format!("pass {} of {times}", passes.of(number))),
     });
     let mut words: Vec<String> = around.collect();
-    words.extend(source.bracket(own).map(|own| FileLine(source.file(own.at), own.at).to_string()));
+    words.extend(source.bracket(own).map(|own| file_line(source, own.at)));
     words.reverse();
     words.join(", ")
-}
-
-/// A line of a file: `wall.mdle:7`.
-struct FileLine<'a>(&'a str, SourceLine);
-
-impl fmt::Display for FileLine<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}", self.0, self.1.line)
-    }
 }

@@ -6,7 +6,7 @@ mod rounded;
 
 use std::time::Duration;
 
-pub use measured::operand_words;
+pub use measured::{cause_text, file_line, operand_words};
 pub use rounded::{Clocked, rounded};
 
 /// A kind of quantity that options take.

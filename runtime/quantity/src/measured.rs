@@ -1,8 +1,9 @@
-//! The values from which an operand of a condition was evaluated, in the words of the plan.
+//! The cause of a transition, and the values from which operands of conditions were evaluated, in the words of the plan.
 
 use std::fmt::Write as _;
 
-use mdle_runtime::{Measured, OperandWords, Operator, ValueWords};
+use mdle_runtime::trace::COMPLETED;
+use mdle_runtime::{Cause, Measured, OperandWords, Operator, SourceLine, Transition, ValueWords, Words};
 
 use crate::rounded;
 
@@ -10,6 +11,37 @@ use crate::rounded;
 const DECIMALS: usize = 2;
 /// Maximum number of decimals of a value.
 const DECIMALS_MOST: usize = 9;
+
+/// Returns the cause of a transition with the values of the operands that had fired, each by its number in the interrupt
+/// of the scope that ended: `r1 = 0.38 m < 40cm (wall.mdle:7)`. Returns `None` for a plan without a text.
+#[must_use]
+pub fn cause_text(source: &dyn Words, transition: &Transition, operands: &[(u32, Measured)]) -> Option<String> {
+    let Transition { scope, cause, .. } = *transition;
+    let bracket = source.bracket(scope)?;
+    if matches!(cause, Cause::Completed(_)) {
+        return Some(format!("{COMPLETED} ({})", file_line(source, bracket.at)));
+    }
+    let mut words: Vec<String> = Vec::new();
+    let mut at = bracket.at;
+    for (number, measured) in operands {
+        let Some(operand) = source.operand(scope, *number) else { continue };
+        let text = operand_words(&operand, *measured, true);
+        if words.is_empty() {
+            at = operand.at;
+        }
+        if !words.contains(&text) {
+            words.push(text);
+        }
+    }
+    let of = if bracket.count > 1 { format!(", of \"{}\"", bracket.condition) } else { String::new() };
+    Some(format!("{} ({}{of})", words.join(" and "), file_line(source, at)))
+}
+
+/// Returns a line of a file of the plan: `wall.mdle:7`.
+#[must_use]
+pub fn file_line(source: &dyn Words, at: SourceLine) -> String {
+    format!("{}:{}", source.file(at), at.line)
+}
 
 /// Returns the words of an operand with its values: `r1 = 0.38 m < 40cm` if what was measured `holds`, and
 /// `r1 = 0.5 m, not < 40cm` otherwise.
@@ -65,7 +97,7 @@ fn shown(value: f64, decimals: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mdle_runtime::{Nanometers, Nanos, SourceLine};
+    use mdle_runtime::{Nanometers, Nanos};
 
     const AT: SourceLine = SourceLine { file: 0, line: 7 };
     const METRES: ValueWords<'static> = ValueWords { after: 2, unit: "m", scale: 1.0 };
