@@ -22,7 +22,7 @@ pub struct Fsm<'a> {
 impl<'a> Fsm<'a> {
     /// Returns a bracket and its enclosing brackets with their numbers, outwards to the plan's own. Stops at a parent
     /// whose number is not lower, so it ends even if a table contains a cycle.
-    pub(crate) fn outwards(self, bracket: u32) -> impl Iterator<Item = (u32, &'a Bracket)> {
+    pub fn outwards(self, bracket: u32) -> impl Iterator<Item = (u32, &'a Bracket)> {
         let at = move |number: u32| self.brackets.get(number as usize).map(|bracket| (number, bracket));
         core::iter::successors(
             at(bracket),

@@ -1,13 +1,12 @@
 //! The turns of a record, made again by its plan and looked at.
 
-mod examining;
-
 use std::io::{BufReader, Read};
 use std::sync::Arc;
 
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::fsm;
-use mdle_compiler::load::{self, Entered, Loaded, LoadedPlan};
+use mdle_compiler::load::{self, Entered, Examining, Loaded, LoadedPlan};
+pub(crate) use mdle_compiler::load::{Moment, ScopeMoment};
 use mdle_compiler::plan::Condition;
 use mdle_files::Target;
 use mdle_host::{Texts, Transitions};
@@ -16,8 +15,6 @@ use mdle_runtime::{Alphabet, Machine, Nanos, Plan, Sensed, Stamp, Stamps, Turn, 
 
 use crate::failure::Failure;
 use crate::replayed::Record;
-use examining::Examining;
-pub(crate) use examining::{Moment, ScopeMoment};
 
 /// A turn of a record that was made again.
 #[derive(Debug)]

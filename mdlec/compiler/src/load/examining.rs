@@ -1,59 +1,60 @@
-//! A plan that is looked at while it makes the turns of a record: the conditions around its atom before each
-//! transition, and at the end of a turn.
+//! A plan that is looked at while it makes its turns: the conditions around its atom before each transition, and at the
+//! end of a turn.
 
 use std::cell::{Cell, RefCell};
 
-use mdle_compiler::load::{Entered, LoadedPlan};
-use mdle_host::outwards;
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::{
     Alphabet, Begin, Cause, Cursor, Ending, Examined, Fsm, Measured, ModuleRead, Nanometers, Nanos, Plan, Words,
 };
+
+use super::{Entered, LoadedPlan};
 
 /// Position in a plan that was loaded.
 type Position = Cursor<Entered, Box<[u64]>>;
 
 /// The plan before a transition, or at the end of a turn.
 #[derive(Debug, Clone)]
-pub(crate) struct Moment {
+pub struct Moment {
     /// The current atom, as written, from 0.
-    pub(crate) atom: u32,
+    pub atom: u32,
     /// Cause of the transition; `None` at the end of a turn.
-    pub(crate) cause: Option<Cause>,
+    pub cause: Option<Cause>,
     /// `true` if the law of the atom is done.
-    pub(crate) is_completed: bool,
+    pub is_completed: bool,
     /// Time for which the law of the turn before has made no progress; `None` if it has no goal.
-    pub(crate) stalled: Option<Nanos>,
+    pub stalled: Option<Nanos>,
     /// The scopes that enclose the atom, the plan first and the atom's own last.
-    pub(crate) scopes: Vec<ScopeMoment>,
+    pub scopes: Vec<ScopeMoment>,
 }
 
 impl Moment {
     /// Returns `true` if the atom was entered in this turn.
-    pub(crate) fn is_new(&self) -> bool {
+    #[must_use]
+    pub fn is_new(&self) -> bool {
         self.scopes.last().is_some_and(|own| own.since == Nanos::ZERO)
     }
 }
 
 /// A scope at a moment.
 #[derive(Debug, Clone)]
-pub(crate) struct ScopeMoment {
+pub struct ScopeMoment {
     /// The scope, by its bracket.
-    pub(crate) bracket: u32,
+    pub bracket: u32,
     /// Number of scopes that enclose it.
-    pub(crate) level: u16,
+    pub level: u16,
     /// Time since it was entered.
-    pub(crate) since: Nanos,
+    pub since: Nanos,
     /// Length of the path driven since it was entered.
-    pub(crate) way: Nanometers,
+    pub way: Nanometers,
     /// The condition of the scope and all parts of it, each part before its operands.
-    pub(crate) parts: Vec<Examined>,
+    pub parts: Vec<Examined>,
     /// The atom that would follow if the scope ended now; `None` if the plan would be over.
-    pub(crate) leads_to: Option<u32>,
+    pub leads_to: Option<u32>,
 }
 
 /// A plan that is looked at.
-pub(crate) struct Examining<A: Alphabet> {
+pub struct Examining<A: Alphabet> {
     plan: LoadedPlan<A>,
     /// Storage for the entry of each level of scopes, not only of those with timers.
     entered: Entered,
@@ -69,18 +70,20 @@ pub(crate) struct Examining<A: Alphabet> {
 
 impl<A: Alphabet> Examining<A> {
     /// A plan before it begins; `runs` tells for each atom whether its law has to be run.
-    pub(crate) fn new(plan: LoadedPlan<A>, entered: Entered, runs: Vec<bool>) -> Self {
+    #[must_use]
+    pub fn new(plan: LoadedPlan<A>, entered: Entered, runs: Vec<bool>) -> Self {
         Self { plan, entered, runs, atom: 0, looks: Cell::new(false), moments: RefCell::default() }
     }
 
     /// Empties the list of moments for a turn that is looked at, or not.
-    pub(crate) fn look(&self, looks: bool) {
+    pub fn look(&self, looks: bool) {
         self.looks.set(looks);
         self.moments.take();
     }
 
     /// Takes the moments of the turn, in order.
-    pub(crate) fn moments(&self) -> Vec<Moment> {
+    #[must_use]
+    pub fn moments(&self) -> Vec<Moment> {
         self.moments.take()
     }
 
@@ -90,7 +93,8 @@ impl<A: Alphabet> Examining<A> {
         }
         let fsm = self.plan.fsm();
         let own = fsm.atoms.get(self.atom as usize).map_or(0, |atom| atom.scope);
-        let mut scopes: Vec<_> = outwards(fsm, own)
+        let mut scopes: Vec<_> = fsm
+            .outwards(own)
             .filter_map(|(bracket, found)| match found.kind {
                 Kind::Scope { level } => Some(self.scope(cursor, (bracket, level), y, t)),
                 Kind::Loop { .. } => None,

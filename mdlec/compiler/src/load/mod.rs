@@ -1,6 +1,7 @@
 //! A plan at run time: its rows with the quarks that the robot's bound alphabet makes by their names.
 
 mod entries;
+mod examining;
 mod names;
 mod quarks;
 mod table;
@@ -14,6 +15,7 @@ use crate::alphabet;
 use crate::diagnostic::Sources;
 use crate::fsm::{self, Machine, PlanWords, Rows};
 pub use entries::Entered;
+pub use examining::{Examining, Moment, ScopeMoment};
 pub use names::MOST_NAMES;
 use quarks::Quarks;
 pub use table::{Loaded, LoadedPlan, Shared};
