@@ -142,8 +142,8 @@ const ROOM_FOLDERS: &[(&str, &str)] =
 /// Rooms of the compiler that each room may use. `crate` is the text of a `lib.rs` itself.
 const ROOMS: &[(&str, &[&str])] = &[
     ("diagnostic", &[]),
-    ("builtin", &[]),
     ("alphabet", &["diagnostic"]),
+    ("builtin", &["diagnostic", "alphabet"]),
     ("syntax", &["diagnostic", "alphabet"]),
     ("plan", &["diagnostic", "syntax", "alphabet"]),
     ("fsm", &["diagnostic", "syntax", "alphabet", "plan"]),

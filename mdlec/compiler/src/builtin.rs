@@ -1,4 +1,7 @@
-//! The alphabets that are part of mdlec: the shared one and those of its targets.
+//! The alphabets that are part of mdlec: the shared one and those of its targets, as texts and read.
+
+use crate::alphabet::{self as language, AlphabetFile, Capability};
+use crate::diagnostic::{Diagnostic, Sources, has_errors};
 
 /// An alphabet that is part of mdlec.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,3 +23,71 @@ pub fn alphabets() -> &'static [Alphabet] {
 }
 
 include!(concat!(env!("OUT_DIR"), "/alphabets.rs"));
+
+/// An alphabet with the shared ones that it uses.
+#[derive(Debug)]
+pub struct ReadAlphabet {
+    /// The alphabet.
+    pub alphabet: language::Alphabet,
+    /// Names and texts of the files from which it was read: the shared ones first.
+    pub files: Vec<(String, String)>,
+}
+
+/// Reads the shared alphabets and `own`, the name and text of a target's; without it, the alphabet is that of a robot
+/// with every capability.
+///
+/// # Errors
+/// The alphabets have errors: the files and the diagnostics.
+pub fn read(own: Option<(String, String)>) -> Result<ReadAlphabet, (Sources, Vec<Diagnostic>)> {
+    let mut reading = Reading::default();
+    let mut shared = Vec::new();
+    for alphabet in alphabets().iter().filter(|alphabet| !alphabet.target) {
+        shared.extend(reading.read(alphabet.file.to_owned(), alphabet.text.to_owned()));
+    }
+    let alphabet = match own {
+        Some((file, text)) => reading.read(file, text).map(|file| {
+            let (alphabet, found) = language::combine(file, &shared);
+            reading.found.extend(found);
+            alphabet
+        }),
+        None => shared.into_iter().next().map(language::Alphabet::shared),
+    };
+    let Reading { sources, files, found } = reading;
+    // An alphabet causes no warnings.
+    match alphabet {
+        Some(mut alphabet) if !has_errors(&found) => {
+            alphabet.robots = robots();
+            Ok(ReadAlphabet { alphabet, files })
+        }
+        Some(_) | None => Err((sources, found)),
+    }
+}
+
+/// Robots that are part of mdlec, each with its capabilities.
+fn robots() -> Vec<(String, Vec<Capability>)> {
+    let targets = alphabets().iter().filter(|alphabet| alphabet.target);
+    let head = |builtin: &Alphabet| {
+        let (file, _) = language::read(Sources::default().add(builtin.file, builtin.text), builtin.text);
+        let head = file?.target?;
+        Some((builtin.name.to_owned(), [head.capabilities, head.engine].concat()))
+    };
+    targets.filter_map(head).collect()
+}
+
+/// Alphabet files that are read one after the other.
+#[derive(Default)]
+struct Reading {
+    sources: Sources,
+    files: Vec<(String, String)>,
+    found: Vec<Diagnostic>,
+}
+
+impl Reading {
+    fn read(&mut self, file: String, text: String) -> Option<AlphabetFile> {
+        let source = self.sources.add(&file, &text);
+        let (alphabet, found) = language::read(source, &text);
+        self.found.extend(found);
+        self.files.push((file, text));
+        alphabet
+    }
+}

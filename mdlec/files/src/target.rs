@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use mdle_compiler::alphabet::{self as language, Alphabet, AlphabetFile, Capability};
-use mdle_compiler::diagnostic::{Diagnostic, Sources, has_errors};
-use mdle_compiler::{builtin, rust};
+use mdle_compiler::alphabet::Alphabet;
+use mdle_compiler::builtin::{self, ReadAlphabet};
+use mdle_compiler::diagnostic::Sources;
+use mdle_compiler::rust;
 
 use crate::read::LARGEST_PLAN;
 use crate::text::read_text;
@@ -112,58 +113,10 @@ pub fn alphabet(file: &Path) -> Result<Alphabet, InputError> {
 }
 
 fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, InputError> {
-    let mut reading = Reading::default();
-    let mut shared = Vec::new();
-    for alphabet in builtin::alphabets().iter().filter(|alphabet| !alphabet.target) {
-        shared.extend(reading.read(alphabet.file.to_owned(), alphabet.text.to_owned()));
-    }
-    let alphabet = match own {
-        Some((file, text)) => reading.read(file, text).map(|file| {
-            let (alphabet, found) = language::combine(file, &shared);
-            reading.found.extend(found);
-            alphabet
-        }),
-        None => shared.into_iter().next().map(Alphabet::shared),
-    };
-
-    match alphabet {
-        // An alphabet causes no warnings.
-        Some(mut alphabet) if !has_errors(&reading.found) => {
-            alphabet.robots = robots();
-            Ok(Target { alphabet, folder: None, settings: None, sources: reading.files })
+    match builtin::read(own) {
+        Ok(ReadAlphabet { alphabet, files }) => Ok(Target { alphabet, folder: None, settings: None, sources: files }),
+        Err((sources, diagnostics)) => {
+            Err(InputError::Faulty(FaultyFile { sources, diagnostics, target: Some(name.to_owned()) }))
         }
-        Some(_) | None => {
-            let Reading { sources, found, .. } = reading;
-            Err(InputError::Faulty(FaultyFile { sources, diagnostics: found, target: Some(name.to_owned()) }))
-        }
-    }
-}
-
-/// Robots that are part of mdlec, each with its capabilities.
-fn robots() -> Vec<(String, Vec<Capability>)> {
-    let targets = builtin::alphabets().iter().filter(|alphabet| alphabet.target);
-    let head = |builtin: &builtin::Alphabet| {
-        let (file, _) = language::read(Sources::default().add(builtin.file, builtin.text), builtin.text);
-        let head = file?.target?;
-        Some((builtin.name.to_owned(), [head.capabilities, head.engine].concat()))
-    };
-    targets.filter_map(head).collect()
-}
-
-/// Alphabet files that are read one after the other.
-#[derive(Default)]
-struct Reading {
-    sources: Sources,
-    files: Vec<(String, String)>,
-    found: Vec<Diagnostic>,
-}
-
-impl Reading {
-    fn read(&mut self, file: String, text: String) -> Option<AlphabetFile> {
-        let source = self.sources.add(&file, &text);
-        let (alphabet, found) = language::read(source, &text);
-        self.found.extend(found);
-        self.files.push((file, text));
-        alphabet
     }
 }
