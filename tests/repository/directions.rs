@@ -104,6 +104,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("tests/board", &["mdle-runtime", "mdle-atoms", "mdle-simulator"]),
     ("tests/application", &["mdle-runtime", "mdle-host", "mdle-sim", "mdle-embed"]),
     ("tests/mutants", &[]),
+    ("web/module", &["mdle-runtime", "mdle-quantity", "mdle-compiler", "mdle-language-service", "mdle-simulator"]),
     ("tests/fuzz", &["mdle-tests"]),
 ];
 
@@ -117,6 +118,7 @@ const PURE: &[&str] = &[
     "mdlec/theory",
     "editors/service",
     "targets/sim/simulator",
+    "web/module",
 ];
 
 /// Packages of the operating system, and of what asks it for arguments, signals, threads and folders.

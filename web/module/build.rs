@@ -1,0 +1,16 @@
+//! Links the module for a browser with a stack as large as that of a program, and with a limit on its memory.
+
+#![allow(clippy::disallowed_methods, reason = "cargo tells a build script the target by its environment")]
+
+/// Size of the stack in bytes: plans may be nested deeply.
+const STACK: u32 = 8 << 20;
+/// Maximum size of the memory in bytes: a page that exceeds it is told so, and goes on.
+const MEMORY: u32 = 1 << 30;
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    if std::env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch == "wasm32") {
+        println!("cargo::rustc-link-arg-cdylib=-zstack-size={STACK}");
+        println!("cargo::rustc-link-arg-cdylib=--max-memory={MEMORY}");
+    }
+}

@@ -1,0 +1,118 @@
+//! Requests of a page, each with the function that answers it.
+
+use mdle_language_service::lines::Position;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use crate::document::Document;
+use crate::run::Run;
+use crate::setup::Setup;
+use crate::{editing, export, floor, tools, trial};
+
+/// A request.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "ask", rename_all = "snake_case")]
+enum Request {
+    /// Messages of `mdlec check --message-format json`.
+    Check { text: String },
+    /// Text of `mdlec fmt`.
+    Fmt { text: String },
+    /// Text of `mdlec explain`.
+    Explain { code: String },
+    /// List of `mdlec quarks`.
+    Quarks,
+    /// Report of `mdlec analyze`.
+    Analyze { text: String, plan: Option<String> },
+    /// Picture of `mdlec draw`.
+    Draw { text: String, plan: Option<String> },
+    /// Lines of `mdlec trace`.
+    Trace { text: String, plan: Option<String>, script: String },
+    /// Diagnostics with their fixes, the names of plans, and colours by meaning.
+    Diagnose { text: String },
+    /// Proposals at a place.
+    Complete { text: String, at: At },
+    /// Text about a place.
+    Hover { text: String, at: At },
+    /// Signature of the call around a place.
+    Signature { text: String, at: At },
+    /// Edits that format the text.
+    Format { text: String },
+    /// Floor of a world.
+    Floor { world: String },
+    /// Begins a run.
+    Begin(Setup),
+    /// Makes turns of the run.
+    Step { turns: u64 },
+    /// Explains a turn of the run.
+    Why { turn: usize },
+    /// Makes a whole run, and reports its end.
+    Trial(Setup),
+    /// Makes a whole run, and returns a file of it.
+    Export {
+        what: export::Kind,
+        #[serde(flatten)]
+        setup: Setup,
+    },
+}
+
+/// A place in a text, as `{"line":…,"character":…}`, both from 0, characters in UTF-16 code units.
+#[derive(Debug, Clone, Copy, Deserialize)]
+struct At {
+    line: u32,
+    character: u32,
+}
+
+impl From<At> for Position {
+    fn from(At { line, character }: At) -> Self {
+        Self { line, character }
+    }
+}
+
+/// The requests of one page, and the run that is being made for it.
+#[derive(Default)]
+pub struct Session {
+    run: Option<Run>,
+}
+
+impl Session {
+    /// Answers a request; a refusal is `{"error":SENTENCE}`.
+    #[must_use]
+    pub fn answer(&mut self, request: &[u8]) -> String {
+        let answer = serde_json::from_slice(request)
+            .map_err(|error| format!("the request is not one of this version: {error}"))
+            .and_then(|request| self.answered(request));
+        answer.unwrap_or_else(|sentence| json!({ "error": sentence })).to_string()
+    }
+
+    fn answered(&mut self, request: Request) -> Result<Value, String> {
+        match request {
+            Request::Check { text } => Document::of(&text).map(|mut document| tools::check(&mut document)),
+            Request::Fmt { text } => Document::of(&text).map(|document| tools::fmt(&document)),
+            Request::Explain { code } => tools::explain(&code),
+            Request::Quarks => tools::quarks(),
+            Request::Analyze { text, plan } => tools::analyze(&mut Document::of(&text)?, plan.as_deref()),
+            Request::Draw { text, plan } => tools::draw(&mut Document::of(&text)?, plan.as_deref()),
+            Request::Trace { text, plan, script } => tools::trace(&mut Document::of(&text)?, plan.as_deref(), &script),
+            Request::Diagnose { text } => editing::diagnose(&mut Document::of(&text)?),
+            Request::Complete { text, at } => editing::complete(&mut Document::of(&text)?, at.into()),
+            Request::Hover { text, at } => editing::hover(&mut Document::of(&text)?, at.into()),
+            Request::Signature { text, at } => editing::signature(&mut Document::of(&text)?, at.into()),
+            Request::Format { text } => Ok(editing::format(&text)),
+            Request::Floor { world } => floor::floor(&world),
+            Request::Begin(setup) => {
+                // The memory of the last run is given back before the next is made.
+                self.run = None;
+                let run = self.run.insert(Run::begin(setup)?);
+                Ok(run.description())
+            }
+            Request::Step { turns } => self.run().map(|run| run.step(turns)),
+            Request::Why { turn } => self.run().and_then(|run| run.why(turn)),
+            Request::Trial(setup) => trial::trial(setup),
+            Request::Export { what, setup } => export::export(what, setup),
+        }
+    }
+
+    fn run(&mut self) -> Result<&mut Run, String> {
+        self.run.as_mut().ok_or_else(|| "no run has begun".to_owned())
+    }
+}

@@ -1,0 +1,163 @@
+//! The course of a run: exchange and turn in the order of `mdle run`, without its clock.
+
+use mdle_compiler::load::{Examining, Moment};
+use mdle_runtime::capability::Bumpers as _;
+use mdle_runtime::{Machine, Measured, Nanos, Plan as _, Robot as _, Sensed, Transition, Turn, Twist, Watch};
+use mdle_simulator::Simulated;
+use mdle_simulator::alphabet::Alphabet;
+
+use crate::plan::Plan;
+use crate::setup::{PERIOD, Ready};
+
+/// A run that is being made.
+pub(crate) struct Course {
+    pub(crate) robot: Simulated,
+    pub(crate) machine: Option<Machine<Examining<Alphabet>>>,
+    /// The plan, until the first turn begins it.
+    waiting: Option<Examining<Alphabet>>,
+    input: Twist,
+    /// Number of turns made.
+    pub(crate) turns: u64,
+    limit: Nanos,
+    /// `true` if the robot touched something in the last exchange.
+    pub(crate) touches: bool,
+    /// Number of contacts that have begun.
+    pub(crate) contacts: u64,
+    /// The transitions of the last turn.
+    pub(crate) seen: Seen,
+    /// `true` if the current atom was entered since a law was applied last.
+    fresh: bool,
+    /// Cause of the end, once the run has ended.
+    pub(crate) end: Option<End>,
+}
+
+/// The way in which a run ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum End {
+    /// The plan is over, by the last transition.
+    Over,
+    /// The time limit was reached.
+    Limit,
+    /// A fault of the robot: a sentence.
+    Fault(String),
+}
+
+/// An exchange with the robot.
+#[derive(Clone, Copy)]
+pub(crate) struct Exchange {
+    /// Time of the exchange.
+    pub(crate) t: Nanos,
+    /// Output of the robot.
+    pub(crate) y: Sensed,
+    /// `true` if a contact begins with it.
+    pub(crate) hits: bool,
+}
+
+/// A turn.
+pub(crate) struct Made {
+    /// Number of the turn, from 0.
+    pub(crate) number: u64,
+    /// Time of the turn.
+    pub(crate) t: Nanos,
+    /// Input that is sent next.
+    pub(crate) turn: Turn<Twist>,
+    /// The current atom if its law was applied for the first time since it was entered.
+    pub(crate) began: Option<u32>,
+    /// The plan before each transition, and at the end of the turn.
+    pub(crate) moments: Vec<Moment>,
+}
+
+/// Transitions with the operands that had fired.
+#[derive(Default)]
+pub(crate) struct Seen {
+    pub(crate) transitions: Vec<(Transition, Vec<(u32, Measured)>)>,
+    operands: Vec<(u32, Measured)>,
+}
+
+impl Watch for Seen {
+    fn operand(&mut self, number: u32, measured: Measured) {
+        self.operands.push((number, measured));
+    }
+
+    fn transition(&mut self, transition: Transition) {
+        self.transitions.push((transition, std::mem::take(&mut self.operands)));
+    }
+}
+
+impl Course {
+    /// Puts the robot at its start.
+    pub(crate) fn new(plan: &Plan, ready: &Ready) -> Result<Self, String> {
+        Ok(Self {
+            robot: ready.robot()?,
+            machine: None,
+            waiting: Some(plan.examining()),
+            input: Twist::default(),
+            turns: 0,
+            limit: ready.limit,
+            touches: false,
+            contacts: 0,
+            seen: Seen::default(),
+            fresh: true,
+            end: None,
+        })
+    }
+
+    /// Sends the last input, and takes the output that follows; a fault ends the run.
+    pub(crate) fn exchange(&mut self) -> Option<Exchange> {
+        let t = self.robot.now();
+        match self.robot.exchange(&self.input) {
+            Ok(y) => {
+                let hits = y.pressed() && !self.touches;
+                self.contacts += u64::from(hits);
+                self.touches = y.pressed();
+                Some(Exchange { t, y, hits })
+            }
+            Err(fault) => {
+                self.end = Some(End::Fault(fault.to_string()));
+                None
+            }
+        }
+    }
+
+    /// Makes the turn of an exchange; `looks` decides whether moments are kept.
+    pub(crate) fn turn(&mut self, y: &Sensed, looks: bool) -> Option<Made> {
+        let number = self.turns;
+        let t = Nanos(number.saturating_mul(PERIOD.0));
+        if let Some(plan) = self.waiting.take() {
+            self.machine = Some(Machine::begin(plan, y, t));
+        }
+        let machine = self.machine.as_mut()?;
+        machine.plan().look(looks);
+        self.seen.transitions.clear();
+        let turn = machine.turn(y, t, &mut self.seen);
+        let moments = machine.plan().moments();
+        self.turns += 1;
+        self.input = turn.input();
+        self.fresh |= !self.seen.transitions.is_empty();
+        let has_begun = matches!(turn, Turn::Law(_)) && std::mem::take(&mut self.fresh);
+        let began = machine.atom().filter(|_| has_begun);
+        if turn == Turn::Over {
+            self.end = Some(End::Over);
+        } else if t >= self.limit {
+            self.end = Some(End::Limit);
+        }
+        Some(Made { number, t, turn, began, moments })
+    }
+
+    /// Sends the null input once more, unless the robot has a fault.
+    pub(crate) fn release(&mut self) -> Option<Exchange> {
+        self.input = Twist::default();
+        if matches!(self.end, Some(End::Fault(_))) { None } else { self.exchange() }
+    }
+
+    /// Stops the robot.
+    pub(crate) fn stop(&mut self) {
+        // The run has ended in any case.
+        let _ = self.robot.stop();
+    }
+
+    /// Returns the name of the plan.
+    pub(crate) fn plan_name(&self) -> &str {
+        self.machine.as_ref().map_or("", |machine| machine.plan().name(0))
+    }
+}

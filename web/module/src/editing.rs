@@ -1,0 +1,129 @@
+//! Features of the editor: places are lines and columns in UTF-16 code units, both from 0.
+
+use std::ops::Range;
+
+use mdle_language_service::completion::{Item, ItemKind, completion, signature_at};
+use mdle_language_service::diagnostics::{Finding, findings};
+use mdle_language_service::fixes::fixes;
+use mdle_language_service::formatting;
+use mdle_language_service::hover::hover as about;
+use mdle_language_service::lines::{Lines, Position};
+use mdle_language_service::tokens::{KINDS, tokens};
+use serde_json::{Value, json};
+
+use crate::document::Document;
+
+/// Converts places of bytes in one text.
+struct Places<'t> {
+    text: &'t str,
+    lines: Lines,
+}
+
+impl<'t> Places<'t> {
+    fn of(text: &'t str) -> Self {
+        Self { text, lines: Lines::of(text) }
+    }
+
+    /// Returns `[line, column, line, column]`.
+    fn range(&self, range: &Range<usize>) -> Value {
+        let [start, end] = [range.start, range.end].map(|byte| self.lines.position(self.text, byte));
+        json!([start.line, start.character, end.line, end.character])
+    }
+
+    fn byte(&self, at: Position) -> usize {
+        self.lines.byte(self.text, at)
+    }
+}
+
+/// Returns the diagnostics with their fixes, the names of the plans, and the colours by meaning.
+pub(crate) fn diagnose(document: &mut Document) -> Result<Value, String> {
+    let found = document.check();
+    let text = document.text().to_owned();
+    let places = Places::of(&text);
+    let own = document.source;
+    let all = 0..text.len();
+    let fixes = fixes(&document.sources, &found, |place| place.source == own, &all);
+    let diagnostic = |(number, finding): (usize, &Finding)| {
+        let fixes = fixes.iter().filter(|fix| fix.diagnostic == number && fix.place.source == own);
+        let fixes: Vec<_> = fixes
+            .map(
+                |fix| json!({ "title": fix.title, "range": places.range(&fix.place.range), "insert": fix.replacement }),
+            )
+            .collect();
+        // A place in an alphabet is none of the text.
+        let here = if finding.place.source == own { finding.place.range.clone() } else { 0..0 };
+        json!({
+            "code": finding.code.name(),
+            "title": finding.code.title(),
+            "error": finding.is_error(),
+            "range": places.range(&here),
+            "message": finding.message,
+            "fixes": fixes,
+        })
+    };
+    let findings = findings(&document.sources, &found);
+    let diagnostics: Vec<_> = findings.iter().enumerate().map(diagnostic).collect();
+    let (tokens, plans) = document.view(|view| {
+        let plans: Vec<_> = view.own().iter().map(|plan| plan.name.node.to_owned()).collect();
+        (tokens(view), plans)
+    });
+    let tokens: Vec<_> = tokens
+        .iter()
+        .map(|token| json!([places.range(&token.range), KINDS.get(token.kind).copied().unwrap_or("")]))
+        .collect();
+    Ok(json!({ "diagnostics": diagnostics, "plans": plans, "tokens": tokens }))
+}
+
+/// Returns the proposals at a place.
+pub(crate) fn complete(document: &mut Document, at: Position) -> Result<Value, String> {
+    let text = document.text().to_owned();
+    let places = Places::of(&text);
+    let completion = document.view(|view| completion(view, places.byte(at)));
+    let items: Vec<_> = completion.items.iter().map(item).collect();
+    Ok(json!({ "range": places.range(&completion.range), "items": items }))
+}
+
+fn item(item: &Item) -> Value {
+    let kind = match item.kind {
+        ItemKind::Law => "function",
+        ItemKind::Interrupt => "event",
+        ItemKind::Signal => "variable",
+        ItemKind::Plan => "class",
+        ItemKind::Unit => "constant",
+        ItemKind::Label => "property",
+        ItemKind::Parameter => "parameter",
+        ItemKind::Type => "type",
+        ItemKind::Keyword => "keyword",
+        ItemKind::Snippet => "snippet",
+    };
+    let is_snippet = item.kind == ItemKind::Snippet;
+    json!({ "label": item.label, "kind": kind, "detail": item.detail, "about": item.docs, "insert": item.insert, "snippet": is_snippet })
+}
+
+/// Returns the text about a place, in Markdown, or null.
+pub(crate) fn hover(document: &mut Document, at: Position) -> Result<Value, String> {
+    let text = document.text().to_owned();
+    let places = Places::of(&text);
+    let found = document.view(|view| about(view, places.byte(at)));
+    Ok(found.map_or(Value::Null, |found| json!({ "range": places.range(&found.range), "text": found.text })))
+}
+
+/// Returns the signature of the call around a place, or null.
+pub(crate) fn signature(document: &mut Document, at: Position) -> Result<Value, String> {
+    let text = document.text().to_owned();
+    let places = Places::of(&text);
+    let found = document.view(|view| signature_at(view, places.byte(at)));
+    Ok(found.map_or(
+        Value::Null,
+        |found| json!({ "label": found.label, "about": found.docs, "params": found.params, "active": found.active }),
+    ))
+}
+
+/// Returns the edits that format a text, or null if it has errors.
+pub(crate) fn format(text: &str) -> Value {
+    let places = Places::of(text);
+    let edits = formatting::document(text);
+    edits.map_or(Value::Null, |edits| {
+        edits.iter().map(|edit| json!({ "range": places.range(&edit.range), "insert": edit.text })).collect()
+    })
+}

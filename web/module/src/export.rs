@@ -1,0 +1,129 @@
+//! Files of a run, with the bytes that `mdle run` writes.
+
+use std::fmt::Write as _;
+
+use mdle_runtime::trace::{Fired, Line};
+use mdle_runtime::{Nanos, Plan as _, Turn};
+use mdle_simulator::Drawing;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use crate::causes;
+use crate::course::{Course, End, Exchange, Made};
+use crate::plan::Plan;
+use crate::setup::{PERIOD, Setup};
+
+/// Maximum number of bytes of a log or a table.
+const MOST: usize = 128 << 20;
+
+/// A file of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Kind {
+    /// JSON lines of `--log`.
+    Log,
+    /// Table of `--trail`.
+    Trail,
+    /// Picture of `--plot`.
+    Plot,
+    /// Moving picture of `--record`.
+    Record,
+}
+
+/// Makes a run again, and returns a file of it.
+pub(crate) fn export(kind: Kind, setup: Setup) -> Result<Value, String> {
+    let plan = Plan::of(&setup.text, setup.plan.as_deref())?;
+    let ready = setup.ready()?;
+    let mut course = Course::new(&plan, &ready)?;
+    let words = setup.in_words(&ready.make);
+    let mut files = Files {
+        kind,
+        text: if kind == Kind::Trail { "t,x,y,heading\n".to_owned() } else { String::new() },
+        drawing: Drawing::of(&course.robot, &ready.world, words, kind == Kind::Record),
+    };
+    let mut t = Nanos::ZERO;
+    while course.end.is_none() {
+        let Some(exchange) = course.exchange() else { break };
+        files.exchanged(&course, &exchange);
+        let Some(made) = course.turn(&exchange.y, false) else { break };
+        t = made.t;
+        files.turned(&course, &made);
+        if files.text.len() > MOST {
+            return Err("this run is too long for such a file: use `mdle run`".to_owned());
+        }
+    }
+    let (is_over, by) = match &course.end {
+        Some(End::Over) => {
+            (true, course.machine.as_ref().map_or_else(String::new, |m| causes::last(m.plan(), &course.seen)))
+        }
+        Some(End::Fault(_)) => (false, "a fault".to_owned()),
+        Some(End::Limit) | None => (false, "--timeout".to_owned()),
+    };
+    files.drawing.ended(course.plan_name(), is_over, &by, t.max(Nanos(course.turns.saturating_sub(1) * PERIOD.0)));
+    if let Some(exchange) = course.release() {
+        files.exchanged(&course, &exchange);
+    }
+    course.stop();
+    files.drawing.stopped(&course.robot);
+    Ok(json!({ "output": files.finished() }))
+}
+
+/// A file that is being made.
+struct Files {
+    kind: Kind,
+    text: String,
+    drawing: Drawing,
+}
+
+impl Files {
+    fn exchanged(&mut self, course: &Course, exchange: &Exchange) {
+        let Exchange { t, y, hits } = exchange;
+        if self.kind == Kind::Trail {
+            let pose = course.robot.pose();
+            // Writing to a string cannot fail.
+            let _ = writeln!(self.text, "{},{},{},{}", t.seconds(), pose.x.0, pose.y.0, pose.theta.degrees());
+        }
+        self.drawing.exchanged(&course.robot, y, *t, *hits);
+    }
+
+    fn turned(&mut self, course: &Course, made: &Made) {
+        let Some(machine) = &course.machine else { return };
+        let plan = machine.plan();
+        if let Some((atom, written)) = made.began.and_then(|atom| Some((atom, plan.fsm().atoms.get(atom as usize)?))) {
+            self.drawing.began(written.state, plan.law(atom), made.t);
+        }
+        if self.kind != Kind::Log {
+            return;
+        }
+        let applied = match made.turn {
+            Turn::Law(_) => machine.atom(),
+            Turn::Cut | Turn::Over => None,
+        };
+        let source = plan.source();
+        let fired = course.seen.transitions.iter().map(|(transition, operands)| Fired {
+            from: transition.from,
+            level: usize::from(transition.cause.level()),
+            by: transition.by(plan),
+            operands: operands
+                .iter()
+                .filter_map(|(number, _)| source.operand(transition.scope, *number).map(|words| words.text)),
+        });
+        let line = Line {
+            turn: made.number,
+            t: made.t,
+            state: machine.state(),
+            law: applied.map(|atom| plan.law(atom)),
+            frame: machine.frame().filter(|_| applied.is_some()),
+            fired,
+        };
+        let _ = writeln!(self.text, "{line}");
+    }
+
+    fn finished(self) -> String {
+        match self.kind {
+            Kind::Log | Kind::Trail => self.text,
+            Kind::Plot => self.drawing.picture(),
+            Kind::Record => self.drawing.animation(),
+        }
+    }
+}

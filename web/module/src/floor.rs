@@ -1,0 +1,41 @@
+//! A world as a page draws it.
+
+use mdle_simulator::{Walls, World, Zone};
+use serde_json::{Value, json};
+
+/// Maximum number of corners that a page is given to draw.
+const CORNERS_MOST: usize = 200_000;
+
+/// Returns the floor of a world in TOML: outlines, moving things, start, goal and charger, in metres.
+pub(crate) fn floor(text: &str) -> Result<Value, String> {
+    let world = World::parse("world", text).map_err(|error| error.to_string())?;
+    Walls::of_any(&world).map_err(|what| format!("world: {what}"))?;
+    let corners: usize = world.outlines.iter().map(|outline| outline.points.len()).sum();
+    if corners > CORNERS_MOST {
+        return Err(format!("world: {corners} corners are too many to be drawn; expected at most {CORNERS_MOST}"));
+    }
+    Ok(drawn(&world))
+}
+
+/// Returns the floor of a world.
+pub(crate) fn drawn(world: &World) -> Value {
+    let points = |points: &[mdle_simulator::Place]| points.iter().map(|place| json!([place.x, place.y])).collect();
+    let outline = |outline: &mdle_simulator::Outline| {
+        let corners: Value = points(&outline.points);
+        json!({ "name": outline.name, "solid": outline.solid, "points": corners })
+    };
+    let goal = world.goal.map(|goal| match goal.zone {
+        Zone::Rectangle { min, max } => json!({ "min": [min.x, min.y], "max": [max.x, max.y] }),
+        Zone::Circle { center, radius } => json!({ "center": [center.x, center.y], "radius": radius }),
+    });
+    let charger = world.charger.map(|charger| {
+        json!({ "at": [charger.pose.x.0, charger.pose.y.0], "heading": charger.pose.theta.0, "reach": charger.reach })
+    });
+    json!({
+        "outlines": world.outlines.iter().map(outline).collect::<Vec<_>>(),
+        "things": world.things.iter().map(|thing| outline(&thing.outline)).collect::<Vec<_>>(),
+        "start": [world.start.x.0, world.start.y.0, world.start.theta.0],
+        "goal": goal,
+        "charger": charger,
+    })
+}

@@ -1,0 +1,74 @@
+//! A turn as a page draws it. Numbers are rounded: a page draws them, and files of a run have all their digits.
+
+use mdle_compiler::load::Moment;
+use mdle_runtime::capability::SonarRing as _;
+use mdle_runtime::{Cause, Nanos, SONARS, SonarId};
+use mdle_simulator::{Place, echoes};
+use serde_json::{Value, json};
+
+use crate::causes::cause;
+use crate::course::{Course, Exchange, Made};
+
+/// Maximum number of transitions of a turn that a page is given.
+const TRANSITIONS_MOST: usize = 40;
+
+/// Returns a turn; `before` is the time of the exchange before.
+pub(crate) fn frame(course: &Course, exchange: &Exchange, made: &Made, before: Option<Nanos>) -> Value {
+    let Exchange { t, y, .. } = exchange;
+    let pose = course.robot.pose();
+    let ranges: Vec<Value> = (0..SONARS).map(|number| range(exchange, number)).collect();
+    let heard = echoes(&pose, y, before).into_iter().flatten().map(|Place { x, y }| json!([round(x), round(y)]));
+    let gone: Vec<Value> =
+        course.robot.gone().map(|gone| gone.map_or(Value::Null, |at| json!([round(at.x), round(at.y)]))).collect();
+    json!({
+        "t": t.seconds(),
+        "pose": [round(pose.x.0), round(pose.y.0), round(pose.theta.0)],
+        "velocity": [round(y.velocity.v.0), round(y.velocity.omega.0)],
+        "odometry": [round(y.odometry.x.0), round(y.odometry.y.0), round(y.odometry.theta.0)],
+        "battery": round(y.supply.battery.0),
+        "touches": course.touches,
+        "ranges": ranges,
+        "echoes": heard.collect::<Vec<_>>(),
+        "gone": gone,
+        "atom": course.machine.as_ref().and_then(|machine| machine.atom()),
+        "began": made.began.is_some(),
+        "since": since(made.moments.last()),
+        "made": course.seen.transitions.len(),
+        "fired": fired(course),
+    })
+}
+
+/// Returns the range of the newest ping of a sonar; null without an echo.
+fn range(exchange: &Exchange, number: usize) -> Value {
+    let sonar = SonarId::new(u8::try_from(number).unwrap_or(0));
+    let newest = exchange.y.pings(sonar).newest_first().next();
+    newest.and_then(|ping| ping.range).map_or(Value::Null, |range| json!(round(range.0)))
+}
+
+/// Returns the enclosing scopes of the current atom, each with the time since it was entered.
+fn since(moment: Option<&Moment>) -> Value {
+    let scopes = moment.filter(|moment| moment.cause.is_none()).map_or(&[][..], |moment| &moment.scopes);
+    scopes.iter().map(|scope| json!([scope.bracket, round(scope.since.seconds())])).collect()
+}
+
+/// Returns the transitions: the scope that ended, the cause, and the atom that followed. Of very many the last are left
+/// out, except the very last.
+fn fired(course: &Course) -> Value {
+    let Some(machine) = &course.machine else { return json!([]) };
+    let all = &course.seen.transitions;
+    let shown = all.iter().enumerate().filter(|(number, _)| *number < TRANSITIONS_MOST || number + 1 == all.len());
+    let transition = |(_, (transition, operands)): (_, &(mdle_runtime::Transition, Vec<_>))| {
+        json!({
+            "scope": transition.scope,
+            "completed": matches!(transition.cause, Cause::Completed(_)),
+            "by": cause(machine.plan(), transition, operands),
+            "to": transition.atom,
+        })
+    };
+    shown.map(transition).collect()
+}
+
+/// Rounds to a tenth of a millimetre, or of a milliradian.
+fn round(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4
+}

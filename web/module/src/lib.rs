@@ -1,0 +1,23 @@
+//! The playground's module for a browser: the compiler, the language service and the simulator behind one function.
+//!
+//! A page sends a request as JSON and receives an answer as JSON, by the functions of [`page`]. The module imports
+//! nothing: it has no clock, no files and no network, so that the same request has the same answer everywhere.
+
+mod ask;
+mod causes;
+mod course;
+mod document;
+mod editing;
+mod export;
+mod floor;
+mod frame;
+pub mod page;
+mod plan;
+mod robot;
+mod run;
+mod setup;
+mod tools;
+mod trial;
+mod why;
+
+pub use ask::Session;

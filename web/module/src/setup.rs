@@ -1,0 +1,116 @@
+//! The setup of a run, as the options of the target `sim` describe it.
+
+use mdle_runtime::{Nanos, Pose};
+use mdle_simulator::{Body, Make, PARTS, Simulated, Start, StartNoise, Walls, World, alphabet, check};
+use serde::Deserialize;
+use std::time::Duration;
+
+/// Longest run, in seconds of its own time.
+const LONGEST: f64 = 3600.0;
+
+/// A plan, and the world, the robot and the start of a run.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct Setup {
+    /// Text of the plan.
+    pub(crate) text: String,
+    /// Name of the plan to run; the only one without a name.
+    pub(crate) plan: Option<String>,
+    /// World as TOML.
+    pub(crate) world: String,
+    /// Name of the world in titles.
+    pub(crate) world_name: String,
+    /// `ideal`, `scout` or `atrv`; empty for `ideal`.
+    pub(crate) body: String,
+    /// Names of the body's errors to leave out, separated by commas.
+    pub(crate) without: String,
+    /// Start pose as `x,y,deg`; empty for that of the world.
+    pub(crate) start: String,
+    /// Maximum random offset of the start as `m,deg`; empty for none.
+    pub(crate) start_noise: String,
+    /// Random seed; without one there are no random errors.
+    pub(crate) seed: Option<u64>,
+    /// Time at which the run ends, in seconds.
+    pub(crate) limit: Option<f64>,
+}
+
+/// World, body and start of a run, checked.
+pub(crate) struct Ready {
+    pub(crate) world: World,
+    pub(crate) make: Make,
+    /// Start pose of this seed.
+    pub(crate) begins: Pose,
+    pub(crate) limit: Nanos,
+}
+
+/// The period of a turn.
+pub(crate) const PERIOD: Nanos = alphabet::PERIOD;
+
+impl Setup {
+    /// Reads world, body and start.
+    ///
+    /// # Errors
+    /// A sentence that names the field at fault.
+    pub(crate) fn ready(&self) -> Result<Ready, String> {
+        let make = self.make()?;
+        let world = World::parse("world", &self.world).map_err(|error| error.to_string())?;
+        let walls = Walls::of_any(&world).map_err(|what| format!("world: {what}"))?;
+        let start = if self.start.trim().is_empty() {
+            world.start
+        } else {
+            let Start(pose) = self.start.parse().map_err(|error| format!("start: {error}"))?;
+            pose
+        };
+        check(&start, make.form(), &world, &walls).map_err(|error| format!("start: {error}"))?;
+        let begins = match (self.start_noise.trim(), self.seed) {
+            ("", _) => start,
+            (_, None) => return Err("start noise: it needs a seed".to_owned()),
+            (noise, Some(seed)) => {
+                let noise = StartNoise::read(noise).map_err(|error| format!("start noise: {error}"))?;
+                let pose = noise.pose(&start, seed, make.form(), &world, &walls);
+                pose.map_err(|error| format!("start noise: no random start pose is free: {error}"))?
+            }
+        };
+        let limit = self.limit.unwrap_or(LONGEST);
+        if !(limit > 0.0 && limit <= LONGEST) {
+            return Err(format!("time limit: expected more than 0 s and at most {LONGEST} s"));
+        }
+        let limit = Nanos((limit * 1e9) as u64);
+        Ok(Ready { world, make, begins, limit })
+    }
+
+    fn make(&self) -> Result<Make, String> {
+        let bodies = [Body::Ideal, Body::Scout, Body::Atrv];
+        let body = match self.body.as_str() {
+            "" => Body::Ideal,
+            name => {
+                let known = bodies.into_iter().find(|body| body.to_string() == name);
+                known.ok_or_else(|| format!("body: expected `ideal`, `scout` or `atrv`, found {name:?}"))?
+            }
+        };
+        let names = self.without.split(',').map(str::trim).filter(|name| !name.is_empty());
+        let part = |name: &str| PARTS.iter().find(|(known, _)| *known == name).map(|(_, part)| *part);
+        let without = names.map(|name| part(name).ok_or_else(|| format!("without: {name:?} is no part of a body")));
+        Ok(Make { body, without: without.collect::<Result<_, _>>()?, seed: self.seed })
+    }
+
+    /// World, body and seed, as a title of `mdle run --plot` names them.
+    pub(crate) fn in_words(&self, make: &Make) -> String {
+        let parts = make.without.iter().filter_map(|part| PARTS.iter().find(|(_, known)| known == part));
+        let names: Vec<&str> = parts.map(|(name, _)| *name).collect();
+        let without = if names.is_empty() { String::new() } else { format!(" without {}", names.join(", ")) };
+        let seed = make.seed.map_or("no seed".to_owned(), |seed| format!("seed {seed}"));
+        format!("world {}, body {}{without}, {seed}", self.world_name, make.body)
+    }
+}
+
+impl Ready {
+    /// Returns the robot at its start.
+    ///
+    /// # Errors
+    /// A sentence about the start.
+    pub(crate) fn robot(&self) -> Result<Simulated, String> {
+        let period = Duration::from_nanos(PERIOD.0);
+        Simulated::with(&self.make, &self.world, self.begins, period).map_err(|error| format!("start: {error}"))
+    }
+}

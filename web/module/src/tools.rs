@@ -1,0 +1,89 @@
+//! Answers of the commands of `mdlec`, with the bytes that it prints.
+
+use mdle_compiler::Compiled;
+use mdle_compiler::alphabet::{Declaration, DeclarationKind};
+use mdle_compiler::analysis::analyze as analysis;
+use mdle_compiler::diagnostic::{Code, Diagnostic};
+use mdle_compiler::picture;
+use mdle_compiler::plan::signature;
+use mdle_compiler::syntax;
+use mdle_compiler::trace::{Counted, Script, run};
+use serde_json::{Value, json};
+
+use crate::document::Document;
+use crate::robot::robot;
+
+/// Maximum number of bytes of a trace.
+const TRACE_MOST: usize = 64 << 20;
+
+fn output(text: impl Into<String>) -> Value {
+    json!({ "output": text.into() })
+}
+
+/// Returns the messages as JSON, one a line.
+pub(crate) fn check(document: &mut Document) -> Value {
+    let found = document.check();
+    output(messages(document, &found))
+}
+
+fn messages(document: &Document, found: &[Diagnostic]) -> String {
+    found.iter().map(|diagnostic| document.sources.message(diagnostic).to_json() + "\n").collect()
+}
+
+/// Returns the text in the canonical layout; with errors, the messages as JSON.
+pub(crate) fn fmt(document: &Document) -> Value {
+    match syntax::format(document.source, document.text()) {
+        Ok(text) => output(text),
+        Err(found) => json!({ "messages": messages(document, &found) }),
+    }
+}
+
+/// Returns the explanation of a code.
+pub(crate) fn explain(code: &str) -> Result<Value, String> {
+    let code =
+        Code::ALL.iter().find(|known| known.name() == code).ok_or_else(|| format!("there is no code {code:?}"))?;
+    Ok(output(format!("{code}: {}\n\n{}", code.title(), code.explanation().text())))
+}
+
+/// Returns the interrupts, laws and signals of the robot, each with its signature and a sentence.
+pub(crate) fn quarks() -> Result<Value, String> {
+    let alphabet = &robot()?.alphabet;
+    let able = alphabet.declarations().filter(|declaration| declaration.needs.iter().all(|need| alphabet.has(need)));
+    let quark = |declaration: &Declaration| {
+        let kind = match declaration.kind {
+            DeclarationKind::Control => "law",
+            DeclarationKind::Interrupt => "interrupt",
+            DeclarationKind::Signal => "signal",
+        };
+        json!({ "kind": kind, "signature": signature(declaration), "about": declaration.docs })
+    };
+    Ok(able.map(quark).collect())
+}
+
+/// Returns the static analysis of a plan as text and as JSON.
+pub(crate) fn analyze(document: &mut Document, plan: Option<&str>) -> Result<Value, String> {
+    let Compiled { machine, .. } = document.compile(plan, |_| Ok(()))?;
+    let analysis = analysis(&machine);
+    Ok(json!({ "output": analysis.to_text(), "json": analysis.to_json() }))
+}
+
+/// Returns the picture of a plan.
+pub(crate) fn draw(document: &mut Document, plan: Option<&str>) -> Result<Value, String> {
+    let Compiled { machine, .. } = document.compile(plan, picture::fits)?;
+    picture::svg(&machine).map(output).map_err(|too_large| document.rendered(&[too_large]))
+}
+
+/// Returns the trace of a plan on a script.
+pub(crate) fn trace(document: &mut Document, plan: Option<&str>, script: &str) -> Result<Value, String> {
+    let compiled = document.compile(plan, |_| Ok(()))?;
+    let script = Script::read(script).and_then(|script| script.in_words_of(&compiled.plan, document.alphabet));
+    let script = script.map_err(|error| format!("line {} of the script: {}", error.line, error.message))?;
+    let mut text = String::new();
+    for line in run(Counted::new(&compiled.machine), &script) {
+        text += &format!("{line}\n");
+        if text.len() > TRACE_MOST {
+            return Err("the trace is too long to be shown: use `mdlec trace`".to_owned());
+        }
+    }
+    Ok(output(text))
+}

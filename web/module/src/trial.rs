@@ -1,0 +1,47 @@
+//! A whole run at once, of which only the end is reported: one of a batch.
+
+use mdle_runtime::{Nanos, Turn};
+use serde_json::{Value, json};
+
+use crate::course::{Course, End};
+use crate::plan::Plan;
+use crate::setup::Setup;
+
+/// Makes a run, and returns how it ended: `over`, `limit` or `fault`; and, if the world has a goal, whether the robot
+/// is `arrived`, `bumped` or `astray`, as `mdle run --goal world` judges it.
+pub(crate) fn trial(setup: Setup) -> Result<Value, String> {
+    let plan = Plan::of(&setup.text, setup.plan.as_deref())?;
+    let ready = setup.ready()?;
+    let mut course = Course::new(&plan, &ready)?;
+    let mut atom = None;
+    while course.end.is_none() {
+        let Some(exchange) = course.exchange() else { break };
+        let Some(made) = course.turn(&exchange.y, false) else { break };
+        if matches!(made.turn, Turn::Law(_)) {
+            atom = course.machine.as_ref().and_then(|machine| machine.atom());
+        }
+    }
+    let t = Nanos(course.turns.saturating_sub(1).saturating_mul(crate::setup::PERIOD.0));
+    course.release();
+    course.stop();
+    let (end, fault) = match &course.end {
+        Some(End::Over) => ("over", None),
+        Some(End::Fault(sentence)) => ("fault", Some(sentence.clone())),
+        Some(End::Limit) | None => ("limit", None),
+    };
+    let pose = course.robot.pose();
+    let judged = ready.world.goal.map(|goal| {
+        if course.touches {
+            "bumped"
+        } else if goal.holds(&pose) {
+            "arrived"
+        } else {
+            "astray"
+        }
+    });
+    let at = [pose.x.0, pose.y.0, pose.theta.degrees()];
+    Ok(json!({
+        "seed": setup.seed, "end": end, "fault": fault, "t": t.seconds(), "contacts": course.contacts,
+        "judged": judged, "pose": at, "atom": atom,
+    }))
+}
