@@ -1,0 +1,109 @@
+// Answers of the module.
+
+/** Line, column, line, column; from 0, columns in UTF-16 code units. */
+export type Range = [number, number, number, number];
+
+export interface Edit {
+  range: Range;
+  insert: string;
+}
+
+export interface Diagnosis {
+  diagnostics: { code: string; title: string; error: boolean; range: Range; message: string; fixes: (Edit & { title: string })[] }[];
+  plans: string[];
+  tokens: [Range, string][];
+}
+
+export interface Completion {
+  range: Range;
+  items: { label: string; kind: string; detail: string; about: string; insert: string; snippet: boolean }[];
+}
+
+export type Point = [number, number];
+export type Pose = [number, number, number];
+
+export interface Outline {
+  name: string;
+  solid: boolean;
+  points: Point[];
+}
+
+export interface Floor {
+  outlines: Outline[];
+  things: Outline[];
+  start: Pose;
+  goal: { min: Point; max: Point } | { center: Point; radius: number } | null;
+  charger: { at: Point; heading: number; reach: number } | null;
+}
+
+export interface Element {
+  kind: "atom" | "loop" | "scope";
+  law: string | null;
+  name: string;
+  condition: string;
+  parent: number | null;
+  atom: number | null;
+  state: number | null;
+  line: number;
+}
+
+export interface Description {
+  elements: Element[];
+  floor: Floor;
+  form: { round: boolean; length: number; width: number };
+  start: Pose;
+  period: number;
+  limit: number;
+}
+
+export interface Fired {
+  scope: number;
+  completed: boolean;
+  by: string;
+  to: number | null;
+}
+
+export interface Frame {
+  t: number;
+  pose: Pose;
+  velocity: [number, number];
+  odometry: Pose;
+  battery: number;
+  touches: boolean;
+  ranges: (number | null)[];
+  echoes: Point[];
+  gone: (Point | null)[];
+  atom: number | null;
+  began: boolean;
+  since: [number, number][];
+  made: number;
+  fired: Fired[];
+}
+
+export interface End {
+  how: "over" | "limit" | "fault";
+  by?: string;
+}
+
+export interface Steps {
+  turns: Frame[];
+  end: End | null;
+}
+
+export interface Moment {
+  atom: number;
+  ends: boolean;
+  is_new: boolean;
+  completed: boolean;
+  scopes: { element: number; since: number; fired: boolean; operands: { fired: boolean; words: string | null }[] }[];
+}
+
+export interface Trial {
+  seed: number;
+  end: "over" | "limit" | "fault";
+  fault: string | null;
+  t: number;
+  contacts: number;
+  judged: "arrived" | "bumped" | "astray" | null;
+  pose: Pose;
+}

@@ -1,0 +1,85 @@
+// The settings of a run, as the fields of the page have them.
+import hall from "repository:targets/sim/simulator/worlds/hall.toml";
+import maze from "repository:targets/sim/simulator/worlds/maze.toml";
+import office from "repository:targets/sim/simulator/worlds/office.toml";
+import room from "repository:targets/sim/simulator/worlds/room.toml";
+
+/** The worlds that come with the simulator, as TOML. */
+export const WORLDS: Record<string, string> = { office, maze, hall, room };
+
+/** Everything that a link or the browser's storage keeps. */
+export interface Settings {
+  /** Text of the plan. */
+  text: string;
+  /** Name of the plan to run; empty for the only one. */
+  plan: string;
+  /** Name of a world, or `own`. */
+  world: string;
+  /** Text of the world `own`. */
+  ownWorld: string;
+  body: string;
+  without: string;
+  start: string;
+  noise: string;
+  seed: string;
+  limit: string;
+}
+
+export const EMPTY: Settings = {
+  text: "", plan: "", world: "office", ownWorld: "", body: "ideal", without: "", start: "", noise: "", seed: "", limit: "600",
+};
+
+/** Maximum number of letters of a text, and of any other setting. */
+const LONGEST = { text: 5_000_000, ownWorld: 8_000_000, other: 200 };
+
+/** Takes the known settings of an object of unknown origin; throws if one is no text or too long. */
+export function settingsOf(object: unknown): Settings {
+  if (object === null || typeof object !== "object") throw new Error("no settings");
+  const settings = { ...EMPTY };
+  for (const key of Object.keys(EMPTY) as (keyof Settings)[]) {
+    const value = (object as Record<string, unknown>)[key];
+    if (value === undefined) continue;
+    const most = key === "text" || key === "ownWorld" ? LONGEST[key] : LONGEST.other;
+    if (typeof value !== "string" || value.length > most) throw new Error(`${key} is no text of at most ${most} letters`);
+    settings[key] = value;
+  }
+  if (settings.world !== "own" && !(settings.world in WORLDS)) throw new Error(`there is no world ${settings.world}`);
+  if (!["ideal", "scout", "atrv"].includes(settings.body)) throw new Error(`there is no body ${settings.body}`);
+  return settings;
+}
+
+/** The world of the settings as TOML. */
+export function worldText(settings: Settings): string {
+  return settings.world === "own" ? settings.ownWorld : WORLDS[settings.world] ?? "";
+}
+
+/** The setup of a run for the module; throws a sentence about the field at fault. */
+export function setupOf(settings: Settings): Record<string, unknown> {
+  const seed = settings.seed.trim();
+  if (!/^\d{0,15}$/.test(seed)) throw new Error("seed: expected a whole number of at most 15 digits, or nothing");
+  const limit = Number(settings.limit);
+  if (!(limit > 0 && limit <= 3600)) throw new Error("time limit: expected seconds, more than 0 and at most 3600");
+  return {
+    text: settings.text, plan: settings.plan || null, world: worldText(settings),
+    world_name: settings.world === "own" ? "world.toml" : settings.world, body: settings.body, without: settings.without,
+    start: settings.start.trim(), start_noise: settings.noise.trim(), seed: seed === "" ? null : Number(seed), limit,
+  };
+}
+
+/** The command that makes the same run natively. */
+export function command(settings: Settings): string {
+  const words = ["mdle run plan.mdle --target sim"];
+  const quoted = (text: string) => (/^[\w.,-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
+  const option = (name: string, value: string) => {
+    if (value.trim() !== "") words.push(`--${name}=${quoted(value.trim())}`);
+  };
+  option("plan", settings.plan);
+  option("world", settings.world === "own" ? "world.toml" : settings.world);
+  option("body", settings.body === "ideal" ? "" : settings.body);
+  option("without", settings.without);
+  option("start", settings.start);
+  option("start-noise", settings.noise);
+  option("seed", settings.seed);
+  option("timeout", settings.limit);
+  return `${words.join(" ")} --speed=max`;
+}
