@@ -57,7 +57,12 @@ pub(crate) fn plans(path: &str, text: &str) -> Vec<Driven> {
         name: plan.root.name,
         loaded: Arc::new(load(&machine, &sources, &target).expect("a plan for the simulator")),
     };
-    plans.into_iter().map(load).filter(|driven| driven.loaded.plan().reads().is_empty()).collect()
+    // What reads modules or other robots needs an engine with them.
+    let is_alone = |driven: &Driven| {
+        let plan = driven.loaded.plan();
+        plan.reads().is_empty() && plan.robots().is_empty()
+    };
+    plans.into_iter().map(load).filter(is_alone).collect()
 }
 
 /// Counts the ends of atoms in a turn.
