@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { before, test } from "node:test";
-import { begin } from "./module.mjs";
+import { begin, bytes } from "./module.mjs";
 
 const root = process.env.MDLE_ROOT;
 const office = readFileSync(join(root, "targets/sim/simulator/worlds/office.toml"), "utf8");
@@ -90,4 +90,9 @@ test("the explanation of a turn has the values of its operands", () => {
   const operands = moments[0].scopes.flatMap(({ operands }) => operands);
   assert.ok(operands.some(({ fired, words }) => fired && /^wait 20s$|atIsection/.test(words)), JSON.stringify(operands));
   assert.equal(turns[first].fired[0].by.includes("plan.mdle:5"), true, turns[first].fired[0].by);
+});
+
+test("a module has at most a gigabyte of memory, and stops beyond", async () => {
+  const { instance } = await WebAssembly.instantiate(bytes, {});
+  assert.throws(() => instance.exports.mdle_room(1_100_000_000), WebAssembly.RuntimeError);
 });

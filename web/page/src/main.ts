@@ -73,9 +73,18 @@ function choices(plans: string[], chosen = field("plan").value): void {
   field("plan").value = plans.length === 0 || plans.includes(chosen) ? chosen : "";
 }
 
+/** Time after which a check of an older text is given up, in milliseconds. */
+const OLD = 2000;
+/** Beginning of the check that goes on; 0 if there is none. */
+let checking = 0;
+
 /** The text has changed: it is kept, checked and drawn. */
 async function changed(): Promise<void> {
   keep(settings());
+  const { text } = editor;
+  const begun = performance.now();
+  if (checking > 0 && begun - checking > OLD) language.stop("The text has changed.");
+  checking = begun;
   try {
     const diagnosis = await editor.diagnose();
     if (!diagnosis) return;
@@ -86,7 +95,10 @@ async function changed(): Promise<void> {
     await picture.draw(editor.text, field("plan").value).catch((error: Error) => picture.say(error.message));
     if (run) show(run, player.turn);
   } catch (error) {
-    tell((error as Error).message, true);
+    // What an older text was refused for is of no use.
+    if (editor.text === text) tell((error as Error).message, true);
+  } finally {
+    if (checking === begun) checking = 0;
   }
 }
 
