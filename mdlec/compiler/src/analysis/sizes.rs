@@ -9,6 +9,9 @@ use serde::Serialize;
 use crate::fsm::{Element, Machine};
 use crate::rust::Shape;
 
+/// Bytes of the place of a text on a computer of 64 bits: address and length.
+const PLACE: usize = 16;
+
 /// Bytes of the emitted machine, on a computer of 64 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Bytes {
@@ -55,7 +58,7 @@ fn texts(machine: &Machine) -> usize {
     let names = machine.elements().map(Element::name);
     let (mut places, mut different) = (0, BTreeSet::new());
     for text in laws.chain(conditions).chain(names) {
-        places += size_of::<&str>();
+        places += PLACE;
         different.insert(text);
     }
     places + different.iter().map(|text| text.len()).sum::<usize>()
