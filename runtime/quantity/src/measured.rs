@@ -1,4 +1,4 @@
-//! The cause of a transition, and the values from which operands of conditions were evaluated, in the words of the plan.
+//! Causes of transitions, and the values from which operands of conditions were evaluated, in the words of the plan.
 
 use std::fmt::Write as _;
 
@@ -12,8 +12,8 @@ const DECIMALS: usize = 2;
 /// Maximum number of decimals of a value.
 const DECIMALS_MOST: usize = 9;
 
-/// Returns the cause of a transition with the values of the operands that had fired, each by its number in the interrupt
-/// of the scope that ended: `r1 = 0.38 m < 40cm (wall.mdle:7)`. Returns `None` for a plan without a text.
+/// Returns the cause of a transition with the values of the operands that had fired, each by its number in the
+/// interrupt of the scope that ended: `r1 = 0.38 m < 40cm (wall.mdle:7)`. Returns `None` for a plan without a text.
 #[must_use]
 pub fn cause_text(source: &dyn Words, transition: &Transition, operands: &[(u32, Measured)]) -> Option<String> {
     let Transition { scope, cause, .. } = *transition;

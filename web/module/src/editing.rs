@@ -97,7 +97,10 @@ fn item(item: &Item) -> Value {
         ItemKind::Snippet => "snippet",
     };
     let is_snippet = item.kind == ItemKind::Snippet;
-    json!({ "label": item.label, "kind": kind, "detail": item.detail, "about": item.docs, "insert": item.insert, "snippet": is_snippet })
+    json!({
+        "label": item.label, "kind": kind, "detail": item.detail, "about": item.docs, "insert": item.insert,
+        "snippet": is_snippet,
+    })
 }
 
 /// Returns the text about a place, in Markdown, or null.
