@@ -33,7 +33,8 @@ pub fn files(endings: &[&str]) -> Vec<TextFile> {
                 continue;
             }
             if path.is_dir() {
-                let is_build = name.starts_with("target") && path.join("CACHEDIR.TAG").exists();
+                // Cargo marks the folders that it makes; whoever made this one by hand may have left the mark out.
+                let is_build = path == root().join("target") || path.join("CACHEDIR.TAG").exists();
                 if !name.starts_with('.') && !is_build {
                     folders.push(path);
                 }
