@@ -1,6 +1,6 @@
 //! Local pursuit by three robots (paper, section IV-D, Fig. 12): the iterated ways become straight, over random seeds.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test tells")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
