@@ -43,7 +43,8 @@ impl Align {
 /// difference that is left is that of the signals `r` of the two sonars.
 ///
 /// A sonar that misses an echo now and then is waited for. While one sonar hears nothing for longer, the robot looks
-/// for the wall, once round at most. If it has heard none by the time of a slow full circle, it is done where it stands.
+/// for the wall, once round at most. If it has heard none by the time of a slow full circle, it is done where it
+/// stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aligning {
     sonars: Align,

@@ -10,7 +10,7 @@ use mdle_tests::repository::{files, root};
 
 const ALPHABET: &str = include_str!("../rover/alphabet.mdle");
 const MANIFEST: &str = "[workspace]\n\n[package]\nname = \"mdle-rover\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
-                        [dependencies]\nmdle-runtime = \"0.1\"\nmdle-host = \"0.1\"\n";
+                        [dependencies]\nmdle-runtime = \"0.2\"\nmdle-host = \"0.2\"\n";
 const PLAN: &str = "{ Main (low 11) (Atom (low 13) count -3) (Atom (low) count 5) }\n";
 
 /// Returns a folder with a plan, and beside it the target `rover` with this alphabet, without bindings.

@@ -290,7 +290,7 @@ fn a_changed_bit_is_noticed_in_every_part() {
             );
         }
     }
-    let viewers = record.windows(13).position(|bytes| bytes == b"\"frame_id\":\"r").unwrap();
+    let viewers = record.windows(10).position(|bytes| bytes == b"\"frame_id\"").unwrap();
     let mut changed = record.clone();
     changed[viewers + 2] ^= 1;
     fs::write(folder.join("changed.mcap"), changed).unwrap();

@@ -13,8 +13,8 @@ use std::time::Duration;
 
 use mdle_atrv_emulator::atrv::{Atrv, step};
 use mdle_emulator::{Emulated, Pace, Port, serve};
-use mdle_record::frames::{Frames, TurnMade};
-use mdle_record::{RecordFile, RecordedTurn, Records};
+use mdle_record::frames::Frames;
+use mdle_record::{RecordFile, RecordedTurn, Records, TurnMade};
 use mdle_scout_emulator::scout::Scout;
 use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::chance::{Chance, repeated};

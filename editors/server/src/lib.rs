@@ -1,8 +1,8 @@
 //! The language server of MDLe, for every editor that speaks the Language Server Protocol 3.17; `mdlec lsp` runs it on
 //! standard input and output.
 //!
-//! The features are those of `mdle-language-service`, which answers in places of bytes. `requests` and `convert` translate
-//! between it and the protocol, with positions in UTF-16.
+//! The features are those of `mdle-language-service`, which answers in places of bytes. `requests` and `convert`
+//! translate between it and the protocol, with positions in UTF-16.
 
 mod answers;
 mod check;

@@ -54,8 +54,8 @@ const OF_TURNS: f64 = 0.025;
 const OF_WAYS: f64 = 2e-4;
 /// Angle, in radians, from the axes of odometry below which a frame is along them.
 const ALIGNED: f64 = 0.02;
-/// Greatest angle, in radians, of the first walls from the axes of odometry: a plan that begins further off them does not
-/// take walls for its axes.
+/// Greatest angle, in radians, of the first walls from the axes of odometry: a plan that begins further off them does
+/// not take walls for its axes.
 const ALONG_AXES: f64 = 0.17;
 /// Greatest drift from an axis of a frame that is not one of odometry: further off, the frame lies askew in the room.
 const MOST: Radians = Radians::from_degrees(20.0);
@@ -109,8 +109,8 @@ impl Default for Compass {
 }
 
 impl Compass {
-    /// Returns the angle by which odometry has turned a frame, one of whose axes has the direction `axis` by odometry; 0
-    /// while it is not known.
+    /// Returns the angle by which odometry has turned a frame, one of whose axes has the direction `axis` by odometry;
+    /// 0 while it is not known.
     ///
     /// A frame is taken to be along the walls, unless the first walls lay askew to the axes of odometry: then the drift
     /// of those axes since is known, and that of other frames is not.

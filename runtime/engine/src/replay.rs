@@ -4,5 +4,5 @@
 mod history;
 mod repeats;
 
-pub(crate) use history::{History, PlanChanges};
+pub(crate) use history::History;
 pub(crate) use repeats::Repeats;

@@ -6,8 +6,8 @@
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 
-use mdle_record::frames::{Frames, TurnMade};
-use mdle_record::{Applied, Begin, Change, Overruled, Step};
+use mdle_record::frames::Frames;
+use mdle_record::{Applied, Begin, Change, Overruled, Step, TurnMade};
 use mdle_runtime::trace::{Json, Seconds};
 use mdle_runtime::{Nanos, Sensed, Turn, Twist};
 

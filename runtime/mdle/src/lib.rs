@@ -15,6 +15,7 @@ mod modules;
 mod new_module;
 mod plans;
 mod plot;
+mod record;
 mod recorded_files;
 mod replay;
 mod replayed;

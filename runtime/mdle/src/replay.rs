@@ -16,8 +16,9 @@ use mdle_runtime::{Nanos, Printable};
 
 use crate::arguments::Replay;
 use crate::failure::{self, Failure};
+use crate::record::Record;
 use crate::recorded_files;
-use crate::replayed::{Difference, Outcome, Parting, Record, ReplayTerms, replayed};
+use crate::replayed::{Difference, Outcome, Parting, ReplayTerms, replayed};
 use crate::replayer::RecordedRun;
 use crate::run_time::run_time;
 use crate::session;

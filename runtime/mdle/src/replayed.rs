@@ -1,20 +1,11 @@
 //! The comparison of a run that is made again with its record: the first turn that differs, and what differs.
 
-use std::io::{BufReader, Read};
-
-use mdle_record::{Message, MessageKind, ReadError, Records};
+use mdle_record::{Message, MessageKind, ReadError};
 use mdle_runtime::Nanos;
 
 use crate::failure::Failure;
+use crate::record::{OVER, Part};
 use crate::replayer::{RecordedRun, ReplayedTurn, Stop};
-
-/// The end of a plan, in place of a law.
-pub(crate) const OVER: &str = "plan over";
-
-/// Bytes of a record.
-pub(crate) type RecordSource = BufReader<Box<dyn Read>>;
-/// A record that is being read.
-pub(crate) type Record = Records<RecordSource>;
 
 /// Outcome of a replay.
 #[derive(Debug)]
@@ -63,25 +54,6 @@ pub(crate) struct ReplayTerms {
     pub(crate) until: Option<Nanos>,
     /// `true` if the plan goes on after the first turn that differs.
     pub(crate) goes_on: bool,
-}
-
-/// A part of a turn that differs.
-#[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Part {
-    /// Name of the part.
-    pub(crate) name: String,
-    /// The part in the record.
-    pub(crate) recorded: String,
-    /// The part in the replay.
-    pub(crate) replayed: String,
-}
-
-impl Part {
-    /// A part of this name; an empty text is shown as `none`.
-    pub(crate) fn new(name: &str, recorded: &str, replayed: &str) -> Self {
-        let [recorded, replayed] = [recorded, replayed].map(|text| if text.is_empty() { "none" } else { text });
-        Self { name: name.to_owned(), recorded: recorded.to_owned(), replayed: replayed.to_owned() }
-    }
 }
 
 /// Makes the turns of a record again, and compares them with it.

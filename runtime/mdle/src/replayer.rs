@@ -14,8 +14,8 @@ use mdle_record::{Applied, Begin, Change, Message, ReadError, RecordedTurn, Step
 use mdle_runtime::{Alphabet, Plan, Sensed, Turn, Twist};
 
 use crate::failure::Failure;
+use crate::record::{OVER, Part, Record, RecordSource};
 use crate::recorded_files;
-use crate::replayed::{OVER, Part, Record, RecordSource};
 use crate::safety::{Guarded, SafetyFile};
 
 /// A run that is made again, on any robot.

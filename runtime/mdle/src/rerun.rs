@@ -14,7 +14,7 @@ use mdle_record::{Message, MessageKind, ReadError, RecordedTurn, Step, TurnsWith
 use mdle_runtime::{Alphabet, Machine, Nanos, Plan, Sensed, Stamp, Stamps, Turn, Twist};
 
 use crate::failure::Failure;
-use crate::replayed::Record;
+use crate::record::Record;
 
 /// A turn of a record that was made again.
 #[derive(Debug)]

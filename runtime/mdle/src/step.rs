@@ -9,7 +9,7 @@ use mdle_record::{Message, MessageKind, Overruled};
 use mdle_runtime::{Nanos, Printable};
 
 use crate::failure::Failure;
-use crate::replayed::OVER;
+use crate::record::OVER;
 use crate::replayer::{RecordedRun, ReplayedTurn, Stop};
 use crate::run_time::run_time;
 

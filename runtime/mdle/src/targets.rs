@@ -19,7 +19,7 @@ use mdle_runtime::{Alphabet, Plan as _, Robot, Sensed, Twist};
 use crate::failure::Failure;
 use crate::link::{self, LinkFile};
 use crate::plans::{self, texts};
-use crate::replayed::Record;
+use crate::record::Record;
 use crate::replayer::{RecordedRun, replay};
 use crate::rerun::{Rerun, RerunLaws, rerun};
 use crate::safety::{Guarded, SafetyFile};

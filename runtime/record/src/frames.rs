@@ -1,11 +1,11 @@
 //! Frames: what the thread that drives a robot hands over to the thread that writes the record. A frame is a tag, the
 //! number of its bytes, and these.
 
-use mdle_runtime::{Nanos, Sensed, Twist};
+use mdle_runtime::{Nanos, Sensed};
 
 use crate::bytes::{Bytes, put_u32, put_u64};
-use crate::turn;
-use crate::{Applied, Begin, Chain, Change, Overruled, RecordedTurn, Step};
+use crate::turn::{self, TurnMade, Undecoded};
+use crate::{Begin, Chain, RecordedTurn, Step};
 
 /// Bytes before the content of a frame.
 const HEAD: usize = 5;
@@ -34,27 +34,6 @@ pub struct Frames {
     before: Option<Sensed>,
     chain: Chain,
     content: Vec<u8>,
-}
-
-/// A turn of a run that goes on, besides its output.
-#[derive(Debug, Clone, Copy)]
-pub struct TurnMade<'a> {
-    /// Number of the turn, from 0.
-    pub number: u64,
-    /// Time of the run.
-    pub t: Nanos,
-    /// The input that is sent after it.
-    pub sent: Twist,
-    /// Source of the input.
-    pub applied: Applied,
-    /// Number of the plan that ran, from 1.
-    pub plan: u64,
-    /// The state in which the turn ended; 0 if no plan has made it.
-    pub state: u64,
-    /// Causes of the turn besides its output.
-    pub changes: &'a [Change],
-    /// The input that a safety rule changed.
-    pub overruled: Option<&'a Overruled>,
 }
 
 impl Frames {
@@ -133,15 +112,6 @@ pub(crate) struct Turns {
     constants: crate::Constants,
     before: Option<Sensed>,
     chain: Chain,
-}
-
-/// Reason why a turn cannot be decoded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Undecoded {
-    /// The sum over this and all before it differs: bytes were changed.
-    Changed,
-    /// The bytes are none of the begin or of a turn.
-    Unreadable,
 }
 
 impl Turns {

@@ -3,8 +3,9 @@
 use std::fmt;
 use std::io::{self, Read};
 
-use crate::frames::{Turns, Undecoded};
+use crate::frames::Turns;
 use crate::parts::{Part, Parts, Unreadable};
+use crate::turn::Undecoded;
 use crate::writer::{BEGIN, TURN};
 use crate::{Begin, RecordedTurn};
 use mdle_runtime::Nanos;

@@ -7,8 +7,8 @@ use mdle_runtime::{
     Shape, Supply, Twist,
 };
 
+use crate::TurnMade;
 use crate::bytes::Bytes;
-use crate::frames::TurnMade;
 use crate::turn::{put, take};
 use crate::{Applied, Begin, Change, Overruled, SafetyTexts, Step};
 

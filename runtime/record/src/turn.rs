@@ -5,8 +5,37 @@ use mdle_runtime::{Cause, Nanos, Sensed, Transition, Twist};
 use crate::bytes::{Bytes, put_u32, put_u64};
 use crate::change::{put_changes, put_overruled, take_changes, take_overruled};
 use crate::exact::{self, put_twist, take_twist};
-use crate::frames::{TurnMade, Undecoded};
 use crate::{Change, Constants, Overruled};
+
+/// A turn of a run that goes on, besides its output.
+#[derive(Debug, Clone, Copy)]
+pub struct TurnMade<'a> {
+    /// Number of the turn, from 0.
+    pub number: u64,
+    /// Time of the run.
+    pub t: Nanos,
+    /// The input that is sent after it.
+    pub sent: Twist,
+    /// Source of the input.
+    pub applied: Applied,
+    /// Number of the plan that ran, from 1.
+    pub plan: u64,
+    /// The state in which the turn ended; 0 if no plan has made it.
+    pub state: u64,
+    /// Causes of the turn besides its output.
+    pub changes: &'a [Change],
+    /// The input that a safety rule changed.
+    pub overruled: Option<&'a Overruled>,
+}
+
+/// Reason why a turn cannot be decoded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Undecoded {
+    /// The sum over this and all before it differs: bytes were changed.
+    Changed,
+    /// The bytes are none of the begin or of a turn.
+    Unreadable,
+}
 
 /// A turn of a run.
 #[derive(Debug, Clone, PartialEq)]

@@ -10,7 +10,8 @@ use mdle_runtime::Nanos;
 
 use crate::Begin;
 use crate::bytes::Bytes;
-use crate::frames::{Tag, Turns, Undecoded, first};
+use crate::frames::{Tag, Turns, first};
+use crate::turn::Undecoded;
 use crate::viewers::CHANNELS;
 
 /// Time of the run after which a chunk is closed and written, in nanoseconds.

@@ -12,8 +12,8 @@ use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::{Duration, Instant};
 
-use mdle_record::Records;
-use mdle_record::frames::{Frames, TurnMade};
+use mdle_record::frames::Frames;
+use mdle_record::{Records, TurnMade};
 
 /// Number of turns of an hour.
 const TURNS: u32 = 36_000;

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use mdle_compiler::load::{self, Loaded};
 use mdle_files::Target;
-use mdle_record::frames::{Frames, TurnMade};
-use mdle_record::{Applied, Begin, RecordFile, Step};
+use mdle_record::frames::Frames;
+use mdle_record::{Applied, Begin, RecordFile, Step, TurnMade};
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{
     Compass, Machine, Measured, Meters, Mount, Nanos, PathStore, Ping, Pings, Plan as _, Pose, Published, Sensed,

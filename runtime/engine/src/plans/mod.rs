@@ -4,6 +4,7 @@
 //! A front end makes requests at a turn break, such as [`Plans::swap`], and reads the answers from
 //! [`Plans::take_events`] after each turn.
 
+mod changes;
 mod compiler;
 mod event;
 mod flight;
@@ -16,6 +17,7 @@ use std::any::Any;
 use std::io;
 use std::sync::Arc;
 
+use changes::PlanChanges;
 pub use compiler::{Compile, CompiledPlans, PlanSource};
 use compiler::{Compiler, Next, Order, Task};
 pub use event::{NoTrial, PlanEvent, When};
@@ -28,8 +30,6 @@ use running::Running;
 use stored::Store;
 pub use stored::{MOST_STORED, StoredPlan};
 pub(crate) use turns::PlanTurn;
-
-use crate::replay::PlanChanges;
 
 /// Time for which a new plan is on trial, unless [`Plans::set_trial`] sets another.
 pub const TRIAL: Nanos = Nanos(3_000_000_000);

@@ -1,14 +1,11 @@
 //! The causes of an engine's turns besides the robot's outputs, while it drives: values that plans and safety rules
 //! read of modules, and changes of plans.
 
-use std::sync::Arc;
-
 use mdle_record::Change;
 use mdle_runtime::{ModuleRead, Nanos};
 
 use crate::attribute::{AGE, AttributeKind, AttributeName};
 use crate::board::{Board, Post};
-use crate::plans::When;
 
 /// The changes that a record of the run needs.
 #[derive(Debug, Default)]
@@ -93,36 +90,5 @@ impl History {
             let attribute = u32::try_from(number).unwrap_or(u32::MAX);
             self.changes.push(Change::Published { attribute, at, bits });
         }
-    }
-}
-
-/// The changes of plans since the last turn.
-#[derive(Debug, Default)]
-pub(crate) struct PlanChanges {
-    /// The files of plans that are in the record, by their numbers.
-    files: Vec<Arc<[(String, String)]>>,
-    changes: Vec<Change>,
-}
-
-impl PlanChanges {
-    /// Notes that a plan of these files is to take over.
-    pub(crate) fn armed(&mut self, files: &Arc<[(String, String)]>, plan: &str, when: When) {
-        let number = self.files.iter().position(|known| known == files).unwrap_or_else(|| {
-            self.changes.push(Change::Files(files.to_vec()));
-            self.files.push(Arc::clone(files));
-            self.files.len() - 1
-        });
-        let files = u32::try_from(number).unwrap_or(u32::MAX);
-        self.changes.push(Change::Armed { files, plan: plan.to_owned(), when: when.number() });
-    }
-
-    /// Notes another change.
-    pub(crate) fn note(&mut self, change: Change) {
-        self.changes.push(change);
-    }
-
-    /// Takes the changes.
-    pub(crate) fn take(&mut self) -> Vec<Change> {
-        std::mem::take(&mut self.changes)
     }
 }

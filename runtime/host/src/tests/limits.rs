@@ -21,6 +21,7 @@ fn help_lists_all_options_and_opens_no_robot() {
           --timeout <TIME>   Maximum duration of the plan, in seconds or as in `5min`; exit status 4 after it [default: none]
           --turns <N>        Maximum number of turns; exit status 4 after them [default: none]
           --log <FILE>       File for a log of the run, one JSON object per turn; `FILE.mcap` is a record to replay
+          --log-best-effort  Let the run go on without its log if that cannot be written, and say so
           --require <CAUSE>  Cause by which the plan must end, such as `bumper`; exit status 5 otherwise
           --device <PATH>    Where the toy is
       -h, --help             Print help (see more with '--help')

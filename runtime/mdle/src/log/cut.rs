@@ -4,8 +4,8 @@ use std::io::{self, BufWriter, Write as _};
 use std::path::Path;
 use std::process::ExitCode;
 
-use mdle_record::frames::{Frames, TurnMade};
-use mdle_record::{Begin, Message, MessageKind, RecordFile, RecordedTurn};
+use mdle_record::frames::Frames;
+use mdle_record::{Begin, Message, MessageKind, RecordFile, RecordedTurn, TurnMade};
 use mdle_runtime::Nanos;
 
 use super::{created, damaged, unwritten};

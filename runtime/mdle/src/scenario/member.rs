@@ -61,7 +61,7 @@ struct Recorder {
 }
 
 /// A turn of a robot, for the log.
-pub(super) struct TurnMade {
+pub(super) struct MemberTurn {
     /// Lines for the report, without the time and the name.
     pub(super) lines: Vec<String>,
     /// Number of the atom's state, and its law; `None` if no law was applied.
@@ -131,8 +131,8 @@ impl Runner {
     }
 
     /// Makes turn `number` at time `t` with this output; a robot that is no longer driven stands.
-    pub(super) fn turn(&mut self, y: &Sensed, t: Nanos, number: u64) -> TurnMade {
-        let mut made = TurnMade { lines: Vec::new(), law: None, path: None };
+    pub(super) fn turn(&mut self, y: &Sensed, t: Nanos, number: u64) -> MemberTurn {
+        let mut made = MemberTurn { lines: Vec::new(), law: None, path: None };
         if self.standing == Standing::Drives && self.killed.is_some_and(|killed| t >= killed) {
             self.standing = Standing::Killed;
             made.lines.push("its program was killed".to_owned());
@@ -162,7 +162,7 @@ impl Runner {
     }
 
     /// Notes the transitions of the turn, and the law that runs.
-    fn reports(&mut self, made: &mut TurnMade) {
+    fn reports(&mut self, made: &mut MemberTurn) {
         let Self { engine, transitions, passes, .. } = self;
         let Some(machine) = engine.machine() else { return };
         let plan = machine.plan();

@@ -10,7 +10,7 @@ use mdle_runtime::{Nanos, Printable, Sensed};
 use mdle_sim::{FleetDrawing, TripDrawing};
 
 use super::arguments::Options;
-use super::member::{Runner, TurnMade};
+use super::member::{MemberTurn, Runner};
 use super::setup::Scenario;
 
 /// Reports and files of a run.
@@ -74,7 +74,7 @@ impl Output {
     }
 
     /// Takes a turn of a robot, which gave this output.
-    pub(super) fn turn(&mut self, runner: &Runner, y: &Sensed, t: Nanos, number: u64, made: &TurnMade) {
+    pub(super) fn turn(&mut self, runner: &Runner, y: &Sensed, t: Nanos, number: u64, made: &MemberTurn) {
         for line in &made.lines {
             self.line(t, &runner.name, line);
         }

@@ -21,8 +21,8 @@ use explanation::{AtomWords, Explainer, Explanation};
 
 use crate::arguments::{Question, Why};
 use crate::failure::{self, Failure};
+use crate::record::Record;
 use crate::replay::{self, WantedPlan};
-use crate::replayed::Record;
 use crate::rerun::{Rerun, RerunLaws, RerunTurn, Stop};
 use crate::run_time::run_time;
 use crate::targets;
