@@ -47,7 +47,7 @@ mod tests {
     use super::*;
     use crate::trial::Sensed;
 
-    /// The output of a robot that has entered so many rounds with `ada`, whose state is this old and counts `theirs`.
+    /// The output of a robot that has entered `own` rounds with `ada`, whose state has this age and the count `theirs`.
     fn linked(own: u64, age: u64, theirs: u64) -> Sensed {
         let state = PeerState { pose: Pose::ORIGIN, velocity: Twist::default(), age: Nanos(age), rounds: theirs };
         let mut y = Sensed::default();

@@ -1,4 +1,4 @@
-//! `rendezvous`, `sync` and `Follow` between robots of one scenario, and what a wrong scenario is told.
+//! `rendezvous`, `sync` and `Follow` between robots of one scenario, and the messages for wrong scenarios.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

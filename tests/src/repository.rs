@@ -33,7 +33,7 @@ pub fn files(endings: &[&str]) -> Vec<TextFile> {
                 continue;
             }
             if path.is_dir() {
-                // Cargo marks the folders that it makes; whoever made this one by hand may have left the mark out.
+                // Cargo marks the folders that it makes; one that was made by hand may lack the mark.
                 let is_build = path == root().join("target") || path.join("CACHEDIR.TAG").exists();
                 if !name.starts_with('.') && !is_build {
                     folders.push(path);

@@ -4,7 +4,7 @@
 
 /// Size of the stack in bytes: plans may be nested deeply.
 const STACK: u32 = 8 << 20;
-/// Maximum size of the memory in bytes: a page that exceeds it is told so, and goes on.
+/// Maximum size of the memory in bytes: a page that exceeds it gets an error, and goes on.
 const MEMORY: u32 = 1 << 30;
 
 fn main() {

@@ -67,8 +67,8 @@ pub struct Compass {
     drift: f64,
     /// Error of `drift`, in radians.
     error: f64,
-    /// The part of `drift` that is none, as the first walls lay askew to the axes of odometry; `None` before any were
-    /// measured.
+    /// The part of `drift` that the first walls account for, as they lay askew to the axes of odometry; `None` before
+    /// any were measured.
     askew: Option<f64>,
     /// The pose by odometry when the last output was taken in.
     last: Pose,

@@ -20,7 +20,7 @@ fn later_passes_count() {
     insta::assert_snapshot!(answers("rounds", plan, &outputs, &questions));
 }
 
-/// A chance in each pass: the first and the last are told.
+/// A chance in each pass: the answer has the first and the last.
 #[test]
 fn each_pass_is_a_chance() {
     let plan = "{ Passes (wait 10s)

@@ -42,7 +42,7 @@ struct Letter {
 }
 
 impl Air {
-    /// Returns the ends of a link between so many robots.
+    /// Returns the ends of a link between this number of robots.
     #[must_use]
     pub fn new(robots: usize, faults: Faults, seed: u64) -> Vec<Self> {
         let mail: Arc<[Mutex<Vec<Letter>>]> = (0..robots).map(|_| Mutex::default()).collect();

@@ -37,7 +37,7 @@ pub(super) struct Runner {
     recorded: usize,
 }
 
-/// Whether a robot of a scenario is driven.
+/// State of a robot of a scenario: driven or not.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Standing {
     /// Its plan runs.

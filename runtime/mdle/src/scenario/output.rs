@@ -172,7 +172,7 @@ fn setup(scenario: &Scenario) -> String {
     format!("world {}, {}, {seed}", scenario.world_name, robots.collect::<Vec<_>>().join(", "))
 }
 
-/// Replaces the file of a path in this folder: whoever reads it meanwhile has the old path or the new one.
+/// Replaces the file of a path in this folder: a reader meanwhile gets the old path or the new one.
 fn record(folder: &Path, name: &str, text: &str) -> Result<(), String> {
     let file = folder.join(if Path::new(name).extension().is_some() { name.to_owned() } else { format!("{name}.csv") });
     let unfinished = file.with_extension(format!("{}.tmp", std::process::id()));
