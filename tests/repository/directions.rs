@@ -218,22 +218,43 @@ fn pure_packages_need_no_operating_system() {
     );
 }
 
+#[test]
+fn emulators_are_built_on_the_libraries_of_executables() {
+    // With other features, a library and all that is built on it would be compiled anew.
+    let libraries = |folder: &str| -> BTreeSet<String> {
+        tree(folder, "{p} [{f}]", &["x86_64-unknown-linux-gnu"]).lines().map(str::to_owned).collect()
+    };
+    let version = |library: &str| library.split(" [").next().unwrap_or_default().to_owned();
+    for robot in ["scout", "atrv"] {
+        let (executable, emulator) = (libraries("targets/sim"), libraries(&format!("targets/{robot}/emulator")));
+        let versions: BTreeSet<_> = executable.iter().map(|library| version(library)).collect();
+        let others = emulator.difference(&executable).filter(|library| versions.contains(&version(library)));
+        assert_eq!(others.collect::<Vec<_>>(), [""; 0], "{robot}");
+        assert!(emulator.intersection(&executable).any(|library| library.starts_with("mdle-simulator ")), "{robot}");
+    }
+}
+
 /// Returns the packages that the package in `folder` is built with, itself among them, on Linux or in a browser.
 fn needed(folder: &str) -> BTreeSet<String> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let shown = ["--no-default-features", "--edges", "normal", "--prefix", "none", "--format", "{p}"];
-    let targets = ["--target", "x86_64-unknown-linux-gnu", "--target", "wasm32-unknown-unknown"];
-    let mut command = Command::new(cargo);
-    command.args(["tree", "--offline"]).args(shown).args(targets).current_dir(root().join(folder));
-    let output = command.output().expect("cargo runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let packages = String::from_utf8(output.stdout).expect("names");
+    let packages = tree(folder, "{p}", &["x86_64-unknown-linux-gnu", "wasm32-unknown-unknown"]);
     packages
         .lines()
         .filter_map(|line| line.split(' ').next())
         .filter(|name| !name.is_empty())
         .map(str::to_owned)
         .collect()
+}
+
+/// Returns a line in this format for each package that the package in `folder` is built with on these targets.
+fn tree(folder: &str, format: &str, targets: &[&str]) -> String {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(["tree", "--offline", "--no-default-features", "--edges", "normal", "--no-dedupe"]);
+    command.args(["--prefix", "none", "--format", format]).current_dir(root().join(folder));
+    command.args(targets.iter().flat_map(|target| ["--target", target]));
+    let output = command.output().expect("cargo runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("names")
 }
 
 /// Returns the packages of the workspace that a manifest names as dependencies, of any sort.

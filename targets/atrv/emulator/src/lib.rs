@@ -6,25 +6,18 @@ pub mod wire;
 
 use std::process::ExitCode;
 
-use clap::Parser;
 use mdle_emulator::{Options, program};
+use mdle_host::clap::{Arg, ArgAction, Command};
 use mdle_simulator::Body;
 
 use atrv::{Atrv, step};
 
-/// Emulate an iRobot ATRV-mini on a pseudo-terminal, in a simulated world
-#[derive(Debug, Parser)]
-#[command(name = "atrv-emulator")]
-struct Arguments {
-    #[command(flatten)]
-    options: Options,
-    /// Accept escaped 1B bytes in commands; without this option such a command is lost
-    #[arg(long)]
-    marks: bool,
-}
-
 /// Runs the robot emulator with the arguments of this process, until a signal comes. Returns its exit status.
 pub fn main() -> ExitCode {
-    let Arguments { options, marks } = Arguments::parse();
-    program("the ATRV", Body::Atrv, &options, step, |body, step| Atrv::new(body, step, marks))
+    let about = "Emulate an iRobot ATRV-mini on a pseudo-terminal, in a simulated world";
+    let marks = Arg::new("marks").long("marks").action(ArgAction::SetTrue);
+    let marks = marks.help("Accept escaped 1B bytes in commands; without this option such a command is lost");
+    let matches = Options::arguments(Command::new("atrv-emulator").about(about)).arg(marks).get_matches();
+    let marks = matches.get_flag("marks");
+    program("the ATRV", Body::Atrv, &Options::of(&matches), step, |body, step| Atrv::new(body, step, marks))
 }

@@ -6,21 +6,15 @@ pub mod wire;
 
 use std::process::ExitCode;
 
-use clap::Parser;
 use mdle_emulator::{Options, Pace, program};
+use mdle_host::clap::Command;
 use mdle_simulator::Body;
 
 use scout::Scout;
 
-/// Emulate a Nomadic Super Scout on a pseudo-terminal, in a simulated world
-#[derive(Debug, Parser)]
-#[command(name = "scout-emulator")]
-struct Arguments {
-    #[command(flatten)]
-    options: Options,
-}
-
 /// Runs the robot emulator with the arguments of this process, until a signal comes. Returns its exit status.
 pub fn main() -> ExitCode {
-    program("the Scout", Body::Scout, &Arguments::parse().options, Pace::step, |body, _| Scout::new(body))
+    let about = "Emulate a Nomadic Super Scout on a pseudo-terminal, in a simulated world";
+    let matches = Options::arguments(Command::new("scout-emulator").about(about)).get_matches();
+    program("the Scout", Body::Scout, &Options::of(&matches), Pace::step, |body, _| Scout::new(body))
 }
