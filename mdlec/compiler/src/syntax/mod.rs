@@ -10,6 +10,7 @@ pub(crate) mod foreign;
 mod format;
 mod header;
 mod indentation;
+mod lexer;
 mod lexical;
 mod mistakes;
 mod nodes;
@@ -19,6 +20,7 @@ pub mod outline;
 mod printed;
 mod recovered_nodes;
 mod regions;
+mod scan;
 mod single;
 mod site;
 mod source;
@@ -67,7 +69,7 @@ pub fn arena_for(text: &str) -> Arena {
 #[must_use]
 pub fn parse<'s>(source: SourceId, text: &'s str, arena: &'s Arena) -> (tree::File<'s>, Vec<Diagnostic>) {
     let source = Source::new(source, text);
-    let mut lexed = token::lex(source);
+    let mut lexed = lexer::lex(source);
     foreign::replace(source, &mut lexed);
     printed::read(&mut lexed);
     let mut balanced = brackets::balance(source, &lexed);

@@ -1,7 +1,7 @@
 //! Writes a piece of a plan's text in one line, for reports that repeat the user's words.
 
+use super::lexer::lex;
 use super::source::Source;
-use super::token::lex;
 use crate::diagnostic::SourceId;
 
 /// Returns the tokens of `text` in one line, without comments, typesetting and the parentheses around the whole; one

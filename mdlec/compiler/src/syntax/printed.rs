@@ -4,8 +4,9 @@
 use std::borrow::Cow;
 
 use super::header::{self, Begins};
+use super::lexer::{Lexed, lex};
 use super::source::{Place, Source};
-use super::token::{Lexed, Tok, Token, lex};
+use super::token::{Tok, Token};
 
 /// The name of a plan that is printed without one.
 const NAME: &str = "Plan";

@@ -3,9 +3,10 @@
 use std::borrow::Cow;
 
 use super::super::header;
+use super::super::lexer::{Lexed, lex};
 use super::super::printed;
 use super::super::source::{Place, Source};
-use super::super::token::{Lexed, Tok, Token, label, lex};
+use super::super::token::{Tok, Token, label};
 use super::comments::{Gap, gap};
 
 /// A token as it is printed.

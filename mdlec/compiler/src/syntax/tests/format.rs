@@ -3,8 +3,9 @@
 use proptest::prelude::*;
 
 use super::super::format;
+use super::super::lexer::lex;
 use super::super::source::Source;
-use super::super::token::{Tok, lex};
+use super::super::token::Tok;
 use super::properties::config;
 use super::{Arena, listings, outline, parse};
 use crate::diagnostic::SourceId;

@@ -5,8 +5,9 @@ use proptest::test_runner::RngSeed;
 
 use super::super::brackets::{MAX_DEPTH, balance};
 use super::super::format;
+use super::super::lexer::lex;
 use super::super::source::Source;
-use super::super::token::{Tok, lex};
+use super::super::token::Tok;
 use super::{Arena, outline, parse};
 use crate::diagnostic::{SourceId, Sources};
 

@@ -1,0 +1,162 @@
+//! Numbers as arguments: their units, their ranges, and the messages about both.
+
+use super::ranges::{limit, meant_in_range};
+use super::{Fitted, Fitting, Value};
+use crate::alphabet::{Kind, Origin, Param, Unit};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::Decimal;
+use crate::syntax::tree::Number;
+
+/// Largest whole number up to which a 64-bit float holds each.
+const WHOLE: i64 = 1 << 53;
+
+impl Fitting<'_> {
+    pub(super) fn quantity(&self, number: &Number, param: &Param, bare: Option<Unit>) -> Fitted {
+        let Some(decimal) = Decimal::parse(number.digits()) else { return Err(not_a_number(number).into()) };
+        let Some(default) = param.unit else {
+            return match number.unit() {
+                Some(_) => Err(self.wrong_unit(number, param).into()),
+                None => {
+                    self.in_range(number, param, decimal.to_f64())?;
+                    let words = decimal.to_string();
+                    Ok((Value::Quantity { kind: param.kind, exact: decimal, family: "" }, words))
+                }
+            };
+        };
+        let unit = match number.unit() {
+            None => bare.unwrap_or(default),
+            Some(name) => match Unit::from_name(name) {
+                Some(unit) if unit.kind == param.kind => unit,
+                Some(_) | None => return Err(self.wrong_unit(number, param).into()),
+            },
+        };
+        let exact = decimal.scaled(unit.factor, unit.exponent);
+        let in_default = if unit == default { decimal.to_f64() } else { converted(&exact, unit, default) };
+        self.in_range(number, param, in_default)?;
+        let words = if unit == default { decimal.to_string() } else { in_default.to_string() };
+        Ok((Value::Quantity { kind: param.kind, exact, family: unit.family }, words))
+    }
+
+    pub(super) fn whole(&self, number: &Number, param: &Param) -> Fitted {
+        if number.unit().is_some() {
+            return Err(self.wrong_unit(number, param).into());
+        }
+        let Some(decimal) = Decimal::parse(number.digits()).filter(Decimal::is_whole) else {
+            let message = format!("expected {}, found `{}`", param.kind.words(), number.digits());
+            return Err(Diagnostic::new(Code::E0302, message, number.span, "not a whole number").into());
+        };
+        let text = decimal.to_string();
+        self.in_range(number, param, decimal.to_f64())?;
+        let is_sonar = param.kind == Kind::Sonar;
+        let allowed = if is_sonar {
+            0..=15
+        } else if param.kind == Kind::Count {
+            1..=WHOLE
+        } else {
+            -WHOLE..=WHOLE
+        };
+        let Some(whole) = text.parse::<i64>().ok().filter(|whole| allowed.contains(whole)) else {
+            let message = format!("expected {}, found `{}`", param.kind.words(), number.digits());
+            let report = Diagnostic::new(Code::E0304, message, number.span, "out of range");
+            let help = "sonar 0 looks ahead, 4 left, 8 back, 12 right";
+            return Err(if is_sonar { report.help(help) } else { report }.into());
+        };
+        let value = match (param.kind, u8::try_from(whole)) {
+            (Kind::Sonar, Ok(sonar)) => Value::Sonar(sonar),
+            _ => Value::Integer(whole),
+        };
+        Ok((value, text))
+    }
+
+    /// Returns `value` if it is finite and in the parameter's range, which is in the parameter's own unit.
+    fn in_range(&self, number: &Number, param: &Param, value: f64) -> Result<f64, Box<Diagnostic>> {
+        let unit = param.unit.map(|unit| format!(" {}", unit.name)).unwrap_or_default();
+        if !value.is_finite() {
+            let message = format!("`{}` is too large a number", number.digits());
+            return Err(Diagnostic::new(Code::E0304, message, number.span, "no robot can do that").into());
+        }
+        if param.except == Some(value) {
+            return Err(self.excluded(number, param, value).into());
+        }
+        let Some((least, most)) = param.range.filter(|(least, most)| value < *least || value > *most) else {
+            return Ok(value);
+        };
+        let quark = &self.declaration.name;
+        let here = match number.unit() {
+            None if number.digits().parse() == Ok(value) => format!("`{}` is {}{unit}", param.name, number.digits()),
+            None | Some(_) => format!("`{}` is {value}{unit}", param.name),
+        };
+        if self.declaration.origin == Origin::Target {
+            let message = format!(
+                "`{}` cannot do this: `{quark}` takes `{}` from {least} to {most}{unit}",
+                self.robot, param.name
+            );
+            return Err(meant_in_range(Diagnostic::new(Code::E0402, message, number.span, here), number, param).into());
+        }
+        let message = format!("`{quark}` takes `{}` from {} to {}{unit}", param.name, limit(least), limit(most));
+        Err(meant_in_range(Diagnostic::new(Code::E0304, message, number.span, here), number, param).into())
+    }
+
+    /// Reports the only value that the range of a parameter excludes.
+    fn excluded(&self, number: &Number, param: &Param, value: f64) -> Diagnostic {
+        let unit = param.unit.map(|unit| unit.name).unwrap_or_default();
+        let (quark, name) = (&self.declaration.name, &param.name);
+        let message = format!("`{quark}` takes any `{name}` but {value}");
+        let here = format!("`{name}` is {value} {unit}");
+        let report = Diagnostic::new(Code::E0304, message, number.span, here.trim_end().to_owned());
+        report.help(format!("write another {}, such as `{quark} 1{unit}`", param.kind.words().replace("a ", "")))
+    }
+
+    fn wrong_unit(&self, number: &Number, param: &Param) -> Diagnostic {
+        let found = number.unit().unwrap_or_default();
+        let what = Unit::from_name(found).map_or_else(|| format!("`{found}`"), |unit| unit.kind.words());
+        let message = format!("expected {}, found {what}", param.kind.words());
+        let here = format!("`{}` of `{}` is {}", param.name, self.declaration.name, param.kind.words());
+        let units: Vec<_> = Unit::ALL.iter().filter(|unit| unit.kind == param.kind).map(|unit| unit.name).collect();
+        let report = Diagnostic::new(Code::E0303, message, number.span, here);
+        let report = match (param.kind, found) {
+            (Kind::Time, "m") => report.fix("for minutes write {}", number.span, format!("{}min", number.digits())),
+            _ => report,
+        };
+        match units.split_last() {
+            Some((last, [])) => report.help(format!("its unit is {last}")),
+            Some((last, others)) => report.help(format!("its unit is {} or {last}", others.join(", "))),
+            None => report.help("write it without a unit"),
+        }
+    }
+}
+
+fn not_a_number(number: &Number) -> Diagnostic {
+    Diagnostic::new(
+        Code::E0304,
+        format!("`{}` is too large or too small a number", number.digits()),
+        number.span,
+        "here",
+    )
+}
+
+pub(super) fn bits(number: &Number, length: u32) -> Fitted {
+    let digits = number.digits().as_bytes();
+    let all_bits = digits.iter().all(|digit| matches!(digit, b'0' | b'1'));
+    if number.unit().is_some() || !all_bits || digits.len() != length as usize {
+        let message = format!("expected {length} digits 0 or 1, found `{}`", number.digits());
+        let here = match digits.iter().find(|digit| !matches!(digit, b'0' | b'1')) {
+            Some(digit) => format!("`{}` is not a bit", char::from(*digit)),
+            None if number.unit().is_some() => "bits have no unit".into(),
+            None if digits.len() == 1 => "this is 1 digit".into(),
+            None => format!("these are {} digits", digits.len()),
+        };
+        let report = Diagnostic::new(Code::E0302, message, number.span, here);
+        return Err(report.help("the bits are front, left, back, right; 1 where an obstacle is near: `0100`").into());
+    }
+    let bits = digits.iter().map(|digit| *digit == b'1').collect();
+    Ok((Value::Bits(bits), number.digits().to_owned()))
+}
+
+/// Converts an exact value from the unit `from` to the unit `to`, as the nearest `f64` available.
+fn converted(exact: &Decimal, from: Unit, to: Unit) -> f64 {
+    if from.family != to.family {
+        return exact.to_f64() * from.family_to_si() / to.family_to_si() / f64::from(to.factor);
+    }
+    exact.scaled(1, -to.exponent).to_f64() / f64::from(to.factor)
+}

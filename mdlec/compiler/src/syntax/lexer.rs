@@ -1,0 +1,205 @@
+//! Splits text into tokens (docs/src/reference/language.md, 2): they have no spaces, comments or typesetting, and each
+//! parenthesis records whether it touches a name.
+
+use logos::Logos;
+
+use super::lexical;
+use super::number::split;
+use super::source::{Place, Source};
+use super::token::{Tok, Token};
+use crate::diagnostic::Diagnostic;
+
+/// Output of the lexer.
+#[derive(Debug, Default)]
+pub(super) struct Lexed<'s> {
+    /// The tokens, in order.
+    pub(super) tokens: Vec<Token<'s>>,
+    /// The doc comments, each with the number of tokens before it.
+    pub(super) docs: Vec<(usize, &'s str)>,
+    /// The lexical errors, in order, each with the number of tokens before it.
+    pub(super) errors: Vec<(usize, Diagnostic)>,
+}
+
+/// The tokens of a text, its doc comments and its lexical errors.
+pub(super) fn lex(source: Source<'_>) -> Lexed<'_> {
+    let mut reader =
+        Reader { source, lexed: Lexed::default(), text_ends: usize::MAX, touches: 0, run: None, skipped: 0 };
+    for (token, range) in Tok::lexer(source.text).spanned() {
+        let place = Place::new(range.start, range.end);
+        if place.start < reader.skipped || reader.file(token.as_ref().ok(), place) {
+            continue;
+        }
+        match token {
+            Ok(kind) => reader.token(Token { kind, place }),
+            Err(()) => match split(source.slice(place)) {
+                ("", _) => reader.character(place),
+                (number, tail) => reader.number(number, tail, place),
+            },
+        }
+    }
+    reader.end_run();
+    reader.lexed
+}
+
+/// Collects tokens.
+struct Reader<'s> {
+    source: Source<'s>,
+    lexed: Lexed<'s>,
+    /// Byte offset of the brace that closes the current `\text{…}`.
+    text_ends: usize,
+    /// End of the last token and of the typesetting that touches it.
+    touches: usize,
+    /// Place of the unexpected characters just read, not yet reported.
+    run: Option<Place>,
+    /// The end of a file name that was read although it is not between double quotes.
+    skipped: usize,
+}
+
+impl<'s> Reader<'s> {
+    /// Takes in `'home.csv'` or `C:\home.csv`, if that begins with this token.
+    fn file(&mut self, token: Option<&Tok<'s>>, place: Place) -> bool {
+        let (start, name, end) = match token {
+            None => match quoted(self.source.text, place) {
+                Some((name, end)) => (place.start, name, end),
+                None => return false,
+            },
+            Some(Tok::Command) => match drive(self.source.text, place) {
+                Some((start, name)) => (start, name, start + name.len()),
+                None => return false,
+            },
+            Some(_) => return false,
+        };
+        self.end_run();
+        let whole = Place::new(start, end);
+        self.lexed.tokens.retain(|token| token.place.start < start);
+        self.report(lexical::file(self.source, whole, name));
+        self.push(Tok::Str(name), whole);
+        self.skipped = end;
+        true
+    }
+
+    fn token(&mut self, token: Token<'s>) {
+        self.end_run();
+        let Place { start, end } = token.place;
+        #[allow(clippy::wildcard_enum_match_arm, reason = "only what the parser must not see is named")]
+        match token.kind {
+            Tok::RBrace if start == self.text_ends => self.typesetting(token.place),
+            Tok::Text => self.text(token.place),
+            Tok::Doc(text) => self.lexed.docs.push((self.lexed.tokens.len(), text)),
+            Tok::Command => self.report(lexical::command(self.source, token.place)),
+            Tok::Comment => self.report(lexical::comment(self.source, token.place)),
+            Tok::Name("here") if self.after_frame() => self.push(Tok::Here, token.place),
+            Tok::LParen if start == self.touches && self.after_name() => self.push(Tok::TouchParen, token.place),
+            Tok::Str(text) => {
+                if end - start != text.len() + 2 {
+                    self.report(lexical::string(self.source, token.place));
+                }
+                self.push(token.kind, token.place);
+            }
+            kind => self.push(kind, token.place),
+        }
+    }
+
+    fn push(&mut self, kind: Tok<'s>, place: Place) {
+        self.touches = place.end;
+        self.lexed.tokens.push(Token { kind, place });
+    }
+
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.lexed.errors.push((self.lexed.tokens.len(), diagnostic));
+    }
+
+    fn after_name(&self) -> bool {
+        matches!(self.lexed.tokens.last(), Some(Token { kind: Tok::Name(_), .. }))
+    }
+
+    fn after_frame(&self) -> bool {
+        matches!(self.lexed.tokens.last(), Some(Token { kind: Tok::Frame, .. }))
+    }
+
+    /// Reports and drops a text that touches a number and is no unit; a unit that does not touch it is a name.
+    fn number(&mut self, number: &'s str, tail: &'s str, place: Place) {
+        self.end_run();
+        let unit = tail.trim_start();
+        if unit.len() < tail.len() {
+            // It is a name, as units without a `/` are, so that the quark can say what it takes.
+            let (end, start) = (place.start + number.len(), place.end - unit.len());
+            self.push(Tok::Number(number), Place::new(place.start, end));
+            self.push(Tok::Name(unit), Place::new(start, place.end));
+            return;
+        }
+        self.report(lexical::number(self.source, number, tail, place));
+        self.push(Tok::Number(number), place);
+    }
+
+    /// Drops the braces of `\text{…}`, which do not separate a name from its parenthesis.
+    fn text(&mut self, place: Place) {
+        match text_end(self.source.text, place.end) {
+            Some(end) => self.text_ends = end,
+            None => self.report(lexical::text(self.source, place)),
+        }
+        self.typesetting(place);
+    }
+
+    fn typesetting(&mut self, place: Place) {
+        if place.start == self.touches {
+            self.touches = place.end;
+        }
+    }
+
+    /// Collects neighbouring unexpected characters, which are reported together.
+    fn character(&mut self, place: Place) {
+        match &mut self.run {
+            Some(run) if run.end == place.start => run.end = place.end,
+            Some(_) | None => {
+                self.end_run();
+                self.run = Some(place);
+            }
+        }
+    }
+
+    fn end_run(&mut self) {
+        if let Some(run) = self.run.take() {
+            self.report(lexical::characters(self.source, run));
+        }
+    }
+}
+
+/// The text between quotes that are no double quotes, and the end of both.
+fn quoted(text: &str, opener: Place) -> Option<(&str, usize)> {
+    let closers: &[char] = match text.get(opener.start..opener.end)? {
+        "'" | "‘" | "`" => &['\'', '’', '`', '‘'],
+        "“" | "”" | "„" => &['“', '”'],
+        _ => return None,
+    };
+    let line = text.get(opener.end..)?.lines().next()?;
+    let length = line.find(closers)?;
+    let (name, closer) = (line.get(..length)?, line.get(length..)?.chars().next()?);
+    let is_name = !name.is_empty() && !name.contains(['"', '(', ')', '{', '}']);
+    is_name.then_some((name, opener.end + length + closer.len_utf8()))
+}
+
+/// The start and the text of a path of Windows, whose first backslash is at `backslash`.
+fn drive(text: &str, backslash: Place) -> Option<(usize, &str)> {
+    let start = backslash.start.checked_sub(2)?;
+    let is_drive = text.get(start..backslash.start)?.starts_with(|c: char| c.is_ascii_alphabetic());
+    let is_word = text.get(..start)?.ends_with([' ', '(', '\t']);
+    let rest = text.get(start..)?;
+    let path = rest.split(|c: char| c.is_whitespace() || "(){}\"".contains(c)).next()?;
+    (is_drive && is_word && path.get(1..2) == Some(":")).then_some((start, path))
+}
+
+/// Byte offset of the brace that closes the `\text{` ending at `from`; `None` if there is none, or if another brace
+/// opens before it.
+fn text_end(text: &str, from: usize) -> Option<usize> {
+    let mut bytes = text.bytes().enumerate().skip(from);
+    while let Some((at, byte)) = bytes.next() {
+        match byte {
+            b'\\' => drop(bytes.next()),
+            b'}' => return Some(at),
+            b'{' => return None,
+            _ => {}
+        }
+    }
+    None
+}
