@@ -143,10 +143,18 @@ fn stopped(mut cart: Cart) -> (Option<i32>, bool) {
     cart.end(&mut child)
 }
 
+/// Each waits for seconds, so they do beside each other.
 #[test]
-fn a_writer_that_is_blocked_holds_up_no_robot() {
+fn readers_that_do_not_read_hold_up_no_robot() {
+    thread::scope(|scope| {
+        scope.spawn(blocked_writers_hold_up_no_robot);
+        scope.spawn(a_log_that_nobody_reads_stops_the_robot);
+        scope.spawn(a_panic_needs_no_reader);
+    });
+}
+
+fn blocked_writers_hold_up_no_robot() {
     let writers = WRITERS.map(|writer| vec![writer]).into_iter().chain([WRITERS.to_vec()]);
-    // Each waits for seconds, so they do beside each other.
     thread::scope(|scope| {
         // A log or a path that lacks its end is a fault.
         for (writers, status) in writers.zip([143, 143, 3, 143, 3]) {
@@ -199,7 +207,6 @@ fn assert_stops_when_limited(writer: Writer, status: i32) {
     assert_eq!(cart.end(&mut child), (Some(status), true), "limited {writer:?}");
 }
 
-#[test]
 fn a_log_that_nobody_reads_stops_the_robot() {
     let mut cart = Cart::new("unread_log", &[]);
     cart.blocked(Writer::Log);
@@ -252,7 +259,6 @@ fn a_path_whose_reader_goes_away_is_reported() {
     );
 }
 
-#[test]
 fn a_panic_needs_no_reader() {
     let mut cart = Cart::new("panic", &["--panic-at", "5"]);
     cart.blocked(Writer::Err);
