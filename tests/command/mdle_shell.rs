@@ -14,7 +14,7 @@ use rustix::process::{Pid, Signal, kill_process};
 const PLAN: &str = "{ Ahead (bumper)\n  (Atom (wait 2s) (go 60 0))\n  (Atom (wait 1s) (go 0 1rad/s))\n}\n";
 const RULES: &str = "[limits]\nspeed = \"40cm/s\"\n\n[guards.far]\nwhen = \"x > 5m\"\nthen = \"end\"\n";
 
-/// What a session left.
+/// Output and exit status of a session.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Left {
     pub(crate) out: String,

@@ -26,7 +26,7 @@ const FOLLOW: &str = "{ Sound (bumper OR age(heading module) > 5s)
   (Atom (range(heading module) < 60cm) goAvoid(heading module))
   (Atom (wait 1) stop)
 }";
-/// Where the sound comes from.
+/// Place of the source of sound.
 const SOURCE: (f64, f64) = (3.0, 1.0);
 
 /// Publishes the place of the robot.

@@ -195,7 +195,7 @@ fn without_changes(folder: &Path) {
     RecordFile::new(fs::File::create(folder.join("bare.mcap")).unwrap()).write_all(&bytes).unwrap();
 }
 
-/// What modules and people do decides the course of a run: without it the record is that of another run.
+/// The course of a run depends on modules and people: without their changes the record is that of another run.
 #[test]
 fn a_replay_needs_the_changes_of_a_record() {
     for number in [62, 63, 66, 67] {

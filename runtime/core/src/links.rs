@@ -1,4 +1,4 @@
-//! What a robot knows of other robots by its state link: those alone that its plan names (paper, section IV-A).
+//! Knowledge of a robot about other robots by its state link: those alone that its plan names (paper, section IV-A).
 
 use crate::{Nanos, Pose, Twist};
 

@@ -19,7 +19,7 @@ pub struct Board {
 /// An attribute on the board.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Post {
-    /// Its name.
+    /// Name of the attribute.
     pub name: AttributeName,
     /// Kind, unit and description.
     pub about: About,

@@ -31,7 +31,7 @@ pub(crate) trait Instants {
     /// Asks the system to wake this thread on time.
     ///
     /// # Errors
-    /// What the system does not permit, in words.
+    /// The sentence about a request that the system does not permit.
     fn keep_time(&mut self) -> Result<(), String> {
         Ok(())
     }

@@ -18,7 +18,7 @@ const MEMORY: &str = "locked memory";
 /// and a turn allocates nothing.
 ///
 /// # Errors
-/// What the system does not permit, in words. The run goes on without it.
+/// The sentence about a request that the system does not permit. The run goes on without it.
 pub(crate) fn claim() -> Result<(), String> {
     let is_scheduled = schedule(PRIORITY);
     let is_locked = mlockall(MlockAllFlags::CURRENT).is_ok();

@@ -62,7 +62,7 @@ pub struct RecordedTurn {
     pub overruled: Option<Overruled>,
 }
 
-/// What a turn led to.
+/// Result of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Applied {
     /// The law of the current atom was applied.

@@ -17,7 +17,7 @@ use crate::lab_tour::LabTour;
 static MACHINE: StaticCell<Machine<LabTour>> = StaticCell::new();
 static SENSED: StaticCell<Output> = StaticCell::new();
 
-/// What `cortex-m-rt` paints the stack with.
+/// The word with which `cortex-m-rt` paints the stack.
 const PAINT: u32 = cortex_m_rt::STACK_PAINT_VALUE;
 
 unsafe extern "C" {

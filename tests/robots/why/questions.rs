@@ -42,7 +42,7 @@ fn a_timer_was_short() {
     insta::assert_snapshot!(answers("timers", plan, &outputs, &questions));
 }
 
-/// What has fired when it is entered is skipped.
+/// A behavior whose interrupt has fired when it is entered is skipped.
 #[test]
 fn behaviors_were_skipped() {
     let plan = "{ Skips (wait 4s)

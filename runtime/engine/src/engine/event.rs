@@ -60,7 +60,7 @@ pub struct Arrivals {
 /// End of a background module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum End {
-    /// Its code returned.
+    /// The module's code returned.
     Returned,
     /// It cannot go on: a sentence.
     Failed(String),

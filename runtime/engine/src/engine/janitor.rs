@@ -8,7 +8,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// Where the thread takes what it is to drop.
+/// Channel to the thread, for the values that it is to drop.
 #[derive(Debug, Clone)]
 pub(crate) struct Janitor(Sender<Box<dyn Any + Send>>);
 

@@ -32,7 +32,7 @@ pub struct Engine<A: EngineAlphabet> {
     /// Attributes of modules that safety rules read; `None` without rules.
     rules_read: Option<&'static [ModuleRead]>,
     messages: Vec<String>,
-    /// What a record needs of this run; `None` if it is not recorded.
+    /// History of this run, for a record; `None` if it is not recorded.
     history: Option<History>,
     /// The recorded run that is made again.
     repeats: Option<Repeats>,

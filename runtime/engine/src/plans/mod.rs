@@ -61,7 +61,7 @@ pub struct Plans<A: EngineAlphabet> {
     events: Vec<PlanEvent>,
     /// Plans to drop on another thread: to drop a large one takes longer than a turn may.
     spent: Vec<Spent>,
-    /// What a record needs of these plans; `None` if the run is not recorded.
+    /// Changes of these plans, for a record; `None` if the run is not recorded.
     changes: Option<PlanChanges>,
 }
 

@@ -14,7 +14,7 @@ pub const MOST_STORED: usize = 64;
 pub struct StoredPlan<A: EngineAlphabet> {
     /// Name of the plan.
     pub name: Arc<str>,
-    /// Its files: the name and the text of each, its own first.
+    /// Name and text of each file of the plan, its own file first.
     pub files: Arc<[(String, String)]>,
     /// The plan before it begins.
     pub loaded: Arc<Loaded<A>>,

@@ -12,7 +12,7 @@ pub struct Rules {
     pub limits: Limits,
     /// Areas that the robot must not leave.
     pub fences: Vec<Fence>,
-    /// What follows from contact of a bumper.
+    /// Consequence of contact of a bumper.
     pub contact: Option<Then>,
     /// The age of an output from which it is stale, and what follows.
     pub stale: Option<(Nanos, Then)>,
@@ -50,7 +50,7 @@ pub struct Guard {
     pub name: String,
     /// The condition on the output.
     pub when: Condition,
-    /// What follows while the condition is true.
+    /// Consequence while the condition is true.
     pub then: Then,
 }
 
@@ -65,7 +65,7 @@ pub struct Condition {
     pub indent: usize,
 }
 
-/// What follows from a rule, the weakest first.
+/// Consequence of a rule, the weakest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Then {
     /// The robot is sent no forward speed.

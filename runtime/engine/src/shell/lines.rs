@@ -1,4 +1,4 @@
-//! Where commands come from: a terminal, a file or a pipe.
+//! Sources of commands: a terminal, a file or a pipe.
 
 use std::io::{self, BufRead, Read as _};
 

@@ -18,7 +18,7 @@ pub(super) fn names(tree: &Tree, folder: &str) -> Vec<String> {
 /// An attribute or a method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Node {
-    /// What may be done with it.
+    /// Operations on the node.
     pub access: Access,
     /// Kind of its value.
     pub kind: Kind,
@@ -28,7 +28,7 @@ pub struct Node {
     pub doc: &'static str,
 }
 
-/// What may be done with a node.
+/// Operations on a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {
     /// It is read.

@@ -9,13 +9,13 @@ use super::Role;
 pub struct Request {
     /// Path of a node or a folder, such as `/clock/pace`.
     pub path: String,
-    /// What to do with it.
+    /// Operation on that node.
     pub operation: Operation,
     /// The role of who asks.
     pub role: Role,
 }
 
-/// What to do with a node.
+/// Operation on a node.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Operation {
     /// Returns the names in a folder.

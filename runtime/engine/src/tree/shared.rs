@@ -1,4 +1,4 @@
-//! What the hub and the desk share.
+//! Data that the hub and the desk share.
 
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::Sender;
@@ -19,7 +19,7 @@ pub(super) struct Snapshot {
     pub(super) number: u64,
 }
 
-/// What both sides share.
+/// Data that the hub and the desk share.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
     pub(super) snapshot: Mutex<Arc<Snapshot>>,
