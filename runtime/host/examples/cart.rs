@@ -24,6 +24,8 @@ fn main() -> ExitCode {
 struct Sensed {
     at: Meters,
     track: Meters,
+    /// `true` if the law of this turn hangs.
+    hangs: bool,
 }
 
 impl Output for Sensed {}
@@ -36,6 +38,8 @@ struct Cart {
     exchanges: u64,
     /// The exchange that does not work, and how.
     broken: Option<(u64, Breakdown)>,
+    /// The exchange after which the law hangs.
+    hung: Option<u64>,
     /// `true` if the cart prints its commands to standard error.
     tells: bool,
     /// File of the cart's journal.
@@ -80,9 +84,10 @@ impl Robot for Cart {
             },
             Some(_) | None => {}
         }
+        let hangs = self.hung == Some(self.exchanges);
         self.exchanges += 1;
         self.at.0 = (self.at.0 + speed * self.period.as_secs_f64()).clamp(0.0, self.track.0);
-        Ok(Sensed { at: self.at, track: self.track })
+        Ok(Sensed { at: self.at, track: self.track, hangs })
     }
 
     fn stop(&mut self) -> Result<(), &'static str> {
@@ -123,6 +128,7 @@ impl Target for CartTarget {
             .arg(number("fail-at").help("Fail at this exchange"))
             .arg(number("panic-at").help("Panic at this exchange"))
             .arg(number("hang-at").help("Hang at this exchange"))
+            .arg(number("hang-law-at").help("Hang in the law after this exchange"))
             .arg(number("start").help("Milliseconds that it takes to be opened"))
             .arg(
                 Arg::new("journal")
@@ -143,13 +149,15 @@ impl Target for CartTarget {
         if !(0.0..=1e3).contains(&track) {
             return Err(Refusal::Usage("a track is at most 1000 m long".to_owned()));
         }
-        let at = |name, breakdown| matches.get_one::<u64>(name).map(|exchange| (*exchange, breakdown));
-        let broken = at("fail-at", Breakdown::Fails).or(at("panic-at", Breakdown::Panics));
-        let broken = broken.or(at("hang-at", Breakdown::Hangs));
+        let broken_at = |name, breakdown| matches.get_one::<u64>(name).map(|exchange| (*exchange, breakdown));
+        let broken = broken_at("fail-at", Breakdown::Fails).or(broken_at("panic-at", Breakdown::Panics));
+        let broken = broken.or(broken_at("hang-at", Breakdown::Hangs));
         let tells = matches.get_flag("tell");
         let journal = matches.get_one::<PathBuf>("journal").map(File::create).transpose();
         let journal = journal.map_err(|error| Refusal::Usage(error.to_string()))?;
-        let mut cart = Cart { at: Meters(0.0), track: Meters(track), period, exchanges: 0, broken, tells, journal };
+        let hung = matches.get_one("hang-law-at").copied();
+        let (at, track) = (Meters(0.0), Meters(track));
+        let mut cart = Cart { at, track, period, exchanges: 0, broken, hung, tells, journal };
         if let Some(millis) = matches.get_one("start") {
             cart.tell(format_args!("start"));
             request.wait(Duration::from_millis(*millis));
@@ -205,7 +213,10 @@ impl Plan for Shuttle {
         there.then(|| Cause::Fired(1).into())
     }
 
-    fn input(&mut self, _: &Sensed, _: Nanos) -> Speed {
+    fn input(&mut self, y: &Sensed, _: Nanos) -> Speed {
+        while y.hangs {
+            std::thread::park();
+        }
         Speed(MetersPerSecond(if self.forward { 0.5 } else { -0.5 }))
     }
 

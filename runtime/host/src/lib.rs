@@ -63,6 +63,7 @@ mod time;
 mod timing;
 mod transitions;
 mod trials;
+mod turn_watch;
 mod turns;
 mod unwinding;
 mod way_out;
@@ -179,7 +180,7 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
             return ExitCode::from(run_end::FAULT);
         }
     };
-    let (out, err) = match standard_streams(signals.patience(), executable.session()) {
+    let (out, mut err) = match standard_streams(signals.patience(), executable.session()) {
         Ok(streams) => streams,
         Err(error) => {
             run_end::say(&mut io::stderr(), format_args!("error: the system gives no threads: {error}"));
@@ -187,12 +188,19 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
         }
     };
     panic_hook::tell_to(err.aside());
+    let watch = match turn_watch::TurnWatch::begin(err.aside(), leave_screen) {
+        Ok(watch) => watch,
+        Err(error) => {
+            run_end::say(&mut err, format_args!("error: the system gives no threads: {error}"));
+            return ExitCode::from(run_end::FAULT);
+        }
+    };
     let begun = std::time::Instant::now();
     // A person in a session types where the line would be.
     let shows_progress = io::stderr().is_terminal() && executable.session().is_none();
     let seen = shows_progress.then(|| Box::new(move || begun.elapsed()) as Box<dyn FnMut() -> _>);
-    let (out, mut err) = (|| Box::new(out) as Box<dyn Write>, err);
-    let surroundings = session::Surroundings { instants: clock::SinceBoot, signals, out, err: &mut err, seen };
+    let out = || Box::new(out) as Box<dyn Write>;
+    let surroundings = session::Surroundings { instants: clock::SinceBoot, signals, watch, out, err: &mut err, seen };
     ExitCode::from(session::session(program, call, executable, surroundings))
 }
 

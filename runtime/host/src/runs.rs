@@ -24,6 +24,7 @@ use crate::run_end::RunEnd;
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::summary::Summary;
+use crate::turn_watch::TurnWatch;
 use crate::turns::{self, Witnesses};
 use crate::{Batch, Judgement, Pace, Time};
 
@@ -57,6 +58,8 @@ pub(crate) struct Terms<'a> {
     pub(crate) period: Duration,
     pub(crate) limits: Limits,
     pub(crate) signals: &'a Signals,
+    /// Limit of the time of each turn.
+    pub(crate) watch: &'a TurnWatch,
     /// The words by which the program was called, as a shell takes them.
     pub(crate) program: &'a str,
     /// The causes by which the plan must end.
@@ -138,10 +141,11 @@ fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<EndedRun> {
     let mut nobody = std::io::sink();
     let mut over = None;
     let limits = Limits { timeout: terms.limits.timeout.or(terms.by_default()), ..terms.limits };
+    let watched = terms.watch.run(Time::Stepped(Pace::Max));
     let ending = shielded(|| {
         let mut report = Report::new(&mut nobody, false);
         let mut witnesses = Witnesses { report: &mut report, log: None, path: None, progress: None, err: None };
-        let ending = turns::run(&mut *drive, limits, &mut clock, terms.signals, &mut witnesses);
+        let ending = turns::run(&mut *drive, limits, &mut clock, terms.signals, &mut witnesses, &watched);
         over = witnesses.report.over().cloned();
         ending
     });

@@ -29,6 +29,7 @@ use crate::runs::{self, Runs, Terms};
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::target_options::TargetOptions;
+use crate::turn_watch::TurnWatch;
 use crate::turns::{self, Witnesses};
 use crate::{NamedFile, Pace, Program, Refusal, Time, named_file, way_out};
 
@@ -38,6 +39,8 @@ pub(crate) struct Surroundings<'e, I, O> {
     pub(crate) instants: I,
     /// The signals that end the run.
     pub(crate) signals: Signals,
+    /// Limit of the time of each turn.
+    pub(crate) watch: TurnWatch,
     /// Opens standard output.
     pub(crate) out: O,
     /// Standard error.
@@ -57,7 +60,7 @@ where
     I: Instants,
     O: FnOnce() -> Box<dyn Write + 'o>,
 {
-    let Surroundings { mut instants, signals, out, err, seen } = surroundings;
+    let Surroundings { mut instants, signals, watch, out, err, seen } = surroundings;
     let target = executable.target();
     let matches = match arguments::command(&target, program, &call).try_get_matches_from(call.arguments()) {
         Ok(matches) => matches,
@@ -81,8 +84,14 @@ where
             signals.robot_runs(Time::Stepped(Pace::Max));
             signals.patience().stop_was_tried(None);
             let program = call.command(program.plan);
-            let terms =
-                Terms { period: options.period, limits, signals: &signals, program: &program, required: &required };
+            let terms = Terms {
+                period: options.period,
+                limits,
+                signals: &signals,
+                watch: &watch,
+                program: &program,
+                required: &required,
+            };
             return several(&batch, &terms, &mut *out(), err, seen);
         }
         Ok(None) => {}
@@ -120,6 +129,7 @@ where
         warn_of_lateness(&refused, call.words.first(), err);
     }
     let mut clock = Clock::begin(instants, time, options.period, drive.longest_gap());
+    let watched = watch.run(time);
     let ending = shielded(|| {
         let log = match &mut log {
             Ok(log) => log.as_mut(),
@@ -132,7 +142,7 @@ where
         };
         let mut witnesses =
             Witnesses { report: &mut report, log, path: path.as_mut().ok().and_then(Option::as_mut), progress, err };
-        turns::run(&mut *drive, limits, &mut clock, &signals, &mut witnesses)
+        turns::run(&mut *drive, limits, &mut clock, &signals, &mut witnesses, &watched)
     });
     let (ending, orderly, faults) = way_out::stop(&mut *drive, ending.unwrap_or_else(way_out::bug));
     let ending = way_out::judge(&mut *drive, ending, &required, &mut report);

@@ -20,6 +20,7 @@ use crate::standing::standing;
 use crate::supervised::Supervised;
 use crate::timing::Timing;
 use crate::transitions::Transitions;
+use crate::turn_watch::WatchedRun;
 use crate::{Ended, Observer, Orders, Pace, Verdict};
 
 /// Recipients of the turns' reports.
@@ -43,13 +44,15 @@ pub(crate) fn run<I: Instants>(
     clock: &mut Clock<I>,
     signals: &Signals,
     witnesses: &mut Witnesses<'_, '_>,
+    limit: &WatchedRun,
 ) -> RunEnd {
     let transitions = Transitions::default();
     let supervised = Supervised::default();
     if witnesses.log.as_ref().is_some_and(|log| log.is_record()) {
         drive.record();
     }
-    let mut turns = OnePlan { drive, witnesses, transitions, fresh: true, plan: 1, supervised, pace: None, number: 0 };
+    let mut turns =
+        OnePlan { drive, witnesses, limit, transitions, fresh: true, plan: 1, supervised, pace: None, number: 0 };
     cycle(&mut turns, limits, clock, signals)
 }
 
@@ -57,6 +60,8 @@ pub(crate) fn run<I: Instants>(
 struct OnePlan<'t, 'a, 'o> {
     drive: &'t mut dyn Drive,
     witnesses: &'t mut Witnesses<'a, 'o>,
+    /// Limit of the time of each turn.
+    limit: &'t WatchedRun,
     /// The transitions of the last turn.
     transitions: Transitions,
     /// `true` if the current atom has been entered since a law was applied last.
@@ -102,12 +107,12 @@ impl Turns for OnePlan<'_, '_, '_> {
         if number == 0 {
             self.at_break(0, t, false)?;
         }
-        let Self { drive, witnesses, transitions, fresh, plan, supervised, .. } = self;
+        let Self { drive, witnesses, limit, transitions, fresh, plan, supervised, .. } = self;
         if let (Some(path), Some((heading, speed))) = (&mut witnesses.path, drive.motion()) {
             path.take(heading, speed, t);
         }
         transitions.clear();
-        let turn = drive.turn(t, number, transitions);
+        let turn = limit.make(number, || drive.turn(t, number, transitions));
         drive.messages(&mut |message| witnesses.say(message));
         let turn = turn?;
         let zero = drive.zero();

@@ -16,6 +16,7 @@ use crate::pilot::PlanAlone;
 use crate::required::{self, Required};
 use crate::runs::{self, Runs, Terms};
 use crate::signals::{Signal, Signals};
+use crate::turn_watch::TurnWatch;
 use crate::{Batch, Judgement, Observer};
 
 /// A robot whose run is decided by its seed: the plan's outermost interrupt fires in turn `seed`, if ever.
@@ -104,7 +105,8 @@ impl Several {
         let matches = required::argument(Command::new("it")).try_get_matches_from(words).unwrap();
         let required = Required::of(&matches, &ToyPlan::lab()).unwrap();
         let period = Duration::from_millis(100);
-        let terms = Terms { period, limits, signals, program: r"'./it'\''s'", required: &required };
+        let watch = &TurnWatch::default();
+        let terms = Terms { period, limits, signals, watch, program: r"'./it'\''s'", required: &required };
         let mut out = Vec::new();
         let (status, unwritten) = runs::run(&runs, &terms, &mut out, None);
         assert!(unwritten.is_none());

@@ -18,6 +18,7 @@ use crate::executable::PlanOnTarget;
 use crate::pilot::PlanAlone;
 use crate::session::{Surroundings, session};
 use crate::signals::{Signal, Signals};
+use crate::turn_watch::TurnWatch;
 use crate::{
     Around, Ended, Judgement, Observation, Observer, Pace, PlanPosition, Refusal, RunTerms, StopRequest, Supervision,
     Supervisor, Target, Time,
@@ -141,6 +142,7 @@ impl Stage {
         let surroundings = Surroundings {
             instants: ByHand(Rc::clone(&slept)),
             signals,
+            watch: TurnWatch::default(),
             out: || Box::new(Shared(Rc::clone(&out))) as Box<dyn Write>,
             err: &mut err,
             seen: None,

@@ -59,6 +59,25 @@ fn a_panic_stops_the_cart() {
 }
 
 #[test]
+fn a_law_that_never_returns_ends_the_program() {
+    let listed = |arguments: &[&str]| {
+        let Output { status, stderr, .. } = cart(arguments).output().unwrap();
+        let listed: Vec<_> = text(&stderr).lines().filter(|line| is_no_refusal(line)).map(str::to_owned).collect();
+        (status.code(), listed.join("\n"))
+    };
+    // Each takes ten seconds, so they do beside each other.
+    let (stepped, real) = std::thread::scope(|scope| {
+        let stepped = scope.spawn(|| listed(&["--tell", "--speed", "max", "--hang-law-at", "1"]));
+        let real = listed(&["--tell", "--period", "0.02", "--hang-law-at", "1"]);
+        (stepped.join().unwrap(), real)
+    });
+    let hangs = "turn 1 has not ended after 10 s: code of the plan or of a module never returns";
+    let told = "cart: 0 m/s\ncart: 0.5 m/s\nerror: a fault";
+    assert_eq!(stepped, (Some(3), format!("{told} stopped the robot: {hangs}")));
+    assert_eq!(real, (Some(3), format!("{told} ended the plan, and the robot may not have stopped: {hangs}")));
+}
+
+#[test]
 fn a_program_has_the_statuses_that_scripts_rely_on() {
     let status = |arguments| cart(arguments).output().unwrap().status.code();
     assert_eq!(status(&["--speed", "max"]), Some(0));

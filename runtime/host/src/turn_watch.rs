@@ -1,0 +1,169 @@
+//! Limit of the time that a turn takes: code of a plan or of a module that never returns keeps the thread that drives
+//! the robot, so another thread ends the program.
+
+use std::io::{self, IsTerminal as _};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::thread::{self, Builder};
+use std::time::Duration;
+
+use signal_hook::low_level;
+
+use crate::Time;
+use crate::background_writer::{Aside, STACK};
+use crate::run_end;
+
+/// Time between two looks at the turns.
+const LOOK: Duration = Duration::from_millis(100);
+/// Number of looks at which a turn is still the same one before it ends the program. Looks are counted, not time: a
+/// computer that was suspended has not looked.
+const LOOKS: u32 = 100;
+/// Time that the writers of the program have for what was handed over before.
+const LAST_LINES: Duration = Duration::from_millis(300);
+
+/// The runs of a program, whose turns another thread watches.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct TurnWatch(Arc<Mutex<Vec<Entry>>>);
+
+/// A run, and what the watching thread has seen of it.
+#[derive(Debug)]
+struct Entry {
+    run: Weak<WatchedRun>,
+    seen: u64,
+    looks: u32,
+}
+
+/// The turn that a run is making.
+#[derive(Debug)]
+pub(crate) struct WatchedRun {
+    /// Number of the turn, from 1; 0 between two turns.
+    turn: AtomicU64,
+    time: Time,
+}
+
+/// A turn that has not ended in time.
+#[derive(Debug, PartialEq, Eq)]
+struct Hung {
+    /// Number of the turn, from 0.
+    turn: u64,
+    /// `true` if the robot moves by the wall clock, and so may still move.
+    is_real: bool,
+}
+
+impl TurnWatch {
+    /// Watches the turns of this program from now on. It is ended by a sentence on standard error and exit status 3;
+    /// `leave_screen` gives the terminal back.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub(crate) fn begin(err: Aside, leave_screen: fn()) -> io::Result<Self> {
+        let watch = Self::default();
+        let own = watch.clone();
+        let look = move || {
+            let hung = loop {
+                thread::sleep(LOOK);
+                if let Some(hung) = own.look() {
+                    break hung;
+                }
+            };
+            leave_screen();
+            // The line that shows that a fast run goes on has no end.
+            let line = if io::stderr().is_terminal() { "\n" } else { "" };
+            err.tell(format!("{line}{}\n", hung.sentence()));
+            thread::sleep(LAST_LINES);
+            // Not by way of what the libraries do at an exit: the thread that hangs may hold what they need.
+            low_level::exit(run_end::FAULT.into());
+        };
+        Builder::new().name("turn watch".to_owned()).stack_size(STACK).spawn(look)?;
+        Ok(watch)
+    }
+
+    /// Returns a run whose turns are watched until it is dropped.
+    pub(crate) fn run(&self, time: Time) -> Arc<WatchedRun> {
+        let run = Arc::new(WatchedRun { turn: AtomicU64::new(0), time });
+        self.entries().push(Entry { run: Arc::downgrade(&run), seen: 0, looks: 0 });
+        run
+    }
+
+    /// Looks at all turns; returns one that has not ended in time.
+    fn look(&self) -> Option<Hung> {
+        let mut hung = None;
+        self.entries().retain_mut(|entry| {
+            let Some(run) = entry.run.upgrade() else { return false };
+            let turn = run.turn.load(Ordering::Acquire);
+            entry.looks = if turn == entry.seen && turn > 0 { entry.looks.saturating_add(1) } else { 0 };
+            entry.seen = turn;
+            if entry.looks >= LOOKS {
+                hung = Some(Hung { turn: turn.saturating_sub(1), is_real: run.time == Time::Wall });
+            }
+            true
+        });
+        hung
+    }
+
+    fn entries(&self) -> MutexGuard<'_, Vec<Entry>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl WatchedRun {
+    /// Makes a turn.
+    pub(crate) fn make<T>(&self, number: u64, turn: impl FnOnce() -> T) -> T {
+        /// Notes the end of a turn, also after a panic.
+        struct Turn<'r>(&'r WatchedRun);
+        impl Drop for Turn<'_> {
+            fn drop(&mut self) {
+                self.0.turn.store(0, Ordering::Release);
+            }
+        }
+        self.turn.store(number.saturating_add(1), Ordering::Release);
+        let _turn = Turn(self);
+        turn()
+    }
+}
+
+impl Hung {
+    /// Returns the sentence for the operator.
+    fn sentence(&self) -> String {
+        let Self { turn, is_real } = self;
+        let came = if *is_real {
+            "a fault ended the plan, and the robot may not have stopped"
+        } else {
+            "a fault stopped the robot"
+        };
+        let seconds = LOOK.saturating_mul(LOOKS).as_secs();
+        format!(
+            "error: {came}: turn {turn} has not ended after {seconds} s: code of the plan or of a module never returns"
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Pace;
+
+    /// Looks this many times; returns the first turn that has not ended in time.
+    fn looked(watch: &TurnWatch, times: u32) -> Option<u64> {
+        (0..times).find_map(|_| watch.look()).map(|hung| hung.turn)
+    }
+
+    #[test]
+    fn a_turn_that_does_not_end_is_found() {
+        let watch = TurnWatch::default();
+        let (quick, slow) = (watch.run(Time::Stepped(Pace::Max)), watch.run(Time::Wall));
+        quick.make(7, || assert_eq!(looked(&watch, LOOKS), None));
+        assert_eq!(looked(&watch, 3 * LOOKS), None, "a run may stand between turns");
+        for number in 0..3 {
+            slow.make(number, || assert_eq!(looked(&watch, LOOKS - 1), None));
+        }
+        slow.make(41, || {
+            (0..LOOKS).for_each(|_| assert_eq!(watch.look(), None));
+            assert_eq!(watch.look(), Some(Hung { turn: 41, is_real: true }));
+        });
+        let panicked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| quick.make(8, || panic!("a bug"))));
+        assert!(panicked.is_err() && looked(&watch, 2 * LOOKS).is_none(), "a panic ends the turn");
+        drop((quick, slow));
+        assert_eq!((looked(&watch, 1), watch.entries().len()), (None, 0));
+    }
+}
