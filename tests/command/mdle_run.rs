@@ -163,10 +163,11 @@ fn the_settings_beside_a_plan_name_its_modules() {
     assert!(own.contains("range(ears module) = 0.25 m < 1m") && own.ends_with("[0]\n"), "{own}");
     let replaced = report(&folder, "run near.mdle --module ears=true");
     assert!(replaced.contains("module `ears` cannot be loaded: its process has ended"), "{replaced}");
-    let wrong = ["ears = 7\n", "2 = \"true\"\n"].map(|line| {
-        write("mdle.toml", &format!("{settings}{line}"));
-        report(&folder, "run near.mdle")
-    });
+    let wrong =
+        ["ears = 7\n", "2 = \"true\"\n", "ears = \"true\"\nsensors = \"true\"\n", "mdle = \"true\"\n"].map(|line| {
+            write("mdle.toml", &format!("{settings}{line}"));
+            report(&folder, "run near.mdle")
+        });
     write("mdle.toml", "target = \"sim\"\nmodules = \"ears\"\n");
     insta::assert_snapshot!(format!("{}{}", wrong.concat(), report(&folder, "run near.mdle")));
 }

@@ -35,6 +35,17 @@ pub struct Known {
     pub options: Option<Vec<(&'static str, &'static str)>>,
 }
 
+/// A child process that an `mdle.toml` names as a module.
+#[derive(Debug)]
+pub struct NamedProcess<'s> {
+    /// Place of the entry, as in `plans/mdle.toml:3`.
+    pub place: String,
+    /// Name of the module.
+    pub name: &'s str,
+    /// Command line of the process.
+    pub command: &'s str,
+}
+
 /// An option that a run gets from an `mdle.toml`.
 #[derive(Debug)]
 pub struct RunOption {
@@ -104,9 +115,13 @@ impl Settings {
         option.is_some() || self.text.target.is_some()
     }
 
-    /// Returns the child processes that a run of `mdle` loads as modules: the name of each, and its command line.
-    pub fn modules(&self) -> impl Iterator<Item = (&str, &str)> {
-        self.text.modules.iter().map(|(name, command)| (&**name, &*command.value))
+    /// Returns the child processes that a run of `mdle` loads as modules.
+    pub fn modules(&self) -> impl Iterator<Item = NamedProcess<'_>> {
+        self.text.modules.iter().map(|(name, command)| NamedProcess {
+            place: self.place(command.line),
+            name,
+            command: &command.value,
+        })
     }
 
     /// Returns the options of the file for a run, except those that are also in `given`, the arguments of the command

@@ -22,11 +22,11 @@ pub mod tree;
 
 pub use attribute::{Attribute, AttributeKind, AttributeName, In, Out, Reading, Value};
 pub use board::{Board, Post};
-pub use engine::{Arrivals, End, Engine, Event, Modules, PLAN, Service, Standing};
+pub use engine::{Arrivals, End, Engine, Event, Modules, Service, Standing};
 pub use fork::Threads;
 pub use library::Library;
 pub use module::{
-    About, Background, Candidate, Declare, Exchange, Fault, Module, Offer, Refusal, Relevance, Stopped, Turn,
+    About, Background, Candidate, Declare, Exchange, Fault, Module, Offer, PLAN, Refusal, Relevance, Stopped, Turn,
 };
 pub use plans::{
     Compile, CompiledPlans, EngineAlphabet, MOST_STORED, NoTrial, PlanEvent, PlanSource, Plans, StoredPlan, TRIAL, When,

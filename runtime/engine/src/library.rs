@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use mdle_host::StopRequest;
 
-use crate::module::{Background, Candidate, Declare, Module, Refusal};
+use crate::attribute::is_name;
+use crate::module::{Background, Candidate, Declare, Module, PLAN, ROBOT, Refusal};
 
 /// The modules that each run of a program loads, in this order.
 pub struct Library<Y> {
@@ -48,6 +49,18 @@ impl<Y> Library<Y> {
     /// Returns the names of the modules.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.makers.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Returns `Ok` if a module can be added under this name.
+    ///
+    /// # Errors
+    /// No module can have the name, or another one has it.
+    pub fn admits(&self, name: &str) -> Result<(), Refusal> {
+        if !is_name(name) {
+            return Err(Refusal::BadName(name.to_owned()));
+        }
+        let is_taken = [PLAN, ROBOT].contains(&name) || self.names().any(|known| known == name);
+        if is_taken { Err(Refusal::NameTaken(name.to_owned())) } else { Ok(()) }
     }
 
     /// Makes the modules, unless `request` is made before.

@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
         return scenario::run(&arguments, library);
     }
     let settings = Settings::beside(&arguments.file)?;
-    modules::of_settings(&settings, &arguments, library);
+    modules::of_settings(&settings, &arguments, library)?;
     let name = settings.name_of_target(arguments.target.as_deref()).ok_or(InputError::NoTarget)?;
     let linked = targets::linked(&name).map_err(Failure::Usage)?;
     let target = Arc::new(settings.target(arguments.target.as_deref())?);

@@ -12,4 +12,4 @@ mod turns;
 pub use event::{Arrivals, End, Event};
 pub use loaded::Standing;
 pub use modules::{Modules, Service};
-pub use piloting::{Engine, PLAN};
+pub use piloting::Engine;

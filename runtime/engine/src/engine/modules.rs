@@ -12,10 +12,7 @@ use super::loaded::{Loaded, Runs, Standing};
 use crate::attribute::{AttributeName, Reading, Value};
 use crate::board::Board;
 use crate::fork::{Fork, Threads};
-use crate::module::{About, Candidate, Refusal};
-
-/// Name of the robot among the modules, in the tree of attributes; no module can have it.
-const ROBOT: &str = "robot";
+use crate::module::{About, Candidate, ROBOT, Refusal};
 
 /// The clock by which a module that waits is served.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -13,12 +13,10 @@ use super::modules::{Modules, Service};
 use crate::fork::Threads;
 use crate::library::Library;
 use crate::link::StateLink;
-use crate::module::{Candidate, Declare, Refusal};
+use crate::module::{Candidate, Declare, PLAN, Refusal};
 use crate::plans::{EngineAlphabet, NoTrial, PlanTurn, Plans, reads};
 use crate::replay::{History, Repeats};
 
-/// Name of the module that makes the turns of plans; no other module can have it.
-pub const PLAN: &str = "mdle";
 /// Number of workers in real time.
 const WORKERS: usize = 2;
 

@@ -11,6 +11,11 @@ use std::time::Duration;
 use super::{Background, Declare, Declared, Exchange, Fault, Gate, Module, Ports, ThreadEnd};
 use crate::attribute::{AttributeKind, AttributeName, is_name};
 
+/// Name of the module that makes the turns of plans; no other module can have it.
+pub const PLAN: &str = "mdle";
+/// Name of the robot among the modules, in the tree of attributes; no module can have it.
+pub(crate) const ROBOT: &str = "robot";
+
 /// A module that is made, and not loaded yet. The robot's turns do not wait while it is made.
 pub struct Candidate<Y> {
     pub(crate) name: Arc<str>,

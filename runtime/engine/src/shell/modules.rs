@@ -8,8 +8,8 @@ use mdle_quantity::Quantity;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Volts};
 
 use crate::attribute::{self, AttributeKind};
-use crate::engine::{Engine, PLAN, Standing};
-use crate::module::{About, Refusal};
+use crate::engine::{Engine, Standing};
+use crate::module::{About, PLAN, Refusal};
 use crate::plans::EngineAlphabet;
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 

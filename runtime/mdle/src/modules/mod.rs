@@ -4,10 +4,11 @@ mod heading;
 mod sensors;
 
 use mdle_engine::Library;
-use mdle_files::Settings;
+use mdle_files::{NamedProcess, Settings};
 use mdle_runtime::Sensed;
 
 use crate::arguments::Run;
+use crate::failure::Failure;
 use heading::Heading;
 use sensors::Sensors;
 
@@ -20,16 +21,24 @@ pub(crate) fn shipped(library: &mut Library<Sensed>) {
 }
 
 /// Adds the modules that the `mdle.toml` and the options name; an option replaces a module of the same name.
-pub(crate) fn of_settings(settings: &Settings, Run { modules, point, .. }: &Run, library: &mut Library<Sensed>) {
+///
+/// # Errors
+/// A name in the `mdle.toml` is none of a module, or another module has it.
+pub(crate) fn of_settings(
+    settings: &Settings,
+    Run { modules, point, .. }: &Run,
+    library: &mut Library<Sensed>,
+) -> Result<(), Failure> {
     let is_replaced = |name: &str| modules.iter().any(|(other, _)| other == name) || point.is_some() && name == HEADING;
-    settings
-        .modules()
-        .filter(|(name, _)| !is_replaced(name))
-        .for_each(|(name, command)| library.process(name, command));
+    for NamedProcess { place, name, command } in settings.modules().filter(|module| !is_replaced(module.name)) {
+        library.admits(name).map_err(|refusal| Failure::Usage(format!("{place}: {refusal}")))?;
+        library.process(name, command);
+    }
     if let Some(point) = *point {
         library.registered(HEADING, move |declare| Heading::declare(declare, point));
     }
     for (name, command) in modules {
         library.process(name, command);
     }
+    Ok(())
 }
