@@ -11,6 +11,7 @@ mod hostile_text;
 mod large_input;
 mod mdle_modules;
 mod mdle_plans;
+mod mdle_recorder;
 mod mdle_run;
 mod mdle_shell;
 mod mdle_terminal;

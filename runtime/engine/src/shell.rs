@@ -10,6 +10,7 @@ mod lines;
 mod modules;
 mod parts;
 mod plans;
+mod recorder;
 mod session;
 
 pub use converse::{Conversation, converse};

@@ -120,6 +120,13 @@ pub(crate) struct WantedPlan<'a> {
 /// The plan cannot be read, has errors or is not that of the record, or the record has no text of it.
 pub(crate) fn plan(wanted: &WantedPlan<'_>, target: &Target) -> Result<(Machine, Sources), Failure> {
     let WantedPlan { log, file, begin, call, has_run } = *wanted;
+    if begin.beside == Begin::MIDDLE {
+        return Err(Failure::Usage(format!(
+            "the record {} begins in the middle of a run, and its turns follow from those before it\nhelp: `--log FILE.mcap` \
+             of a run records all turns; `mdle log` and `mdle plot` take this record too",
+            log.display()
+        )));
+    }
     let Some(path) = file else {
         if begin.files.is_empty() {
             return Err(Failure::Usage(format!(

@@ -48,6 +48,9 @@ pub struct Constants {
 }
 
 impl Begin {
+    /// [`Begin::beside`] of a record that begins in the middle of a run, so that no replay can make its turns again.
+    pub const MIDDLE: &str = "the run before it";
+
     /// Writes the begin of a run whose first output is `y`, with the paths that the plan can replay.
     pub(crate) fn put(&self, y: &Sensed, to: &mut Vec<u8>) {
         for text in [&self.version, &self.target, &self.plan, &self.command, &self.beside] {

@@ -29,7 +29,7 @@ impl Tag {
 }
 
 /// Encodes the turns of a run as frames.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Frames {
     before: Option<Sensed>,
     chain: Chain,

@@ -11,6 +11,7 @@ use super::clock::SessionClock;
 use super::modules::ModulesPart;
 use super::parts::{EnginePart, RobotPart, SafetyPart};
 use super::plans::PlansPart;
+use super::recorder::RecorderPart;
 use crate::engine::Engine;
 use crate::plans::EngineAlphabet;
 use crate::safety::{Guardian, Limits};
@@ -38,6 +39,7 @@ struct Parts<A: Alphabet> {
     clock: SessionClock,
     engine: EnginePart,
     safety: SafetyPart<A>,
+    recorder: RecorderPart,
 }
 
 impl<A: Alphabet> Session<A> {
@@ -51,6 +53,7 @@ impl<A: Alphabet> Session<A> {
             clock: SessionClock::new(terms.period, terms.time, is_paused),
             engine: EnginePart::default(),
             safety: SafetyPart(guardian),
+            recorder: RecorderPart::new(terms, A::NAME),
         };
         Self { desk, parts, request: terms.request.clone(), recorded: None }
     }
@@ -73,6 +76,7 @@ where
     }
 
     fn at_break(&mut self, moment: &mut Break<'_, Engine<A>>) -> Orders {
+        self.parts.recorder.made(moment);
         self.parts.clock.made(moment);
         self.serve(moment, None);
         while self.parts.clock.is_paused && !moment.is_over && !self.parts.engine.quits && !self.request.is_made() {
@@ -124,9 +128,9 @@ where
     A: EngineAlphabet<Input = Twist>,
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
 {
-    fn all<'b>(&mut self) -> [&mut dyn Served<Break<'b, Engine<A>>>; 6] {
-        let Self { robot, plans, modules, clock, engine, safety } = self;
-        [robot, plans, modules, clock, engine, safety]
+    fn all<'b>(&mut self) -> [&mut dyn Served<Break<'b, Engine<A>>>; 7] {
+        let Self { robot, plans, modules, clock, engine, safety, recorder } = self;
+        [robot, plans, modules, clock, engine, safety, recorder]
     }
 
     /// Carries on with the requests that take longer than a break, and answers those that are decided.
@@ -135,6 +139,7 @@ where
             let loaded = pilot.progress();
             loaded.into_iter().for_each(|(number, result)| self.modules.answer(number, result));
         }
+        self.recorder.proceed().into_iter().for_each(|message| pilot.tell(message));
         self.plans.answer(pilot.plans_mut()).into_iter().for_each(|message| pilot.tell(message));
     }
 }

@@ -1,0 +1,292 @@
+//! `/recorder`: writes the turns that follow to a record, until it is stopped (docs/src/shell.md).
+//!
+//! A thread of its own opens and writes the file, so that no turn of a real robot waits for it; turns for which it has no
+//! room are left out and counted.
+
+use std::any::Any;
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use mdle_host::{Break, RunTerms, Time};
+use mdle_record::frames::Frames;
+use mdle_record::{Applied, Begin, RecordFile, TurnMade};
+use mdle_runtime::{Nanos, Sensed, Twist};
+
+use crate::engine::Engine;
+use crate::plans::EngineAlphabet;
+use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value};
+
+/// Maximum number of turns that wait for the file.
+const WAITING: usize = 256;
+/// Maximum wait for the file at the end of the session.
+const AT_THE_END: Duration = Duration::from_secs(2);
+
+/// The recorder of a session.
+#[derive(Debug)]
+pub(super) struct RecorderPart {
+    /// `None` if the system gave no thread.
+    orders: Option<SyncSender<Order>>,
+    thread: Option<JoinHandle<()>>,
+    opened: Receiver<Result<(), String>>,
+    progress: Arc<Progress>,
+    begin: Begin,
+    /// `true` if time stands while a turn waits for room.
+    is_stepped: bool,
+    /// The file that is being opened, and whom to tell.
+    opening: Option<Reply>,
+    /// Name of the file that is written, or was written last.
+    file: Arc<str>,
+    tape: Option<Tape>,
+    turns: u64,
+    dropped: u64,
+}
+
+/// A record that is being written.
+#[derive(Debug, Default)]
+struct Tape {
+    frames: Frames,
+    has_begun: bool,
+}
+
+/// Progress of the thread that writes.
+#[derive(Debug, Default)]
+struct Progress {
+    bytes: AtomicU64,
+    /// Reason why the record could not be written any further.
+    fault: Mutex<Option<String>>,
+}
+
+/// Something that the thread is to do.
+#[derive(Debug)]
+enum Order {
+    Open(PathBuf),
+    Write(Vec<u8>),
+    Close,
+}
+
+impl RecorderPart {
+    /// Returns the recorder of a run with these terms on this target. It is made before the thread of the turns is
+    /// scheduled in real time, which its own would be as well.
+    pub(super) fn new(terms: &RunTerms, target: &str) -> Self {
+        let ((orders, waiting), (sender, opened)) = (sync_channel(WAITING), channel());
+        let progress = Arc::<Progress>::default();
+        let own = Arc::clone(&progress);
+        let write = move || write_all(&waiting, &sender, &own);
+        let thread = thread::Builder::new().name("mdle recorder".to_owned()).spawn(write).ok();
+        let begin = Begin {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            target: target.to_owned(),
+            period: Nanos(u64::try_from(terms.period.as_nanos()).unwrap_or(u64::MAX)),
+            beside: Begin::MIDDLE.to_owned(),
+            ..Begin::default()
+        };
+        Self {
+            orders: thread.as_ref().map(|_| orders),
+            thread,
+            opened,
+            progress,
+            begin,
+            is_stepped: terms.time != Time::Wall,
+            opening: None,
+            file: "".into(),
+            tape: None,
+            turns: 0,
+            dropped: 0,
+        }
+    }
+
+    /// Writes the turn that was made.
+    pub(super) fn made<A>(&mut self, moment: &Break<'_, Engine<A>>)
+    where
+        A: EngineAlphabet<Input = Twist>,
+    {
+        let (Some(tape), Some(orders)) = (&mut self.tape, &self.orders) else { return };
+        let Some(y) = (moment.y as &dyn Any).downcast_ref::<Sensed>().filter(|_| moment.turns > 0) else { return };
+        let position = moment.position();
+        let applied = match position {
+            _ if moment.is_over => Applied::Over,
+            Some(_) => Applied::Law,
+            None => Applied::Cut,
+        };
+        let made = TurnMade {
+            number: moment.turns - 1,
+            t: moment.t,
+            sent: *moment.input,
+            applied,
+            plan: moment.pilot.plans().number().into(),
+            state: position.map_or(0, |position| position.state),
+            changes: &[],
+            overruled: None,
+        };
+        // A turn is encoded by what has changed since the last one that was written.
+        let (mut frames, mut bytes) = (tape.frames.clone(), Vec::new());
+        if !tape.has_begun {
+            self.begin.plan = moment.pilot.plans().name().to_owned();
+            frames.begin(&self.begin, y, &mut bytes);
+        }
+        frames.turn(made, y, std::iter::empty(), &mut bytes);
+        let order = Order::Write(bytes);
+        let is_taken = if self.is_stepped { orders.send(order).is_ok() } else { orders.try_send(order).is_ok() };
+        if is_taken {
+            *tape = Tape { frames, has_begun: true };
+            self.turns = self.turns.saturating_add(1);
+        } else {
+            self.dropped = self.dropped.saturating_add(1);
+        }
+    }
+
+    /// Answers who waits for the file; returns a message if the record could not be written any further.
+    pub(super) fn proceed(&mut self) -> Option<String> {
+        if let Ok(opened) = self.opened.try_recv()
+            && let Some(reply) = self.opening.take()
+        {
+            reply.answer(match opened {
+                Ok(()) => {
+                    self.tape = Some(Tape::default());
+                    Answer::Done(format!("records to {}", self.file))
+                }
+                Err(sentence) => Answer::Refused(sentence),
+            });
+        }
+        let fault = self.progress.fault.try_lock().ok()?.take()?;
+        self.tape = None;
+        Some(format!("warning: the record {} ends here, as it cannot be written: {fault}", self.file))
+    }
+
+    /// Begins to open a file.
+    fn start(&mut self, arguments: &[String], reply: Reply) {
+        let sentence = match (arguments, &self.orders) {
+            (_, None) => "the system gives no thread for the recorder".to_owned(),
+            _ if self.tape.is_some() || self.opening.is_some() => {
+                format!("it records to {}: `call /recorder/stop` ends that", self.file)
+            }
+            ([file], Some(orders)) if file.ends_with(".mcap") => {
+                if orders.try_send(Order::Open(file.into())).is_ok() {
+                    (self.file, self.turns, self.dropped) = (file.as_str().into(), 0, 0);
+                    self.opening = Some(reply);
+                    return;
+                }
+                "the file before is still being written: try again later".to_owned()
+            }
+            (_, Some(_)) => {
+                "`/recorder/start` takes the name of a file, as in `call /recorder/start run.mcap`".to_owned()
+            }
+        };
+        reply.answer(Answer::Refused(sentence));
+    }
+
+    /// Ends the record.
+    fn stop(&mut self) -> Answer {
+        let (Some(mut tape), Some(orders)) = (self.tape.take(), &self.orders) else {
+            return Answer::Refused("it does not record: `call /recorder/start FILE.mcap` begins that".to_owned());
+        };
+        let mut end = Vec::new();
+        tape.frames.end(&mut end);
+        // Without room the file has no end, as after a kill.
+        let _ = orders.try_send(Order::Write(end)).and_then(|()| orders.try_send(Order::Close));
+        Answer::Done(format!("{} turns in {}", self.turns, self.file))
+    }
+}
+
+impl Drop for RecorderPart {
+    fn drop(&mut self) {
+        self.stop();
+        self.orders = None;
+        let begun = Instant::now();
+        while self.thread.as_ref().is_some_and(|thread| !thread.is_finished()) && begun.elapsed() < AT_THE_END {
+            thread::sleep(Duration::from_millis(1));
+        }
+    }
+}
+
+/// Carries out orders until there are no more.
+fn write_all(orders: &Receiver<Order>, opened: &Sender<Result<(), String>>, progress: &Arc<Progress>) {
+    let mut record: Option<RecordFile<Counted>> = None;
+    for order in orders {
+        let written = match order {
+            Order::Open(path) => {
+                progress.bytes.store(0, Ordering::Relaxed);
+                let file = created(&path);
+                let _ = opened.send(file.as_ref().map(|_| ()).map_err(Clone::clone));
+                record = file.ok().map(|file| RecordFile::new(Counted { file, progress: Arc::clone(progress) }));
+                Ok(())
+            }
+            Order::Write(bytes) => record.as_mut().map_or(Ok(()), |record| record.write_all(&bytes)),
+            Order::Close => {
+                record = None;
+                Ok(())
+            }
+        };
+        if let Err(error) = written {
+            record = None;
+            *progress.fault.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
+        }
+    }
+}
+
+/// Creates the file of a record, if there is none of this name.
+fn created(path: &Path) -> Result<File, String> {
+    File::create_new(path).map_err(|error| match error.kind() {
+        io::ErrorKind::AlreadyExists => format!("{} is there already: name a new file", path.display()),
+        _ => format!("{} cannot be written: {error}", path.display()),
+    })
+}
+
+/// A file whose bytes are counted.
+struct Counted {
+    file: File,
+    progress: Arc<Progress>,
+}
+
+impl Write for Counted {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.progress.bytes.fetch_add(u64::try_from(written).unwrap_or(u64::MAX), Ordering::Relaxed);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for RecorderPart {
+    fn nodes(&self, _: &Break<'_, Engine<A>>) -> Vec<(String, Node)> {
+        let nodes = [
+            ("file", Node::reading(Kind::Text, "file that is written, or was written last")),
+            ("state", Node::reading(Kind::Text, "`records` or `stands`")),
+            ("turns", Node::reading(Kind::Integer, "number of turns that were recorded")),
+            ("bytes", Node::reading(Kind::Integer, "size of the file")),
+            ("dropped", Node::reading(Kind::Integer, "number of turns for which the file was too slow")),
+            ("start", Node::method(Role::Admin, "records what follows to a new file")),
+            ("stop", Node::method(Role::Admin, "ends the record")),
+        ];
+        nodes.map(|(name, node)| (format!("/recorder/{name}"), node)).into()
+    }
+
+    fn values(&self, _: &Break<'_, Engine<A>>, to: &mut Vec<Option<Value>>) {
+        let state = if self.tape.is_some() { "records" } else { "stands" };
+        let file = Some(Value::Text(Arc::clone(&self.file))).filter(|_| !self.file.is_empty());
+        let counts = [self.turns, self.progress.bytes.load(Ordering::Relaxed), self.dropped];
+        to.extend([file, Some(Value::text(state))]);
+        to.extend(counts.map(|count| Some(Value::count(count))));
+        to.extend([None, None]);
+    }
+
+    fn change(&mut self, path: &str, change: &Change, _: &mut Break<'_, Engine<A>>, reply: Reply) {
+        match change {
+            Change::Call(arguments) if path == "/recorder/start" => self.start(arguments, reply),
+            Change::Call(arguments) if arguments.is_empty() => {
+                let answer = self.stop();
+                reply.answer(answer);
+            }
+            Change::Call(_) | Change::Set(_) => reply.answer(Answer::Refused(format!("`{path}` takes no arguments"))),
+        }
+    }
+}
