@@ -2,6 +2,7 @@
 
 mod faults;
 mod links;
+mod phases;
 mod signalled;
 mod stands;
 

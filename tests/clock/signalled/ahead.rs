@@ -1,7 +1,11 @@
 //! A plan that drives ahead for a second, as the executables of two robots; the variable `ROBOT` selects the robot.
+//! Called as `ahead run PLAN`, it is `mdle` with a module that takes 40 ms of each turn.
 
 use std::process::ExitCode;
+use std::thread;
+use std::time::Duration;
 
+use mdle::engine::{Fault, Module, Turn};
 use mdle_atrv::Target as Atrv;
 use mdle_host::run;
 use mdle_runtime::fsm::{Atom, Bracket};
@@ -9,10 +13,22 @@ use mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, MetersPerSecond, Nanos, Pl
 use mdle_scout::Target as Scout;
 
 fn main() -> ExitCode {
-    if std::env::var_os("ROBOT").is_some_and(|robot| robot == "scout") {
+    if std::env::args_os().nth(1).is_some_and(|word| word == "run") {
+        mdle::main_with(|library| library.registered("slow", |_| Slow))
+    } else if std::env::var_os("ROBOT").is_some_and(|robot| robot == "scout") {
         run::<Scout, _>("Ahead", || Ahead)
     } else {
         run::<Atrv, _>("Ahead", || Ahead)
+    }
+}
+
+/// Takes its time.
+struct Slow;
+
+impl Module<Sensed> for Slow {
+    fn turn(&mut self, _: &mut Turn<'_, Sensed>) -> Result<(), Fault> {
+        thread::sleep(Duration::from_millis(40));
+        Ok(())
     }
 }
 

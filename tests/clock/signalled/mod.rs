@@ -2,7 +2,7 @@
 //! command asks, and the exit status names the cause.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-mod run;
+pub(crate) mod run;
 mod suspended;
 
 use std::collections::BTreeMap;

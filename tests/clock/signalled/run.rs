@@ -207,10 +207,21 @@ pub(crate) fn ran<R: Robot>(
     mute: Option<u8>,
     look: &mut dyn FnMut(&R, &Received, Duration),
 ) -> Ran<R> {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ahead"));
+    command.env("ROBOT", R::NAME).arg("--config").arg(config);
+    ran_by::<R>(command, pace, mute, look)
+}
+
+/// Runs the program of this command, as [`ran`] does.
+pub(crate) fn ran_by<R: Robot>(
+    mut command: Command,
+    pace: Pace,
+    mute: Option<u8>,
+    look: &mut dyn FnMut(&R, &Received, Duration),
+) -> Ran<R> {
     catch_hang_up();
     let port = Port::open().unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_ahead"));
-    command.env("ROBOT", R::NAME).arg("--device").arg(port.path()).arg("--config").arg(config);
+    command.arg("--device").arg(port.path());
     command.args(["--period", "0.1"]).args((pace == LOCKSTEP).then_some("--lockstep"));
     let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let (begun, robot) = (Instant::now(), R::new(pace));

@@ -1,0 +1,173 @@
+//! Signals at the engine and at the process group of a module, in each phase of a turn: how many turns pass until the
+//! robot stands.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+#![allow(clippy::print_stdout, reason = "how many turns it took is seen with --nocapture")]
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use mdle_atrv_emulator::atrv::Atrv;
+use mdle_emulator::{Order, Pace};
+use mdle_runtime::Pose;
+use mdle_scout_emulator::scout::Scout;
+use mdle_tests::executable::folder;
+
+use super::signalled::run::{Ran, Robot, distance, drove, ran_by, send};
+
+/// Drives while a module says something.
+const PLAN: &str = "{ Listen (age(ears module) > 500ms OR wait 20s) (Atom (null) (go 20 0)) }\n";
+/// A child process that says something at each break, and notes its number.
+const EARS: &str = "echo $$ > $1; echo '{\"publishes\": {\"bearing\": \"deg\"}}'\n\
+                    while read line; do echo '{\"bearing\": 0}'; done\n";
+const PERIOD: Duration = Duration::from_millis(100);
+/// Times from a command to the signal, in milliseconds: during the exchange, in a turn, of which a module takes 40 ms, at
+/// its break, and while the engine waits for the next.
+const MOMENTS: [u64; 6] = [0, 10, 30, 45, 60, 80];
+/// Time for which the robot drives before.
+const DRIVES: Duration = Duration::from_millis(500);
+/// Maximum movement of a robot that stands, in a step, in metres.
+const STANDS: f64 = 1e-5;
+/// Number of runs at the same time.
+const AT_A_TIME: usize = 6;
+
+/// Something that is killed or asked to end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Blow {
+    /// SIGKILL to the engine.
+    KillsEngine,
+    /// SIGTERM to the engine.
+    EndsEngine,
+    /// SIGKILL to the process group of the module.
+    KillsModule,
+}
+
+impl Blow {
+    const ALL: [Self; 3] = [Self::KillsEngine, Self::EndsEngine, Self::KillsModule];
+
+    /// Strikes; `pid` is the file with the number of the module's process.
+    fn strike(self, engine: u32, pid: &Path) {
+        match self {
+            Self::KillsEngine => send(9, engine),
+            Self::EndsEngine => send(15, engine),
+            Self::KillsModule => {
+                let process = fs::read_to_string(pid).unwrap();
+                let stat = fs::read_to_string(format!("/proc/{}/stat", process.trim())).unwrap();
+                // After the name: the state, the parent, and the group.
+                let group = stat.rsplit(") ").next().unwrap().split(' ').nth(2).unwrap();
+                assert!(Command::new("sh").args(["-c", &format!("kill -9 -{group}")]).status().unwrap().success());
+            }
+        }
+    }
+}
+
+/// Runs the plan, and strikes this long after a command; returns the run, and the number of turns until the robot stood.
+fn struck<R: Robot>(folder: &Path, blow: Blow, moment: Duration) -> (Ran<R>, u32) {
+    let pid = folder.join(format!("{blow:?}-{}", moment.as_millis()));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ahead"));
+    command.args(["run", "plan.mdle", "--target", R::NAME]).current_dir(folder);
+    command.arg("--module").arg(format!("ears=exec sh ears.sh {}", pid.display())).args(["--config", "config.toml"]);
+    // Time since the first command to drive, since the last command, and since the blow; pose at the last step.
+    let (mut driven, mut waited, mut since) = (Duration::ZERO, Duration::ZERO, None);
+    let (mut commands, mut last, mut stood) = (0, Pose::default(), None);
+    let mut ran = ran_by::<R>(command, Pace::Real, None, &mut |robot, received, time| {
+        if received.commands != commands {
+            (commands, waited) = (received.commands, Duration::ZERO);
+        }
+        waited += time;
+        driven += if drove(robot) { time } else { Duration::ZERO };
+        if since.is_none() && driven >= DRIVES && waited >= moment && waited < PERIOD {
+            blow.strike(received.process, &pid);
+            since = Some(Duration::ZERO);
+        }
+        if let Some(since) = since.as_mut().filter(|_| time > Duration::ZERO) {
+            *since += time;
+            let stands = distance(&last, &robot.pose()) <= STANDS;
+            stood = stands.then(|| stood.unwrap_or(*since));
+        }
+        last = robot.pose();
+    });
+    // Nobody commands it any more: a period has passed after the end of the program.
+    let mut since = since.expect("a blow") + PERIOD;
+    while stood.is_none() {
+        ran.robot.pass(Pace::Real.step()).unwrap();
+        since += Pace::Real.step();
+        stood = (distance(&last, &ran.robot.pose()) <= STANDS).then_some(since);
+        last = ran.robot.pose();
+        assert!(since < Duration::from_secs(20), "it never stands");
+    }
+    let turns = stood.unwrap_or_default().as_millis().div_ceil(PERIOD.as_millis());
+    (ran, u32::try_from(turns).unwrap())
+}
+
+/// Asserts that a robot stands after every blow in every phase; returns a line for each blow.
+fn every_phase<R: Robot>(most: [u32; 3]) -> String {
+    let folder = folder(&format!("phases_{}", R::NAME));
+    fs::write(folder.join("plan.mdle"), PLAN).unwrap();
+    fs::write(folder.join("ears.sh"), EARS).unwrap();
+    // All sonars of a Scout have pinged soon.
+    fs::write(folder.join("config.toml"), if R::NAME == Scout::NAME { "gap = 4\n" } else { "" }).unwrap();
+    let cases: Vec<_> = Blow::ALL.into_iter().flat_map(|blow| MOMENTS.map(|moment| (blow, moment))).collect();
+    let (next, turns) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    thread::scope(|scope| {
+        for _ in 0..AT_A_TIME / 2 {
+            scope.spawn(|| {
+                while let Some((blow, moment)) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let (ran, stood) = struck::<R>(&folder, *blow, Duration::from_millis(*moment));
+                    assert_end(*blow, &ran);
+                    turns.lock().unwrap().push((*blow, *moment, stood));
+                }
+            });
+        }
+    });
+    let mut turns = turns.into_inner().unwrap();
+    turns.sort_by_key(|(blow, moment, _)| (*blow as u8, *moment));
+    let lines = Blow::ALL.map(|blow| {
+        let of_blow: Vec<_> = turns.iter().filter(|(other, ..)| *other == blow).map(|(.., turns)| *turns).collect();
+        assert_eq!(of_blow.len(), MOMENTS.len());
+        assert!(of_blow.iter().all(|turns| *turns <= most[blow as usize]), "{} {blow:?}: {of_blow:?}", R::NAME);
+        format!("{} {blow:?}: {of_blow:?} turns\n", R::NAME)
+    });
+    lines.concat()
+}
+
+/// Asserts what the program left.
+fn assert_end<R: Robot>(blow: Blow, ran: &Ran<R>) {
+    let (status, errors) = (ran.output.status.code(), ran.errors());
+    let bytes = &ran.received.bytes;
+    match blow {
+        Blow::KillsEngine => {
+            assert_eq!(status, None, "{errors}");
+            assert_eq!(
+                ran.robot.orders().last().map(|(_, order)| order),
+                Some(Order::Drive),
+                "its own watchdog stops it"
+            );
+        }
+        Blow::EndsEngine => {
+            assert!(status == Some(143) && errors.contains("stopped by SIGTERM\n"), "{status:?} {errors}");
+            assert!(ran.robot.is_secured(bytes), "{:02X?}", &bytes[bytes.len().saturating_sub(150)..]);
+        }
+        Blow::KillsModule => {
+            let report = String::from_utf8_lossy(&ran.output.stdout);
+            assert!(status == Some(0) && report.contains("plan over: age(ears module)"), "{status:?} {report}{errors}");
+            assert!(errors.contains("module `ears` makes no further turn: its process has ended"), "{errors}");
+            assert!(ran.robot.is_secured(bytes), "{:02X?}", &bytes[bytes.len().saturating_sub(150)..]);
+        }
+    }
+}
+
+#[test]
+fn a_robot_stands_after_a_signal_in_each_phase() {
+    // Without the engine the watchdogs stop them: that of a Scout after a second, that of an ATRV after half a second.
+    let (scout, atrv) = thread::scope(|scope| {
+        let scout = scope.spawn(|| every_phase::<Scout>([16, 8, 16]));
+        let atrv = every_phase::<Atrv>([12, 8, 16]);
+        (scout.join().unwrap(), atrv)
+    });
+    println!("{scout}{atrv}");
+}
