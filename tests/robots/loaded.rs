@@ -2,6 +2,8 @@
 //! exit status.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+mod random;
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,12 +16,10 @@ use mdle_atrv_emulator::atrv::{Atrv, step};
 use mdle_emulator::{Emulated, Pace, Port, serve};
 use mdle_scout_emulator::scout::Scout;
 use mdle_sim::{Body, Make, Simulated, World};
-use mdle_tests::chance::{Chance, repeated};
+use mdle_tests::chance::Chance;
 use mdle_tests::executable::{folder, mdle, run_mdlec};
 use mdle_tests::repository::root;
 
-/// Number of random plans.
-const PLANS: u64 = 3;
 const PERIOD: Duration = Duration::from_millis(100);
 const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
 
@@ -50,16 +50,23 @@ fn left(folder: &Path, called: &str, output: Output) -> RunOutput {
 /// Runs the plan of a file both ways with the same options, and compares what the runs leave. Warnings about the plan,
 /// which `mdlec` prints when it builds, come before the run.
 fn compare(folder: &Path, file: &str, target: &str, options: &[&str]) -> RunOutput {
-    let run = |mut command: Command| {
-        let called = called(&command);
-        left(folder, &called, command.args(options).current_dir(folder).output().unwrap())
-    };
+    let run = |command| simulated_run(folder, command, options);
     let mut executable = run(Command::new(folder.join("executable")));
-    let checked = run_mdlec(folder, &["check", file, "--target", target]);
-    executable.err.insert_str(0, &String::from_utf8(checked.stderr).unwrap());
+    executable.err.insert_str(0, &warnings(folder, file, target));
     let loaded = run(loaded(file, target));
     assert_eq!(loaded, executable, "{file} {target} {options:?}");
     loaded
+}
+
+/// Runs a command with these options in the simulator.
+fn simulated_run(folder: &Path, mut command: Command, options: &[&str]) -> RunOutput {
+    let called = called(&command);
+    left(folder, &called, command.args(options).current_dir(folder).output().unwrap())
+}
+
+/// The warnings about a plan.
+fn warnings(folder: &Path, file: &str, target: &str) -> String {
+    String::from_utf8(run_mdlec(folder, &["check", file, "--target", target]).stderr).unwrap()
 }
 
 /// Returns the program and the arguments of a command, as a shell takes them.
@@ -152,13 +159,7 @@ fn a_run_on_an_emulated_robot_is_that_of_the_executable() {
     for target in ["scout", "atrv"] {
         let folder = folder(target);
         build(&folder, file, target);
-        let run = |command: Command| match target {
-            "scout" => emulated(&folder, Scout::new(simulated(Body::Scout, PERIOD)).unwrap(), command),
-            _ => {
-                let step = step(IN_LOCKSTEP);
-                emulated(&folder, Atrv::new(simulated(Body::Atrv, step), step, false).unwrap(), command)
-            }
-        };
+        let run = |command| emulated_run(&folder, target, command, "200");
         let executable = run(Command::new(folder.join("executable")));
         assert_eq!(run(loaded(file, target)), executable, "{target}");
         assert_eq!(executable.status, Some(0), "{executable:?}");
@@ -172,34 +173,27 @@ pub(crate) fn simulated(body: Body, step: Duration) -> Simulated {
     Simulated::with(&make, &world, world.start, step).unwrap()
 }
 
-/// Runs a command on an emulated robot in lockstep.
-fn emulated<R: Emulated + Send>(folder: &Path, mut robot: R, mut command: Command) -> RunOutput {
+/// Runs a command on the emulated robot of a target in lockstep, for at most this many seconds.
+fn emulated_run(folder: &Path, target: &str, command: Command, timeout: &str) -> RunOutput {
+    if target == "scout" {
+        return emulated(folder, Scout::new(simulated(Body::Scout, PERIOD)).unwrap(), command, timeout);
+    }
+    let step = step(IN_LOCKSTEP);
+    emulated(folder, Atrv::new(simulated(Body::Atrv, step), step, false).unwrap(), command, timeout)
+}
+
+fn emulated<R: Emulated + Send>(folder: &Path, mut robot: R, mut command: Command, timeout: &str) -> RunOutput {
     let called = called(&command);
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     let output = thread::scope(|scope| {
         let serving = scope.spawn(|| serve(&mut robot, &port, IN_LOCKSTEP, &|| !over.load(Ordering::Relaxed)));
-        let options = ["--lockstep", "--timeout", "200", "--log", FILES[0]];
+        let options = ["--lockstep", "--timeout", timeout, "--log", FILES[0]];
         let output = command.arg("--device").arg(port.path()).args(options).current_dir(folder).output();
         over.store(true, Ordering::Relaxed);
         serving.join().unwrap().unwrap();
         output.unwrap()
     });
     left(folder, &called, output)
-}
-
-#[test]
-fn random_plans_run_as_their_executables_do() {
-    let folder = folder("random");
-    let bodies = ["ideal", "scout", "atrv"];
-    for seed in 0..repeated(PLANS) {
-        let mut chance = Chance::new(seed);
-        let text = random_plan(&mut chance);
-        fs::write(folder.join("random.mdle"), &text).unwrap();
-        build(&folder, "random.mdle", "sim");
-        for body in bodies {
-            compare(&folder, "random.mdle", "sim", &in_simulator(body, &seed.to_string()));
-        }
-    }
 }
 
 /// A plan of the simulated robot: behaviors in behaviors, loops, frames, memories, and laws that drive it about.
