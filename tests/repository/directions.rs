@@ -12,7 +12,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("runtime/core", &[]),
     ("runtime/quantity", &["mdle-runtime"]),
     ("runtime/record", &["mdle-runtime"]),
-    ("runtime/host", &["mdle-runtime", "mdle-quantity", "mdle-record"]),
+    ("runtime/host", &["mdle-runtime", "mdle-quantity", "mdle-record", "mdle-simulator"]),
     ("runtime/engine", &["mdle-runtime", "mdle-host", "mdle-compiler", "mdle-quantity", "mdle-record"]),
     (
         "runtime/mdle",

@@ -7,7 +7,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
 use crate::call::Call;
 use crate::target_options::TargetOptions;
-use crate::{Program, Quantity, paths, required};
+use crate::{Program, Quantity, paths, required, views};
 
 /// Minimum period: a turn must leave time for the exchange.
 const PERIOD_LEAST: Duration = Duration::from_micros(100);
@@ -95,6 +95,7 @@ pub(crate) fn command(target: &TargetOptions, program: Program<'_>, call: &Call)
                 .requires("log")
                 .help("Let the run go on without its log if that cannot be written, and say so"),
         );
+    let command = views::arguments(command);
     let command = match call.several_words() {
         Some(words) => required::argument(command).bin_name(words),
         None => required::argument(command),

@@ -37,6 +37,8 @@ pub(crate) trait Drive {
     fn longest_gap(&self) -> Option<Duration>;
     /// Returns the heading and the speed of the robot by its last output, if it has one and paths are recorded.
     fn motion(&self) -> Option<(Radians, MetersPerSecond)>;
+    /// Returns the last output, for views of the run; `None` if there is none yet, or if it is of another type.
+    fn sensed(&self) -> Option<&Sensed>;
     /// Returns the last output and input, for a record; `None` if they are of other types than a record has.
     fn exact(&self) -> Option<Exact<'_>>;
     /// Notes from now on what [`Drive::take_changes`] returns: called before the first turn.
@@ -140,8 +142,12 @@ where
         Some((output.here().theta, speed(output)))
     }
 
+    fn sensed(&self) -> Option<&Sensed> {
+        (self.output.as_ref()? as &dyn Any).downcast_ref()
+    }
+
     fn exact(&self) -> Option<Exact<'_>> {
-        let y = (self.output.as_ref()? as &dyn Any).downcast_ref()?;
+        let y = self.sensed()?;
         let sent = (self.helm.input() as &dyn Any).downcast_ref()?;
         Some(Exact { y, asked: self.helm.asked()?, sent: *sent })
     }

@@ -1,7 +1,7 @@
 //! Host of a plan's executable: arguments, clock, signals, safe stop, report and run log, around the turns of the plan.
 //!
 //! For people who write a robot: [`Target`], [`Time`] and [`Refusal`], [`Observer`] where its runs are watched and
-//! [`Batch`] where it can be started over, [`Replays`] where it replays paths, [`read_file`] and [`output_format`]
+//! [`Batch`] where it can be started over, [`Watch`] and [`WholeFile`] where it shows and draws them itself, [`Replays`] where it replays paths, [`read_file`] and [`output_format`]
 //! where its options name files, [`Quantity`] where they take lengths and times. For generated code: [`run`]. For an
 //! engine that makes the turns of a run itself: [`Pilot`].
 //!
@@ -66,7 +66,10 @@ mod trials;
 mod turn_watch;
 mod turns;
 mod unwinding;
+mod views;
+mod watch;
 mod way_out;
+mod whole_file;
 
 use std::fs::File;
 use std::io::{self, IsTerminal, Write};
@@ -109,6 +112,8 @@ pub use target::Target;
 pub use time::{Pace, Time};
 pub use transitions::{Operand, Transitions};
 pub use trials::{Trials, trials};
+pub use watch::Watch;
+pub use whole_file::{Unfinished, WholeFile};
 
 /// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: the `main` of an
 /// executable that mdlec builds calls this function. `program` is the plan's name, for `--help`, whose usage names the
@@ -170,8 +175,7 @@ pub fn check_options<T: Target>(program: Program<'_>, call: &Call) -> Result<(),
 /// Runs an executable with the arguments of `call`.
 fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> ExitCode {
     let signals = signals::Signals::listen();
-    let leave_screen = executable.target().leave_screen;
-    let signals = signals.and_then(|signals| second_signal::watch(&signals, leave_screen).map(|()| signals));
+    let signals = signals.and_then(|signals| second_signal::watch(&signals).map(|()| signals));
     let signals = match signals {
         Ok(signals) => signals,
         Err(error) => {

@@ -11,12 +11,10 @@ use crate::{Batch, Observer, Refusal};
 pub struct Observation<R> {
     /// Returns the observer.
     pub observer: fn(&mut R) -> &mut dyn Observer,
-    /// Returns `true` if the robot shows its run on standard output itself, as with a live view: then the report waits
-    /// until the robot is stopped, and the robot leaves the screen when it is.
-    pub screen: fn(&ArgMatches) -> bool,
-    /// Gives the terminal back, if [`Observation::screen`] took it. Called on another thread when the program ends
-    /// while the robot's code hangs: it must neither wait nor panic.
-    pub leave_screen: fn(),
+    /// `true` if the robot itself shows and draws its run as `--watch`, `--plot`, `--record` and `--trail` ask, as a
+    /// simulator does, which knows the world; it leaves the screen when it is stopped. Otherwise the host does, by
+    /// odometry.
+    pub draws: bool,
     /// Returns the runs to be made instead of one, if these options ask for several: only robots that can be started
     /// over have such options. No run has begun yet.
     pub batch: fn(&ArgMatches, Duration) -> SeveralRuns<R>,
@@ -26,9 +24,9 @@ pub struct Observation<R> {
 pub type SeveralRuns<R> = Result<Option<Batch<R>>, Refusal>;
 
 impl<R> Observation<R> {
-    /// An observer without a screen, of one run at a time.
+    /// An observer that draws nothing, of one run at a time.
     pub const fn by(observer: fn(&mut R) -> &mut dyn Observer) -> Self {
-        Self { observer, screen: |_| false, leave_screen: || {}, batch: |_, _| Ok(None) }
+        Self { observer, draws: false, batch: |_, _| Ok(None) }
     }
 }
 

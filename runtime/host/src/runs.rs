@@ -144,7 +144,8 @@ fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<EndedRun> {
     let watched = terms.watch.run(Time::Stepped(Pace::Max));
     let ending = shielded(|| {
         let mut report = Report::new(&mut nobody, false);
-        let mut witnesses = Witnesses { report: &mut report, log: None, path: None, progress: None, err: None };
+        let mut witnesses =
+            Witnesses { report: &mut report, log: None, path: None, views: None, progress: None, err: None };
         let ending = turns::run(&mut *drive, limits, &mut clock, terms.signals, &mut witnesses, &watched);
         over = witnesses.report.over().cloned();
         ending

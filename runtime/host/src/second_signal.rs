@@ -11,6 +11,7 @@ use crate::background_writer::STACK;
 use crate::patience::Stopped;
 use crate::run_end;
 use crate::signals::Signals;
+use crate::watch::leave_screen;
 
 /// The time that the program may go on after the attempt to stop, if a second signal came.
 const AFTER_THE_STOP: Duration = Duration::from_secs(1);
@@ -19,24 +20,24 @@ const WITHOUT_A_STOP: Duration = Duration::from_secs(10);
 /// The time between two looks at whether the stop was tried.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// Lets the second signal end the program, with the exit status known by then. `leave_screen` gives the terminal back.
+/// Lets the second signal end the program, with the exit status known by then. The terminal is given back.
 ///
 /// # Errors
 /// When the system does not let a signal be caught, or gives no thread.
-pub(crate) fn watch(signals: &Signals, leave_screen: fn()) -> io::Result<()> {
+pub(crate) fn watch(signals: &Signals) -> io::Result<()> {
     let mut incoming = Incoming::new(signals.noted().iter().map(|signal| i32::from(signal.number())))?;
     let signals = signals.share();
     let thread = Builder::new().name("signals".to_owned()).stack_size(STACK);
     thread.spawn(move || {
         if incoming.forever().filter(|_| !signals.are_deadly()).nth(1).is_some() {
-            end(&signals, leave_screen);
+            end(&signals);
         }
     })?;
     Ok(())
 }
 
 /// Ends the program when the stop was tried and a moment has passed, or the stop is not tried for too long.
-fn end(signals: &Signals, leave_screen: fn()) {
+fn end(signals: &Signals) {
     let begun = Instant::now();
     let known = loop {
         match signals.patience().stopped() {

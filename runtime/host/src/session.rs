@@ -31,6 +31,7 @@ use crate::signals::Signals;
 use crate::target_options::TargetOptions;
 use crate::turn_watch::TurnWatch;
 use crate::turns::{self, Witnesses};
+use crate::views::{self, ByOdometry};
 use crate::{NamedFile, Pace, Program, Refusal, Time, named_file, way_out};
 
 /// Environment of a run: time, signals and output; a test provides its own.
@@ -108,7 +109,7 @@ where
         safety: call.recorded.safety.clone(),
     };
     let ready = ready(executable, &matches, &options, store, read, &signals, begin);
-    let Ready { mut drive, time, mut log, mut path } = match ready {
+    let Ready { mut drive, time, mut log, mut path, mut views } = match ready {
         Ok(ready) => ready,
         Err(Refusal::Ended(stopped)) => return ended_at_the_start(&signals, stopped, err),
         Err(refusal) => {
@@ -117,7 +118,7 @@ where
             return refusal.tell(err);
         }
     };
-    let screen = (target.screen)(&matches);
+    let screen = views::is_watched(&matches);
     let mut out = out();
     if screen {
         out = Box::new(HeldReport::new(out));
@@ -140,17 +141,20 @@ where
             Some(now) => (Some(Progress::new(&mut *err, now)), None),
             None => (None, Some(&mut *err)),
         };
-        let mut witnesses =
-            Witnesses { report: &mut report, log, path: path.as_mut().ok().and_then(Option::as_mut), progress, err };
+        let path = path.as_mut().ok().and_then(Option::as_mut);
+        let mut witnesses = Witnesses { report: &mut report, log, path, views: views.as_mut(), progress, err };
         turns::run(&mut *drive, limits, &mut clock, &signals, &mut witnesses, &watched)
     });
     let (ending, orderly, faults) = way_out::stop(&mut *drive, ending.unwrap_or_else(way_out::bug));
+    // A view that panics must not keep the report from being written.
+    let _ = shielded(|| views.iter_mut().for_each(|views| views.stopped(drive.sensed())));
     let ending = way_out::judge(&mut *drive, ending, &required, &mut report);
     let orderly = orderly && ending.is_orderly();
     signals.patience().stop_was_tried(Some(ending.status(&faults)));
     let files = way_out::Files {
         log: log.ok().flatten(),
         path: path.and_then(|path| path.map_or(Ok(()), Recorder::close)).err(),
+        views,
     };
     let status = way_out::tell(&mut *drive, ending, orderly, faults, &mut report, files, err);
     // It stands, and all is said; even code that panics while it tidies up must not change the status.
@@ -225,7 +229,7 @@ fn named_files(
         path,
         is_written: false,
     });
-    written.chain(read).chain((target.files)(matches)).collect()
+    written.chain(views::files(matches)).chain(read).chain((target.files)(matches)).collect()
 }
 
 /// The runs of a batch, if these options ask for several.
@@ -303,6 +307,8 @@ struct Ready<'p> {
     log: io::Result<Option<RunLog>>,
     /// The path that is recorded.
     path: io::Result<Option<Recorder>>,
+    /// The views by odometry.
+    views: Option<ByOdometry>,
 }
 
 /// Opens the robot and the files of a run. A refused start leaves the files unchanged.
@@ -322,6 +328,7 @@ fn ready<'p>(
         check_record(&target, options)?;
         let log = untouched("run log", options.log.as_deref())?;
         let path = untouched("path", options.path.as_deref())?;
+        let views = views::by_odometry(&target, matches, signals.patience())?;
         if options.path.is_some() {
             paths::check_period(options.period)?;
         }
@@ -330,7 +337,7 @@ fn ready<'p>(
         let drive = executable.connect(matches, options.period, &signals.stop_request(), store)?;
         let log = log.map(|file| begun(file, options, begin, is_watched(time), signals)).transpose();
         let path = path.map(|file| file.emptied(signals.patience()).map(Recorder::new)).transpose();
-        Ok(Ready { drive, time, log, path })
+        Ok(Ready { drive, time, log, path, views })
     });
     opened.unwrap_or_else(bug_before)
 }

@@ -22,15 +22,16 @@ pub(crate) struct TargetOptions {
     pub(crate) fastest: Option<Twist>,
     /// `true` if a record can hold the robot's outputs and inputs.
     pub(crate) records: bool,
-    /// Returns `true` if the robot shows its run on standard output itself.
-    pub(crate) screen: fn(&ArgMatches) -> bool,
-    /// Gives the terminal back.
-    pub(crate) leave_screen: fn(),
+    /// `true` if the robot's outputs have the odometry that views of a run show.
+    pub(crate) has_odometry: bool,
+    /// `true` if the robot shows and draws its run itself.
+    pub(crate) draws: bool,
 }
 
 impl TargetOptions {
     /// Returns the options of the target `T`.
     pub(crate) fn of<T: Target>() -> Self {
+        let has_odometry = TypeId::of::<<T::Robot as Robot>::Output>() == TypeId::of::<Sensed>();
         Self {
             name: T::NAME,
             period: T::PERIOD,
@@ -40,10 +41,9 @@ impl TargetOptions {
             answer: T::answer,
             accepts: T::accepts,
             fastest: T::PATHS.map(|replays| replays.fastest),
-            records: TypeId::of::<<T::Robot as Robot>::Output>() == TypeId::of::<Sensed>()
-                && TypeId::of::<<T::Robot as Robot>::Input>() == TypeId::of::<Twist>(),
-            screen: |matches| T::OBSERVATION.is_some_and(|observation| (observation.screen)(matches)),
-            leave_screen: T::OBSERVATION.map_or(|| {}, |observation| observation.leave_screen),
+            records: has_odometry && TypeId::of::<<T::Robot as Robot>::Input>() == TypeId::of::<Twist>(),
+            has_odometry,
+            draws: T::OBSERVATION.is_some_and(|observation| observation.draws),
         }
     }
 }

@@ -21,6 +21,7 @@ use crate::supervised::Supervised;
 use crate::timing::Timing;
 use crate::transitions::Transitions;
 use crate::turn_watch::WatchedRun;
+use crate::views::ByOdometry;
 use crate::{Ended, Observer, Orders, Pace, Verdict};
 
 /// Recipients of the turns' reports.
@@ -31,6 +32,8 @@ pub(crate) struct Witnesses<'a, 'o> {
     pub(crate) log: Option<&'a mut RunLog>,
     /// The path that is driven, if it is to be recorded.
     pub(crate) path: Option<&'a mut Recorder>,
+    /// The views by odometry, if some were asked for.
+    pub(crate) views: Option<&'a mut ByOdometry>,
     /// The line that shows that a fast run goes on, if standard error is a terminal.
     pub(crate) progress: Option<Progress<'a>>,
     /// Standard error, where it does not show that line.
@@ -125,11 +128,15 @@ impl Turns for OnePlan<'_, '_, '_> {
             let changes = drive.take_changes();
             log.take(drive.exact(), changes);
         }
+        if let (Some(views), Some(y)) = (&mut witnesses.views, drive.sensed()) {
+            views.sensed(y, t);
+        }
         if let (observer, Some(position)) = drive.parts() {
             let written = witnesses.tell(position, MadeTurn { turn, number, t, plan: *plan }, transitions, supervised);
             written.map_err(|error| RunEnd::Log(error.to_string()))?;
             let has_begun = turn == Turn::Law(()) && std::mem::take(fresh);
-            if let Some(observer) = observer {
+            let views = witnesses.views.as_deref_mut().map(|views| views as &mut dyn Observer);
+            for observer in [observer, views].into_iter().flatten() {
                 watched(observer, position, turn, has_begun, (t, zero), witnesses.report);
             }
         } else if let Some(log) = &mut witnesses.log {
@@ -159,8 +166,11 @@ impl Turns for OnePlan<'_, '_, '_> {
             let cause = self.witnesses.report.over().map_or_else(|| ending.brief(), |over| over.cause.clone());
             log.ended(self.number, t, &cause);
         }
-        if let (Some(observer), Some(position)) = self.drive.parts() {
-            ended(observer, position, ending, self.witnesses.report, t);
+        if let (observer, Some(position)) = self.drive.parts() {
+            let views = self.witnesses.views.as_deref_mut().map(|views| views as &mut dyn Observer);
+            for observer in [observer, views].into_iter().flatten() {
+                ended(observer, position, ending, self.witnesses.report, t);
+            }
         }
     }
 }

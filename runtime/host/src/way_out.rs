@@ -3,12 +3,14 @@
 use std::io::{self, Write};
 
 use crate::Judgement;
+use crate::Observer as _;
 use crate::drive::Drive;
 use crate::report::Report;
 use crate::required::Required;
 use crate::run_end::{RunEnd, RunFault, say};
 use crate::run_log::RunLog;
 use crate::safety::{Panicked, shielded};
+use crate::views::ByOdometry;
 
 /// A panic as an ending.
 pub(crate) fn bug(Panicked(message): Panicked) -> RunEnd {
@@ -68,11 +70,13 @@ pub(crate) fn judge(drive: &mut dyn Drive, ending: RunEnd, required: &Required, 
     }
 }
 
-/// The files that a run has written.
+/// The files that a run has written or draws at its end.
 pub(crate) struct Files {
     pub(crate) log: Option<RunLog>,
     /// Error that kept the path from being written.
     pub(crate) path: Option<io::Error>,
+    /// The views by odometry.
+    pub(crate) views: Option<ByOdometry>,
 }
 
 /// Reports why the run ended, and all faults, once the robot was stopped; returns the exit status.
@@ -98,8 +102,12 @@ pub(crate) fn tell(
     ending.tell(is_stopped, err);
     if orderly {
         let finished = shielded(|| drive.observer().map_or(Ok(()), |observer| observer.finish()));
-        let finished = finished.unwrap_or_else(|Panicked(message)| Err(format!("a panic: {message}")));
-        faults.extend(finished.err().map(RunFault::Finish));
+        let mut views = files.views;
+        let drawn = shielded(|| views.as_mut().map_or(Ok(()), ByOdometry::finish));
+        for finished in [finished, drawn] {
+            let finished = finished.unwrap_or_else(|Panicked(message)| Err(format!("a panic: {message}")));
+            faults.extend(finished.err().map(RunFault::Finish));
+        }
     }
     if let Some(message) = ended_before {
         say(err, format_args!("{message}"));

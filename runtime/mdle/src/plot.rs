@@ -71,8 +71,7 @@ impl Pictured {
     ) -> Result<(), Failure> {
         let (t, y) = (turn.recorded.t, &turn.recorded.y);
         if let Picture::Unbegun(name) = picture {
-            let drawing = Drawing::without_world(y, name.clone()).map_err(|error| Failure::Usage(error.to_string()))?;
-            *picture = Picture::Path(Box::new(drawing));
+            *picture = Picture::Path(Box::new(Drawing::without_world(y, name.clone(), false)));
         }
         if let Picture::OverTime(chart) = picture
             && chart.atoms.is_empty()

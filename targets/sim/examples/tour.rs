@@ -45,12 +45,8 @@ impl Target for Fragile {
     const NAME: &'static str = Sim::NAME;
     const PERIOD: Duration = Sim::PERIOD;
     type Robot = Breaking;
-    const OBSERVATION: Option<Observation<Breaking>> = Some(Observation {
-        observer: |breaking| &mut breaking.robot,
-        screen: |matches| SIM.is_some_and(|sim| (sim.screen)(matches)),
-        leave_screen: || SIM.iter().for_each(|sim| (sim.leave_screen)()),
-        batch,
-    });
+    const OBSERVATION: Option<Observation<Breaking>> =
+        Some(Observation { observer: |breaking| &mut breaking.robot, draws: true, batch });
 
     fn arguments(command: Command) -> Command {
         let option = Arg::new("panic-at").long("panic-at").value_name("N").value_parser(value_parser!(u64));

@@ -8,8 +8,6 @@ mod observed;
 mod options;
 mod setup;
 mod target;
-mod watch;
-mod whole_file;
 
 pub use mdle_simulator::{
     Body, Charger, Drawing, Fault, FleetDrawing, Footprint, Form, Goal, Heard, Input, Make, Outline, Output, Part,

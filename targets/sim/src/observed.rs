@@ -1,12 +1,9 @@
 //! The simulated robot with its observers: pictures, the live view, and the table of its poses.
 
-use mdle_host::{Ended, Judgement, Observer, PlanPosition, RobotSettings, sonar_order};
+use mdle_host::{Ended, Judgement, Observer, PlanPosition, RobotSettings, Unfinished, Watch, WholeFile, sonar_order};
 use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, PathStore, Pose, Robot, Sensed, Twist};
 use mdle_simulator::{Charger, Drawing, Fault, Goal, Simulated, World};
-
-use crate::watch::Watch;
-use crate::whole_file::{Unfinished, WholeFile};
 
 /// A simulated robot and the observers of its run; it drives as it would unobserved.
 pub struct Observed {
@@ -138,7 +135,7 @@ impl Robot for Observed {
             drawing.exchanged(&self.robot, &sensed, now, comes_into_contact);
         }
         if let Some(watch) = &mut self.watch {
-            watch.sensed(&pose, &sensed, now, self.robot.gone());
+            watch.sensed(&self.robot.footprint(), &sensed, now, self.robot.gone());
             watch.touched(self.touches, self.contacts);
         }
         Ok(sensed)
@@ -197,7 +194,7 @@ impl Observer for Observed {
 
     fn turned(&mut self, standing: &PlanPosition<'_>) {
         if let Some(watch) = &mut self.watch {
-            watch.turned(standing);
+            watch.turned(standing, &[]);
         }
     }
 

@@ -1,11 +1,11 @@
-//! The options of the simulator: its world, its outputs, and batches of runs.
+//! The options of the simulator: its world and batches of runs.
 
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
 use mdle_host::clap::parser::ValueSource;
 use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use mdle_host::{NamedFile, Pace, Time, output_format, read_file};
+use mdle_host::{NamedFile, Pace, Time, read_file};
 use mdle_simulator::{Body, Goal, Make, MapHeader, PARTS, Start, StartNoise, World};
 
 /// Maximum size of the file of a world or a map, in bytes.
@@ -13,7 +13,7 @@ const LARGEST: u64 = 64_000_000;
 
 /// Adds the options of the simulator to `command`.
 pub(crate) fn arguments(command: Command) -> Command {
-    of_runs(of_outputs(of_the_world(command)))
+    of_runs(of_the_world(command))
 }
 
 fn of_the_world(command: Command) -> Command {
@@ -81,31 +81,6 @@ fn of_the_world(command: Command) -> Command {
             option("speed", "real|max|N")
                 .help("Speed of the simulated time: that of the clock, maximum, or N times the clock [default: real]")
                 .allow_negative_numbers(true),
-        )
-}
-
-fn of_outputs(command: Command) -> Command {
-    command
-        .arg(
-            Arg::new("watch")
-                .long("watch")
-                .action(ArgAction::SetTrue)
-                .help("Show the world, the robot, the running atom and the timers in this terminal"),
-        )
-        .arg(
-            option("plot", "FILE.svg")
-                .help("Picture of the run: world, trail, start of each atom, echoes and contacts")
-                .value_parser(output_format("SVG", "svg")),
-        )
-        .arg(
-            option("record", "FILE.svg")
-                .help("Animated picture of the run, for a browser")
-                .value_parser(output_format("SVG", "svg")),
-        )
-        .arg(
-            option("trail", "FILE.csv")
-                .help("File for the pose in each turn: seconds, metres, degrees")
-                .value_parser(output_format("CSV", "csv")),
         )
 }
 
@@ -241,11 +216,6 @@ pub(crate) fn battery(matches: &ArgMatches) -> f64 {
     matches.get_one("battery").map_or(1.0, |percent: &u64| *percent as f64 / 100.0)
 }
 
-/// Returns `true` if the run is shown while it goes on.
-pub(crate) fn watch(matches: &ArgMatches) -> bool {
-    matches.get_flag("watch")
-}
-
 /// The start noise of `--start-noise`.
 pub(crate) fn start_noise(matches: &ArgMatches) -> Result<Option<StartNoise>, String> {
     let Some(text) = matches.get_one::<String>("start-noise") else { return Ok(None) };
@@ -295,16 +265,8 @@ pub(crate) fn file<'m>(matches: &'m ArgMatches, option: &str) -> Option<&'m Path
     matches.get_one::<PathBuf>(option).map(PathBuf::as_path)
 }
 
-/// The files that the options name.
+/// The files that the options of the simulator name.
 pub(crate) fn files(matches: &ArgMatches) -> Vec<NamedFile> {
-    let all = [
-        ("world", "--world", false),
-        ("plot", "--plot", true),
-        ("record", "--record", true),
-        ("trail", "--trail", true),
-    ];
-    let given = all.into_iter().filter_map(|(name, option, is_written)| {
-        file(matches, name).map(|path| NamedFile { option, path: path.to_owned(), is_written })
-    });
-    given.collect()
+    let world = file(matches, "world");
+    world.map(|path| NamedFile { option: "--world", path: path.to_owned(), is_written: false }).into_iter().collect()
 }

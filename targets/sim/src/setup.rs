@@ -5,15 +5,13 @@ use std::num::NonZeroUsize;
 use std::thread::available_parallelism;
 use std::time::Duration;
 
-use mdle_host::Batch;
 use mdle_host::clap::ArgMatches;
+use mdle_host::{Batch, Watch, WholeFile};
 use mdle_runtime::Pose;
 use mdle_simulator::{Goal, Make, PARTS, Simulated, Start, StartError, StartNoise, Walls, World};
 
 use crate::observed::Observed;
 use crate::options;
-use crate::watch::Watch;
-use crate::whole_file::WholeFile;
 
 /// A world, the robot to be simulated in it, and where it starts.
 struct Setup {
@@ -34,7 +32,7 @@ pub(crate) fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, 
     let setup = Setup::of(matches, period)?;
     let robot = setup.robot(setup.make.seed)?;
     let file = |option| options::file(matches, option).map(|path| WholeFile::at(option, path)).transpose();
-    let watch = options::watch(matches).then(|| Watch::of(&setup.world, setup.make.form())).transpose()?;
+    let watch = Watch::of(matches, &setup.world)?;
     let robot = robot.written_down(file("trail")?).watched(watch);
     Ok(robot.drawn((file("plot")?, file("record")?), &setup.world, setup.in_words(&options::world_name(matches))))
 }

@@ -27,8 +27,7 @@ impl Target for Sim {
     const SETTINGS: Option<SettingsOf<Observed>> = Some(|robot| robot);
     const OBSERVATION: Option<Observation<Observed>> = Some(Observation {
         observer: |robot| robot,
-        screen: options::watch,
-        leave_screen: crate::watch::leave_screen,
+        draws: true,
         batch: |matches, period| setup::batch(matches, period).map_err(Refusal::Usage),
     });
 

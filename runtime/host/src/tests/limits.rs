@@ -17,14 +17,18 @@ fn help_lists_all_options_and_opens_no_robot() {
     Usage: lab_tour [OPTIONS]
 
     Options:
-          --period <TIME>    Period of the control loop, in seconds or as in `50ms` [default: 0.1]
-          --timeout <TIME>   Maximum duration of the plan, in seconds or as in `5min`; exit status 4 after it [default: none]
-          --turns <N>        Maximum number of turns; exit status 4 after them [default: none]
-          --log <FILE>       File for a log of the run, one JSON object per turn; `FILE.mcap` is a record to replay
-          --log-best-effort  Let the run go on without its log if that cannot be written, and say so
-          --require <CAUSE>  Cause by which the plan must end, such as `bumper`; exit status 5 otherwise
-          --device <PATH>    Where the toy is
-      -h, --help             Print help (see more with '--help')
+          --period <TIME>      Period of the control loop, in seconds or as in `50ms` [default: 0.1]
+          --timeout <TIME>     Maximum duration of the plan, in seconds or as in `5min`; exit status 4 after it [default: none]
+          --turns <N>          Maximum number of turns; exit status 4 after them [default: none]
+          --log <FILE>         File for a log of the run, one JSON object per turn; `FILE.mcap` is a record to replay
+          --log-best-effort    Let the run go on without its log if that cannot be written, and say so
+          --watch              Show the robot on its floor, the running atom and the timers in this terminal
+          --plot <FILE.svg>    Picture of the run: walls or echoes, trail, start of each atom, contacts
+          --record <FILE.svg>  Animated picture of the run, for a browser
+          --trail <FILE.csv>   File for the pose in each turn: seconds, metres, degrees
+          --require <CAUSE>    Cause by which the plan must end, such as `bumper`; exit status 5 otherwise
+          --device <PATH>      Where the toy is
+      -h, --help               Print help (see more with '--help')
 
     Exit status:
       0      the plan ended
@@ -35,6 +39,21 @@ fn help_lists_all_options_and_opens_no_robot() {
       128+N  terminated by signal N
     The robot is stopped in every case.
     ");
+}
+
+/// The toy's outputs are of a type of its own.
+#[test]
+fn a_robot_without_known_odometry_has_no_views() {
+    let refused = [&["--watch"][..], &["--plot", "run.svg"], &["--record", "run.svg"], &["--trail", "run.csv"]];
+    for options in refused {
+        let run = Stage::default().run(options);
+        let option = options[0];
+        let sentence = format!(
+            "error: {option}: the robot toy has outputs of a type of its own, without the odometry by which a run is \
+             drawn; leave {option} out\n"
+        );
+        assert_eq!((run.status, run.err, &*run.journal), (2, sentence, ""));
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The pictures of a run, drawn from its record when it has ended.
 
-use mdle_runtime::{Nanos, Sensed};
+use mdle_runtime::{Nanos, Pose, Sensed};
 
 use crate::footprint::{Footprint, Form};
 use crate::frames::Frames;
@@ -9,7 +9,6 @@ use crate::plot;
 use crate::robot::Simulated;
 use crate::trail::Trail;
 use crate::world::World;
-use crate::world_error::WorldError;
 
 /// The record of a run in a world, and the pictures of it.
 #[derive(Debug, Clone)]
@@ -30,30 +29,35 @@ impl Drawing {
         Self { world: world.clone(), trail }
     }
 
-    /// Begins the picture of a recorded run, of which the world is not known: the way is that of the odometry. `setup`
-    /// names the run in titles.
-    ///
-    /// # Errors
-    /// Never: an empty text is a world without walls.
-    pub fn without_world(y: &Sensed, setup: String) -> Result<Self, WorldError> {
-        let (half_length, half_width) = (y.shape.half_length.0, y.shape.half_width.0);
-        let form = if y.shape.half_length == y.shape.half_width {
-            Form::Disc { radius: half_length }
-        } else {
-            Form::Rectangle { half_length, half_width }
-        };
-        let mut trail = Trail::from(&Footprint { pose: y.odometry, form });
+    /// Begins the record of a robot whose world is not known, at its first output: the way is that of the odometry.
+    /// `setup` names the run in titles. Only an `animated` record keeps the data of a moving picture.
+    #[must_use]
+    pub fn without_world(y: &Sensed, setup: String, animated: bool) -> Self {
+        let mut trail = Trail::from(&Footprint { pose: y.odometry, form: Form::of(&y.shape) });
         trail.about.setup = setup;
-        Ok(Self { world: World::parse("the world of a record", "")?, trail })
+        trail.frames = animated.then(Frames::new);
+        Self { world: World::empty(), trail }
     }
 
-    /// Records an output of a recorded run at time `t`; `touches` is `true` if a contact begins with it.
+    /// Records an output at time `t` of a robot whose world is not known; `touches` is `true` if a contact begins with
+    /// it.
     pub fn sensed(&mut self, y: &Sensed, t: Nanos, touches: bool) {
         self.trail.went(&y.odometry);
         self.trail.sensed(y, t);
         if touches {
             self.trail.touched(Place::of(&y.odometry), t);
         }
+    }
+
+    /// Records the last pose of a robot whose world is not known, after its turns.
+    pub fn rests_at(&mut self, pose: &Pose) {
+        self.trail.went(pose);
+    }
+
+    /// Returns the places of echoes so far, at most one in a square of 4 cm.
+    #[must_use]
+    pub fn echoes(&self) -> &[Place] {
+        &self.trail.echoes
     }
 
     /// Records an exchange of `robot` at time `t`, which gave `sensed`; `touches` is `true` if a contact begins with
@@ -102,7 +106,7 @@ mod tests {
     use std::time::Duration;
 
     use mdle_runtime::capability::Bumpers as _;
-    use mdle_runtime::{MetersPerSecond, Pose, RadiansPerSecond, Robot as _, Twist};
+    use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Robot as _, Twist};
 
     use super::*;
     use crate::model::{Body, Part};

@@ -6,7 +6,7 @@ mod tests;
 
 use std::fmt;
 
-use mdle_runtime::{Pose, Radians};
+use mdle_runtime::{Pose, Radians, Shape};
 
 use crate::grid::Segment;
 use crate::place::Place;
@@ -58,6 +58,17 @@ const OVERLAPS: f64 = -1.0;
 impl Form {
     /// The disc of a Scout.
     pub(crate) const SCOUT: Self = Self::Disc { radius: RADIUS };
+
+    /// Returns the form of a robot with these measures: a disc if it is as long as wide.
+    #[must_use]
+    pub fn of(shape: &Shape) -> Self {
+        let (half_length, half_width) = (shape.half_length.0, shape.half_width.0);
+        if shape.half_length == shape.half_width {
+            Self::Disc { radius: half_length }
+        } else {
+            Self::Rectangle { half_length, half_width }
+        }
+    }
 
     /// Radius of the smallest circle around the body, in metres.
     #[must_use]

@@ -151,7 +151,9 @@ pub fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Pl
         let Some((ping, Meters(range))) = newest.and_then(|ping| Some((ping, ping.range?))) else { continue };
         let from = on_the_floor(&ping.pose, pose, &sensed.pose());
         let axis = Radians(from.theta.0 + sonar.bearing().0);
-        *echo = Some(Place::of(&from.towards(axis, Meters(sensed.ring_radius().0 + range))));
+        let place = Place::of(&from.towards(axis, Meters(sensed.ring_radius().0 + range)));
+        // A driver of one's own may say anything.
+        *echo = Some(place).filter(|place| place.x.is_finite() && place.y.is_finite());
     }
     echoes
 }

@@ -32,6 +32,20 @@ pub struct World {
 }
 
 impl World {
+    /// Returns a floor without walls, on which a robot starts at the origin.
+    #[must_use]
+    pub fn empty() -> Self {
+        Self {
+            outlines: Vec::new(),
+            things: Vec::new(),
+            start: Pose::ORIGIN,
+            goal: None,
+            charger: None,
+            rough: 0.0,
+            contours: 0,
+        }
+    }
+
     /// The box, disc or contour inside of which `place` lies.
     pub(crate) fn solid(&self, place: Place) -> Option<&Outline> {
         let around = || self.outlines.iter().take(self.contours).filter(|outline| outline.surrounds(place));

@@ -1,7 +1,8 @@
 //! The words around the map: time and place above it, the running atom and the scopes around it below.
 
-use mdle_host::{Around, PlanPosition};
 use mdle_runtime::{Pose, Printable};
+
+use crate::{Around, PlanPosition};
 
 /// Maximum number of scopes that are shown: the outermost and the innermost count most.
 const SCOPES_MOST: usize = 4;

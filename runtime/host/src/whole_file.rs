@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// The path of the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct WholeFile {
+pub struct WholeFile {
     path: PathBuf,
     /// Path of the unfinished file, in the same folder so that a rename puts it in place at once.
     unfinished: PathBuf,
@@ -16,7 +16,10 @@ pub(crate) struct WholeFile {
 impl WholeFile {
     /// Returns the file at `path`, which `option` names, after checking that it can probably be written. Leaves no file
     /// there.
-    pub(crate) fn at(option: &str, path: &Path) -> Result<Self, String> {
+    ///
+    /// # Errors
+    /// It cannot be written: a sentence.
+    pub fn at(option: &str, path: &Path) -> Result<Self, String> {
         let shown = path.display();
         if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
             return Err(format!("--{option} {shown}: that is a folder; name a file in it"));
@@ -53,33 +56,44 @@ impl WholeFile {
     }
 
     /// Writes the file; an error names it as `what`.
-    pub(crate) fn write(&self, what: &str, text: &str) -> Result<(), String> {
+    ///
+    /// # Errors
+    /// It cannot be written: a sentence.
+    pub fn write(&self, what: &str, text: &str) -> Result<(), String> {
         let mut unfinished = Unfinished::new(self.clone());
         unfinished.write(text);
         unfinished.finish(what)
     }
 }
 
-/// A file that is being written.
+/// A file that is being written, through a writer to it.
 #[derive(Debug)]
-pub(crate) struct Unfinished {
+pub struct Unfinished<W: Write = BufWriter<File>> {
     file: WholeFile,
     /// The first error, which `finish` reports; nothing is written after it.
-    written: io::Result<BufWriter<File>>,
+    written: io::Result<W>,
     is_finished: bool,
 }
 
 impl Unfinished {
     /// Begins the file.
-    pub(crate) fn new(file: WholeFile) -> Self {
-        let written = File::create_new(&file.unfinished).map(BufWriter::new);
+    #[must_use]
+    pub fn new(file: WholeFile) -> Self {
+        Self::through(file, |file| Ok(BufWriter::new(file)))
+    }
+}
+
+impl<W: Write> Unfinished<W> {
+    /// Begins the file, and writes to it through what `writer` returns.
+    pub(crate) fn through(file: WholeFile, writer: impl FnOnce(File) -> io::Result<W>) -> Self {
+        let opened = File::create_new(&file.unfinished);
         // What is there already is not this program's to remove.
-        let is_finished = written.is_err();
-        Self { file, written, is_finished }
+        let is_finished = opened.is_err();
+        Self { file, written: opened.and_then(writer), is_finished }
     }
 
     /// Writes more.
-    pub(crate) fn write(&mut self, text: &str) {
+    pub fn write(&mut self, text: &str) {
         if let Ok(file) = &mut self.written
             && let Err(error) = file.write_all(text.as_bytes())
         {
@@ -88,7 +102,10 @@ impl Unfinished {
     }
 
     /// Puts the file in its place; an error names it as `what`.
-    pub(crate) fn finish(mut self, what: &str) -> Result<(), String> {
+    ///
+    /// # Errors
+    /// It cannot be written: a sentence.
+    pub fn finish(mut self, what: &str) -> Result<(), String> {
         let written = std::mem::replace(&mut self.written, Err(ErrorKind::Other.into()));
         let put = written.and_then(|mut file| file.flush());
         let put = put.and_then(|()| fs::rename(&self.file.unfinished, &self.file.path));
@@ -97,7 +114,7 @@ impl Unfinished {
     }
 }
 
-impl Drop for Unfinished {
+impl<W: Write> Drop for Unfinished<W> {
     fn drop(&mut self) {
         if !self.is_finished {
             // What could not be finished is not left lying about; if that fails too, the first error is the one to

@@ -23,12 +23,14 @@ pub(super) struct Map {
     scale: f64,
     /// Number of places of the way that are drawn.
     went: usize,
+    /// Number of places of earlier echoes that are drawn.
+    found: usize,
 }
 
 impl Map {
-    /// Returns the map of a floor, and of the places in `way`, in `columns` columns and `rows` rows.
-    pub(super) fn of(world: &World, way: &[Place], columns: usize, rows: usize) -> Self {
-        let places = || world.places().chain(way.iter().copied());
+    /// Returns the map of a floor, and of the places in `way` and `heard`, in `columns` columns and `rows` rows.
+    pub(super) fn of(world: &World, way: &[Place], heard: &[Place], columns: usize, rows: usize) -> Self {
+        let places = || world.places().chain(way.iter().chain(heard).copied());
         let range = |of: fn(&Place) -> f64| {
             let least = places().map(|place| of(&place)).fold(f64::INFINITY, f64::min);
             let most = places().map(|place| of(&place)).fold(f64::NEG_INFINITY, f64::max);
@@ -39,7 +41,7 @@ impl Map {
         let scale = (wide / (right - left)).min(tall / (high - low));
         // In the middle.
         let corner = Place { x: (left + right) / 2.0 - wide / scale / 2.0, y: (low + high) / 2.0 + tall / scale / 2.0 };
-        let mut map = Self { canvas: Canvas::new(columns, rows), corner, scale, went: 0 };
+        let mut map = Self { canvas: Canvas::new(columns, rows), corner, scale, went: 0, found: 0 };
         match world.goal.map(|goal| goal.zone) {
             Some(Zone::Rectangle { min, max }) => map.rectangle(min, max),
             Some(Zone::Circle { center, radius }) => {
@@ -65,6 +67,19 @@ impl Map {
     pub(super) fn shows(&self, place: Place) -> bool {
         let (x, y) = self.at(place);
         (0.0..2.0 * self.canvas.columns as f64).contains(&x) && (0.0..4.0 * self.canvas.rows as f64).contains(&y)
+    }
+
+    /// Returns `true` if those of these places that are not drawn yet are on the map.
+    pub(super) fn shows_new(&self, heard: &[Place]) -> bool {
+        heard.iter().skip(self.found).all(|place| self.shows(*place))
+    }
+
+    /// Draws those places of earlier echoes that are new.
+    pub(super) fn found(&mut self, heard: &[Place]) {
+        for place in heard.iter().skip(self.found) {
+            self.dot(*place, Ink::Wall);
+        }
+        self.found = heard.len();
     }
 
     /// Draws the new part of the way.
@@ -165,7 +180,7 @@ mod tests {
     fn shown(columns: usize, rows: usize) -> String {
         let world = World::office().unwrap();
         let way: Vec<Place> = (0..430).map(|step| Place { x: 0.0, y: f64::from(step) * 0.01 }).collect();
-        let mut map = Map::of(&world, &way, columns, rows);
+        let mut map = Map::of(&world, &way, &[], columns, rows);
         map.went(&way);
         let pose = Pose { x: Meters(0.0), y: Meters(4.3), theta: Radians::from_degrees(90.0) };
         assert!(map.shows(Place::of(&pose)) && map.is_of(columns, rows));
@@ -182,11 +197,25 @@ mod tests {
     }
 
     #[test]
+    fn a_floor_of_unknown_walls_has_the_echoes_so_far() {
+        let place = |x, y| Place { x, y };
+        let (way, mut heard) = (vec![place(0.0, 0.0), place(1.0, 0.0)], vec![place(1.5, 1.0), place(1.5, -1.0)]);
+        let mut map = Map::of(&World::empty(), &way, &heard, 40, 20);
+        assert!(heard.iter().all(|echo| map.shows(*echo)) && !map.shows(place(5.0, 0.0)));
+        map.found(&heard);
+        let dots = |map: Map| map.canvas.text(None).concat().chars().filter(|letter| *letter > '\u{2800}').count();
+        assert_eq!((map.found, dots(map.clone())), (2, 2));
+        heard.push(place(5.0, 0.0));
+        assert!(!map.shows_new(&heard));
+        assert!(Map::of(&World::empty(), &way, &heard, 40, 20).shows_new(&heard));
+    }
+
+    #[test]
     fn every_size_will_do() {
         for (columns, rows) in [(1, 1), (2, 50), (300, 1), (200, 100)] {
             assert!(shown(columns, rows).contains('↑'), "{columns} {rows}");
         }
-        let nothing = Map::of(&World::parse("empty", "").unwrap(), &[], 0, 0);
+        let nothing = Map::of(&World::empty(), &[], &[], 0, 0);
         assert!(nothing.drawn(&Footprint { pose: Pose::ORIGIN, form: Form::Disc { radius: 0.205 } }, true).is_empty());
     }
 }

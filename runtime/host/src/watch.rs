@@ -7,10 +7,11 @@ mod view;
 
 use std::time::{Duration, Instant};
 
-use mdle_host::PlanPosition;
-use mdle_runtime::{Nanos, Pose, Sensed};
+use clap::ArgMatches;
+use mdle_runtime::{Nanos, Sensed};
 use mdle_simulator::{Footprint, Form, Place, World};
 
+use crate::{PlanPosition, views};
 use map::Map;
 use screen::Screen;
 
@@ -22,8 +23,8 @@ pub(crate) fn leave_screen() {
 /// Minimum time between two pictures: the eye sees no faster changes.
 const EVERY: Duration = Duration::from_millis(50);
 
-/// A live view.
-pub(crate) struct Watch {
+/// The live view that `--watch` asks for.
+pub struct Watch {
     screen: Option<Screen>,
     world: World,
     map: Option<Map>,
@@ -41,17 +42,20 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Returns a view of `world` on standard output, with a robot of this form; it takes the screen at the first
-    /// turn.
+    /// Returns the view that the options ask for, of a robot in `world` on standard output; it takes the screen at the
+    /// first turn.
     ///
     /// # Errors
-    /// Standard output is not a terminal.
-    pub(crate) fn of(world: &World, form: Form) -> Result<Self, String> {
+    /// Standard output is not a terminal: a sentence.
+    pub fn of(matches: &ArgMatches, world: &World) -> Result<Option<Self>, String> {
+        if !views::is_watched(matches) {
+            return Ok(None);
+        }
         if !screen::is_there() {
             let hint = "run it in a terminal, or make a picture with --plot or --record";
             return Err(format!("--watch: standard output is not a terminal; {hint}"));
         }
-        Ok(Self {
+        Ok(Some(Self {
             screen: None,
             world: world.clone(),
             map: None,
@@ -59,20 +63,16 @@ impl Watch {
             echoes: Vec::new(),
             things: Vec::new(),
             sensed: None,
-            form,
+            form: Form::Disc { radius: 0.0 },
             now: view::Now::default(),
             shown: None,
-        })
+        }))
     }
 
-    /// The robot has come to `pose` and senses this, and the moving objects of the world have gone so far.
-    pub(crate) fn sensed(
-        &mut self,
-        pose: &Pose,
-        sensed: &Sensed,
-        t: Nanos,
-        things: impl Iterator<Item = Option<Place>>,
-    ) {
+    /// The robot has come to the place of `body` and senses this, and the moving objects of the world have gone so
+    /// far.
+    pub fn sensed(&mut self, body: &Footprint, sensed: &Sensed, t: Nanos, things: impl Iterator<Item = Option<Place>>) {
+        let Footprint { pose, form } = body;
         let place = Place::of(pose);
         if self.way.last().is_none_or(|last| libm::hypot(last.x - place.x, last.y - place.y) >= 0.01) {
             self.way.push(place);
@@ -81,16 +81,17 @@ impl Watch {
         self.echoes.extend(mdle_simulator::echoes(pose, sensed, self.sensed.replace(t)).into_iter().flatten());
         self.things.clear();
         self.things.extend(things);
-        self.now.pose = *pose;
+        (self.now.pose, self.form) = (*pose, *form);
     }
 
     /// Takes in whether the robot is in contact with an obstacle, and the number of contacts so far.
-    pub(crate) fn touched(&mut self, touches: bool, contacts: u64) {
+    pub fn touched(&mut self, touches: bool, contacts: u64) {
         (self.now.touches, self.now.contacts) = (touches, contacts);
     }
 
-    /// A turn was made: shows it, if it is time to show anything.
-    pub(crate) fn turned(&mut self, standing: &PlanPosition<'_>) {
+    /// A turn was made: shows it, if it is time to show anything. Where the walls are not known, `heard` are the places
+    /// of all echoes so far.
+    pub fn turned(&mut self, standing: &PlanPosition<'_>, heard: &[Place]) {
         if self.shown.is_some_and(|shown| shown.elapsed() < EVERY) {
             return;
         }
@@ -100,12 +101,13 @@ impl Watch {
         let (columns, rows) = screen::size();
         let below = self.now.below(columns);
         let (wide, high) = (columns, rows.saturating_sub(below.len() + 1));
-        let fits = |map: &Map| map.is_of(wide, high) && map.shows(Place::of(&self.now.pose));
+        let fits = |map: &Map| map.is_of(wide, high) && map.shows(Place::of(&self.now.pose)) && map.shows_new(heard);
         if !self.map.as_ref().is_some_and(fits) {
-            self.map = Some(Map::of(&self.world, &self.way, wide, high));
+            self.map = Some(Map::of(&self.world, &self.way, heard, wide, high));
         }
         let Some(map) = &mut self.map else { return };
         map.went(&self.way);
+        map.found(heard);
         let mut lines = vec![self.now.above(columns)];
         let things = self.world.things.iter().zip(&self.things).filter_map(|(thing, gone)| Some((thing, (*gone)?)));
         let mut now = map.with(things);
@@ -117,7 +119,7 @@ impl Watch {
     }
 
     /// Gives the screen back.
-    pub(crate) fn leave(&mut self) {
+    pub fn leave(&mut self) {
         self.screen = None;
     }
 }

@@ -1,0 +1,87 @@
+//! The views of a run: the live view, two pictures and the table of poses, which the options of every executable ask
+//! for. A target that knows its world shows them itself; for all others they are made by odometry.
+
+mod by_odometry;
+
+use std::path::PathBuf;
+
+use clap::{Arg, ArgAction, ArgMatches, Command};
+
+pub(crate) use by_odometry::ByOdometry;
+
+use crate::output_format::output_format;
+use crate::patience::Patience;
+use crate::target_options::TargetOptions;
+use crate::whole_file::WholeFile;
+use crate::{NamedFile, Refusal};
+
+/// The option of the live view.
+const WATCH: &str = "watch";
+/// The options of the files, as they are written.
+const FILES: [(&str, &str); 3] = [("plot", "--plot"), ("record", "--record"), ("trail", "--trail")];
+
+/// Adds the options of the views.
+pub(crate) fn arguments(command: Command) -> Command {
+    let file = |name, value| Arg::new(name).long(name).value_name(value);
+    command
+        .arg(
+            Arg::new(WATCH)
+                .long(WATCH)
+                .action(ArgAction::SetTrue)
+                .help("Show the robot on its floor, the running atom and the timers in this terminal"),
+        )
+        .arg(
+            file("plot", "FILE.svg")
+                .help("Picture of the run: walls or echoes, trail, start of each atom, contacts")
+                .value_parser(output_format("SVG", "svg")),
+        )
+        .arg(
+            file("record", "FILE.svg")
+                .help("Animated picture of the run, for a browser")
+                .value_parser(output_format("SVG", "svg")),
+        )
+        .arg(
+            file("trail", "FILE.csv")
+                .help("File for the pose in each turn: seconds, metres, degrees")
+                .value_parser(output_format("CSV", "csv")),
+        )
+}
+
+/// Returns `true` if the run is shown while it goes on.
+pub(crate) fn is_watched(matches: &ArgMatches) -> bool {
+    matches.get_flag(WATCH)
+}
+
+/// The files that the options name.
+pub(crate) fn files(matches: &ArgMatches) -> impl Iterator<Item = NamedFile> {
+    FILES.into_iter().filter_map(|(name, option)| {
+        let path = matches.get_one::<PathBuf>(name)?.clone();
+        Some(NamedFile { option, path, is_written: true })
+    })
+}
+
+/// Returns the views that the options ask for, where the target does not show them itself.
+///
+/// # Errors
+/// The robot has no odometry that is known here, a file cannot be written, or there is no terminal.
+pub(crate) fn by_odometry(
+    target: &TargetOptions,
+    matches: &ArgMatches,
+    patience: &Patience,
+) -> Result<Option<ByOdometry>, Refusal> {
+    let watched = is_watched(matches).then_some("--watch");
+    let Some(option) = watched.or_else(|| files(matches).next().map(|file| file.option)) else { return Ok(None) };
+    if target.draws {
+        return Ok(None);
+    }
+    if !target.has_odometry {
+        return Err(Refusal::Usage(format!(
+            "{option}: the robot {} has outputs of a type of its own, without the odometry by which a run is drawn; \
+             leave {option} out",
+            target.name
+        )));
+    }
+    let file = |name| matches.get_one::<PathBuf>(name).map(|path| WholeFile::at(name, path)).transpose();
+    let made = || ByOdometry::new(target.name, matches, file("plot")?, file("record")?, file("trail")?, patience);
+    made().map(Some).map_err(Refusal::Usage)
+}
