@@ -27,4 +27,5 @@ mod scout;
 mod sessions;
 mod several;
 mod steps;
+mod views;
 mod why;

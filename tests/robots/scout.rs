@@ -49,8 +49,12 @@ fn emulated(executable: &Path) -> (Output, Pose) {
     let output = thread::scope(|scope| {
         let serving =
             scope.spawn(|| serve(&mut robot, &port, Pace::Lockstep(PERIOD), &|| !over.load(Ordering::Relaxed)));
-        let output =
-            Command::new(executable).arg("--device").arg(port.path()).args(["--lockstep", "--timeout", "400"]).output();
+        let output = Command::new(executable)
+            .arg("--device")
+            .arg(port.path())
+            .args(["--lockstep", "--timeout", "400", "--plot", "tour.svg", "--trail", "tour.csv"])
+            .current_dir(executable.parent().unwrap())
+            .output();
         over.store(true, Ordering::Relaxed);
         serving.join().unwrap().unwrap();
         output.unwrap()
@@ -62,6 +66,7 @@ fn emulated(executable: &Path) -> (Output, Pose) {
 fn the_tour_ends_on_a_scout_where_it_ends_in_the_simulator() {
     let (scout, pose) = emulated(on_scout());
     assert!(scout.status.success(), "{}", String::from_utf8_lossy(&scout.stderr));
+    check_views();
 
     let in_simulator = tour("sim");
     let trail = in_simulator.with_file_name("trail.csv");
@@ -77,6 +82,14 @@ fn the_tour_ends_on_a_scout_where_it_ends_in_the_simulator() {
     let away = libm::hypot(pose.x.0 - x, pose.y.0 - y);
     let turned = (pose.theta.degrees() - heading + 180.0).rem_euclid(360.0) - 180.0;
     assert!(away <= 0.15 && turned.abs() <= 5.0, "{away} m and {turned} degrees away from {x}, {y}, {heading}");
+}
+
+/// The executable draws the run by the robot's own odometry, though it knows no world.
+fn check_views() {
+    let [picture, trail] =
+        ["tour.svg", "tour.csv"].map(|file| fs::read_to_string(on_scout().with_file_name(file)).unwrap());
+    assert!(picture.contains("robot scout, by odometry") && picture.contains("goAvoid 90 40 20"), "{picture}");
+    assert!(trail.lines().count() > 1000, "{} rows", trail.lines().count());
 }
 
 /// Returns the output of the executable with these arguments, and its exit status.

@@ -95,7 +95,7 @@ pub(crate) fn command(target: &TargetOptions, program: Program<'_>, call: &Call)
                 .requires("log")
                 .help("Let the run go on without its log if that cannot be written, and say so"),
         );
-    let command = views::arguments(command);
+    let command = views::view_options(command);
     let command = match call.several_words() {
         Some(words) => required::argument(command).bin_name(words),
         None => required::argument(command),

@@ -20,8 +20,9 @@ const WATCH: &str = "watch";
 /// The options of the files, as they are written.
 const FILES: [(&str, &str); 3] = [("plot", "--plot"), ("record", "--record"), ("trail", "--trail")];
 
-/// Adds the options of the views.
-pub(crate) fn arguments(command: Command) -> Command {
+/// Adds the options of the views, which every executable has beside those of its target.
+#[must_use]
+pub fn view_options(command: Command) -> Command {
     let file = |name, value| Arg::new(name).long(name).value_name(value);
     command
         .arg(

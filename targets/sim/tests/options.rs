@@ -5,12 +5,14 @@ use std::fs;
 use std::path::PathBuf;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Pace, Refusal, StopRequest, Target, Time};
+use mdle_host::{Pace, Refusal, StopRequest, Target, Time, view_options};
 use mdle_runtime::{Robot, Twist};
 use mdle_sim::Sim;
 
 fn matches(options: &[&str]) -> ArgMatches {
-    Sim::arguments(Command::new("plan").no_binary_name(true)).try_get_matches_from(options).expect("known options")
+    Sim::arguments(view_options(Command::new("plan").no_binary_name(true)))
+        .try_get_matches_from(options)
+        .expect("known options")
 }
 
 /// The sentence with which these options are refused.
@@ -74,7 +76,7 @@ fn bad_worlds_are_refused() {
 #[test]
 fn outputs_of_other_formats_are_refused() {
     let error = |option: &str, file: &str| {
-        let command = Sim::arguments(Command::new("plan").no_binary_name(true));
+        let command = Sim::arguments(view_options(Command::new("plan").no_binary_name(true)));
         let error = command.try_get_matches_from([option, file]).expect_err(file).to_string();
         error.lines().next().unwrap_or_default().to_owned()
     };

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use mdle_host::clap::Command;
-use mdle_host::{Ended, Observer as _, StopRequest, Target};
+use mdle_host::{Ended, Observer as _, StopRequest, Target, view_options};
 use mdle_runtime::{Machine, Meters, Nanos, Plan, Pose, Radians, Robot, Transition, Turn, Twist, Watch};
 use mdle_sim::{Body, Make, Observed, Sim, Simulated, World};
 use plan::Tour;
@@ -88,7 +88,7 @@ fn tour(start: Pose, seed: Option<u64>) -> Vec<End> {
 
 /// The robot that an executable with these options drives.
 fn connected(options: &[&str]) -> Observed {
-    let matches = Sim::arguments(Command::new("tour").no_binary_name(true)).get_matches_from(options);
+    let matches = Sim::arguments(view_options(Command::new("tour").no_binary_name(true))).get_matches_from(options);
     Sim::connect(&matches, PERIOD, &StopRequest::default()).expect("good options")
 }
 
