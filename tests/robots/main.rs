@@ -29,3 +29,4 @@ mod several;
 mod steps;
 mod views;
 mod why;
+mod ways_back;

@@ -13,6 +13,7 @@ pub mod link;
 mod module;
 mod plans;
 mod process;
+mod recorder;
 mod replay;
 pub mod safety;
 pub mod shell;
@@ -31,3 +32,4 @@ pub use module::{
 pub use plans::{
     Compile, CompiledPlans, EngineAlphabet, MOST_STORED, NoTrial, PlanEvent, PlanSource, Plans, StoredPlan, TRIAL, When,
 };
+pub use recorder::Recorder;

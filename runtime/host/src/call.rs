@@ -17,6 +17,8 @@ pub struct Call {
     pub read: Vec<PathBuf>,
     /// The plan's part of a record.
     pub recorded: RecordedPlan,
+    /// Name of a path that the run records: its file may be missing at the start.
+    pub later_path: Option<String>,
 }
 
 /// The part of a record that a program knows of its plan.
@@ -36,7 +38,13 @@ impl Call {
     pub(crate) fn of_executable(arguments: impl IntoIterator<Item = OsString>) -> Self {
         let mut arguments = arguments.into_iter();
         let words = arguments.next().into_iter().collect();
-        Self { words, options: arguments.collect(), read: Vec::new(), recorded: RecordedPlan::default() }
+        Self {
+            words,
+            options: arguments.collect(),
+            read: Vec::new(),
+            recorded: RecordedPlan::default(),
+            later_path: None,
+        }
     }
 
     /// Returns the name by which usage calls the program, if it is more than the name of a file.
@@ -80,6 +88,7 @@ mod tests {
             options: Vec::new(),
             read: Vec::new(),
             recorded: RecordedPlan::default(),
+            later_path: None,
         };
         assert_eq!(call(&["./it's"]).command("P"), r"'./it'\''s'");
         assert_eq!(call(&["mdle", "run", "a b.mdle"]).command("P"), "mdle run 'a b.mdle'");

@@ -58,11 +58,16 @@ pub(crate) fn check_period(period: Duration) -> Result<(), Refusal> {
     Err(Refusal::Usage(format!("{sentence}; choose a shorter --period")))
 }
 
-/// Reads the paths that a plan replays.
+/// Reads the paths that a plan replays. The one called `later` may have no file yet.
 ///
 /// # Errors
 /// A file is missing, holds no path, or its path is too fast for the robot: in which file, where and why.
-pub(crate) fn load(target: &TargetOptions, matches: &ArgMatches, names: &[&'static str]) -> Result<PathStore, Refusal> {
+pub(crate) fn load(
+    target: &TargetOptions,
+    matches: &ArgMatches,
+    names: &[&'static str],
+    later: Option<&str>,
+) -> Result<PathStore, Refusal> {
     if names.is_empty() {
         return Ok(PathStore::EMPTY);
     }
@@ -76,8 +81,9 @@ pub(crate) fn load(target: &TargetOptions, matches: &ArgMatches, names: &[&'stat
     if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
         return Err(Refusal::Usage(format!("--paths {}: there is no such folder", folder.display())));
     }
+    let names = names.iter().copied().filter(|name| later != Some(name) || place(folder, name).exists());
     let read = |name| read(folder, name, fastest).map(|setpoints| (name, setpoints)).map_err(Refusal::Usage);
-    let paths: BTreeMap<&'static str, Vec<Setpoint>> = names.iter().copied().map(read).collect::<Result<_, _>>()?;
+    let paths: BTreeMap<&'static str, Vec<Setpoint>> = names.map(read).collect::<Result<_, _>>()?;
     let stored = paths.into_iter().map(|(name, setpoints)| StoredPath { name, setpoints: setpoints.leak() });
     Ok(PathStore::new(stored.collect::<Vec<_>>().leak()))
 }

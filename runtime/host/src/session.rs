@@ -74,7 +74,8 @@ where
         Ok(Some(answer)) => return answered(&answer, &mut *out()),
         Ok(None) => {}
     }
-    let PlanData { store, paths, required } = match prepared(&target, &matches, executable) {
+    let PlanData { store, paths, required } = match prepared(&target, &matches, executable, call.later_path.as_deref())
+    {
         Err(refusal) => return refusal.tell(err),
         Ok(prepared) => prepared,
     };
@@ -190,15 +191,21 @@ struct PlanData {
     required: Required,
 }
 
-/// Reads the paths that the plan replays, and the causes by which it must end.
-fn prepared(target: &TargetOptions, matches: &ArgMatches, executable: &dyn Executable) -> Result<PlanData, Refusal> {
+/// Reads the paths that the plan replays, of which the one called `later` may be missing, and the causes by which it
+/// must end.
+fn prepared(
+    target: &TargetOptions,
+    matches: &ArgMatches,
+    executable: &dyn Executable,
+    later: Option<&str>,
+) -> Result<PlanData, Refusal> {
     let prepared = shielded(|| {
         let plan = executable.plan();
         let required = Required::of(matches, &*plan).map_err(Refusal::Usage)?;
         let laws = (0..).take(plan.fsm().atoms.len()).map(|atom| plan.law(atom));
         let texts: Vec<_> = laws.chain(scopes(plan.fsm()).map(|scope| plan.condition(scope))).collect();
         (target.accepts)(matches, &texts)?;
-        let store = paths::load(target, matches, plan.paths())?;
+        let store = paths::load(target, matches, plan.paths(), later)?;
         Ok(PlanData { store, paths: plan.paths().to_vec(), required })
     });
     prepared.unwrap_or_else(bug_before)

@@ -59,7 +59,7 @@ pub fn trials<T: Target>(
     };
     let matches = parsed(None)?;
     let options = arguments::options(&target, &matches);
-    let store = paths::load(&target, &matches, names).map_err(sentence)?;
+    let store = paths::load(&target, &matches, names, None).map_err(sentence)?;
     let Some(observation) = T::OBSERVATION else { return Err(not_simulated(T::NAME)) };
     let several = parsed(Some(SEVERAL))?;
     let batch = (observation.batch)(&several, options.period).map_err(sentence)?;

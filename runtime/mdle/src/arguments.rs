@@ -61,6 +61,8 @@ pub(crate) struct Run {
     pub(crate) safety: Option<PathBuf>,
     /// File of the link to other robots.
     pub(crate) link: Option<PathBuf>,
+    /// Name of the path that the way back of each `path` and `Follow` replaces.
+    pub(crate) records: Option<String>,
     /// Child processes to load as modules: the name of each, and its command line.
     pub(crate) modules: Vec<(String, String)>,
     /// Point of the module `heading`, in metres, if it is to be loaded.
@@ -91,8 +93,8 @@ pub(crate) struct SessionOptions {
 }
 
 /// Options of `mdle` itself that have a value.
-const WITH_VALUE: [&str; 9] =
-    ["--target", "--plan", "--safety", "--link", "--module", "--point", "-c", "--commands", "--role"];
+const WITH_VALUE: [&str; 10] =
+    ["--target", "--plan", "--safety", "--link", "--records", "--module", "--point", "-c", "--commands", "--role"];
 /// Options that ask for help.
 const HELP: [&str; 2] = ["-h", "--help"];
 /// Options of `mdle` itself without a value.
@@ -142,6 +144,7 @@ fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: O
         plan: run.get_one("plan").cloned(),
         safety: run.get_one("safety").cloned(),
         link: run.get_one("link").cloned(),
+        records: run.get_one("records").cloned(),
         modules: run.get_many("module").into_iter().flatten().cloned().collect(),
         point: run.get_one("point").copied(),
         deny_warnings: run.get_flag("deny-warnings"),
@@ -314,6 +317,11 @@ fn with_plan(command: Command) -> Command {
                 .value_name("FILE")
                 .help("File of the link to other robots: their addresses, and a key [default: none]")
                 .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            Arg::new("records").long("records").value_name("PATH").help(
+                "Name of a path of the plan that the way back of each `path` and `Follow` replaces [default: none]",
+            ),
         )
         .arg(
             Arg::new("module")

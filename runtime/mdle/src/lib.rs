@@ -30,6 +30,8 @@ mod step;
 mod targets;
 mod terminal;
 mod test;
+mod way_back;
+mod way_recorder;
 mod why;
 
 use std::process::ExitCode;

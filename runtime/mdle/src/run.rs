@@ -39,6 +39,7 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
     let (plan, mut ready) = compiled(&arguments, &linked, &target, &mut input, safety.as_ref())?;
     let linked_by = link.as_ref().map(|link| link.path().to_owned());
     ready.link(link)?;
+    ready.records(arguments.records.as_deref())?;
     let program = Program { plan: &plan, version: "" };
     let given: Vec<_> = arguments.options.iter().map(|option| option.to_string_lossy().into_owned()).collect();
     let mut options: Vec<OsString> = Vec::new();
@@ -56,23 +57,25 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
     let read = input.inputs(&target).into_iter().chain(safety.iter().flat_map(SafetyFile::files)).chain(linked_by);
     let read = read.collect();
     drop(input);
-    let call = Call { words: arguments.words, options, read, recorded };
+    let call = Call { words: arguments.words, options, read, recorded, later_path: arguments.records };
     let Some(session) = &arguments.session else { return Ok(ready.run(&plan, call, library)) };
     session::held(session, &arguments.file, |seat| ready.session(&plan, call, library, seat))
 }
 
 /// The call of nothing.
 fn no_call() -> Call {
-    Call { words: Vec::new(), options: Vec::new(), read: Vec::new(), recorded: RecordedPlan::default() }
+    let recorded = RecordedPlan::default();
+    Call { words: Vec::new(), options: Vec::new(), read: Vec::new(), recorded, later_path: None }
 }
 
 /// Names the causes of inputs besides the plan and the robot's outputs; empty if there are none.
 fn beside(arguments: &Run, ready: &dyn Ready) -> String {
-    let parts: [(bool, &str); 4] = [
+    let parts: [(bool, &str); 5] = [
         (arguments.safety.is_some(), "safety rules"),
         (arguments.session.is_some(), "the commands of a session"),
         (ready.reads_modules(), "modules"),
         (arguments.link.is_some(), "the state link"),
+        (arguments.records.is_some(), "recorded paths"),
     ];
     parts.into_iter().filter_map(|(is_there, words)| is_there.then_some(words)).collect::<Vec<_>>().join(" and ")
 }

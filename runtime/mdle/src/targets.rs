@@ -14,7 +14,7 @@ use mdle_engine::{Engine, EngineAlphabet, Library, StoredPlan};
 use mdle_files::{Input, Target};
 use mdle_host::{Call, Program, Refusal, RunTerms, Supervision};
 use mdle_record::{Begin, SafetyTexts};
-use mdle_runtime::{Alphabet, Plan as _, Robot, Sensed, Twist};
+use mdle_runtime::{Alphabet, Plan as _, Printable, Robot, Sensed, Twist};
 
 use crate::failure::Failure;
 use crate::link::{self, LinkFile};
@@ -24,6 +24,7 @@ use crate::replayer::{RecordedRun, replay};
 use crate::rerun::{Rerun, RerunLaws, rerun};
 use crate::safety::{Guarded, SafetyFile};
 use crate::session::Seat;
+use crate::way_recorder::WayRecorder;
 
 /// A robot whose driver is part of this program.
 #[derive(Clone, Copy)]
@@ -62,6 +63,12 @@ pub(crate) trait Ready {
     /// # Errors
     /// The plan names a robot that the link does not know.
     fn link(&mut self, link: Option<LinkFile>) -> Result<(), Failure>;
+
+    /// Lets the way back of each `path` and `Follow` replace the path of this name in runs of the plan.
+    ///
+    /// # Errors
+    /// The plan replays no such path.
+    fn records(&mut self, path: Option<&str>) -> Result<(), Failure>;
 
     /// Runs the plan of this name, with these modules.
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode;
@@ -119,6 +126,8 @@ struct PlanFor<T, A: Alphabet> {
     known: Arc<Target>,
     safety: Option<Guarded<A>>,
     link: Option<LinkFile>,
+    /// Name of the path that the way back of `path` and `Follow` replaces, with the greatest speeds of a path.
+    records: Option<(&'static str, Twist)>,
     target: std::marker::PhantomData<fn() -> T>,
 }
 
@@ -128,6 +137,10 @@ impl<T, A: EngineAlphabet<Output = Sensed>> PlanFor<T, A> {
         let engine = Engine::new(self.loaded.plan(), library, terms)?;
         let engine = match &self.link {
             Some(link) => engine.linked(link.open()?),
+            None => engine,
+        };
+        let engine = match self.records {
+            Some((path, fastest)) => engine.recording(Box::new(WayRecorder::new(path, fastest))),
             None => engine,
         };
         match &self.safety {
@@ -158,6 +171,18 @@ where
             (None, None) => {}
         }
         self.link = link;
+        Ok(())
+    }
+
+    fn records(&mut self, path: Option<&str>) -> Result<(), Failure> {
+        let (Some(path), Some(replays)) = (path, T::PATHS) else { return Ok(()) };
+        let plan = self.loaded.plan();
+        let Some(name) = plan.paths().iter().copied().find(|name| *name == path) else {
+            let near = did_you_mean(path, plan.paths());
+            let path = Printable(path);
+            return Err(Failure::Usage(format!("--records {path}: the plan replays no path `{path}`{near}")));
+        };
+        self.records = Some((name, replays.fastest));
         Ok(())
     }
 
@@ -207,5 +232,5 @@ where
     let safety = safety.map(|safety| safety.compile(target)).transpose()?;
     let files = texts(input).into();
     let (known, target) = (Arc::clone(target), std::marker::PhantomData);
-    Ok(Box::new(PlanFor::<T, A> { loaded, files, known, safety, link: None, target }))
+    Ok(Box::new(PlanFor::<T, A> { loaded, files, known, safety, link: None, records: None, target }))
 }

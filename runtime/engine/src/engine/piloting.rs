@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use mdle_compiler::load::LoadedPlan;
 use mdle_host::{Moment, Pilot, PilotFault, RunTerms, Time, Transitions, claim_for_worker};
 use mdle_record::Change;
-use mdle_runtime::{Machine, ModuleRead, Nanos, Output as _, Turn};
+use mdle_runtime::{Machine, ModuleRead, Nanos, Output as _, Plan as _, Turn};
 
 use super::event::Event;
 use super::loading::{Loading, NewModule};
@@ -15,6 +15,7 @@ use crate::library::Library;
 use crate::link::StateLink;
 use crate::module::{Candidate, Declare, PLAN, Refusal};
 use crate::plans::{EngineAlphabet, NoTrial, PlanTurn, Plans, reads};
+use crate::recorder::Recorder;
 use crate::replay::{History, Repeats};
 
 /// Number of workers in real time.
@@ -35,6 +36,7 @@ pub struct Engine<A: EngineAlphabet> {
     /// The recorded run that is made again.
     repeats: Option<Repeats>,
     link: Option<StateLink>,
+    recorder: Option<Box<dyn Recorder<A::Output>>>,
 }
 
 impl<A: EngineAlphabet> Engine<A> {
@@ -65,6 +67,7 @@ impl<A: EngineAlphabet> Engine<A> {
             history: None,
             repeats: None,
             link: None,
+            recorder: None,
         };
         engine.load_plan_module();
         for candidate in library.candidates(&terms.request) {
@@ -130,6 +133,12 @@ impl<A: EngineAlphabet> Engine<A> {
     #[must_use]
     pub fn linked(self, link: StateLink) -> Self {
         Self { link: Some(link), ..self }
+    }
+
+    /// Lets the ways of some laws become a path that plans replay.
+    #[must_use]
+    pub fn recording(self, recorder: Box<dyn Recorder<A::Output>>) -> Self {
+        Self { recorder: Some(recorder), ..self }
     }
 
     /// Returns the plans.
@@ -319,6 +328,9 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
         if let Some(link) = &mut self.link {
             link.sense(&mut complete, self.plans.robots(), t);
         }
+        if let Some(recorder) = &self.recorder {
+            recorder.complete(&mut complete);
+        }
         let published = self.plans.take_off(y, t, self.modules.board()).map_err(PilotFault::Stopped)?;
         if let Some(published) = published {
             complete.take_published(published);
@@ -334,6 +346,11 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
         if let Some(link) = &mut self.link {
             let plan = self.plans.machine().map(|machine| (self.plans.number().into(), machine));
             link.tell(y, plan, transitions, t);
+        }
+        if let Some(recorder) = &mut self.recorder {
+            let machine = self.plans.machine();
+            let law = machine.and_then(|machine| machine.atom().map(|atom| machine.plan().law(atom)));
+            self.messages.extend(recorder.turn(y, law, !transitions.is_empty()));
         }
         self.modules.settle();
         self.turn_break()?;

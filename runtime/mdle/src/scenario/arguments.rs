@@ -39,6 +39,7 @@ impl Options {
             (run.link.is_some(), "--link"),
             (run.session.is_some(), "shell"),
             (!run.modules.is_empty(), "--module"),
+            (run.records.is_some(), "--records"),
             (run.point.is_some(), "--point"),
         ];
         if let Some((_, name)) = of_a_plan.into_iter().find(|(is_given, _)| *is_given) {

@@ -7,19 +7,14 @@ use mdle_engine::link::{Air, StateLink};
 use mdle_engine::{Engine, Library};
 use mdle_host::{
     Moment, Pace, Passes, Pilot as _, PilotFault, RunTerms, StopRequest, Target as _, Time, Transitions, cause_words,
-    place, setpoints,
+    place,
 };
-use mdle_runtime::{
-    Frame, Machine, Nanos, PathStore, Plan as _, Pose, Robot as _, Sensed, Setpoint, StoredPath, Turn, Twist,
-};
+use mdle_runtime::{Machine, Nanos, PathStore, Plan as _, Robot as _, Sensed, Setpoint, StoredPath, Turn, Twist};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Sim, Simulated};
 
 use super::setup::{Member, Scenario};
-use super::way_back::Way;
-
-/// Maximum number of setpoints that the recorded paths of all robots have: they stay until the program ends.
-const SETPOINTS: usize = 2_000_000;
+use crate::way_recorder::{RecordedTurn, WayRecorder};
 
 /// A robot that runs.
 pub(super) struct Runner {
@@ -31,10 +26,7 @@ pub(super) struct Runner {
     transitions: Transitions,
     passes: Passes,
     killed: Option<Nanos>,
-    recorder: Option<Recorder>,
-    paths: Vec<StoredPath>,
-    /// Number of setpoints that were recorded.
-    recorded: usize,
+    recorder: Option<WayRecorder>,
 }
 
 /// State of a robot of a scenario: driven or not.
@@ -48,16 +40,6 @@ pub(super) enum Standing {
     Killed,
     /// A fault has stopped it: a sentence.
     Failed(String),
-}
-
-/// The recorder of a robot.
-struct Recorder {
-    /// Name of the path that it replaces.
-    path: &'static str,
-    /// The way of the law that runs, if that is recorded.
-    way: Option<Way>,
-    /// Frame of the plan.
-    frame: Option<Frame>,
 }
 
 /// A turn of a robot, for the log.
@@ -81,7 +63,7 @@ impl Runner {
         scenario: &Scenario,
         library: &Library<Sensed>,
     ) -> Result<Self, String> {
-        let Member { name, robot, start, loaded, paths, records, killed, .. } = member;
+        let Member { name, mut robot, start, loaded, paths, records, killed, .. } = member;
         let terms =
             RunTerms { time: Time::Stepped(Pace::Max), period: scenario.period, request: StopRequest::default() };
         let plan = Loaded::plan(&loaded);
@@ -89,7 +71,10 @@ impl Runner {
         let engine = engine.linked(StateLink::new(Box::new(air), &name, start));
         let stored =
             |(name, setpoints): (&'static str, Vec<Setpoint>)| StoredPath { name, setpoints: setpoints.leak() };
-        let mut runner = Self {
+        let mut stored: Vec<StoredPath> = paths.into_iter().map(stored).collect();
+        stored.sort_by_key(|path| path.name);
+        robot.paths = PathStore::new(stored.leak());
+        Ok(Self {
             name,
             robot,
             standing: Standing::Drives,
@@ -98,12 +83,8 @@ impl Runner {
             transitions: Transitions::default(),
             passes: Passes::default(),
             killed,
-            recorder: records.map(|path| Recorder { path, way: None, frame: None }),
-            paths: paths.into_iter().map(stored).collect(),
-            recorded: 0,
-        };
-        runner.store_paths();
-        Ok(runner)
+            recorder: records.zip(Sim::PATHS).map(|(path, replays)| WayRecorder::new(path, replays.fastest)),
+        })
     }
 
     /// Returns the plan that runs, once it has begun.
@@ -157,7 +138,7 @@ impl Runner {
         if let Standing::Failed(sentence) = &self.standing {
             made.lines.push(format!("error: {sentence}"));
         }
-        made.path = self.records(&y.odometry, made.law.as_ref().map(|(_, law)| law.as_str()), &mut made.lines);
+        made.path = self.records(y, made.law.as_ref().map(|(_, law)| law.as_str()), &mut made.lines);
         made
     }
 
@@ -181,48 +162,20 @@ impl Runner {
         made.law = machine.atom().map(|atom| (machine.state(), plan.law(atom).to_owned()));
     }
 
-    /// Records the way of `path` and `Follow`; returns the way back when such a law has ended, and replaces the path
-    /// by it.
-    fn records(&mut self, here: &Pose, law: Option<&str>, lines: &mut Vec<String>) -> Option<(&'static str, String)> {
-        let has_changed = !self.transitions.is_empty();
+    /// Records the way of `path` and `Follow`; returns the text of the path that was replaced, by its name.
+    fn records(&mut self, y: &Sensed, law: Option<&str>, lines: &mut Vec<String>) -> Option<(&'static str, String)> {
         let recorder = self.recorder.as_mut()?;
-        let frame = *recorder.frame.get_or_insert(Frame(here.theta));
-        let is_recorded = law.is_some_and(|law| ["path ", "Follow "].iter().any(|name| law.starts_with(name)));
-        let ended = if has_changed { recorder.way.take() } else { None };
-        if is_recorded {
-            recorder.way.get_or_insert_default().went(here);
-        }
-        let path = recorder.path;
-        let mut way = ended?;
-        way.went(here);
-        let text = way.back(frame.0)?;
-        match self.replace(path, &text) {
-            Ok(()) => Some((path, text)),
+        let has_changed = !self.transitions.is_empty();
+        let turn = RecordedTurn { here: &y.odometry, paths: self.robot.paths, law, has_changed };
+        let taken = recorder.take(&turn);
+        self.robot.paths = recorder.store().unwrap_or(self.robot.paths);
+        match taken {
+            Ok(text) => Some((recorder.path(), text?)),
             Err(sentence) => {
-                lines.push(format!("warning: the way back is not recorded: {sentence}"));
+                lines.push(format!("warning: {sentence}"));
                 None
             }
         }
-    }
-
-    /// Replaces a path by the one of this text.
-    fn replace(&mut self, name: &'static str, text: &str) -> Result<(), String> {
-        let Some(replays) = Sim::PATHS else { return Ok(()) };
-        let setpoints = setpoints(name, text.as_bytes(), replays.fastest)?;
-        self.recorded = self.recorded.saturating_add(setpoints.len());
-        if self.recorded > SETPOINTS {
-            return Err(format!("it has recorded more than {SETPOINTS} rows, which is the most"));
-        }
-        self.paths.retain(|path| path.name != name);
-        self.paths.push(StoredPath { name, setpoints: setpoints.leak() });
-        self.store_paths();
-        Ok(())
-    }
-
-    /// Gives the robot its paths.
-    fn store_paths(&mut self) {
-        self.paths.sort_by_key(|path| path.name);
-        self.robot.paths = PathStore::new(self.paths.clone().leak());
     }
 }
 

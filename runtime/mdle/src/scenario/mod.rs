@@ -6,7 +6,6 @@ mod fleet;
 mod member;
 mod output;
 mod setup;
-mod way_back;
 
 use std::io::{self, Write as _};
 use std::path::Path;

@@ -60,6 +60,7 @@ impl Simulation {
             options: options.iter().map(OsString::from).collect(),
             read: Vec::new(),
             recorded: RecordedPlan::default(),
+            later_path: None,
         };
         let plan = loaded.plan();
         let program = Program { plan: plan.name(0), version: "" };

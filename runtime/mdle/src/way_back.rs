@@ -24,13 +24,13 @@ type Place = [f64; 2];
 
 /// A way that is being driven.
 #[derive(Debug, Default)]
-pub(super) struct Way {
+pub(crate) struct Way {
     places: Vec<Place>,
 }
 
 impl Way {
     /// Notes that the robot is here, by odometry.
-    pub(super) fn went(&mut self, here: &Pose) {
+    pub(crate) fn went(&mut self, here: &Pose) {
         let place = [here.x.0, here.y.0];
         if self.places.last().is_none_or(|last| distance(last, &place) >= APART) {
             self.places.push(place);
@@ -39,7 +39,7 @@ impl Way {
 
     /// Returns the way back as the text of a path, with headings relative to `frame`; `None` for a way that is too
     /// short.
-    pub(super) fn back(&self, frame: Radians) -> Option<String> {
+    pub(crate) fn back(&self, frame: Radians) -> Option<String> {
         let reversed: Vec<Place> = self.places.iter().rev().copied().collect();
         let line = Line::through(smoothed(&reversed));
         (line.length() >= SHORTEST).then(|| rows(&line, frame))

@@ -1,0 +1,102 @@
+//! The recorder of a robot: the way back along what `path` and `Follow` drove replaces a path of the plan.
+
+use mdle_engine::Recorder;
+use mdle_host::setpoints;
+use mdle_runtime::{Frame, PathStore, Pose, Sensed, StoredPath, Twist};
+
+use crate::way_back::Way;
+
+/// Maximum number of setpoints that the recorded paths of a robot have: they stay until the program ends.
+const SETPOINTS: usize = 2_000_000;
+
+/// The recorder of a robot.
+pub(crate) struct WayRecorder {
+    /// Name of the path that it replaces.
+    path: &'static str,
+    /// Greatest speeds of a path.
+    fastest: Twist,
+    /// The way of the law that runs, if that is recorded.
+    way: Option<Way>,
+    /// Frame of the plan.
+    frame: Option<Frame>,
+    /// The robot's paths since a way was recorded.
+    store: Option<PathStore>,
+    /// Number of setpoints that were recorded.
+    recorded: usize,
+}
+
+/// A turn, for the recorder.
+pub(crate) struct RecordedTurn<'t> {
+    /// Pose by odometry.
+    pub(crate) here: &'t Pose,
+    /// The robot's paths.
+    pub(crate) paths: PathStore,
+    /// Text of the law that runs after the turn.
+    pub(crate) law: Option<&'t str>,
+    /// `true` if the plan made transitions.
+    pub(crate) has_changed: bool,
+}
+
+impl WayRecorder {
+    /// Returns a recorder that replaces the path of this name, on a robot with these greatest speeds.
+    pub(crate) fn new(path: &'static str, fastest: Twist) -> Self {
+        Self { path, fastest, way: None, frame: None, store: None, recorded: 0 }
+    }
+
+    /// Returns the name of the path that is replaced.
+    pub(crate) fn path(&self) -> &'static str {
+        self.path
+    }
+
+    /// Returns the robot's paths; `None` before a way was recorded.
+    pub(crate) fn store(&self) -> Option<PathStore> {
+        self.store
+    }
+
+    /// Takes a turn. If a recorded law has ended, replaces the path by the way back and returns its text.
+    ///
+    /// # Errors
+    /// The way back is no path: a sentence.
+    pub(crate) fn take(&mut self, turn: &RecordedTurn<'_>) -> Result<Option<String>, String> {
+        let RecordedTurn { here, paths, law, has_changed } = turn;
+        let frame = *self.frame.get_or_insert(Frame(here.theta));
+        let is_recorded = law.is_some_and(|law| ["path ", "Follow "].iter().any(|name| law.starts_with(name)));
+        let ended = if *has_changed { self.way.take() } else { None };
+        if is_recorded {
+            self.way.get_or_insert_default().went(here);
+        }
+        let Some(mut way) = ended else { return Ok(None) };
+        way.went(here);
+        let Some(text) = way.back(frame.0) else { return Ok(None) };
+        let replaced = self.replace(*paths, &text);
+        replaced.map_err(|sentence| format!("the way back is not recorded: {sentence}"))?;
+        Ok(Some(text))
+    }
+
+    /// Replaces the path by the one of this text.
+    fn replace(&mut self, paths: PathStore, text: &str) -> Result<(), String> {
+        let setpoints = setpoints(self.path, text.as_bytes(), self.fastest)?;
+        self.recorded = self.recorded.saturating_add(setpoints.len());
+        if self.recorded > SETPOINTS {
+            return Err(format!("the robot has recorded more than {SETPOINTS} rows, which is the most"));
+        }
+        let others = paths.names().filter(|name| *name != self.path);
+        let others = others.map(|name| StoredPath { name, setpoints: paths.path(name).unwrap_or_default() });
+        let mut stored: Vec<_> = others.collect();
+        stored.push(StoredPath { name: self.path, setpoints: setpoints.leak() });
+        stored.sort_by_key(|path| path.name);
+        self.store = Some(PathStore::new(stored.leak()));
+        Ok(())
+    }
+}
+
+impl Recorder<Sensed> for WayRecorder {
+    fn complete(&self, y: &mut Sensed) {
+        y.paths = self.store.unwrap_or(y.paths);
+    }
+
+    fn turn(&mut self, y: &Sensed, law: Option<&str>, has_changed: bool) -> Option<String> {
+        let turn = RecordedTurn { here: &y.odometry, paths: y.paths, law, has_changed };
+        self.take(&turn).err().map(|sentence| format!("warning: {sentence}"))
+    }
+}
