@@ -3,6 +3,7 @@
 mod faults;
 mod links;
 mod phases;
+mod scenarios;
 mod signalled;
 mod stands;
 

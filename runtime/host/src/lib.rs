@@ -21,6 +21,7 @@ mod executable;
 mod files;
 mod held_report;
 mod helm;
+mod interruption;
 mod log;
 mod named_file;
 mod observation;
@@ -84,6 +85,7 @@ pub use clap;
 use executable::{Executable, PlanOnTarget};
 pub use files::{read_file, read_text};
 pub use helm::{Helm, Supervised};
+pub use interruption::Interruption;
 pub use mdle_quantity::{Clocked, Quantity, operand_words, rounded};
 use mdle_runtime::{Plan, Robot};
 pub use named_file::NamedFile;
@@ -193,7 +195,7 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
         }
     };
     panic_hook::tell_to(err.aside());
-    let watch = match turn_watch::TurnWatch::begin(err.aside(), leave_screen) {
+    let watch = match turn_watch::TurnWatch::begin(err.aside(), watch::leave_screen) {
         Ok(watch) => watch,
         Err(error) => {
             run_end::say(&mut err, format_args!("error: the system gives no threads: {error}"));

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use mdle_engine::Library;
 use mdle_engine::link::Air;
+use mdle_host::Interruption;
 use mdle_runtime::{Nanos, Plan as _, Sensed};
 use mdle_sim::Footprint;
 
@@ -37,11 +38,11 @@ impl Fleet {
         Ok(Self { runners: runners.collect::<Result<_, _>>()?, period: scenario.period, nearest: None })
     }
 
-    /// Makes turns until all plans are over, or at `timeout`; returns the exit status.
+    /// Makes turns until all plans are over, at `timeout`, or until a signal asks for the end; returns the exit status.
     ///
     /// In each turn the robots move, one after the other in the order of the file, each among the others where they
     /// are; then all sense; then all plans make their turns, with what the link brought from earlier turns.
-    pub(super) fn run(mut self, timeout: Duration, output: &mut Output) -> u8 {
+    pub(super) fn run(mut self, timeout: Duration, interruption: &Interruption, output: &mut Output) -> u8 {
         let nanos = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
         let (period, timeout) = (nanos(self.period), nanos(timeout));
         for number in 0.. {
@@ -53,7 +54,7 @@ impl Fleet {
                 output.turn(runner, y, t, number, &made);
             }
             let are_driven = self.runners.iter().any(|runner| runner.standing == Standing::Drives);
-            if !are_driven || t.0 >= timeout || output.has_failed() {
+            if !are_driven || t.0 >= timeout || output.has_failed() || interruption.is_made() {
                 self.ends(t, output);
                 break;
             }

@@ -14,6 +14,7 @@ use std::process::ExitCode;
 use codespan_reporting::diagnostic::{Diagnostic, Label};
 use mdle_compiler::diagnostic::Sources;
 use mdle_engine::Library;
+use mdle_host::Interruption;
 use mdle_runtime::{Printable, Sensed};
 
 use crate::arguments::Run;
@@ -49,9 +50,13 @@ pub(crate) fn run(arguments: &Run, library: &Library<Sensed>) -> Result<ExitCode
     let mut output = Output::open(&options, &scenario).map_err(Failure::Usage)?;
     let timeout = options.timeout.unwrap_or(scenario.timeout);
     let fleet = Fleet::new(scenario, library).map_err(Failure::Usage)?;
-    let status = fleet.run(timeout, &mut output);
-    match output.close() {
-        Ok(()) => Ok(ExitCode::from(status)),
+    let uncaught = |error| Failure::Usage(format!("signals cannot be caught: {error}"));
+    let interruption = Interruption::listen().map_err(uncaught)?;
+    let status = fleet.run(timeout, &interruption, &mut output);
+    let closed = output.close();
+    let interrupted = interruption.tell(&mut io::stderr());
+    match closed {
+        Ok(()) => Ok(ExitCode::from(interrupted.unwrap_or(status))),
         Err(sentence) => {
             let _ = writeln!(io::stderr(), "error: {sentence}");
             Ok(ExitCode::from(FAULT))

@@ -1,0 +1,54 @@
+//! A signal during a scenario: it ends in order, with all that was written so far.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use mdle_tests::executable::{folder, mdle};
+use rustix::process::{Pid, Signal, kill_process};
+use serde_json::Value;
+
+/// Two robots that drive in circles for days.
+const SCENARIO: &str = "timeout = \"1000000s\"
+[[robot]]
+name = \"ada\"
+file = \"round.mdle\"
+start = \"0, 0, 0\"
+[[robot]]
+name = \"bob\"
+file = \"round.mdle\"
+start = \"3, 0, 0\"
+";
+
+#[test]
+fn a_signal_ends_a_scenario_in_order() {
+    let folder = folder("scenario");
+    fs::write(folder.join("round.mdle"), "{ Round (wait 900000) (Atom (bumper) (go 20 0.5)) }").unwrap();
+    fs::write(folder.join("s.toml"), SCENARIO).unwrap();
+    for (signal, status) in [(Signal::INT, 130), (Signal::TERM, 143)] {
+        let mut command = Command::new(mdle());
+        let command = command.args("run s.toml --log s.jsonl --plot s.svg".split(' ')).current_dir(&folder);
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let log = folder.join("s.jsonl");
+        let begun = Instant::now();
+        while fs::metadata(&log).map_or(0, |file| file.len()) < 10_000 {
+            assert!(begun.elapsed() < Duration::from_secs(60), "the scenario does not begin");
+            sleep(Duration::from_millis(20));
+        }
+        kill_process(Pid::from_child(&child), signal).unwrap();
+        let Output { status: ended, stdout, stderr } = child.wait_with_output().unwrap();
+        let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        assert_eq!(ended.code(), Some(status), "{out}{err}");
+        assert!(err.ends_with("stopped by SIGINT\n") || err.ends_with("stopped by SIGTERM\n"), "{err}");
+        assert!(out.contains("ada: still runs go 20 0.5\n") && out.contains("bob: still runs"), "{out}");
+        assert!(out.contains("least gap between robots: "), "{out}");
+        let turns: Vec<Value> =
+            fs::read_to_string(&log).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert_eq!(turns.last().unwrap()["robot"], "bob", "the last turn is whole");
+        assert!(fs::read_to_string(folder.join("s.svg")).unwrap().ends_with("</svg>\n"));
+        fs::remove_file(log).unwrap();
+    }
+}
