@@ -10,9 +10,9 @@ mod setup;
 mod target;
 
 pub use mdle_simulator::{
-    Body, Charger, Drawing, Fault, FleetDrawing, Footprint, Form, Goal, Heard, Input, Make, Outline, Output, Part,
-    Place, Schedule, Sensed, SignalCurve, Simulated, Start, StartError, StartNoise, Stop, Thing, TimeChart,
-    TripDrawing, Walls, World, WorldError, Zone, alphabet,
+    Body, Charger, Crowd, Drawing, Fault, FleetDrawing, Footprint, Form, Goal, Groups, Heard, Input, Make, Others,
+    Outline, Output, Part, Place, Schedule, Sensed, SignalCurve, Simulated, Start, StartError, StartNoise, Stop, Thing,
+    TimeChart, TripDrawing, Walls, World, WorldError, Zone, alphabet,
 };
 pub use observed::Observed;
 pub use target::Sim;

@@ -58,6 +58,19 @@ impl Body {
         Self { pose, drive, odometry: Odometry::new(drive.slip, seed), left: 0.0, right: 0.0, clear: 0.0 }
     }
 
+    /// Returns a body like this one, at rest at `pose`.
+    pub(crate) fn another(&self, pose: Pose, seed: Option<u64>) -> Self {
+        Self::new(self.drive, pose, seed)
+    }
+
+    /// Returns the greatest distance, in metres, that a place of the body goes in this time.
+    pub(crate) fn goes_most(&self, seconds: f64) -> f64 {
+        let way = self.drive.fastest * seconds;
+        let turn = Radians(2.0 * self.drive.fastest / self.drive.wheel_base * seconds);
+        // Contact pushes a rectangle off by at most twice the way that its corners turn.
+        way + 3.0 * (self.drive.form.moved(way, turn) - way) + FEELS
+    }
+
     /// Returns the area that the body covers.
     pub(crate) fn footprint(&self) -> Footprint {
         Footprint { pose: self.pose, form: self.drive.form }

@@ -1,6 +1,7 @@
 //! The simulated robot: body and sonars in a world, moved on by one period in each exchange.
 
 use std::fmt;
+use std::sync::Arc;
 use std::time::Duration;
 
 use mdle_runtime::capability::Steering;
@@ -14,7 +15,7 @@ use crate::model::{self, Model, Part};
 use crate::place::Place;
 use crate::sonar::{Heard, Ring};
 use crate::start::{self, StartError};
-use crate::walls::Walls;
+use crate::walls::{Others, Walls};
 use crate::world::World;
 
 /// A robot in a world.
@@ -116,6 +117,39 @@ impl Simulated {
         })
     }
 
+    /// Returns a robot with the body and the world of this one, and its battery as it is now, at rest at `start`.
+    ///
+    /// # Errors
+    /// The robot cannot stand at `start` in `world`, which is that of this robot.
+    pub fn another(&self, world: &World, start: Pose, seed: Option<u64>) -> Result<Self, StartError> {
+        start::check(&start, self.footprint().form, world, &self.walls)?;
+        Ok(Self {
+            walls: self.walls.clone(),
+            body: self.body.another(start, seed),
+            ring: Ring::new(Arc::clone(&self.ring.hearing), seed),
+            compass: Compass::default(),
+            battery: self.battery.clone(),
+            exchanges: 0,
+            ..*self
+        })
+    }
+
+    /// Returns the distance from the robot's centre within which its sonars hear the centres of robots like it, in
+    /// metres.
+    #[must_use]
+    pub fn hears(&self) -> f64 {
+        let radius = self.footprint().form.radius();
+        let offsets = self.ring.hearing.transducers.iter().map(|transducer| libm::hypot(transducer.x, transducer.y));
+        offsets.fold(self.ring.hearing.ring_radius, f64::max) + self.ring.hearing.most + radius
+    }
+
+    /// Returns the greatest distance, in metres, between the centres of two robots like this one that may touch in the
+    /// next exchange.
+    #[must_use]
+    pub fn touches(&self) -> f64 {
+        2.0 * (self.footprint().form.radius() + self.body.goes_most(self.period.as_secs_f64()))
+    }
+
     /// Returns the true pose of the robot on the floor, which only the simulator knows.
     #[must_use]
     pub fn pose(&self) -> Pose {
@@ -166,6 +200,12 @@ impl Simulated {
     /// Sets the places of the other robots in the world: the robot hears them and cannot pass through them.
     pub fn see(&mut self, others: &[Footprint]) {
         self.walls.put_others(others);
+    }
+
+    /// Exchanges the other robots in the world for these: those that the robot hears, and those that it cannot pass
+    /// through.
+    pub fn swap_others(&mut self, others: &mut Others) {
+        self.walls.swap_others(others);
     }
 
     /// Returns the last ping of each transducer, in the order of the body's model: the data of a robot's boards before

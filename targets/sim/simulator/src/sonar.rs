@@ -4,6 +4,8 @@ mod echo;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use mdle_runtime::{Meters, Mount, Nanos, Ping, Pings, Pose, Radians, SONARS};
 
 use crate::model::{Hearing, Order, Transducer};
@@ -15,7 +17,8 @@ use crate::walls::Walls;
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     pub(crate) pings: [Pings; SONARS],
-    pub(crate) hearing: Hearing,
+    /// The model of the sonars, which robots with one body share.
+    pub(crate) hearing: Arc<Hearing>,
     /// Newest range of each transducer, as a range of the sonar that it speaks for; `None` when no echo came back.
     ranges: Vec<Option<f64>>,
     /// Newest ping of each transducer, with the range from the transducer itself.
@@ -46,7 +49,8 @@ struct Errors {
 
 impl Ring {
     /// Sonars that err by this seed, or not at all.
-    pub(crate) fn new(hearing: Hearing, seed: Option<u64>) -> Self {
+    pub(crate) fn new(hearing: impl Into<Arc<Hearing>>, seed: Option<u64>) -> Self {
+        let hearing = hearing.into();
         let errors = seed.map(|seed| {
             let mut outliers = Noise::of(seed, Purpose::Outliers);
             let scale = 1.0 + hearing.scale * (2.0 * outliers.uniform() - 1.0);
@@ -82,7 +86,7 @@ impl Ring {
         let transducers = &self.hearing.transducers;
         let of = |sonar: &u8| transducers.iter().position(|known| known.sonar.number() == usize::from(*sonar));
         let groups: Vec<Vec<usize>> = sonars.iter().filter_map(of).map(|number| vec![number]).collect();
-        if let Some(order) = self.hearing.order.as_mut().filter(|_| !groups.is_empty()) {
+        if let Some(order) = Arc::make_mut(&mut self.hearing).order.as_mut().filter(|_| !groups.is_empty()) {
             order.groups = groups;
             self.next.0 = 0;
         }

@@ -1,5 +1,7 @@
 //! The fixed and moving obstacles of a world, prepared for queries: rays, distances, contacts.
 
+use std::sync::Arc;
+
 use mdle_runtime::Radians;
 
 use crate::footprint::{Contact, Footprint, Form};
@@ -13,19 +15,37 @@ use crate::world::World;
 /// Maximum number of pairs of an end of a segment and what shares its cell: each is looked at once, in a second or so.
 const PAIRS_MOST: u64 = 100_000_000;
 
+/// Distance beyond a cone, in metres, by which a robot may be off and still counts as in it: more than rounding.
+const BESIDE: f64 = 1e-6;
+
 /// The walls of a world at a time.
 #[derive(Debug, Clone)]
 pub struct Walls {
+    /// Obstacles that never move, which robots in one world share.
+    standing: Arc<Standing>,
+    moving: Vec<Moving>,
+    others: Others,
+    /// Roughness of the other robots, from 0 to 1.
+    rough: f64,
+}
+
+/// The obstacles of a world that never move.
+#[derive(Debug)]
+struct Standing {
     segments: Vec<Segment>,
     ends: Vec<Ends>,
     /// Roughness of each segment, from 0 to 1.
     roughs: Vec<f64>,
     grid: Grid,
-    moving: Vec<Moving>,
-    /// The other robots.
-    others: Vec<Footprint>,
-    /// Roughness of the other robots, from 0 to 1.
-    rough: f64,
+}
+
+/// The other robots around one.
+#[derive(Debug, Clone, Default)]
+pub struct Others {
+    /// Robots that its sonars may hear.
+    pub heard: Vec<Footprint>,
+    /// Robots that its body may touch.
+    pub touched: Vec<Footprint>,
 }
 
 impl Walls {
@@ -66,7 +86,8 @@ impl Walls {
         let ends = segments.iter().map(meets).collect();
         let roughs = world.segments().map(|(outline, ..)| outline.rough).collect();
         let moving = world.things.iter().map(Moving::of).collect();
-        Self { segments, ends, roughs, grid, moving, others: Vec::new(), rough: world.rough }
+        let standing = Arc::new(Standing { segments, ends, roughs, grid });
+        Self { standing, moving, others: Others::default(), rough: world.rough }
     }
 
     /// Returns the distance that a ray from `from` goes before it hits a wall; `None` if that is `most` metres or more.
@@ -80,11 +101,15 @@ impl Walls {
     /// that is `most` metres or more.
     #[must_use]
     pub fn cast(&self, from: Place, way: Place, most: f64) -> Option<f64> {
-        let range = self.grid.ray(from, way, most).map_or(most, |hit| hit.range);
+        self.cast_among(&self.others.heard, from, way, most)
+    }
+
+    /// Returns the distance that a ray goes, as [`Walls::cast`] does, with these other robots alone.
+    pub(crate) fn cast_among(&self, others: &[Footprint], from: Place, way: Place, most: f64) -> Option<f64> {
+        let range = self.standing.grid.ray(from, way, most).map_or(most, |hit| hit.range);
         let range =
             self.moving.iter().fold(range, |range, thing| thing.ray(from, way, range).map_or(range, |hit| hit.range));
-        let range = self
-            .others
+        let range = others
             .iter()
             .fold(range, |range, other| other.found(from, way, range).map_or(range, |surface| surface.range));
         (range < most).then_some(range)
@@ -92,14 +117,20 @@ impl Walls {
 
     /// Returns the surface that a ray in the direction of the unit vector `way` meets, if nearer than `most` metres.
     pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
+        self.found_among(&self.others.heard, from, way, most)
+    }
+
+    /// Returns the surface that a ray meets, as [`Walls::found`] does, with these other robots alone.
+    pub(crate) fn found_among(&self, others: &[Footprint], from: Place, way: Place, most: f64) -> Option<Surface> {
         let at = |range: f64| Place { x: from.x + range * way.x, y: from.y + range * way.y };
-        let standing = self.grid.ray(from, way, most).and_then(|Hit { range, segment }| {
-            let (side, ends) = (self.segments.get(segment)?, self.ends.get(segment)?);
-            Some(Surface { rough: *self.roughs.get(segment)?, ..surface(side, ends, at(range), way, range) })
+        let Standing { segments, ends, roughs, grid } = &*self.standing;
+        let standing = grid.ray(from, way, most).and_then(|Hit { range, segment }| {
+            let (side, ends) = (segments.get(segment)?, ends.get(segment)?);
+            Some(Surface { rough: *roughs.get(segment)?, ..surface(side, ends, at(range), way, range) })
         });
         let nearer = |found: Option<Surface>| found.map_or(most, |surface| surface.range);
         let found = self.moving.iter().fold(standing, |found, thing| thing.found(from, way, nearer(found)).or(found));
-        self.others.iter().fold(found, |found, other| {
+        others.iter().fold(found, |found, other| {
             let other = other.found(from, way, nearer(found));
             other.map(|surface| Surface { rough: self.rough, ..surface }).or(found)
         })
@@ -114,14 +145,14 @@ impl Walls {
     /// Returns the distance to the nearest obstacle that never moves, or `reach` if that is less.
     pub(crate) fn standing(&self, at: Place, reach: f64) -> f64 {
         let mut least = reach;
-        self.grid.near(at, reach, |_, segment| least = least.min(apart(segment.nearest(at), at)));
+        self.standing.grid.near(at, reach, |_, segment| least = least.min(apart(segment.nearest(at), at)));
         least
     }
 
     /// Returns the distance to the nearest moving object or other robot; infinite without any.
     fn moving(&self, at: Place) -> f64 {
         let least = self.moving.iter().fold(f64::INFINITY, |least, thing| thing.distance(at, least).min(least));
-        self.others.iter().fold(least, |least, other| least.min(other.distance(at)))
+        self.others.touched.iter().fold(least, |least, other| least.min(other.distance(at)))
     }
 
     /// Returns the distance between a body and the nearest obstacle, in metres, or `reach` if that is less; negative
@@ -142,14 +173,14 @@ impl Walls {
             let far = apart(segment.nearest(body.at()), body.at()) - body.form.radius();
             if far < least { least.min(body.contact(segment).gap) } else { least }
         };
-        self.grid.near(body.at(), body.form.radius() + reach, |_, segment| least = touches(segment, least));
+        self.standing.grid.near(body.at(), body.form.radius() + reach, |_, segment| least = touches(segment, least));
         least
     }
 
     /// Returns the distance between a body and the nearest moving thing or other robot; infinite without any.
     pub(crate) fn moving_gap(&self, body: &Footprint) -> f64 {
         let least = self.moving.iter().fold(f64::INFINITY, |least, thing| thing.gap(body, least).min(least));
-        self.others.iter().fold(least, |least, other| least.min(body.contact_with(other).gap))
+        self.others.touched.iter().fold(least, |least, other| least.min(body.contact_with(other).gap))
     }
 
     /// The nearest contact of a body with an obstacle, if its gap is less than `reach`.
@@ -166,11 +197,11 @@ impl Walls {
     /// Calls `take` with the contact of a body with each obstacle that may lie within `reach` of it.
     pub(crate) fn contacts(&self, body: &Footprint, reach: f64, mut take: impl FnMut(Contact)) {
         let around = body.form.radius() + reach;
-        self.grid.near(body.at(), around, |_, segment| take(body.contact(segment)));
+        self.standing.grid.near(body.at(), around, |_, segment| take(body.contact(segment)));
         for segment in self.moving.iter().flat_map(Moving::segments) {
             take(body.contact(segment));
         }
-        self.others.iter().for_each(|other| take(body.contact_with(other)));
+        self.others.touched.iter().for_each(|other| take(body.contact_with(other)));
     }
 
     /// Returns the displacement of each of the moving objects from where it begins; `None` for an open door.
@@ -178,15 +209,38 @@ impl Walls {
         self.moving.iter().map(Moving::gone)
     }
 
-    /// The middle of each of the moving objects, but for open doors, and of each other robot.
+    /// Returns the middle of each of the moving objects, but for open doors.
     pub(crate) fn things(&self) -> impl Iterator<Item = Place> {
-        self.moving.iter().filter_map(Moving::around).chain(self.others.iter().map(Footprint::at))
+        self.moving.iter().filter_map(Moving::around)
+    }
+
+    /// Returns the other robots that rays from `from` may meet at angles of at most `half_cone` from `axis`.
+    pub(crate) fn others_in(&self, from: Place, axis: Radians, half_cone: Radians) -> Vec<Footprint> {
+        if self.others.heard.is_empty() {
+            return Vec::new();
+        }
+        let (along, edge) = (libm::sincos(axis.0), libm::sincos(half_cone.0));
+        let is_near = |other: &&Footprint| {
+            let (x, y) = (other.pose.x.0 - from.x, other.pose.y.0 - from.y);
+            let (ahead, aside) = (x * along.1 + y * along.0, (x * along.0 - y * along.1).abs());
+            // The cone lies on the near sides of the line across its tip and of the line along its edge.
+            let (behind, beside) = (-ahead, aside * edge.1 - ahead * edge.0);
+            behind.max(beside) <= other.form.radius() + BESIDE
+        };
+        self.others.heard.iter().filter(is_near).copied().collect()
     }
 
     /// Sets the places of the other robots.
     pub(crate) fn put_others(&mut self, others: &[Footprint]) {
-        self.others.clear();
-        self.others.extend_from_slice(others);
+        for known in [&mut self.others.heard, &mut self.others.touched] {
+            known.clear();
+            known.extend_from_slice(others);
+        }
+    }
+
+    /// Exchanges the other robots for these.
+    pub(crate) fn swap_others(&mut self, others: &mut Others) {
+        std::mem::swap(&mut self.others, others);
     }
 
     /// Returns `true` if anything here ever moves.

@@ -10,6 +10,7 @@
 
 use mdle_runtime::Radians;
 
+use crate::footprint::Footprint;
 use crate::model::Hearing;
 use crate::place::Place;
 use crate::surfaces::{Surface, dot};
@@ -37,7 +38,8 @@ const OFF: f64 = 1e-6;
 /// worse than usual it hears.
 pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing, fade: f64) -> Option<f64> {
     let spread = (0..RAYS).map(|ray| hearing.half_cone.0 * (2.0 * f64::from(ray) / f64::from(RAYS - 1) - 1.0));
-    let aimed = walls.things().map(|thing| {
+    let others = walls.others_in(from, axis, hearing.half_cone);
+    let aimed = walls.things().chain(others.iter().map(Footprint::at)).map(|thing| {
         let Radians(off_axis) = Radians(libm::atan2(thing.y - from.y, thing.x - from.x) - axis.0).wrapped();
         off_axis
     });
@@ -47,10 +49,11 @@ pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing,
         let (sin, cos) = libm::sincos(axis.0 + off_axis);
         let way = Place { x: cos, y: sin };
         let heard = if hearing.lobe.is_none() && hearing.facing.is_none() {
-            walls.cast(from, way, most)
+            walls.cast_among(&others, from, way, most)
         } else {
             let lost = hearing.lobe.map_or(0.0, |lobe| (off_axis / lobe.0) * (off_axis / lobe.0));
-            walls.found(from, way, most).and_then(|surface| heard(walls, from, way, &surface, hearing, lost - fade))
+            let found = walls.found_among(&others, from, way, most);
+            found.and_then(|surface| heard(walls, from, way, &surface, hearing, lost - fade))
         };
         // A corner's echo comes from behind the place where the ray first met a wall.
         best = heard.filter(|range| *range < most).or(best);

@@ -145,5 +145,32 @@ fn walls_that_meet_in_one_point_cover_each_other() {
     };
     let world = World { outlines: (0..2000).map(spoke).collect(), ..World::parse("empty", "").expect("a good world") };
     let walls = Walls::of_any(&world).expect("few enough");
-    assert!(walls.ends.iter().all(|[middle, _]| *middle == End::Covered));
+    assert!(walls.standing.ends.iter().all(|[middle, _]| *middle == End::Covered));
+}
+
+#[test]
+fn a_cone_leaves_out_no_robot_that_its_rays_meet() {
+    let mut noise = crate::noise::Noise::of(4, crate::noise::Purpose::Start);
+    let mut within = |most: f64| most * (2.0 * noise.uniform() - 1.0);
+    let mut walls = Walls::of(&World::parse("empty", "").expect("a good world"));
+    let (mut met, mut left_out) = (0, 0);
+    for number in 0..400 {
+        let form = if number % 2 == 0 { Form::SCOUT } else { Form::Rectangle { half_length: 0.3, half_width: 0.2 } };
+        let pose = Pose { x: Meters(within(3.0)), y: Meters(within(3.0)), theta: Radians(within(3.0)) };
+        walls.put_others(&[Footprint { pose, form }]);
+        let (axis, from) = (Radians(within(3.0)), Place { x: within(0.5), y: within(0.5) });
+        let half_cone = Radians::from_degrees(21.0);
+        let near = walls.others_in(from, axis, half_cone);
+        let aimed = libm::atan2(pose.y.0 - from.y, pose.x.0 - from.x);
+        let spread = (0..41).map(|ray| axis.0 + half_cone.0 * (f64::from(ray) / 20.0 - 1.0));
+        let is_aimed = Radians(aimed - axis.0).wrapped().0.abs() < half_cone.0;
+        for direction in spread.chain(is_aimed.then_some(aimed)) {
+            let (sin, cos) = libm::sincos(direction);
+            let way = Place { x: cos, y: sin };
+            met += u32::from(walls.cast(from, way, 9.0).is_some());
+            assert_eq!(walls.cast(from, way, 9.0), walls.cast_among(&near, from, way, 9.0), "{number}");
+        }
+        left_out += u32::from(near.is_empty());
+    }
+    assert!(met > 500 && left_out > 200, "{met}, {left_out}");
 }
