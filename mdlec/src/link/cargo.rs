@@ -8,7 +8,7 @@ use super::machine::Machine;
 use super::messages::{self, Run};
 use super::plan_package::PlanPackage;
 use super::seal::Seal;
-use super::toolchain::{self, absolute, output, unusable};
+use super::toolchain::{self, cargo_home, output, unusable};
 use super::{Cache, LinkError, Progress, cleanup, orphan};
 
 /// Settings of the profile for cargo's `--config`, which neither a configuration file nor the environment overrides.
@@ -86,7 +86,7 @@ impl Job<'_> {
         command.args(PROFILE.iter().flat_map(|setting| ["--config", setting]));
         // Both win over cargo's configuration. What is compiled stays in the cache.
         command.env("CARGO_BUILD_BUILD_DIR", self.cache.target()).env("CARGO_INCREMENTAL", "0");
-        command.envs(self.machine.linker());
+        command.envs(self.machine.linker(cargo_home().as_deref()));
         command
     }
 
@@ -98,9 +98,8 @@ impl Job<'_> {
     fn flags(&self) -> OsString {
         let mut flags = OsString::from("-Ctarget-feature=+crt-static\x1f-Crelocation-model=static");
         let home = env::home_dir();
-        let cargo_home = absolute("CARGO_HOME").or_else(|| Some(home.as_ref()?.join(".cargo")));
         // The last that fits wins.
-        let places = [(home, "~"), (cargo_home, "/cargo"), (Some(self.cache.folder().to_owned()), "/mdle")];
+        let places = [(home, "~"), (cargo_home(), "/cargo"), (Some(self.cache.folder().to_owned()), "/mdle")];
         for (place, name) in places {
             let Some(place) = place.filter(|place| place.parent().is_some()) else { continue };
             flags.push("\x1f--remap-path-prefix=");

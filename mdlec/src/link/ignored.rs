@@ -1,9 +1,9 @@
 //! Configuration of cargo and rustup that builds ignore, because it is not in cargo's home.
 
 use std::path::{Path, PathBuf};
-use std::{env, fs, path};
+use std::{fs, path};
 
-use super::toolchain::absolute;
+use super::toolchain::cargo_home;
 
 /// Files that cargo and rustup read in the folder of a build and in each folder above it.
 const NAMES: [&str; 4] = [".cargo/config.toml", ".cargo/config", "rust-toolchain.toml", "rust-toolchain"];
@@ -11,8 +11,7 @@ const NAMES: [&str; 4] = [".cargo/config.toml", ".cargo/config", "rust-toolchain
 /// Returns the first configuration file in `folders` or above them that is not in cargo's home. Builds do not read it.
 #[must_use]
 pub fn ignored_configuration(folders: &[&Path]) -> Option<PathBuf> {
-    let home = absolute("CARGO_HOME").or_else(|| Some(env::home_dir()?.join(".cargo")));
-    first(folders, home.as_deref())
+    first(folders, cargo_home().as_deref())
 }
 
 fn first(folders: &[&Path], home: Option<&Path>) -> Option<PathBuf> {

@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use toml::de::DeTable;
+
 use super::LinkError;
 use super::toolchain::{command, output};
 
@@ -62,9 +64,11 @@ impl Machine {
     }
 
     /// Returns the variable that names the linker to cargo, with its value, where rustc's own linker does all that is
-    /// needed: for the C library musl, the files that a static executable begins and ends with come with rustc.
-    pub(super) fn linker(&self) -> Option<(String, &'static str)> {
-        let own = self.is_foreign && self.triple.contains("-linux-musl");
+    /// needed: for the C library musl, the files that a static executable begins and ends with come with rustc. The
+    /// variable would override a linker in the configuration in `cargo_home`, so there is none then.
+    pub(super) fn linker(&self, cargo_home: Option<&Path>) -> Option<(String, &'static str)> {
+        let is_configured = || cargo_home.is_some_and(|home| names_linker(home, &self.triple));
+        let own = self.is_foreign && self.triple.contains("-linux-musl") && !is_configured();
         own.then(|| {
             (format!("CARGO_TARGET_{}_LINKER", self.triple.to_uppercase().replace(['-', '.'], "_")), OWN_LINKER)
         })
@@ -82,6 +86,19 @@ fn has_standard_library(folder: &Path) -> bool {
     entries.any(|entry| entry.file_name().to_string_lossy().starts_with("libstd-"))
 }
 
+/// Returns `true` if the configuration in the folder `home` names a linker for this machine. Cargo reports a
+/// configuration that cannot be read.
+fn names_linker(home: &Path, triple: &str) -> bool {
+    let text = |name| fs::read_to_string(home.join(name)).ok();
+    ["config.toml", "config"].into_iter().filter_map(text).any(|text| has_linker(&text, triple).unwrap_or(false))
+}
+
+fn has_linker(configuration: &str, triple: &str) -> Option<bool> {
+    let table = DeTable::parse(configuration).ok()?;
+    let machine = table.get_ref().get("target")?.get_ref().get(triple)?;
+    Some(machine.get_ref().get("linker").is_some())
+}
+
 /// Returns `true` if rustup can add the standard library of this machine.
 fn is_offered_by_rustup(triple: &str) -> bool {
     let mut rustup = command("rustup");
@@ -92,14 +109,32 @@ fn is_offered_by_rustup(triple: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::Machine;
+    use crate::link::tests::folder;
+
+    fn machine(triple: &str, is_foreign: bool) -> Machine {
+        Machine { triple: triple.to_owned(), is_foreign }
+    }
 
     #[test]
     fn musl_is_linked_by_rustc_itself() {
-        let machine = |triple: &str, is_foreign| Machine { triple: triple.to_owned(), is_foreign };
-        let linker = machine("aarch64-unknown-linux-musl", true).linker();
+        let linker = machine("aarch64-unknown-linux-musl", true).linker(None);
         assert_eq!(linker, Some(("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_LINKER".to_owned(), "rust-lld")));
-        assert_eq!(machine("aarch64-unknown-linux-gnu", true).linker(), None);
-        assert_eq!(machine("x86_64-unknown-linux-musl", false).linker(), None);
+        assert_eq!(machine("aarch64-unknown-linux-gnu", true).linker(None), None);
+        assert_eq!(machine("x86_64-unknown-linux-musl", false).linker(None), None);
+    }
+
+    #[test]
+    fn a_linker_in_the_home_of_cargo_wins() {
+        let home = folder("linkers");
+        let is_own = |triple: &str| machine(triple, true).linker(Some(&home)).is_some();
+        let musl = ["aarch64-unknown-linux-musl", "armv7-unknown-linux-musleabihf"];
+        assert_eq!(musl.map(is_own), [true, true]);
+        fs::write(home.join("config.toml"), "[target.aarch64-unknown-linux-musl]\nlinker = 'ld.lld'\n").unwrap();
+        assert_eq!(musl.map(is_own), [false, true]);
+        fs::write(home.join("config.toml"), "[target\n").unwrap();
+        assert_eq!(musl.map(is_own), [true, true]);
     }
 }

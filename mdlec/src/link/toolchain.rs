@@ -74,6 +74,11 @@ pub(super) fn absolute(name: &str) -> Option<PathBuf> {
     env::var_os(name).filter(|folder| !folder.is_empty()).and_then(|folder| path::absolute(folder).ok())
 }
 
+/// Folder of cargo's configuration and of what it has fetched.
+pub(super) fn cargo_home() -> Option<PathBuf> {
+    absolute("CARGO_HOME").or_else(|| Some(env::home_dir()?.join(".cargo")))
+}
+
 /// Runs `command`, whose program is `tool`, to its end.
 pub(super) fn output(mut command: Command, tool: &'static str) -> Result<Output, LinkError> {
     command.output().map_err(|error| unusable(tool, &error))
