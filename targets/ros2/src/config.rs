@@ -12,6 +12,9 @@ use serde::Deserialize;
 use crate::choices::{BumperSource, Distribution, RangeSensors, Stamped};
 use crate::names::absolute;
 
+/// Maximum number of a domain: the ports of higher ones do not exist.
+const LAST_DOMAIN: u64 = 232;
+
 /// Declares the configuration: a line for each key, `name: type = default, in range, "unit" "help";`.
 macro_rules! configuration {
     ($(
@@ -62,7 +65,7 @@ configuration! {
     /// Distribution of ROS 2 on the robot.
     distribution: Distribution = "jazzy".to_owned(), "" "humble, jazzy or kilted";
     /// Number of the domain; the variable ROS_DOMAIN_ID is the default.
-    domain: u64 = domain_of_environment(), in 0..=232, "" "domain id; its default is that of ROS_DOMAIN_ID";
+    domain: u64 = given_domain().unwrap_or_default(), in 0..=232, "" "domain id; its default is that of ROS_DOMAIN_ID";
     /// Namespace of relative topics.
     namespace: String = String::new(), "" "namespace of topics without a slash in front";
     /// Address of the only network to use; empty for all networks.
@@ -131,8 +134,22 @@ configuration! {
 }
 
 /// Returns the domain of the variable that all programs of ROS 2 read, or 0.
-fn domain_of_environment() -> u64 {
-    std::env::var("ROS_DOMAIN_ID").ok().and_then(|domain| domain.trim().parse().ok()).unwrap_or(0)
+///
+/// # Errors
+/// The sentence that says that the variable's value is no domain.
+fn given_domain() -> Result<u64, String> {
+    domain_of(&std::env::var_os("ROS_DOMAIN_ID").unwrap_or_default().to_string_lossy())
+}
+
+/// Returns the domain that the text of the variable names, or 0 if it is empty.
+fn domain_of(text: &str) -> Result<u64, String> {
+    let number = if text.trim().is_empty() { Ok(0) } else { text.trim().parse() };
+    number.ok().filter(|domain| *domain <= LAST_DOMAIN).ok_or_else(|| {
+        format!(
+            "the variable ROS_DOMAIN_ID is `{text}`, and has to be a number from 0 to {LAST_DOMAIN}; a file with \
+             `domain` does not need it"
+        )
+    })
 }
 
 /// A configuration with the source of each of its values.
@@ -150,6 +167,9 @@ impl Configured {
     /// The file cannot be read, is no TOML, has a key that there is not, or a value that makes no sense: where and why.
     pub fn read(file: Option<&Path>) -> Result<Self, String> {
         let (file, mut settings) = Settings::read::<File>(file)?;
+        if file.domain.is_none() {
+            given_domain()?;
+        }
         let config = values(file, &mut settings)?;
         config.check().map_err(|why| settings.blamed(&why))?;
         Ok(Self { config, settings })

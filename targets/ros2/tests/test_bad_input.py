@@ -1,5 +1,6 @@
 """Robots that are missing, double, late, damaged or mad."""
 
+import os
 import subprocess
 import sys
 import time
@@ -244,6 +245,14 @@ def test_a_bad_configuration_is_refused(values, sentence):
     config = configuration(**{"domain": new_domain(), **values})
     with running("ride", config) as run:
         ends_with(2, sentence, run)
+
+
+@pytest.mark.parametrize("domain", ["233", "robot"])
+def test_a_bad_domain_of_the_environment_is_refused(domain):
+    environment = {**os.environ, "ROS_DOMAIN_ID": domain}
+    run = subprocess.run([built("ride")], capture_output=True, text=True, timeout=LONG, env=environment)
+    assert run.returncode == 2, run
+    assert f"the variable ROS_DOMAIN_ID is `{domain}`, and has to be a number from 0 to 232" in run.stderr, run.stderr
 
 
 def test_a_plan_that_needs_more_is_refused():

@@ -20,6 +20,18 @@ fn read(name: &str, text: &str) -> Result<Config, String> {
     configured.map(|configured| configured.config)
 }
 
+#[test]
+fn a_domain_of_the_environment_is_a_number() {
+    assert_eq!(["", " ", "0", " 7 ", "232"].map(domain_of), [0, 0, 0, 7, 232].map(Ok));
+    for text in ["233", "-1", "robot", "7.0", "99999999999999999999"] {
+        let refused = domain_of(text).unwrap_err();
+        assert!(
+            refused.contains(&format!("ROS_DOMAIN_ID is `{text}`, and has to be a number from 0 to 232")),
+            "{refused}"
+        );
+    }
+}
+
 /// Returns the configurations of the book.
 fn examples() -> Vec<(&'static str, &'static str)> {
     let book = include_str!("../../../../docs/src/ros2.md");
