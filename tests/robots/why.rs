@@ -7,6 +7,7 @@ mod other_plans;
 mod questions;
 mod random;
 mod scripted;
+mod several_plans;
 
 use std::path::Path;
 use std::process::Command;

@@ -1,9 +1,10 @@
 //! Host of a plan's executable: arguments, clock, signals, safe stop, report and run log, around the turns of the plan.
 //!
 //! For people who write a robot: [`Target`], [`Time`] and [`Refusal`], [`Observer`] where its runs are watched and
-//! [`Batch`] where it can be started over, [`Watch`] and [`WholeFile`] where it shows and draws them itself, [`Replays`] where it replays paths, [`read_file`] and [`output_format`]
-//! where its options name files, [`Quantity`] where they take lengths and times. For generated code: [`run`]. For an
-//! engine that makes the turns of a run itself: [`Pilot`].
+//! [`Batch`] where it can be started over, [`Watch`] and [`WholeFile`] where it shows and draws runs itself,
+//! [`Replays`] where it replays paths, [`read_file`] and [`output_format`] where its options name files, [`Quantity`]
+//! where they take lengths and times. For generated code: [`run`]. For an engine that makes the turns of a run itself:
+//! [`Pilot`].
 //!
 //! The robot is stopped in every case: when the plan is over, when an exchange fails, when code panics, when a signal
 //! arrives, when a limit is reached.

@@ -32,7 +32,7 @@ use crate::target_options::TargetOptions;
 use crate::turn_watch::TurnWatch;
 use crate::turns::{self, Witnesses};
 use crate::views::{self, ByOdometry};
-use crate::{NamedFile, Pace, Program, Refusal, Time, named_file, way_out};
+use crate::{NamedFile, Pace, Program, Refusal, Time, named_file, watch, way_out};
 
 /// Environment of a run: time, signals and output; a test provides its own.
 pub(crate) struct Surroundings<'e, I, O> {
@@ -119,7 +119,7 @@ where
             return refusal.tell(err);
         }
     };
-    let screen = views::is_watched(&matches);
+    let screen = watch::is_asked_for(&matches);
     let mut out = out();
     if screen {
         out = Box::new(HeldReport::new(out));

@@ -12,11 +12,10 @@ pub(crate) use by_odometry::ByOdometry;
 use crate::output_format::output_format;
 use crate::patience::Patience;
 use crate::target_options::TargetOptions;
+use crate::watch::{WATCH, is_asked_for};
 use crate::whole_file::WholeFile;
 use crate::{NamedFile, Refusal};
 
-/// The option of the live view.
-const WATCH: &str = "watch";
 /// The options of the files, as they are written.
 const FILES: [(&str, &str); 3] = [("plot", "--plot"), ("record", "--record"), ("trail", "--trail")];
 
@@ -48,11 +47,6 @@ pub fn view_options(command: Command) -> Command {
         )
 }
 
-/// Returns `true` if the run is shown while it goes on.
-pub(crate) fn is_watched(matches: &ArgMatches) -> bool {
-    matches.get_flag(WATCH)
-}
-
 /// The files that the options name.
 pub(crate) fn files(matches: &ArgMatches) -> impl Iterator<Item = NamedFile> {
     FILES.into_iter().filter_map(|(name, option)| {
@@ -70,7 +64,7 @@ pub(crate) fn by_odometry(
     matches: &ArgMatches,
     patience: &Patience,
 ) -> Result<Option<ByOdometry>, Refusal> {
-    let watched = is_watched(matches).then_some("--watch");
+    let watched = is_asked_for(matches).then_some("--watch");
     let Some(option) = watched.or_else(|| files(matches).next().map(|file| file.option)) else { return Ok(None) };
     if target.draws {
         return Ok(None);

@@ -11,13 +11,21 @@ use clap::ArgMatches;
 use mdle_runtime::{Nanos, Sensed};
 use mdle_simulator::{Footprint, Form, Place, World};
 
-use crate::{PlanPosition, views};
+use crate::PlanPosition;
 use map::Map;
 use screen::Screen;
 
 /// Restores the terminal if the live view has taken it over. May be called from any thread.
 pub(crate) fn leave_screen() {
     screen::leave_at_once();
+}
+
+/// The option of the live view.
+pub(crate) const WATCH: &str = "watch";
+
+/// Returns `true` if the run is shown while it goes on.
+pub(crate) fn is_asked_for(matches: &ArgMatches) -> bool {
+    matches.get_flag(WATCH)
 }
 
 /// Minimum time between two pictures: the eye sees no faster changes.
@@ -48,7 +56,7 @@ impl Watch {
     /// # Errors
     /// Standard output is not a terminal: a sentence.
     pub fn of(matches: &ArgMatches, world: &World) -> Result<Option<Self>, String> {
-        if !views::is_watched(matches) {
+        if !is_asked_for(matches) {
             return Ok(None);
         }
         if !screen::is_there() {

@@ -6,6 +6,7 @@
 
 mod arguments;
 mod elements_named;
+mod examined;
 mod failure;
 mod link;
 mod log;
@@ -20,7 +21,6 @@ mod recorded_files;
 mod replay;
 mod replayed;
 mod replayer;
-mod rerun;
 mod run;
 mod run_time;
 mod safety;

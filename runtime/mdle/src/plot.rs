@@ -1,19 +1,19 @@
 //! `mdle plot`: pictures of a recorded run, of its path or over time.
 
+use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::process::ExitCode;
 
 use mdle_compiler::alphabet::did_you_mean;
-use mdle_compiler::fsm::Machine;
+use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, SONARS, Sensed};
 use mdle_sim::{Drawing, SignalCurve, TimeChart};
 
 use crate::arguments::Plot;
+use crate::examined::{ExaminedPlan, ExaminedRun, ExaminedTurn};
 use crate::failure::Failure;
 use crate::log::{created, unwritten};
 use crate::replay::{self, WantedPlan};
-use crate::rerun::{Rerun, RerunTurn};
-use crate::why;
 
 /// Draws a record.
 ///
@@ -26,17 +26,17 @@ pub(crate) fn plot(arguments: &Plot) -> Result<ExitCode, Failure> {
     let call = format!("mdle plot {name} {}", arguments.file.display());
     let (log, file) = (arguments.log.as_path(), arguments.plan.as_deref());
     let wanted = WantedPlan { log, file, begin: &begin, call: &call, has_run: true };
-    let (machine, mut rerun) = why::reruns(&wanted, record)?;
+    let mut run = ExaminedRun::of(&wanted, record)?;
     let mut picture =
         if arguments.is_over_time { Picture::OverTime(Box::default()) } else { Picture::Unbegun(name.clone()) };
-    let mut pictured = Pictured { atom: None, touches: false, end: Nanos::ZERO, by: String::new() };
-    while let Some(turn) = rerun.turn(&mut |_, _| false) {
+    let mut pictured = Pictured::default();
+    while let Some(turn) = run.turn() {
         match turn {
-            Ok(turn) => pictured.turn(&turn, &machine, &*rerun, &mut picture, &signals)?,
-            Err(stop) => return why::stopped(&stop, &name, arguments.plan.as_deref()),
+            Ok(turn) => pictured.turn(&turn, run.plan().map(|plan| &**plan), &mut picture, &signals),
+            Err(stop) => return stop.tell(&name, arguments.plan.as_deref()),
         }
     }
-    let text = pictured.ended(picture, &begin.plan, &*rerun);
+    let text = pictured.ended(picture, &begin.plan, run.is_whole());
     let mut file = created(&arguments.file)?;
     file.write_all(text.as_bytes()).map_err(|error| unwritten(&arguments.file.display(), &error))?;
     Ok(ExitCode::SUCCESS)
@@ -50,10 +50,27 @@ enum Picture {
     OverTime(Box<TimeChart>),
 }
 
+impl Picture {
+    /// Adds the atoms of a plan to those of a chart; returns the number of the first.
+    fn add_atoms(&mut self, plan: &ExaminedPlan) -> usize {
+        let Self::OverTime(chart) = self else { return 0 };
+        let first = chart.atoms.len();
+        chart.atoms.extend(plan.machine.atoms().map(|atom| atom.law().text.clone()));
+        first
+    }
+}
+
 /// The run up to a turn.
+#[derive(Default)]
 struct Pictured {
-    /// The current atom, and the time at which it began.
-    atom: Option<(u32, Nanos)>,
+    /// The current atom by its number among those of all plans, and the time at which it began.
+    atom: Option<(usize, Nanos)>,
+    /// The current atom by its number in its plan.
+    entered: Option<u32>,
+    /// The plans that have driven, by their numbers, with the number of the first atom of each.
+    plans: BTreeMap<u64, usize>,
+    /// Number of the plan that drives; `None` before the first plan begins.
+    number: Option<u64>,
     touches: bool,
     end: Nanos,
     /// Cause of the last transition.
@@ -61,51 +78,57 @@ struct Pictured {
 }
 
 impl Pictured {
-    fn turn(
-        &mut self,
-        turn: &RerunTurn,
-        machine: &Machine,
-        rerun: &dyn Rerun,
-        picture: &mut Picture,
-        signals: &[Signal],
-    ) -> Result<(), Failure> {
+    /// Takes a turn; `plan` is `None` before the first plan begins.
+    fn turn(&mut self, turn: &ExaminedTurn, plan: Option<&ExaminedPlan>, picture: &mut Picture, signals: &[Signal]) {
         let (t, y) = (turn.recorded.t, &turn.recorded.y);
-        if let Picture::Unbegun(name) = picture {
-            *picture = Picture::Path(Box::new(Drawing::without_world(y, name.clone(), false)));
-        }
-        if let Picture::OverTime(chart) = picture
-            && chart.atoms.is_empty()
-        {
-            chart.atoms = machine.atoms().map(|atom| atom.law().text.clone()).collect();
-            chart.signals =
-                signals.iter().map(|signal| SignalCurve { name: signal.title(), values: Vec::new() }).collect();
-        }
-        let touches = y.switches != 0;
-        if let Picture::Path(drawing) = picture {
-            drawing.sensed(y, t, touches && !self.touches);
-        }
-        self.touches = touches;
-        let mut entered = if self.atom.is_none() && turn.recorded.number == 0 { vec![Some(0)] } else { Vec::new() };
-        entered.extend(turn.transitions.iter().map(|(transition, _)| transition.atom));
-        for atom in entered {
-            self.leaves(t, picture);
-            self.atom = atom.map(|atom| (atom, t));
-        }
-        if let (Some((atom, since)), Picture::Path(drawing)) = (self.atom, &mut *picture)
-            && since == t
-        {
-            drawing.began(machine.atom(atom).state(), rerun.texts().law(atom), t);
+        self.output(y, t, picture);
+        if let Some(plan) = plan {
+            self.atoms(turn, plan, picture);
         }
         if let Picture::OverTime(chart) = picture {
+            if chart.signals.is_empty() {
+                let named = signals.iter().map(|signal| SignalCurve { name: signal.title(), values: Vec::new() });
+                chart.signals = named.collect();
+            }
             for (signal, curve) in signals.iter().zip(&mut chart.signals) {
                 curve.values.push((t, signal.value(y)));
             }
         }
-        if let Some((transition, _)) = turn.transitions.iter().last() {
-            self.by = transition.cause.by(rerun.texts().condition(transition.scope)).to_owned();
-        }
         self.end = t;
-        Ok(())
+    }
+
+    /// Draws the output of a turn.
+    fn output(&mut self, y: &Sensed, t: Nanos, picture: &mut Picture) {
+        if let Picture::Unbegun(name) = picture {
+            *picture = Picture::Path(Box::new(Drawing::without_world(y, name.clone(), false)));
+        }
+        let touches = y.pressed();
+        if let Picture::Path(drawing) = picture {
+            drawing.sensed(y, t, touches && !self.touches);
+        }
+        self.touches = touches;
+    }
+
+    /// Draws the atoms that began in a turn.
+    fn atoms(&mut self, turn: &ExaminedTurn, plan: &ExaminedPlan, picture: &mut Picture) {
+        let (number, t) = (turn.recorded.plan, turn.recorded.t);
+        let first = *self.plans.entry(number).or_insert_with(|| picture.add_atoms(plan));
+        let is_other = self.number.replace(number) != Some(number);
+        let began = turn.moments.first().filter(|_| is_other).map(|moment| Some(moment.atom));
+        for entered in began.into_iter().chain(turn.transitions.iter().map(|(transition, _)| transition.atom)) {
+            self.leaves(t, picture);
+            self.atom = entered.map(|atom| (first + atom as usize, t));
+            self.entered = entered;
+        }
+        if let (Some((_, since)), Some(atom), Picture::Path(drawing)) = (self.atom, self.entered, &mut *picture)
+            && since == t
+        {
+            let atom = plan.machine.atom(atom);
+            drawing.began(atom.state(), &atom.law().text, t);
+        }
+        if let Some((transition, _)) = turn.transitions.iter().last() {
+            self.by = transition.cause.by(plan.texts.condition(transition.scope)).to_owned();
+        }
     }
 
     /// Ends the stay in the current atom.
@@ -113,15 +136,15 @@ impl Pictured {
         if let (Some((atom, since)), Picture::OverTime(chart)) = (self.atom, picture)
             && since < t
         {
-            chart.stays.push((atom as usize, since, t));
+            chart.stays.push((atom, since, t));
         }
     }
 
     /// Returns the picture after the last turn of a plan of this name.
-    fn ended(self, mut picture: Picture, plan: &str, rerun: &dyn Rerun) -> String {
+    fn ended(self, mut picture: Picture, plan: &str, is_whole: bool) -> String {
         self.leaves(self.end, &mut picture);
-        let is_over = self.atom.is_none();
-        let by = match (is_over, rerun.is_whole()) {
+        let is_over = self.atom.is_none() && self.number.is_some();
+        let by = match (is_over, is_whole) {
             (true, _) => self.by.as_str(),
             (false, true) => "the end of the record",
             (false, false) => "the record has no end",

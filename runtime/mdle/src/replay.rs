@@ -44,7 +44,7 @@ pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
     let (machine, sources) = plan(&wanted, &target)?;
     let until = arguments.until.as_deref().map(run_time).transpose()?;
     let terms = ReplayTerms { until, goes_on: arguments.plan.is_some() };
-    let mut replay = (linked.replay)(&machine, &sources, &target, &begin, records)?;
+    let mut replay = (linked.replay)(machine, &sources, &target, &begin, records, false)?;
     if arguments.steps {
         return stepped(arguments, &mut *replay, until);
     }

@@ -5,13 +5,13 @@ use std::time::Duration;
 
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::fsm;
-use mdle_compiler::load::{self, Loaded, LoadedPlan};
+use mdle_compiler::load::{self, Loaded, LoadedPlan, Moment};
 use mdle_engine::{Engine, EngineAlphabet, Library, When};
 use mdle_files::Target;
 use mdle_host::{Helm, Intervention, Pace, Pilot as _, Refusal, RunTerms, StopRequest, Supervised, Texts, Time};
 use mdle_host::{PilotFault, Transitions, Verdict};
 use mdle_record::{Applied, Begin, Change, Message, ReadError, RecordedTurn, Step, TurnsWithMessages};
-use mdle_runtime::{Alphabet, Plan, Sensed, Turn, Twist};
+use mdle_runtime::{Alphabet, Nanos, Plan, Sensed, Turn, Twist};
 
 use crate::failure::Failure;
 use crate::record::{OVER, Part, Record, RecordSource};
@@ -22,6 +22,16 @@ use crate::safety::{Guarded, SafetyFile};
 pub(crate) trait RecordedRun {
     /// Makes the next turn; returns `None` at the end of the record.
     fn turn(&mut self) -> Option<Result<ReplayedTurn, Stop>>;
+
+    /// Returns the machine of the plan that drove in the last turn, and the moments of that turn; `None` if it has not
+    /// begun, or is not looked at.
+    fn looked_at(&self) -> Option<(&Arc<fsm::Machine>, &[Moment])>;
+
+    /// Returns the texts of the plan that drove in the last turn; `None` if it has not begun, or is not looked at.
+    fn texts(&self) -> Option<Box<dyn Texts>>;
+
+    /// Returns the time of the next turn; `None` at the end of the record.
+    fn next_time(&self) -> Option<Nanos>;
 
     /// Returns `true` once the end of the record was read; a run that was killed leaves a record without an end.
     fn is_whole(&self) -> bool;
@@ -40,6 +50,12 @@ pub(crate) struct ReplayedTurn {
     pub(crate) laws: Vec<String>,
     /// The law of the atom in which the turn ended; empty if there is none.
     pub(crate) law: String,
+    /// The transitions, with their operands.
+    pub(crate) transitions: Transitions,
+    /// The input that the plan asked for.
+    pub(crate) asked: Twist,
+    /// The reason for which the plan replaced another one; empty for the first plan.
+    pub(crate) reason: String,
 }
 
 /// Reason why no further turn is made.
@@ -51,22 +67,23 @@ pub(crate) enum Stop {
     Failed(Failure),
 }
 
-/// Returns the run of a record whose first plan is that of `machine`.
+/// Returns the run of a record whose first plan is that of `machine`; if it `looks`, plans are looked at.
 ///
 /// # Errors
 /// The plan or a safety rule cannot be loaded.
 pub(crate) fn replay<A>(
-    machine: &fsm::Machine,
+    machine: fsm::Machine,
     sources: &Sources,
     target: &Arc<Target>,
     begin: &Begin,
     record: Record,
+    looks: bool,
 ) -> Result<Box<dyn RecordedRun>, Failure>
 where
     A: EngineAlphabet<Output = Sensed, Input = Twist>,
 {
-    let plan = Arc::new(load::load::<A>(machine, sources, &target.alphabet)?).plan();
-    let safety = begin.safety.as_ref().map(|texts| SafetyFile::recorded(texts)?.compile::<A>(target));
+    let plan = loaded::<A>(machine, sources, target, looks)?;
+    let safety = begin.safety.as_ref().map(|texts| SafetyFile::recorded(texts)?.compile::<A>(target, looks));
     let safety = safety.transpose()?.map(Arc::new);
     let period = Duration::from_nanos(begin.period.0);
     let terms = RunTerms { time: Time::Stepped(Pace::Max), period, request: StopRequest::default() };
@@ -74,7 +91,18 @@ where
     let engine = engine.repeating(safety.as_ref().map(|safety| safety.reads()));
     let helm = Helm::new(engine, safety.map(|safety| supervised(safety, period)));
     let (target, record) = (Arc::clone(target), record.with_messages());
-    Ok(Box::new(ReplayOf { helm, record, target, files: Vec::new() }))
+    Ok(Box::new(ReplayOf { helm, record, target, files: Vec::new(), looks }))
+}
+
+/// Loads the plan of a machine.
+fn loaded<A: EngineAlphabet>(
+    machine: fsm::Machine,
+    sources: &Sources,
+    target: &Target,
+    looks: bool,
+) -> Result<LoadedPlan<A>, Failure> {
+    let loaded: Loaded<A> = load::load(&machine, sources, &target.alphabet)?;
+    Ok(Arc::new(if looks { loaded.looked_at(Arc::new(machine)) } else { loaded }).plan())
 }
 
 /// Returns the supervisor of a run under these rules.
@@ -99,6 +127,8 @@ struct ReplayOf<A: EngineAlphabet<Output = Sensed, Input = Twist>> {
     target: Arc<Target>,
     /// The files of plans that took over, by their numbers in the record.
     files: Vec<Vec<(String, String)>>,
+    /// `true` if plans are looked at.
+    looks: bool,
 }
 
 impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> RecordedRun for ReplayOf<A> {
@@ -113,6 +143,18 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> RecordedRun for ReplayOf
             }
         }
         Some(Ok(self.made(recorded, messages)))
+    }
+
+    fn looked_at(&self) -> Option<(&Arc<fsm::Machine>, &[Moment])> {
+        self.helm.pilot().machine()?.plan().looked_at()
+    }
+
+    fn texts(&self) -> Option<Box<dyn Texts>> {
+        Some(Box::new(self.helm.pilot().machine()?.plan().again()?))
+    }
+
+    fn next_time(&self) -> Option<Nanos> {
+        self.record.next_time()
     }
 
     fn is_whole(&self) -> bool {
@@ -152,8 +194,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
     fn plan(&self, files: u32, name: &str) -> Result<LoadedPlan<A>, Failure> {
         let files = self.files.get(files as usize).map_or(&[][..], Vec::as_slice);
         let (machine, sources) = recorded_files::compiled(files, Some(name), &self.target)?;
-        let loaded: Arc<Loaded<A>> = Arc::new(load::load(&machine, &sources, &self.target.alphabet)?);
-        Ok(loaded.plan())
+        loaded(machine, &sources, &self.target, self.looks)
     }
 
     /// Makes a turn.
@@ -173,7 +214,8 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
             let rule = rule.to_owned();
             self.helm.pilot_mut().ended_by(&rule);
         }
-        ReplayedTurn { recorded, messages, parts, laws, law: law.unwrap_or_default() }
+        let (asked, reason) = (self.helm.asked().unwrap_or_default(), self.helm.pilot().reason().to_owned());
+        ReplayedTurn { recorded, messages, parts, laws, law: law.unwrap_or_default(), transitions, asked, reason }
     }
 
     /// Returns the parts of a turn that differ from the record.

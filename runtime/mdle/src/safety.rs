@@ -67,11 +67,11 @@ impl SafetyFile {
         [self.path.clone()].into_iter().chain(plans)
     }
 
-    /// Compiles the conditions and the plans for the robot of a target.
+    /// Compiles the conditions and the plans for the robot of a target; if it `looks`, plans are looked at.
     ///
     /// # Errors
     /// A condition or a plan has errors.
-    pub(crate) fn compile<A: Alphabet>(&self, target: &Target) -> Result<Guarded<A>, Failure> {
+    pub(crate) fn compile<A: Alphabet>(&self, target: &Target, looks: bool) -> Result<Guarded<A>, Failure> {
         let mut sources = target.sources();
         let name = self.path.display().to_string();
         let compiled = Conditions::compile(&name, &self.rules.guards, &mut sources, &target.alphabet);
@@ -79,7 +79,7 @@ impl SafetyFile {
         let (mut diversions, mut texts) = (Vec::new(), Vec::new());
         for (number, plan) in self.files().skip(1).enumerate() {
             let recorded = self.recorded.as_ref().map(|plans| plans.get(number).map_or(&[][..], Vec::as_slice));
-            let (loaded, files) = diversion(&plan, recorded, target)?;
+            let (loaded, files) = diversion(&plan, recorded, target, looks)?;
             diversions.push(loaded);
             texts.push(files);
         }
@@ -108,6 +108,7 @@ fn diversion<A: Alphabet>(
     file: &Path,
     recorded: Option<&[(String, String)]>,
     target: &Target,
+    looks: bool,
 ) -> Result<Diversion<A>, Failure> {
     let (machine, sources, files) = match recorded {
         Some(files) => {
@@ -128,7 +129,8 @@ fn diversion<A: Alphabet>(
             (machine, input.sources, files)
         }
     };
-    let loaded = Arc::new(load::load::<A>(&machine, &sources, &target.alphabet)?);
+    let loaded = load::load::<A>(&machine, &sources, &target.alphabet)?;
+    let loaded = Arc::new(if looks { loaded.looked_at(Arc::new(machine)) } else { loaded });
     if loaded.plan().paths().is_empty() {
         return Ok((loaded, files));
     }

@@ -223,7 +223,7 @@ fn count(word: &str, argument: &str) -> Result<usize, Refused> {
 }
 
 /// The text of a turn: what led to it, its transitions, its input, and what differs from the record.
-fn text(ReplayedTurn { recorded, messages, parts, laws, law }: &ReplayedTurn) -> String {
+fn text(ReplayedTurn { recorded, messages, parts, laws, law, .. }: &ReplayedTurn) -> String {
     let mut text = format!("turn {} at {}  {}\n", recorded.number, Clocked(recorded.t), Printable(law));
     if law.is_empty() {
         text = text.trim_end().to_owned() + "\n";

@@ -21,7 +21,6 @@ use crate::link::{self, LinkFile};
 use crate::plans::{self, texts};
 use crate::record::Record;
 use crate::replayer::{RecordedRun, replay};
-use crate::rerun::{Rerun, RerunLaws, rerun};
 use crate::safety::{Guarded, SafetyFile};
 use crate::session::Seat;
 use crate::way_recorder::WayRecorder;
@@ -35,8 +34,6 @@ pub(crate) struct LinkedTarget {
     pub(crate) load: Load,
     /// Runs a plan on the outputs of a record.
     pub(crate) replay: ReplayRecord,
-    /// Loads a plan, to make the turns of a record again.
-    pub(crate) rerun: RerunRecord,
     /// Returns the message if a run has no such options.
     pub(crate) check: fn(Program<'_>, &Call) -> Result<(), String>,
 }
@@ -44,11 +41,8 @@ pub(crate) struct LinkedTarget {
 /// Loads a plan of a file for a target, with the safety rules of its runs.
 type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Box<dyn Ready>, Failure>;
 
-/// Runs the plan of a machine on the outputs of a record.
-type ReplayRecord = fn(&Machine, &Sources, &Arc<Target>, &Begin, Record) -> Result<Box<dyn RecordedRun>, Failure>;
-
-/// Loads the plan of a machine, to make the turns of a record again.
-type RerunRecord = fn(&Machine, &Sources, &Target, Record, RerunLaws) -> Result<Box<dyn Rerun>, Failure>;
+/// Runs the plan of a machine on the outputs of a record; the last argument tells whether plans are looked at.
+type ReplayRecord = fn(Machine, &Sources, &Arc<Target>, &Begin, Record, bool) -> Result<Box<dyn RecordedRun>, Failure>;
 
 /// A plan that is ready to run.
 pub(crate) trait Ready {
@@ -107,13 +101,7 @@ impl LinkedTarget {
         T: mdle_host::Target<Robot: Robot<Output = Sensed, Input = Twist>> + 'static,
         A: EngineAlphabet<Output = Sensed, Input = Twist>,
     {
-        Self {
-            name: T::NAME,
-            load: load::<T, A>,
-            replay: replay::<A>,
-            rerun: rerun::<A>,
-            check: mdle_host::check_options::<T>,
-        }
+        Self { name: T::NAME, load: load::<T, A>, replay: replay::<A>, check: mdle_host::check_options::<T> }
     }
 }
 
@@ -229,7 +217,7 @@ where
     A: EngineAlphabet<Output = Sensed, Input = Twist>,
 {
     let loaded = Arc::new(load::load::<A>(machine, &input.sources, &target.alphabet)?);
-    let safety = safety.map(|safety| safety.compile(target)).transpose()?;
+    let safety = safety.map(|safety| safety.compile(target, false)).transpose()?;
     let files = texts(input).into();
     let (known, target) = (Arc::clone(target), std::marker::PhantomData);
     Ok(Box::new(PlanFor::<T, A> { loaded, files, known, safety, link: None, records: None, target }))

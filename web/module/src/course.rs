@@ -1,6 +1,6 @@
 //! The course of a run: exchange and turn in the order of `mdle run`, without its clock.
 
-use mdle_compiler::load::{Examining, Moment};
+use mdle_compiler::load::{LoadedPlan, Moment};
 use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Machine, Measured, Nanos, Plan as _, Robot as _, Sensed, Transition, Turn, Twist, Watch};
 use mdle_simulator::Simulated;
@@ -12,9 +12,9 @@ use crate::setup::{PERIOD, Ready};
 /// A run that is being made.
 pub(crate) struct Course {
     pub(crate) robot: Simulated,
-    pub(crate) machine: Option<Machine<Examining<Alphabet>>>,
+    pub(crate) machine: Option<Machine<LoadedPlan<Alphabet>>>,
     /// The plan, until the first turn begins it.
-    waiting: Option<Examining<Alphabet>>,
+    waiting: Option<LoadedPlan<Alphabet>>,
     input: Twist,
     /// Number of turns made.
     pub(crate) turns: u64,
@@ -85,12 +85,13 @@ impl Watch for Seen {
 }
 
 impl Course {
-    /// Puts the robot at its start.
-    pub(crate) fn new(plan: &Plan, ready: &Ready) -> Result<Self, String> {
+    /// Puts the robot at its start; `looks` decides whether moments are kept.
+    pub(crate) fn new(plan: &Plan, ready: &Ready, looks: bool) -> Result<Self, String> {
+        let waiting = if looks { plan.looked_at() } else { plan.looked_at().unobserved() };
         Ok(Self {
             robot: ready.robot()?,
             machine: None,
-            waiting: Some(plan.examining()),
+            waiting: Some(waiting),
             input: Twist::default(),
             turns: 0,
             limit: ready.limit,
@@ -119,18 +120,17 @@ impl Course {
         }
     }
 
-    /// Makes the turn of an exchange; `looks` decides whether moments are kept.
-    pub(crate) fn turn(&mut self, y: &Sensed, looks: bool) -> Option<Made> {
+    /// Makes the turn of an exchange.
+    pub(crate) fn turn(&mut self, y: &Sensed) -> Option<Made> {
         let number = self.turns;
         let t = Nanos(number.saturating_mul(PERIOD.0));
         if let Some(plan) = self.waiting.take() {
             self.machine = Some(Machine::begin(plan, y, t));
         }
         let machine = self.machine.as_mut()?;
-        machine.plan().look(looks);
         self.seen.transitions.clear();
         let turn = machine.turn(y, t, &mut self.seen);
-        let moments = machine.plan().moments();
+        let moments = machine.plan().looked_at().map_or(&[][..], |(_, moments)| moments).to_vec();
         self.turns += 1;
         self.input = turn.input();
         self.fresh |= !self.seen.transitions.is_empty();

@@ -34,7 +34,7 @@ pub(crate) enum Kind {
 pub(crate) fn export(kind: Kind, setup: Setup) -> Result<Value, String> {
     let plan = Plan::of(&setup.text, setup.plan.as_deref())?;
     let ready = setup.ready()?;
-    let mut course = Course::new(&plan, &ready)?;
+    let mut course = Course::new(&plan, &ready, false)?;
     let words = setup.in_words(&ready.make);
     let mut files = Files {
         kind,
@@ -45,7 +45,7 @@ pub(crate) fn export(kind: Kind, setup: Setup) -> Result<Value, String> {
     while course.end.is_none() {
         let Some(exchange) = course.exchange() else { break };
         files.exchanged(&course, &exchange);
-        let Some(made) = course.turn(&exchange.y, false) else { break };
+        let Some(made) = course.turn(&exchange.y) else { break };
         t = made.t;
         files.turned(&course, &made);
         if files.text.len() > MOST {

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::fsm;
-use mdle_compiler::load::{self, Entered, Examining, Loaded};
-use mdle_runtime::{Stamp, Stamps};
+use mdle_compiler::load::{self, Loaded, LoadedPlan};
 use mdle_simulator::alphabet::Alphabet;
 
 use crate::document::Document;
@@ -13,7 +12,7 @@ use crate::document::Document;
 /// A plan that can begin any number of times.
 pub(crate) struct Plan {
     /// The plan as a state machine.
-    pub(crate) machine: fsm::Machine,
+    pub(crate) machine: Arc<fsm::Machine>,
     /// Text of the plan.
     pub(crate) sources: Sources,
     loaded: Arc<Loaded<Alphabet>>,
@@ -26,15 +25,14 @@ impl Plan {
     /// Messages as `mdlec` prints them.
     pub(crate) fn of(text: &str, name: Option<&str>) -> Result<Self, String> {
         let mut document = Document::of(text)?;
-        let machine = document.compile(name, |_| Ok(()))?.machine;
+        let machine = Arc::new(document.compile(name, |_| Ok(()))?.machine);
         let loaded = load::load(&machine, &document.sources, document.alphabet).map_err(|error| error.to_string())?;
-        Ok(Self { machine, sources: document.sources, loaded: Arc::new(loaded) })
+        let loaded = Arc::new(loaded.looked_at(Arc::clone(&machine)));
+        Ok(Self { machine, sources: document.sources, loaded })
     }
 
-    /// Returns the plan before it begins, with the time of entry of each level of scopes.
-    pub(crate) fn examining(&self) -> Examining<Alphabet> {
-        let stamps = vec![Stamp::START; self.machine.depth()].into();
-        let entered = Entered::Stamps(Stamps::new(stamps, self.machine.frames().into()));
-        Examining::new(self.loaded.plan(), entered, Vec::new())
+    /// Returns the plan before it begins, looked at while it makes turns.
+    pub(crate) fn looked_at(&self) -> LoadedPlan<Alphabet> {
+        self.loaded.plan()
     }
 }

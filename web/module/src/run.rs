@@ -36,7 +36,7 @@ impl Run {
     pub(crate) fn begin(setup: Setup) -> Result<Self, String> {
         let plan = Plan::of(&setup.text, setup.plan.as_deref())?;
         let ready = setup.ready()?;
-        let course = Course::new(&plan, &ready)?;
+        let course = Course::new(&plan, &ready, true)?;
         Ok(Self { plan, ready, course, moments: Vec::new(), before: None })
     }
 
@@ -82,7 +82,7 @@ impl Run {
                 break;
             }
             let Some(exchange) = self.course.exchange() else { break };
-            let Some(mut made) = self.course.turn(&exchange.y, true) else { break };
+            let Some(mut made) = self.course.turn(&exchange.y) else { break };
             transitions += self.course.seen.transitions.len();
             if made.moments.len() > MOMENTS_MOST {
                 let last = made.moments.pop();

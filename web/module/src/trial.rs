@@ -12,11 +12,11 @@ use crate::setup::Setup;
 pub(crate) fn trial(setup: Setup) -> Result<Value, String> {
     let plan = Plan::of(&setup.text, setup.plan.as_deref())?;
     let ready = setup.ready()?;
-    let mut course = Course::new(&plan, &ready)?;
+    let mut course = Course::new(&plan, &ready, false)?;
     let mut atom = None;
     while course.end.is_none() {
         let Some(exchange) = course.exchange() else { break };
-        let Some(made) = course.turn(&exchange.y, false) else { break };
+        let Some(made) = course.turn(&exchange.y) else { break };
         if matches!(made.turn, Turn::Law(_)) {
             atom = course.machine.as_ref().and_then(|machine| machine.atom());
         }

@@ -1,7 +1,8 @@
 //! A plan at run time: its rows with the quarks that the robot's bound alphabet makes by their names.
 
 mod entries;
-mod examining;
+mod loaded_plan;
+mod moments;
 mod names;
 mod quarks;
 mod table;
@@ -15,10 +16,11 @@ use crate::alphabet;
 use crate::diagnostic::Sources;
 use crate::fsm::{self, Machine, PlanWords, Rows};
 pub use entries::Entered;
-pub use examining::{Examining, Moment, ScopeMoment};
+pub use loaded_plan::LoadedPlan;
+pub use moments::{Moment, ScopeMoment};
 pub use names::MOST_NAMES;
 use quarks::Quarks;
-pub use table::{Loaded, LoadedPlan, Shared};
+pub use table::{Loaded, Shared};
 
 /// Reason why a plan cannot be loaded.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -23,6 +23,8 @@ pub struct Loaded<A: Alphabet> {
     slots: usize,
     /// The number of memories of each level of scopes, and the number of these levels.
     memories: (usize, usize),
+    /// The machine of a plan that is looked at.
+    machine: Option<Arc<Machine>>,
 }
 
 /// The rows of a plan.
@@ -39,11 +41,11 @@ pub(super) struct Owned<A: Alphabet> {
     pub(super) meetings: Vec<Meeting>,
 }
 
+/// The rows of a loaded plan, with what they remember.
+pub(super) type LoadedRows<A> = InRows<Shared<A>, Entered, Box<[u64]>, Memories<Box<[bool]>>>;
+
 /// Tables that several machines may run, each from its own position.
 pub struct Shared<A: Alphabet>(Arc<Loaded<A>>);
-
-/// A loaded plan before it begins. It owns all that it needs, so one thread can make it and another one run it.
-pub type LoadedPlan<A> = InRows<Shared<A>, Entered, Box<[u64]>, Memories<Box<[bool]>>>;
 
 impl<A: Alphabet> Loaded<A> {
     pub(super) fn new(machine: &Machine, owned: Owned<A>) -> Self {
@@ -55,7 +57,13 @@ impl<A: Alphabet> Loaded<A> {
         let entered = Entered::of(machine);
         let slots = machine.sizes().slots;
         let memories = (machine.sizes().memories, machine.depth());
-        Self { brackets, atoms, termination, owned, laws, conditions, names, entered, slots, memories }
+        Self { brackets, atoms, termination, owned, laws, conditions, names, entered, slots, memories, machine: None }
+    }
+
+    /// Returns the plan, which is looked at from now on while it makes turns. `machine` is that of the plan.
+    #[must_use]
+    pub fn looked_at(self, machine: Arc<Machine>) -> Self {
+        Self { machine: Some(machine), ..self }
     }
 
     /// Returns the number of memories that RISING and `after` need in a run: as many for each level of scopes.
@@ -65,9 +73,13 @@ impl<A: Alphabet> Loaded<A> {
         width.saturating_mul(levels)
     }
 
-    /// Returns the plan before it begins.
-    #[must_use]
-    pub fn plan(self: &Arc<Self>) -> LoadedPlan<A> {
+    /// Returns the machine of a plan that is looked at.
+    pub(super) fn machine(&self) -> Option<Arc<Machine>> {
+        self.machine.clone()
+    }
+
+    /// Returns the rows of the plan before it begins.
+    pub(super) fn rows(self: &Arc<Self>) -> LoadedRows<A> {
         let width = u32::try_from(self.memories.0).unwrap_or(u32::MAX);
         let memory = Memories::new(width, vec![false; self.memories()].into());
         InRows::remembering(Shared(Arc::clone(self)), self.entered.clone(), vec![0; self.slots].into(), memory)

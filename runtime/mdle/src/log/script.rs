@@ -11,10 +11,9 @@ use mdle_runtime::{Examined, Nanometers, Nanos};
 use serde_json::json;
 
 use super::export::Table;
+use crate::examined::{ExaminedRun, ExaminedTurn, Moment};
 use crate::failure::Failure;
 use crate::replay::{self, WantedPlan};
-use crate::rerun::{Moment, RerunTurn};
-use crate::why;
 
 /// Writes a line for each turn of a record: the interrupts that have fired among those that its plan asked for, and the
 /// laws that have completed. `plan` names the file of a plan that the record does not have.
@@ -25,19 +24,25 @@ pub(super) fn script(log: &Path, plan: Option<&Path>, file: Option<&Path>) -> Re
     let (begin, record) = replay::record(log)?;
     let call = format!("mdle log export --script {}", log.display());
     let wanted = WantedPlan { log, file: plan, begin: &begin, call: &call, has_run: true };
-    let (machine, mut rerun) = why::reruns(&wanted, record)?;
+    let mut run = ExaminedRun::of(&wanted, record)?;
     let mut table = Table::created(file)?;
     let mut way = Nanometers(0);
-    while let Some(turn) = rerun.turn(&mut |_, _| true) {
+    while let Some(turn) = run.turn() {
         let turn = match turn {
             Ok(turn) => turn,
             Err(stop) => {
                 table.close()?;
-                return why::stopped(&stop, &log.display().to_string(), plan);
+                return stop.tell(&log.display().to_string(), plan);
             }
         };
+        if turn.recorded.plan != 1 {
+            table.close()?;
+            return Err(replaced(log, &turn));
+        }
+        // The script begins with the plan, which may wait for modules first.
+        let Some(examined) = run.plan() else { continue };
         way = turn.moments.first().and_then(|moment| moment.scopes.first()).map_or(way, |plan| plan.way);
-        let line = line(&machine, &turn, way).map_err(|text| untold(log, &turn, &text))?;
+        let line = line(&examined.machine, &turn, way).map_err(|text| untold(log, &turn, &text))?;
         table.write(&line)?;
     }
     table.close()?;
@@ -45,7 +50,7 @@ pub(super) fn script(log: &Path, plan: Option<&Path>, file: Option<&Path>) -> Re
 }
 
 /// The line of a turn, or a text that is both true and false in it.
-fn line(machine: &Machine, turn: &RerunTurn, way: Nanometers) -> Result<String, String> {
+fn line(machine: &Machine, turn: &ExaminedTurn, way: Nanometers) -> Result<String, String> {
     let (mut fired, mut completed) = (BTreeMap::new(), BTreeMap::new());
     for moment in &turn.moments {
         interrupts(machine, moment, &mut fired)?;
@@ -100,7 +105,15 @@ fn note<'m>(known: &mut BTreeMap<&'m str, bool>, text: &'m str, is_so: bool) -> 
     }
 }
 
-fn untold(log: &Path, turn: &RerunTurn, text: &str) -> Failure {
+fn replaced(log: &Path, turn: &ExaminedTurn) -> Failure {
+    let (log, number, t) = (log.display(), turn.recorded.number, Seconds(turn.recorded.t));
+    Failure::Usage(format!(
+        "from turn {number} of the record {log} on, at {t} s, another plan drove: a script is for one plan, and ends \
+         before it"
+    ))
+}
+
+fn untold(log: &Path, turn: &ExaminedTurn, text: &str) -> Failure {
     let (log, number, t) = (log.display(), turn.recorded.number, Seconds(turn.recorded.t));
     Failure::Usage(format!(
         "turn {number} of the record {log}, at {t} s, is none for a script: `{text}` ends an atom and begins again in the \

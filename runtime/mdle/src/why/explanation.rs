@@ -1,12 +1,14 @@
 //! The explanation of a turn: what ended, what was skipped, what ran, and what every scope waited for.
 
-use mdle_compiler::fsm::Machine;
-use mdle_host::{CauseText, Operand, Passes, Texts, place};
-use mdle_runtime::{Cause, Nanos, SONARS, Sensed, Transition, Turn, Twist};
+use std::collections::BTreeMap;
 
-use super::operands::{Examination, Facts, examination};
-use crate::rerun::RerunTurn;
-use crate::rerun::{Moment, ScopeMoment};
+use mdle_host::{CauseText, Operand, Passes, Texts, place};
+use mdle_record::Applied;
+use mdle_runtime::{Cause, Nanos, SONARS, Sensed, Transition, Twist};
+
+use super::operands::Facts;
+use super::scopes::{Scope, scopes};
+use crate::examined::{ExaminedPlan, ExaminedTurn, Moment};
 
 /// An atom in a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,44 +17,6 @@ pub(crate) struct AtomWords {
     pub(crate) law: String,
     /// Its line, the names of its enclosing scopes and the passes of loops.
     pub(crate) place: String,
-}
-
-/// Part of a scope in what happened at a moment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Part {
-    /// Its interrupt has fired, and ended it.
-    Ended,
-    /// Its law is done, which ended it: an atom.
-    Completed,
-    /// Its interrupt has fired as well, and an enclosing scope ended first.
-    Shadowed,
-    /// Its interrupt has not fired.
-    Waits,
-    /// It has no interrupt that can fire.
-    NoInterrupt,
-    /// Its interrupt was removed, because an enclosing scope has the same one.
-    Removed,
-}
-
-/// A scope at a moment.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Scope {
-    /// Name of the scope; `None` for an atom and for a scope without a name.
-    pub(crate) name: Option<String>,
-    /// `true` if it is the scope of the atom alone.
-    pub(crate) is_atom: bool,
-    /// File and line.
-    pub(crate) line: String,
-    /// The condition as it is written; empty if there is none.
-    pub(crate) condition: String,
-    /// Time since the scope was entered.
-    pub(crate) since: Nanos,
-    /// Its part in what happened.
-    pub(crate) part: Part,
-    /// Its condition.
-    pub(crate) examination: Examination,
-    /// The law of the atom that would follow; `None` if the plan would be over.
-    pub(crate) leads_to: Option<String>,
 }
 
 /// A transition.
@@ -98,8 +62,8 @@ pub(crate) struct Explanation {
     pub(crate) ended: Vec<Ended>,
     /// The atom whose law was applied; `None` if the plan is over.
     pub(crate) runs: Option<Runs>,
-    /// `true` if the turn had too many transitions, so that no law was applied.
-    pub(crate) is_cut: bool,
+    /// Reason why the null input was sent in place of that of a law; `None` if a law was applied, or the plan is over.
+    pub(crate) cut: Option<&'static str>,
     /// Time since the exchange that brought the output.
     pub(crate) output_age: Nanos,
     /// The input that was sent.
@@ -114,34 +78,70 @@ pub(crate) struct Step {
     pub(crate) cause: String,
 }
 
-/// Explains turns that were looked at, and follows the loops of all others.
-pub(crate) struct Explainer<'m> {
-    machine: &'m Machine,
+/// Explains turns, and follows the loops of plans through all of them.
+#[derive(Debug, Default)]
+pub(crate) struct Explainer {
+    /// The plans that have driven, by their numbers: one that was suspended goes on where it was.
+    courses: BTreeMap<u64, Course>,
+    /// Number of the plan that drives; `None` before the first turn.
+    number: Option<u64>,
+}
+
+/// The course of a plan so far.
+#[derive(Debug, Default)]
+struct Course {
+    /// The passes of its loops.
     passes: Passes,
-    /// Cause of the last transition.
+    /// Cause of the transition to its atom, or reason for which the plan replaced another one.
     began: String,
 }
 
-impl<'m> Explainer<'m> {
-    pub(crate) fn new(machine: &'m Machine) -> Self {
-        Self { machine, passes: Passes::default(), began: String::new() }
+impl Explainer {
+    /// Begins a turn. Returns `true` if its plan has replaced another one.
+    pub(crate) fn begin(&mut self, turn: &ExaminedTurn) -> bool {
+        let before = self.number.replace(turn.recorded.plan);
+        let is_other = before.is_some_and(|before| before != turn.recorded.plan);
+        if is_other {
+            let safety =
+                || super::event(&turn.event, "safety").map_or_else(String::new, |rule| format!("safety {rule}"));
+            let began = if turn.reason.is_empty() { safety() } else { turn.reason.clone() };
+            self.course().began = began;
+        }
+        is_other
     }
 
-    /// Takes a turn that is not explained.
-    pub(crate) fn pass(&mut self, turn: &RerunTurn, plan: &dyn Texts) {
+    /// Goes back to the course of the plan of this number.
+    pub(crate) fn resume(&mut self, number: u64) {
+        self.number = Some(number);
+    }
+
+    /// Returns the course of the plan that drives.
+    fn course(&mut self) -> &mut Course {
+        self.courses.entry(self.number.unwrap_or_default()).or_default()
+    }
+
+    /// Returns the cause for which the current atom runs; empty for the first atom of the first plan.
+    pub(crate) fn began(&mut self) -> String {
+        self.course().began.clone()
+    }
+
+    /// Takes a turn that has begun and is not explained.
+    pub(crate) fn pass(&mut self, turn: &ExaminedTurn, plan: &dyn Texts) {
         for (transition, operands) in turn.transitions.iter() {
-            self.passes.step(plan.fsm(), transition);
-            self.began = CauseText { plan, transition, operands }.to_string();
+            let began = CauseText { plan, transition, operands }.to_string();
+            let course = self.course();
+            course.passes.step(plan.fsm(), transition);
+            course.began = began;
         }
     }
 
     /// Returns the words of an atom in the current passes of its loops.
-    pub(crate) fn atom(&self, plan: &dyn Texts, atom: u32) -> AtomWords {
-        AtomWords { law: plan.law(atom).to_owned(), place: place(plan, &self.passes, atom) }
+    pub(crate) fn atom(&mut self, plan: &dyn Texts, atom: u32) -> AtomWords {
+        AtomWords { law: plan.law(atom).to_owned(), place: place(plan, &self.course().passes, atom) }
     }
 
     /// Returns the transitions of a turn and their causes.
-    pub(crate) fn each(&self, turn: &RerunTurn, plan: &dyn Texts) -> Vec<Step> {
+    pub(crate) fn each(turn: &ExaminedTurn, plan: &dyn Texts) -> Vec<Step> {
         let step = |(transition, operands): (&Transition, &[Operand])| Step {
             transition: *transition,
             cause: CauseText { plan, transition, operands }.to_string(),
@@ -151,94 +151,89 @@ impl<'m> Explainer<'m> {
 
     /// Follows the loops through a transition.
     pub(crate) fn step(&mut self, transition: &Transition, plan: &dyn Texts) {
-        self.passes.step(plan.fsm(), transition);
+        self.course().passes.step(plan.fsm(), transition);
     }
 
     /// Returns the facts that operands read at a moment of a turn.
-    pub(crate) fn facts(turn: &RerunTurn, moment: &Moment) -> Facts {
+    pub(crate) fn facts(turn: &ExaminedTurn, moment: &Moment) -> Facts {
         Facts { ages: ages(&turn.recorded.y), stalled: moment.stalled, is_new: moment.is_new() }
     }
 
     /// Returns the causes of the transitions of a turn, and the atoms to which they led.
-    pub(crate) fn steps(&mut self, turn: &RerunTurn, plan: &dyn Texts) -> Vec<(String, Option<AtomWords>)> {
+    pub(crate) fn steps(&mut self, turn: &ExaminedTurn, plan: &dyn Texts) -> Vec<(String, Option<AtomWords>)> {
         let steps = turn.transitions.iter().map(|(transition, operands)| {
-            self.passes.step(plan.fsm(), transition);
+            self.step(transition, plan);
             let to = transition.atom.map(|atom| self.atom(plan, atom));
             (CauseText { plan, transition, operands }.to_string(), to)
         });
         steps.collect()
     }
 
-    /// Explains a turn that was looked at.
-    pub(crate) fn explained(&mut self, turn: &RerunTurn, plan: &dyn Texts, with_laws: bool) -> Explanation {
-        let mut ended = Vec::new();
-        let mut moments = turn.moments.iter();
-        for ((transition, operands), moment) in turn.transitions.iter().zip(moments.by_ref()) {
-            let atom = self.atom(plan, moment.atom);
-            let scopes = self.scopes(moment, &Self::facts(turn, moment), plan);
-            let cause = CauseText { plan, transition, operands }.to_string();
-            self.passes.step(plan.fsm(), transition);
-            let to = transition.atom.map(|atom| self.atom(plan, atom));
-            self.began.clone_from(&cause);
-            let (is_skipped, was_done) = (moment.is_new(), was_done(moment, transition));
-            ended.push(Ended { atom, is_skipped, cause, was_done, scopes, to });
+    /// Explains a turn that has begun; `plan` is `None` before the first plan begins.
+    pub(crate) fn explained(
+        &mut self,
+        turn: &ExaminedTurn,
+        plan: Option<&ExaminedPlan>,
+        with_laws: bool,
+    ) -> Explanation {
+        let cut = cut(turn, plan);
+        let (mut ended, mut runs) = (Vec::new(), None);
+        // The moments of a turn that came too late are not those of its record.
+        if let Some(plan) = plan.filter(|_| cut != Some(LATE)) {
+            let texts = &*plan.texts;
+            let mut moments = turn.moments.iter();
+            for ((transition, operands), moment) in turn.transitions.iter().zip(moments.by_ref()) {
+                ended.push(self.end(turn, plan, (transition, operands), moment));
+            }
+            if let Some(moment) = moments.next() {
+                runs = Some(Runs {
+                    atom: self.atom(texts, moment.atom),
+                    since: moment.scopes.last().map_or(Nanos::ZERO, |own| own.since),
+                    began: self.began(),
+                    completes: plan.machine.atom(moment.atom).law().completes,
+                    scopes: scopes(plan, moment, &Self::facts(turn, moment)),
+                });
+            }
         }
-        let runs = moments.next().map(|moment| Runs {
-            atom: self.atom(plan, moment.atom),
-            since: moment.scopes.last().map_or(Nanos::ZERO, |own| own.since),
-            began: self.began.clone(),
-            completes: self.machine.atom(moment.atom).law().completes,
-            scopes: self.scopes(moment, &Self::facts(turn, moment), plan),
-        });
-        let is_cut = matches!(turn.computed, Turn::Cut);
-        let computed = (with_laws || is_cut || runs.is_none()).then(|| turn.computed.input());
-        let runs = runs.filter(|_| !is_cut);
+        let computed = (with_laws || cut.is_some() || runs.is_none()).then_some(turn.asked);
+        let runs = runs.filter(|_| cut.is_none());
         let recorded = &turn.recorded;
         let output_age = recorded.t.since(recorded.y.at);
         let (turn, t, sent) = (recorded.number, recorded.t, recorded.sent);
-        Explanation { turn, t, ended, runs, is_cut, output_age, sent, computed }
+        Explanation { turn, t, ended, runs, cut, output_age, sent, computed }
     }
 
-    /// Explains the scopes around the atom of a moment.
-    pub(crate) fn scopes(&self, moment: &Moment, facts: &Facts, plan: &dyn Texts) -> Vec<Scope> {
-        moment.scopes.iter().map(|scope| self.scope(moment, scope, facts, plan)).collect()
-    }
-
-    fn scope(&self, moment: &Moment, scope: &ScopeMoment, facts: &Facts, plan: &dyn Texts) -> Scope {
-        let element = self.machine.element(scope.bracket);
-        let words = plan.source();
-        let bracket = words.bracket(scope.bracket);
-        let mut examination = examination(self.machine, element, scope, facts, words);
-        let is_removed = element.interrupt().is_some_and(|interrupt| interrupt.removed);
-        let is_cause = moment.cause.is_some_and(|cause| cause.level() == scope.level);
-        let part = match moment.cause {
-            Some(Cause::Completed(_)) if is_cause => Part::Completed,
-            Some(Cause::Fired(_)) if is_cause => Part::Ended,
-            _ if is_removed => Part::Removed,
-            _ if examination.operands.is_empty() => Part::NoInterrupt,
-            Some(_) if examination.fired => Part::Shadowed,
-            Some(_) | None => Part::Waits,
-        };
-        if part != Part::Ended {
-            examination.operands.iter_mut().for_each(|operand| operand.decided = false);
-        }
-        let removed = element.interrupt().filter(|_| is_removed).map(|interrupt| interrupt.text.clone());
-        let condition = bracket.map_or_else(String::new, |words| words.condition.to_owned());
-        Scope {
-            name: Some(plan.name(scope.bracket)).filter(|name| !name.is_empty()).map(str::to_owned),
-            is_atom: element.atom().is_some(),
-            line: bracket.map_or_else(String::new, |words| format!("{}:{}", words_file(plan, words.at), words.at.line)),
-            condition: removed.unwrap_or(condition),
-            since: scope.since,
-            part,
-            examination,
-            leads_to: scope.leads_to.map(|atom| plan.law(atom).to_owned()),
-        }
+    /// Explains a transition.
+    fn end(
+        &mut self,
+        turn: &ExaminedTurn,
+        plan: &ExaminedPlan,
+        (transition, operands): (&Transition, &[Operand]),
+        moment: &Moment,
+    ) -> Ended {
+        let texts = &*plan.texts;
+        let atom = self.atom(texts, moment.atom);
+        let scopes = scopes(plan, moment, &Self::facts(turn, moment));
+        let cause = CauseText { plan: texts, transition, operands }.to_string();
+        self.step(transition, texts);
+        let to = transition.atom.map(|atom| self.atom(texts, atom));
+        self.course().began.clone_from(&cause);
+        Ended { atom, is_skipped: moment.is_new(), cause, was_done: was_done(moment, transition), scopes, to }
     }
 }
 
-fn words_file(plan: &dyn Texts, at: mdle_runtime::SourceLine) -> &str {
-    plan.source().file(at)
+/// Reason why no law was applied: the turn was not ready in time.
+const LATE: &str = "the plan was late";
+
+/// Returns the reason why no law was applied in a turn; `None` if one was, or the plan is over.
+fn cut(turn: &ExaminedTurn, plan: Option<&ExaminedPlan>) -> Option<&'static str> {
+    let is_settled = turn.moments.last().is_none_or(|last| last.cause.is_none());
+    match turn.recorded.applied {
+        Applied::Law | Applied::Over => None,
+        Applied::Cut if plan.is_none() => Some("the plan waited for modules that it reads"),
+        Applied::Cut if is_settled => Some(LATE),
+        Applied::Cut => Some("the turn had too many transitions"),
+    }
 }
 
 /// Returns `true` if the law of the atom was done when an interrupt ended its scope, or an enclosing one.

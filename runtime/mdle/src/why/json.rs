@@ -3,22 +3,23 @@
 use mdle_runtime::{Measured, Nanos, Twist};
 use serde_json::{Value, json};
 
-use super::explanation::{AtomWords, Ended, Explanation, Part, Runs, Scope};
+use super::explanation::{AtomWords, Ended, Explanation, Runs};
 use super::never::{Beginnings, Chance, Never, Skips, Stay, Turned};
 use super::operands::Operand;
+use super::scopes::{Part, Scope};
 use super::{Answer, Next};
 
 /// Returns an answer as a JSON object.
 pub(super) fn object(answer: &Answer) -> Value {
     let Answer { explanation, asked, next, safety } = answer;
-    let Explanation { turn, t, ended, runs, is_cut, output_age, sent, computed } = explanation;
+    let Explanation { turn, t, ended, runs, cut, output_age, sent, computed } = explanation;
     json!({
         "asked": asked.seconds(),
         "turn": turn,
         "t": t.seconds(),
         "ended": ended.iter().map(end).collect::<Vec<_>>(),
         "runs": runs.as_ref().map(|runs| run(runs, *t)),
-        "cut": is_cut,
+        "cut": cut.is_some(),
         "output_age": output_age.seconds(),
         "sent": input(*sent),
         "computed": computed.map(input),
@@ -108,7 +109,7 @@ fn input(input: Twist) -> Value {
 
 /// Returns the answer why an atom or a scope did not begin as a JSON object.
 pub(super) fn absence(never: &Never) -> Value {
-    let Never { asked, began, runs, skipped, chance, follows, end, last } = never;
+    let Never { asked, began, runs, skipped, chance, follows, end, last, .. } = never;
     let turned = |(turn, t): &Turned| json!({ "turn": turn, "t": t.seconds() });
     let caused = |((turn, t), cause): &(Turned, String)| json!({ "turn": turn, "t": t.seconds(), "cause": cause });
     json!({

@@ -6,29 +6,23 @@ mod lack;
 mod never;
 mod never_text;
 mod operands;
+mod scopes;
 mod text;
 
 use std::io::{self, Write as _};
-use std::path::Path;
 use std::process::ExitCode;
 
-use mdle_compiler::fsm::Machine;
 use mdle_host::{Clocked, quoted};
-use mdle_record::{Begin, ReadError};
-use mdle_runtime::{Nanos, Printable, PrintableLines};
+use mdle_record::Begin;
+use mdle_runtime::{Nanos, PrintableLines};
 
 use explanation::{AtomWords, Explainer, Explanation};
 
 use crate::arguments::{Question, Why};
+use crate::examined::{ExaminedRun, ExaminedTurn, Stop};
 use crate::failure::{self, Failure};
-use crate::record::Record;
 use crate::replay::{self, WantedPlan};
-use crate::rerun::{Rerun, RerunLaws, RerunTurn, Stop};
 use crate::run_time::run_time;
-use crate::targets;
-
-/// Exit status of a record that is not that of its plan.
-const DIFFERS: u8 = 1;
 
 /// The answer about a turn.
 #[derive(Debug)]
@@ -63,17 +57,17 @@ pub(crate) fn why(arguments: &Why) -> Result<ExitCode, Failure> {
     };
     let (log, file) = (arguments.log.as_path(), arguments.plan.as_deref());
     let wanted = WantedPlan { log, file, begin: &begin, call: &call, has_run: true };
-    let (machine, mut rerun) = reruns(&wanted, record)?;
+    let mut run = ExaminedRun::of(&wanted, record)?;
     let with_laws = !begin.beside.is_empty();
-    let asked = Asked { name: &name, begin: &begin, machine: &machine, with_laws };
+    let asked = Asked { name: &name, begin: &begin, with_laws };
     let answer = match &arguments.question {
         Question::At(time) => {
-            let answer = at(&asked, time, &mut *rerun)?;
+            let answer = at(&asked, time, &mut run)?;
             answer.map(|answer| if arguments.is_json { json::object(&answer).to_string() } else { text::text(&answer) })
         }
         Question::Not(atom) => {
             let target = mdle_files::target(Some(&begin.target))?;
-            let never = never::never(&machine, &target, atom, &mut *rerun).map_err(Failure::Usage)?;
+            let never = never::never(&target, atom, &mut run).map_err(Failure::Usage)?;
             never.map(|never| {
                 if arguments.is_json { json::absence(&never).to_string() } else { never_text::text(&never, &name) }
             })
@@ -85,71 +79,49 @@ pub(crate) fn why(arguments: &Why) -> Result<ExitCode, Failure> {
             writeln!(io::stdout().lock(), "{text}").map_err(|error| failure::unprinted(&error))?;
             Ok(ExitCode::SUCCESS)
         }
-        Err(stop) => stopped(&stop, &name, arguments.plan.as_deref()),
+        Err(stop) => stop.tell(&name, arguments.plan.as_deref()),
     }
-}
-
-/// Loads the plan that has run, to make the turns of the record again.
-///
-/// # Errors
-/// The plan cannot be read, has errors or is not that of the record, or the run depended on more than the record has.
-pub(crate) fn reruns(wanted: &WantedPlan<'_>, record: Record) -> Result<(Machine, Box<dyn Rerun>), Failure> {
-    let begin = wanted.begin;
-    if begin.beside.contains("modules") {
-        return Err(Failure::Usage(
-            "the record cannot be explained: the run depended on modules as well, which a record does not have"
-                .to_owned(),
-        ));
-    }
-    let linked = targets::linked(&begin.target).map_err(Failure::Usage)?;
-    let target = mdle_files::target(Some(&begin.target))?;
-    let (machine, sources) = replay::plan(wanted, &target)?;
-    let laws = match (begin.beside.is_empty(), begin.files.is_empty()) {
-        (true, true) => RerunLaws::Compared,
-        (true, false) => RerunLaws::Needed,
-        (false, _) => RerunLaws::All,
-    };
-    let rerun = (linked.rerun)(&machine, &sources, &target, record, laws)?;
-    Ok((machine, rerun))
 }
 
 /// A record that is asked about.
 struct Asked<'a> {
     name: &'a str,
     begin: &'a Begin,
-    machine: &'a Machine,
     with_laws: bool,
 }
 
 /// Explains the turn at a time.
-fn at(asked: &Asked<'_>, time: &str, rerun: &mut dyn Rerun) -> Result<Result<Answer, Stop>, Failure> {
+fn at(asked: &Asked<'_>, time: &str, run: &mut ExaminedRun) -> Result<Result<Answer, Stop>, Failure> {
     let time = run_time(time)?;
-    let mut explainer = Explainer::new(asked.machine);
+    let mut explainer = Explainer::default();
     let mut last = None;
     let found = loop {
-        let turn = match rerun.turn(&mut |_, next| next.is_none_or(|next| next > time)) {
+        let turn = match run.turn() {
             Some(Ok(turn)) => turn,
             Some(Err(stop)) => return Ok(Err(stop)),
-            None => return Err(outside(asked, time, last, rerun.is_whole())),
+            None => return Err(outside(asked, time, last, run.is_whole())),
         };
         let (t, next) = (turn.recorded.t, turn.next);
         if t > time {
             return Err(Failure::Usage(format!("the record {} begins at {}", asked.name, Clocked(t))));
         }
+        explainer.begin(&turn);
         if next.is_some_and(|next| next > time) || next.is_none() && time.since(t) < asked.begin.period.max(Nanos(1)) {
             break turn;
         }
-        explainer.pass(&turn, rerun.texts());
+        if let Some(plan) = run.plan() {
+            explainer.pass(&turn, &*plan.texts);
+        }
         last = Some((turn.recorded.number, t));
     };
-    let explanation = explainer.explained(&found, rerun.texts(), asked.with_laws);
+    let explanation = explainer.explained(&found, run.plan().map(|plan| &**plan), asked.with_laws);
     let safety = event(&found.event, "safety").filter(|text| !text.is_empty());
-    let next = match next(&mut explainer, found, rerun) {
+    let next = match next(&mut explainer, found, run) {
         Ok(next) => next,
         Err(stop) => return Ok(Err(stop)),
     };
     if asked.begin.files.is_empty()
-        && let Some(stop) = differing(rerun)
+        && let Some(stop) = differing(run)
     {
         return Ok(Err(stop));
     }
@@ -157,31 +129,44 @@ fn at(asked: &Asked<'_>, time: &str, rerun: &mut dyn Rerun) -> Result<Result<Ans
 }
 
 /// Makes the turns up to the end of the record; returns the reason if the plan is another one.
-fn differing(rerun: &mut dyn Rerun) -> Option<Stop> {
+fn differing(run: &mut ExaminedRun) -> Option<Stop> {
     loop {
-        match rerun.turn(&mut |_, _| false)? {
+        match run.turn()? {
             Ok(_) => {}
-            Err(stop @ Stop::Differs(..)) => return Some(stop),
-            Err(Stop::Unread(_) | Stop::OtherPlan(_)) => return None,
+            Err(stop @ (Stop::Differs(..) | Stop::Failed(_))) => return Some(stop),
+            Err(Stop::Unread(_)) => return None,
         }
     }
 }
 
-/// Finds the next turn with a transition.
+/// Finds the next turn with a transition, or in which another plan takes over.
 ///
 /// # Errors
 /// The plan is another one.
-fn next(explainer: &mut Explainer<'_>, found: RerunTurn, rerun: &mut dyn Rerun) -> Result<Next, Stop> {
+fn next(explainer: &mut Explainer, found: ExaminedTurn, run: &mut ExaminedRun) -> Result<Next, Stop> {
     let (mut t, mut last) = (found.recorded.t, found.event);
+    let mut had_plan = run.plan().is_some();
     loop {
-        match rerun.turn(&mut |_, _| false) {
-            Some(Ok(turn)) if !turn.transitions.is_empty() => {
-                let (number, t) = (turn.recorded.number, turn.recorded.t);
-                return Ok(Next::Turn { turn: number, t, steps: explainer.steps(&turn, rerun.texts()) });
+        match run.turn() {
+            Some(Ok(turn)) => {
+                let is_other = explainer.begin(&turn);
+                let begins = !std::mem::replace(&mut had_plan, run.plan().is_some()) && had_plan;
+                let plan = run.plan().filter(|_| is_other || begins || !turn.transitions.is_empty());
+                let Some(plan) = plan else {
+                    (t, last) = (turn.recorded.t, turn.event);
+                    continue;
+                };
+                let mut steps = Vec::new();
+                if is_other || begins {
+                    let first = turn.moments.first().map(|moment| explainer.atom(&*plan.texts, moment.atom));
+                    let began = explainer.began();
+                    steps.push((if began.is_empty() { "the start of the plan".to_owned() } else { began }, first));
+                }
+                steps.extend(explainer.steps(&turn, &*plan.texts));
+                return Ok(Next::Turn { turn: turn.recorded.number, t: turn.recorded.t, steps });
             }
-            Some(Ok(turn)) => (t, last) = (turn.recorded.t, turn.event),
-            Some(Err(stop @ Stop::Differs(..))) => return Err(stop),
-            Some(Err(stop)) => return Ok(Next::End { t, why: format!(": {}", sentence(&stop)) }),
+            Some(Err(stop @ (Stop::Differs(..) | Stop::Failed(_)))) => return Err(stop),
+            Some(Err(stop @ Stop::Unread(_))) => return Ok(Next::End { t, why: format!(": {}", stop.sentence()) }),
             None => {
                 let why = event(&last, "end").map_or_else(String::new, |why| format!(": {why}"));
                 return Ok(Next::End { t, why });
@@ -206,36 +191,4 @@ fn outside(asked: &Asked<'_>, time: Nanos, last: Option<(u64, Nanos)>, is_whole:
         Clocked(t),
         mdle_host::rounded(t.0)
     ))
-}
-
-/// Reason why the turns up to the one that was asked about are not made again.
-fn sentence(stop: &Stop) -> String {
-    match stop {
-        Stop::Unread(error) => error.to_string(),
-        Stop::Differs(turn, difference) => format!("turn {turn} is not that of this plan: {difference}"),
-        Stop::OtherPlan(t) => format!("from {} on another plan ran, which the record does not have", Clocked(*t)),
-    }
-}
-
-/// Prints why the turns of the record of this name are not made again, with the plan in this file or that of the
-/// record.
-///
-/// # Errors
-/// The record cannot be read.
-pub(crate) fn stopped(stop: &Stop, name: &str, plan: Option<&Path>) -> Result<ExitCode, Failure> {
-    let sentence = sentence(stop);
-    match stop {
-        Stop::Unread(ReadError::System(_)) => {
-            return Err(Failure::Usage(format!("the record {name} cannot be read: {sentence}")));
-        }
-        Stop::Unread(_) | Stop::OtherPlan(_) => failure::error(&format!("the record {}: {sentence}", Printable(name))),
-        Stop::Differs(..) => {
-            let help = match plan {
-                Some(_) => "`--plan` has to name the plan that ran".to_owned(),
-                None => format!("`mdle replay {name}` prints what differs"),
-            };
-            failure::error(&format!("the record {}: {sentence}\nhelp: {help}", Printable(name)));
-        }
-    }
-    Ok(ExitCode::from(DIFFERS))
 }

@@ -1,17 +1,18 @@
 //! `mdle why --not`: the chances of an atom or a scope to begin since it last began, and what kept it from that.
 
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use mdle_compiler::fsm::{Element, Exit, Machine};
 use mdle_files::Target;
 use mdle_host::Texts;
 use mdle_runtime::Nanos;
 
-use super::explanation::{AtomWords, Explainer, Scope};
+use super::explanation::{AtomWords, Explainer};
 use super::operands::Facts;
+use super::scopes::{Scope, scopes};
 use crate::elements_named::elements_named;
-use crate::rerun::Moment;
-use crate::rerun::{Rerun, RerunTurn, Stop};
+use crate::examined::{ExaminedPlan, ExaminedRun, ExaminedTurn, Moment, Stop};
 
 /// A turn: its number and its time.
 pub(crate) type Turned = (u64, Nanos);
@@ -31,8 +32,12 @@ pub(crate) struct Never {
     pub(crate) chance: Option<Chance>,
     /// The laws of the atoms that it could have followed.
     pub(crate) follows: Vec<String>,
-    /// The end of the record.
+    /// Name of the plan that has it; empty unless several plans drove.
+    pub(crate) plan: String,
+    /// The last turn of that plan.
     pub(crate) end: Turned,
+    /// `true` if another plan drove at the end of the record.
+    pub(crate) is_replaced: bool,
     /// The atom that ran last; `None` if the plan was over.
     pub(crate) last: Option<AtomWords>,
 }
@@ -90,56 +95,87 @@ struct Door {
     /// The last turn of a period that is over.
     last: Option<Stay>,
     /// The last turn in which it was open, and its moment.
-    latest: (RerunPlace, Moment),
+    latest: (FactsOfTurn, Moment),
 }
 
-/// A turn with the ages of its sonars.
+/// A turn with the facts that operands read.
 #[derive(Clone, Copy)]
-struct RerunPlace {
+struct FactsOfTurn {
     turned: Turned,
     facts: Facts,
 }
 
-/// Answers why the atom or the scope of this text did not begin.
+/// Answers why the atom or the scope of this text did not begin, in the last plan of the record that has it.
 ///
 /// # Errors
-/// The plan has no such atom: a sentence.
-pub(crate) fn never(
-    machine: &Machine,
-    target: &Target,
-    text: &str,
-    rerun: &mut dyn Rerun,
-) -> Result<Result<Never, Stop>, String> {
-    let wanted = wanted(machine, target, text, rerun.texts())?;
-    let mut search = Search {
-        machine,
-        explainer: Explainer::new(machine),
-        wanted,
-        entries: BTreeMap::new(),
-        skips: BTreeMap::new(),
-        doors: BTreeMap::new(),
-        answer: Never {
+/// No plan of the record has such an atom: a sentence.
+pub(crate) fn never(target: &Target, text: &str, run: &mut ExaminedRun) -> Result<Result<Never, Stop>, String> {
+    let mut searches: BTreeMap<u64, Option<Search>> = BTreeMap::new();
+    let (mut explainer, mut unknown, mut number) = (Explainer::default(), Vec::new(), 0);
+    while let Some(turn) = run.turn() {
+        let turn = match turn {
+            Ok(turn) => turn,
+            Err(stop) => return Ok(Err(stop)),
+        };
+        explainer.begin(&turn);
+        number = turn.recorded.plan;
+        let Some(plan) = run.plan() else { continue };
+        let search = searches.entry(number).or_insert_with(|| {
+            let wanted = wanted(&plan.machine, target, text, &*plan.texts);
+            let wanted = wanted.map_err(|why| unknown.push((plan.texts.name(0).to_owned(), why)));
+            wanted.ok().map(|wanted| Search::new(Rc::clone(plan), wanted, text))
+        });
+        match search {
+            Some(search) => search.turn(&turn, &mut explainer),
+            None => explainer.pass(&turn, &*plan.texts),
+        }
+    }
+    let has_several = searches.len() > 1;
+    let found = searches.into_iter().rev().find_map(|(own, search)| Some((own, search?)));
+    let Some((own, search)) = found else {
+        return Err(no_atom(text, unknown));
+    };
+    let plan = if has_several { search.plan.texts.name(0).to_owned() } else { String::new() };
+    explainer.resume(own);
+    let answer = search.answer(&mut explainer);
+    Ok(Ok(Never { plan, is_replaced: own != number, ..answer }))
+}
+
+/// Returns the message that no plan of the record has such an atom, by the sentence and the help of each.
+fn no_atom(text: &str, plans: Vec<(String, (String, String))>) -> String {
+    match plans.as_slice() {
+        [] => "the record has no turn of a plan".to_owned(),
+        [(_, (sentence, help))] => format!("{sentence}\nhelp: {help}"),
+        plans => {
+            let helps: Vec<_> = plans.iter().map(|(name, (_, help))| format!("\nhelp: in `{name}`, {help}")).collect();
+            format!("no plan of the record has an atom `{text}`{}", helps.concat())
+        }
+    }
+}
+
+impl Never {
+    /// The answer before the first turn.
+    fn of(text: &str) -> Self {
+        Self {
             asked: text.to_owned(),
             began: None,
             runs: false,
             skipped: None,
             chance: None,
             follows: Vec::new(),
+            plan: String::new(),
             end: (0, Nanos::ZERO),
+            is_replaced: false,
             last: None,
-        },
-    };
-    while let Some(turn) = rerun.turn(&mut |_, _| true) {
-        match turn {
-            Ok(turn) => search.turn(&turn, rerun.texts()),
-            Err(stop) => return Ok(Err(stop)),
         }
     }
-    Ok(Ok(search.answer(rerun.texts())))
 }
 
 /// Returns the elements that are meant: the atoms of a line, or what tests of plans name by this text.
-fn wanted(machine: &Machine, target: &Target, text: &str, plan: &dyn Texts) -> Result<Vec<u32>, String> {
+///
+/// # Errors
+/// There are none: a sentence and a help.
+fn wanted(machine: &Machine, target: &Target, text: &str, plan: &dyn Texts) -> Result<Vec<u32>, (String, String)> {
     let is_line = |element: &Element<'_>| {
         let at = plan.source().bracket(element.number()).map(|words| words.at);
         at.is_some_and(|at| text == at.line.to_string() || text == format!("{}:{}", plan.source().file(at), at.line))
@@ -149,12 +185,12 @@ fn wanted(machine: &Machine, target: &Target, text: &str, plan: &dyn Texts) -> R
     if !on_line.is_empty() {
         return Ok(on_line);
     }
-    elements_named(machine, target, text).map_err(|(sentence, help)| format!("{sentence}\nhelp: {help}"))
+    elements_named(machine, target, text)
 }
 
-struct Search<'m> {
-    machine: &'m Machine,
-    explainer: Explainer<'m>,
+/// The search in one of the plans of a record.
+struct Search {
+    plan: Rc<ExaminedPlan>,
     /// The elements that are asked for.
     wanted: Vec<u32>,
     /// The time at which each of them was entered that began last.
@@ -166,28 +202,36 @@ struct Search<'m> {
     answer: Never,
 }
 
-impl Search<'_> {
-    fn turn(&mut self, turn: &RerunTurn, plan: &dyn Texts) {
+impl Search {
+    fn new(plan: Rc<ExaminedPlan>, wanted: Vec<u32>, text: &str) -> Self {
+        let (entries, skips, doors) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
+        Self { plan, wanted, entries, skips, doors, answer: Never::of(text) }
+    }
+
+    fn turn(&mut self, turn: &ExaminedTurn, explainer: &mut Explainer) {
+        let plan = Rc::clone(&self.plan);
+        let plan = &*plan.texts;
         let turned = (turn.recorded.number, turn.recorded.t);
-        let steps = self.explainer.each(turn, plan);
+        let steps = Explainer::each(turn, plan);
         for (number, step) in steps.iter().enumerate() {
             let Some(moment) = turn.moments.get(number) else { continue };
-            let place = RerunPlace { turned, facts: Explainer::facts(turn, moment) };
-            self.chances(place, moment, &step.cause, plan);
-            self.skip(place, moment, &step.cause, plan);
-            self.explainer.step(&step.transition, plan);
+            let place = FactsOfTurn { turned, facts: Explainer::facts(turn, moment) };
+            self.chances(place, moment, &step.cause, explainer);
+            self.skip(place, moment, &step.cause, explainer);
+            explainer.step(&step.transition, plan);
         }
         self.answer.end = turned;
         (self.answer.last, self.answer.runs) = (None, false);
         let Some(moment) = turn.moments.get(steps.len()) else { return };
-        self.answer.last = Some(self.explainer.atom(plan, moment.atom));
-        self.begin(turned, moment, steps.last().map_or("", |step| &step.cause));
-        let place = RerunPlace { turned, facts: Explainer::facts(turn, moment) };
-        self.chances(place, moment, "", plan);
+        self.answer.last = Some(explainer.atom(plan, moment.atom));
+        let began = explainer.began();
+        self.begin(turned, moment, steps.last().map_or(&*began, |step| &step.cause));
+        let place = FactsOfTurn { turned, facts: Explainer::facts(turn, moment) };
+        self.chances(place, moment, "", explainer);
     }
 
     /// Notes that what is asked for was entered, and left in the same turn.
-    fn skip(&mut self, place: RerunPlace, moment: &Moment, cause: &str, plan: &dyn Texts) {
+    fn skip(&mut self, place: FactsOfTurn, moment: &Moment, cause: &str, explainer: &mut Explainer) {
         let is_new =
             |bracket: &u32| moment.scopes.iter().any(|scope| scope.bracket == *bracket && scope.since == Nanos::ZERO);
         let Some(bracket) = self.wanted.iter().copied().find(is_new) else { return };
@@ -199,7 +243,7 @@ impl Search<'_> {
         match &mut self.answer.skipped {
             Some(skips) => (skips.times, skips.last) = (skips.times + 1, place.turned),
             None => {
-                let first = self.stay(place, moment, cause, plan);
+                let first = self.stay(place, moment, cause, explainer);
                 self.answer.skipped = Some(Skips { times: 1, first, last: place.turned });
             }
         }
@@ -226,7 +270,7 @@ impl Search<'_> {
     }
 
     /// Notes the atoms to which the end of a scope would lead at this moment, and those to which it no longer does.
-    fn chances(&mut self, place: RerunPlace, moment: &Moment, cause: &str, plan: &dyn Texts) {
+    fn chances(&mut self, place: FactsOfTurn, moment: &Moment, cause: &str, explainer: &mut Explainer) {
         let mut open: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (number, scope) in moment.scopes.iter().enumerate() {
             if let Some(atom) = scope.leads_to {
@@ -241,7 +285,7 @@ impl Search<'_> {
                     (door.level, door.latest) = (level, (place, moment.clone()));
                 }
                 None => {
-                    let first = self.stay(place, moment, "", plan);
+                    let first = self.stay(place, moment, "", explainer);
                     let latest = (place, moment.clone());
                     let door = Door { times: 1, scopes: scopes.clone(), first, level, last: None, latest };
                     self.doors.insert(*atom, door);
@@ -256,28 +300,30 @@ impl Search<'_> {
         let closed = self.doors.iter().filter(|(_, door)| door.last.is_none() && ended < door.level);
         let closed: Vec<_> = closed.map(|(atom, _)| *atom).collect();
         for atom in closed {
-            let last = self.stay(place, moment, cause, plan);
+            let last = self.stay(place, moment, cause, explainer);
             if let Some(door) = self.doors.get_mut(&atom) {
                 door.last = Some(last);
             }
         }
     }
 
-    fn stay(&self, place: RerunPlace, moment: &Moment, cause: &str, plan: &dyn Texts) -> Stay {
-        let scopes = self.explainer.scopes(moment, &place.facts, plan);
-        let atom = self.explainer.atom(plan, moment.atom);
+    fn stay(&self, place: FactsOfTurn, moment: &Moment, cause: &str, explainer: &mut Explainer) -> Stay {
+        let scopes = scopes(&self.plan, moment, &place.facts);
+        let atom = explainer.atom(&*self.plan.texts, moment.atom);
         Stay { turned: place.turned, atom, scopes, cause: cause.to_owned() }
     }
 
     /// Returns the answer after the last turn.
-    fn answer(mut self, plan: &dyn Texts) -> Never {
-        let before = self.wanted.iter().flat_map(|wanted| before(self.machine.element(*wanted)));
-        let mut follows: Vec<_> = before.map(|atom| self.machine.atom(atom).law().text.clone()).collect();
+    fn answer(mut self, explainer: &mut Explainer) -> Never {
+        let machine = Rc::clone(&self.plan);
+        let machine = &machine.machine;
+        let before = self.wanted.iter().flat_map(|wanted| before(machine.element(*wanted)));
+        let mut follows: Vec<_> = before.map(|atom| machine.atom(atom).law().text.clone()).collect();
         follows.dedup();
         self.answer.follows = follows;
         // What was asked for, or else the innermost enclosing scope that had a chance.
         let candidates = self.wanted.iter().flat_map(|wanted| {
-            let element = self.machine.element(*wanted);
+            let element = machine.element(*wanted);
             let own = element.first().number();
             let around = element.outwards().map(|element| (element.first().number(), element.name()));
             around.map(move |(first, name)| (first, (first != own).then(|| name.to_owned())))
@@ -286,7 +332,7 @@ impl Search<'_> {
         let found = candidates.into_iter().find_map(|(first, begins)| Some((self.doors.remove(&first)?, begins)));
         if let Some((door, begins)) = found {
             let Door { times, scopes, first, last, latest: (place, moment), .. } = door;
-            let last = last.unwrap_or_else(|| self.stay(place, &moment, "", plan));
+            let last = last.unwrap_or_else(|| self.stay(place, &moment, "", explainer));
             self.answer.chance = Some(Chance { begins, times, scopes, first, last });
         }
         self.answer

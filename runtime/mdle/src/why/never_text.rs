@@ -9,13 +9,17 @@ use super::text::{named, scope};
 
 /// Returns the text of the answer for the record of this name.
 pub(super) fn text(never: &Never, log: &str) -> String {
-    let Never { asked, began, runs, skipped, chance, follows, end, last } = never;
+    let Never { asked, began, runs, skipped, chance, follows, plan, end, is_replaced, last } = never;
     let mut text = match began {
         Some(began) => beginnings(asked, began, log),
         None => format!("`{asked}` did not begin\n"),
     };
+    if !plan.is_empty() {
+        let _ = writeln!(text, "several plans drove; this is about `{plan}`, the last that has it");
+    }
     if *runs {
-        let _ = writeln!(text, "\nit ran up to the end of the record, {}", turned(end));
+        let until = if *is_replaced { "until another plan took over" } else { "up to the end of the record" };
+        let _ = writeln!(text, "\nit ran {until}, {}", turned(end));
         return text;
     }
     if began.is_some() {
@@ -34,11 +38,9 @@ pub(super) fn text(never: &Never, log: &str) -> String {
                 format!(" (it follows {})", laws.join(" or "))
             }
         };
-        let _ = writeln!(
-            text,
-            "\nno atom ran whose end would have led to it{follows}; at the end, in {}, {last}",
-            turned(end)
-        );
+        let at = if *is_replaced { "before another plan took over" } else { "at the end" };
+        let end = turned(end);
+        let _ = writeln!(text, "\nno atom ran whose end would have led to it{follows}; {at}, in {end}, {last}");
     }
     text
 }

@@ -9,7 +9,7 @@ use mdle_host::operand_words;
 use mdle_runtime::{Examined, Measured, Nanos, OperandWords, SONARS, Words};
 
 use super::lack::{Values, lack, short};
-use crate::rerun::ScopeMoment;
+use crate::examined::ScopeMoment;
 
 /// Age from which the last ping of a sonar is stale.
 const STALE: Nanos = Nanos(1_000_000_000);

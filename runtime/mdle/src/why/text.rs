@@ -5,14 +5,15 @@ use std::fmt::Write as _;
 use mdle_host::{Clocked, rounded};
 use mdle_runtime::{Nanos, Twist};
 
-use super::explanation::{AtomWords, Ended, Explanation, Part, Runs, Scope};
+use super::explanation::{AtomWords, Ended, Explanation, Runs};
 use super::operands::Operand;
+use super::scopes::{Part, Scope};
 use super::{Answer, Next};
 
 /// Returns the text of an answer.
 pub(super) fn text(answer: &Answer) -> String {
     let Answer { explanation, asked, next, safety } = answer;
-    let Explanation { turn, t, ended, runs, is_cut, output_age, .. } = explanation;
+    let Explanation { turn, t, ended, runs, cut, output_age, .. } = explanation;
     let mut text = format!("turn {turn} at {}", Clocked(*t));
     if asked != t {
         let _ = write!(text, ", the last one before {}", Clocked(*asked));
@@ -24,10 +25,12 @@ pub(super) fn text(answer: &Answer) -> String {
     ended.iter().for_each(|ended| end(&mut text, ended));
     match runs {
         Some(runs) => run(&mut text, runs, *t),
-        None if *is_cut => text += "\nno law was applied: the turn had too many transitions\n",
-        None => text += "\nthe plan is over\n",
+        None => match cut {
+            Some(why) => _ = writeln!(text, "\nno law was applied: {why}"),
+            None => text += "\nthe plan is over\n",
+        },
     }
-    if runs.is_some() || *is_cut {
+    if runs.is_some() || cut.is_some() {
         sent(&mut text, explanation, safety.as_deref());
         text += "\n";
         following(&mut text, next, *t);

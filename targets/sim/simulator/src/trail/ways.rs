@@ -24,7 +24,8 @@ pub(crate) struct Ways {
     pub(crate) atoms: Vec<Atom>,
     /// Number of times that an atom began which is not among `atoms`.
     pub(crate) uncounted: usize,
-    by_number: BTreeMap<u64, usize>,
+    /// Positions of atoms by number and law: plans that replace each other may have the same numbers.
+    by_number: BTreeMap<(u64, String), usize>,
     /// The atom that runs, and the time from which its total is to be counted on.
     running: Option<(usize, Nanos)>,
     /// Number of recorded places.
@@ -138,10 +139,11 @@ impl Ways {
     /// The position of an atom in the list, which it enters if there is room for it.
     fn atom(&mut self, number: u64, law: &str, place: Place) -> Option<usize> {
         let next = self.atoms.len();
-        let found = self.by_number.get(&number).copied();
+        let key = (number, law.to_owned());
+        let found = self.by_number.get(&key).copied();
         found.or_else(|| {
             (next < MARKS_MOST).then(|| {
-                self.by_number.insert(number, next);
+                self.by_number.insert(key, next);
                 self.atoms.push(Atom { number, law: law.to_owned(), place, times: 0, total: Nanos::ZERO });
                 next
             })

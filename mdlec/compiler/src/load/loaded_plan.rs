@@ -1,0 +1,174 @@
+//! A loaded plan, which can be looked at while it makes its turns.
+
+use std::sync::Arc;
+
+use mdle_runtime::{
+    Alphabet, Begin, Cause, Ending, Fsm, Measured, Meeting, ModuleRead, Nanos, Plan, Stamp, Stamps, Words,
+};
+
+use super::moments::{Moment, Position, moment};
+use super::table::LoadedRows;
+use super::{Entered, Loaded};
+use crate::fsm::Machine;
+
+/// A loaded plan. It owns all that it needs, so one thread can make it and another one run it.
+pub struct LoadedPlan<A: Alphabet> {
+    rows: LoadedRows<A>,
+    /// The moments of its turns, if it is looked at.
+    looked_at: Option<Box<LookedAt<A>>>,
+}
+
+/// Moments of a plan that is looked at.
+struct LookedAt<A: Alphabet> {
+    loaded: Arc<Loaded<A>>,
+    machine: Arc<Machine>,
+    /// Storage for the entry of each level of scopes, not only of those with timers.
+    entered: Entered,
+    /// The current atom.
+    atom: u32,
+    /// Time of the last turn.
+    t: Option<Nanos>,
+    /// The moments of that turn, in order.
+    moments: Vec<Moment>,
+}
+
+impl<A: Alphabet> Loaded<A> {
+    /// Returns the plan before it begins.
+    #[must_use]
+    pub fn plan(self: &Arc<Self>) -> LoadedPlan<A> {
+        LoadedPlan::new(self.rows(), self, self.machine())
+    }
+}
+
+impl<A: Alphabet> LoadedPlan<A> {
+    /// The plan in these rows before it begins; with its machine it is looked at.
+    fn new(rows: LoadedRows<A>, loaded: &Arc<Loaded<A>>, machine: Option<Arc<Machine>>) -> Self {
+        let looked_at = machine.map(|machine| {
+            let loaded = Arc::clone(loaded);
+            let stamps = vec![Stamp::START; machine.depth()].into();
+            let entered = Entered::Stamps(Stamps::new(stamps, machine.frames().into()));
+            Box::new(LookedAt { loaded, machine, entered, atom: 0, t: None, moments: Vec::new() })
+        });
+        Self { rows, looked_at }
+    }
+
+    /// Returns the plan without being looked at.
+    #[must_use]
+    pub fn unobserved(self) -> Self {
+        Self { looked_at: None, ..self }
+    }
+
+    /// Returns the machine of the plan and the moments of its last turn, in order; `None` if it is not looked at.
+    #[must_use]
+    pub fn looked_at(&self) -> Option<(&Arc<Machine>, &[Moment])> {
+        self.looked_at.as_ref().map(|looked_at| (&looked_at.machine, &*looked_at.moments))
+    }
+
+    /// Returns the plan before it begins once more; `None` if it is not looked at.
+    #[must_use]
+    pub fn again(&self) -> Option<Self> {
+        self.looked_at.as_ref().map(|looked_at| looked_at.loaded.plan())
+    }
+
+    fn note(&mut self, cursor: &Position, cause: Option<Cause>, y: &A::Output, t: Nanos) {
+        let Some(looked_at) = &mut self.looked_at else { return };
+        // A plan that goes on after a suspension may make a turn of the same time again.
+        let is_settled = looked_at.moments.last().is_some_and(|last| last.cause.is_none());
+        if looked_at.t.replace(t) != Some(t) || is_settled {
+            looked_at.moments.clear();
+        }
+        looked_at.moments.push(moment(&self.rows, cursor, looked_at.atom, cause, y, t));
+    }
+}
+
+impl<A: Alphabet> Plan for LoadedPlan<A> {
+    type Output = A::Output;
+    type Input = A::Input;
+    type Entered = Entered;
+    type Left = Box<[u64]>;
+
+    #[inline(always)]
+    fn fsm(&self) -> Fsm<'_> {
+        self.rows.fsm()
+    }
+
+    fn slots(&self) -> (Entered, Box<[u64]>) {
+        let (entered, left) = self.rows.slots();
+        (self.looked_at.as_ref().map_or(entered, |looked_at| looked_at.entered.clone()), left)
+    }
+
+    #[inline(always)]
+    fn enter(&mut self, atom: u32, y: &A::Output, begin: Begin) {
+        if let Some(looked_at) = &mut self.looked_at {
+            looked_at.atom = atom;
+        }
+        self.rows.enter(atom, y, begin);
+    }
+
+    #[inline(always)]
+    fn next(&self, cursor: &Position, y: &A::Output, t: Nanos) -> Option<Ending> {
+        self.rows.next(cursor, y, t)
+    }
+
+    #[inline(always)]
+    fn stalled(&self, y: &A::Output, t: Nanos) -> Option<Nanos> {
+        self.rows.stalled(y, t)
+    }
+
+    #[inline(always)]
+    fn leave(&mut self, cursor: &Position, cause: Cause, y: &A::Output, t: Nanos) {
+        if self.looked_at.is_some() {
+            self.note(cursor, Some(cause), y, t);
+        }
+        self.rows.leave(cursor, cause, y, t);
+    }
+
+    #[inline(always)]
+    fn settle(&mut self, cursor: &Position, y: &A::Output, t: Nanos) {
+        if self.looked_at.is_some() {
+            self.note(cursor, None, y, t);
+        }
+        self.rows.settle(cursor, y, t);
+    }
+
+    #[inline(always)]
+    fn input(&mut self, y: &A::Output, t: Nanos) -> A::Input {
+        self.rows.input(y, t)
+    }
+
+    fn operands(&self, cursor: &Position, scope: u32, y: &A::Output, t: Nanos, tell: &mut dyn FnMut(u32, Measured)) {
+        self.rows.operands(cursor, scope, y, t, tell);
+    }
+
+    fn law(&self, atom: u32) -> &str {
+        self.rows.law(atom)
+    }
+
+    fn condition(&self, scope: u32) -> &str {
+        self.rows.condition(scope)
+    }
+
+    fn name(&self, scope: u32) -> &str {
+        self.rows.name(scope)
+    }
+
+    fn source(&self) -> &dyn Words {
+        self.rows.source()
+    }
+
+    fn paths(&self) -> &[&'static str] {
+        self.rows.paths()
+    }
+
+    fn reads(&self) -> &'static [ModuleRead] {
+        self.rows.reads()
+    }
+
+    fn robots(&self) -> &[&'static str] {
+        self.rows.robots()
+    }
+
+    fn meetings(&self) -> &[Meeting] {
+        self.rows.meetings()
+    }
+}

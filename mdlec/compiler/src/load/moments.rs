@@ -1,0 +1,87 @@
+//! The moments of a turn: the conditions around the atom before each transition, and at the end of the turn.
+
+use mdle_runtime::fsm::Kind;
+use mdle_runtime::{Alphabet, Cause, Cursor, Examined, Nanometers, Nanos, Plan as _};
+
+use super::Entered;
+use super::table::LoadedRows;
+
+/// Position in a plan that was loaded.
+pub(super) type Position = Cursor<Entered, Box<[u64]>>;
+
+/// The plan before a transition, or at the end of a turn.
+#[derive(Debug, Clone)]
+pub struct Moment {
+    /// The current atom, as written, from 0.
+    pub atom: u32,
+    /// Cause of the transition; `None` at the end of a turn.
+    pub cause: Option<Cause>,
+    /// `true` if the law of the atom is done.
+    pub is_completed: bool,
+    /// Time for which the law of the turn before has made no progress; `None` if it has no goal.
+    pub stalled: Option<Nanos>,
+    /// The scopes that enclose the atom, the plan first and the atom's own last.
+    pub scopes: Vec<ScopeMoment>,
+}
+
+impl Moment {
+    /// Returns `true` if the atom was entered in this turn.
+    #[must_use]
+    pub fn is_new(&self) -> bool {
+        self.scopes.last().is_some_and(|own| own.since == Nanos::ZERO)
+    }
+}
+
+/// A scope at a moment.
+#[derive(Debug, Clone)]
+pub struct ScopeMoment {
+    /// The scope, by its bracket.
+    pub bracket: u32,
+    /// Number of scopes that enclose it.
+    pub level: u16,
+    /// Time since it was entered.
+    pub since: Nanos,
+    /// Length of the path driven since it was entered.
+    pub way: Nanometers,
+    /// The condition of the scope and all parts of it, each part before its operands.
+    pub parts: Vec<Examined>,
+    /// The atom that would follow if the scope ended now; `None` if the plan would be over.
+    pub leads_to: Option<u32>,
+}
+
+/// Returns the moment of an atom before a transition by this cause, or at the end of a turn.
+pub(super) fn moment<A: Alphabet>(
+    rows: &LoadedRows<A>,
+    cursor: &Position,
+    atom: u32,
+    cause: Option<Cause>,
+    y: &A::Output,
+    t: Nanos,
+) -> Moment {
+    let fsm = rows.fsm();
+    let own = fsm.atoms.get(atom as usize).map_or(0, |atom| atom.scope);
+    let mut scopes: Vec<_> = fsm
+        .outwards(own)
+        .filter_map(|(bracket, found)| match found.kind {
+            Kind::Scope { level } => Some(scope(rows, cursor, (bracket, level), y, t)),
+            Kind::Loop { .. } => None,
+        })
+        .collect();
+    scopes.reverse();
+    Moment { atom, cause, is_completed: rows.is_completed(y, t), stalled: cursor.stalled(), scopes }
+}
+
+/// Returns a scope at a moment.
+fn scope<A: Alphabet>(
+    rows: &LoadedRows<A>,
+    cursor: &Position,
+    (bracket, level): (u32, u16),
+    y: &A::Output,
+    t: Nanos,
+) -> ScopeMoment {
+    let mut parts = Vec::new();
+    rows.examine(cursor, bracket, y, t, &mut |part| parts.push(part));
+    let mut after = cursor.clone();
+    let leads_to = after.end(rows.fsm(), level, t).then(|| after.atom());
+    ScopeMoment { bracket, level, since: cursor.since(level, t), way: cursor.way(level), parts, leads_to }
+}

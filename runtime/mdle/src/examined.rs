@@ -1,0 +1,202 @@
+//! The turns of a record, made again and looked at: for explanations, plots and scripts.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::ExitCode;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use mdle_compiler::fsm::Machine;
+pub(crate) use mdle_compiler::load::{Moment, ScopeMoment};
+use mdle_host::{Texts, Transitions};
+use mdle_record::{Message, MessageKind, ReadError, RecordedTurn};
+use mdle_runtime::{Nanos, Printable, Twist};
+
+use crate::failure::{self, Failure};
+use crate::record::Record;
+use crate::replay::{self, WantedPlan};
+use crate::replayer::{self, RecordedRun, ReplayedTurn};
+use crate::targets;
+
+/// Exit status of a record that is not that of its plan.
+const DIFFERS: u8 = 1;
+
+/// A recorded run whose turns are made again and looked at.
+pub(crate) struct ExaminedRun {
+    run: Box<dyn RecordedRun>,
+    /// `true` if inputs and the texts of transitions have to be those of the record, which does not have the plan.
+    is_compared: bool,
+    /// The last event of the turns that were made.
+    event: String,
+    /// The plans that have driven, by their numbers.
+    plans: BTreeMap<u64, Rc<ExaminedPlan>>,
+    /// Number of the plan that drove in the last turn.
+    number: u64,
+}
+
+/// A plan that has driven.
+pub(crate) struct ExaminedPlan {
+    /// The plan as a state machine.
+    pub(crate) machine: Arc<Machine>,
+    /// Its texts.
+    pub(crate) texts: Box<dyn Texts>,
+}
+
+/// A turn of a record that was made again and looked at.
+#[derive(Debug)]
+pub(crate) struct ExaminedTurn {
+    /// The turn in the record.
+    pub(crate) recorded: RecordedTurn,
+    /// The transitions, with their operands.
+    pub(crate) transitions: Transitions,
+    /// The plan before each transition and at the end of the turn.
+    pub(crate) moments: Vec<Moment>,
+    /// The input that the plan asked for.
+    pub(crate) asked: Twist,
+    /// The reason for which the plan replaced another one; empty for the first plan.
+    pub(crate) reason: String,
+    /// The event that the record has last up to this turn, as JSON; empty before the first.
+    pub(crate) event: String,
+    /// Time of the next turn; `None` at the end of the record.
+    pub(crate) next: Option<Nanos>,
+}
+
+/// Reason why the turns of a record are not made again.
+#[derive(Debug)]
+pub(crate) enum Stop {
+    /// The record cannot be read.
+    Unread(ReadError),
+    /// A plan that took over cannot be compiled.
+    Failed(Failure),
+    /// This turn is not that of the record, by a difference in words.
+    Differs(u64, String),
+}
+
+impl ExaminedRun {
+    /// Compiles the plan that has run, to make the turns of its record again.
+    ///
+    /// # Errors
+    /// The plan cannot be read, has errors or is not that of the record.
+    pub(crate) fn of(wanted: &WantedPlan<'_>, record: Record) -> Result<Self, Failure> {
+        let begin = wanted.begin;
+        let linked = targets::linked(&begin.target).map_err(Failure::Usage)?;
+        let target = Arc::new(mdle_files::target(Some(&begin.target))?);
+        let (machine, sources) = replay::plan(wanted, &target)?;
+        let run = (linked.replay)(machine, &sources, &target, begin, record, true)?;
+        let is_compared = begin.files.is_empty();
+        Ok(Self { run, is_compared, event: String::new(), plans: BTreeMap::new(), number: 0 })
+    }
+
+    /// Makes the next turn; returns `None` at the end of the record.
+    pub(crate) fn turn(&mut self) -> Option<Result<ExaminedTurn, Stop>> {
+        let turn = match self.run.turn()? {
+            Ok(turn) => turn,
+            Err(replayer::Stop::Unread(error)) => return Some(Err(Stop::Unread(error))),
+            Err(replayer::Stop::Failed(failure)) => return Some(Err(Stop::Failed(failure))),
+        };
+        if let Some(event) = turn.messages.iter().rfind(|message| is_standing(message)) {
+            self.event.clone_from(&event.json);
+        }
+        self.number = turn.recorded.plan;
+        let looked_at = self.run.looked_at();
+        if let Some((machine, _)) = looked_at
+            && !self.plans.contains_key(&self.number)
+            && let Some(texts) = self.run.texts()
+        {
+            let plan = ExaminedPlan { machine: Arc::clone(machine), texts };
+            self.plans.insert(self.number, Rc::new(plan));
+        }
+        if let Some(difference) = self.difference(&turn) {
+            return Some(Err(Stop::Differs(turn.recorded.number, difference)));
+        }
+        let moments = looked_at.map_or(&[][..], |(_, moments)| moments).to_vec();
+        let (event, next) = (self.event.clone(), self.run.next_time());
+        let ReplayedTurn { recorded, transitions, asked, reason, .. } = turn;
+        Some(Ok(ExaminedTurn { recorded, transitions, moments, asked, reason, event, next }))
+    }
+
+    /// Returns the plan that drove in the last turn; `None` before it begins.
+    pub(crate) fn plan(&self) -> Option<&Rc<ExaminedPlan>> {
+        self.plans.get(&self.number)
+    }
+
+    /// Returns `true` once the end of the record was read; a run that was killed leaves a record without an end.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.run.is_whole()
+    }
+
+    /// Returns in words how a turn differs from the record. Inputs may differ if the record has the plan: what runs
+    /// next does not depend on them.
+    fn difference(&self, turn: &ReplayedTurn) -> Option<String> {
+        let is_input = |name: &str| matches!(name, "asked input" | "safety rule" | "input");
+        if let Some(part) = turn.parts.iter().find(|part| !is_input(&part.name)) {
+            let is_fault = part.name == "turn";
+            return Some(if is_fault { part.replayed.clone() } else { "it makes other transitions".to_owned() });
+        }
+        if !self.is_compared {
+            return None;
+        }
+        let other_text = self.plan().and_then(|plan| other_text(&*plan.texts, turn));
+        other_text.or_else(|| (!turn.parts.is_empty()).then(|| "it sends another input".to_owned()))
+    }
+}
+
+/// Returns `true` for an event that holds until the next: not for a request, or for a plan that took over.
+fn is_standing(message: &Message) -> bool {
+    let is_moment = || ["request", "plan"].iter().any(|kind| message.json.contains(&format!("\"kind\":\"{kind}\"")));
+    message.kind == MessageKind::Event && !is_moment()
+}
+
+/// Returns how the texts of transitions differ from those of the record.
+fn other_text(plan: &dyn Texts, turn: &ReplayedTurn) -> Option<String> {
+    let messages = turn.messages.iter().filter(|message| message.kind == MessageKind::Transition);
+    for ((transition, _), message) in turn.transitions.iter().zip(messages) {
+        let Ok(known) = serde_json::from_str::<serde_json::Value>(&message.json) else { continue };
+        let own = [
+            ("by", transition.cause.by(plan.condition(transition.scope))),
+            ("law", transition.atom.map_or("", |atom| plan.law(atom))),
+        ];
+        for (key, own) in own {
+            let known = known.get(key).and_then(serde_json::Value::as_str).unwrap_or_default();
+            if known != own {
+                return Some(format!("it has `{own}` in place of `{known}`"));
+            }
+        }
+    }
+    None
+}
+
+impl Stop {
+    /// Returns the reason as a sentence; empty for a failure, which has its own.
+    pub(crate) fn sentence(&self) -> String {
+        match self {
+            Self::Unread(error) => error.to_string(),
+            Self::Failed(_) => "a plan that took over cannot be compiled".to_owned(),
+            Self::Differs(turn, difference) => format!("turn {turn} is not that of this plan: {difference}"),
+        }
+    }
+
+    /// Prints why the turns of the record of this name are not made again, with the plan in this file or that of the
+    /// record.
+    ///
+    /// # Errors
+    /// The record cannot be read, or a plan of it cannot be compiled.
+    pub(crate) fn tell(self, name: &str, plan: Option<&Path>) -> Result<ExitCode, Failure> {
+        let sentence = self.sentence();
+        match self {
+            Self::Failed(failure) => return Err(failure),
+            Self::Unread(ReadError::System(_)) => {
+                return Err(Failure::Usage(format!("the record {name} cannot be read: {sentence}")));
+            }
+            Self::Unread(_) => failure::error(&format!("the record {}: {sentence}", Printable(name))),
+            Self::Differs(..) => {
+                let help = match plan {
+                    Some(_) => "`--plan` has to name the plan that ran".to_owned(),
+                    None => format!("`mdle replay {name}` prints what differs"),
+                };
+                failure::error(&format!("the record {}: {sentence}\nhelp: {help}", Printable(name)));
+            }
+        }
+        Ok(ExitCode::from(DIFFERS))
+    }
+}

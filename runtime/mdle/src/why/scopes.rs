@@ -1,0 +1,86 @@
+//! The scopes around an atom at a moment, with their conditions.
+
+use mdle_runtime::{Cause, Nanos};
+
+use super::operands::{Examination, Facts, examination};
+use crate::examined::{ExaminedPlan, Moment, ScopeMoment};
+
+/// Part of a scope in what happened at a moment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// Its interrupt has fired, and ended it.
+    Ended,
+    /// Its law is done, which ended it: an atom.
+    Completed,
+    /// Its interrupt has fired as well, and an enclosing scope ended first.
+    Shadowed,
+    /// Its interrupt has not fired.
+    Waits,
+    /// It has no interrupt that can fire.
+    NoInterrupt,
+    /// Its interrupt was removed, because an enclosing scope has the same one.
+    Removed,
+}
+
+/// A scope at a moment.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Scope {
+    /// Name of the scope; `None` for an atom and for a scope without a name.
+    pub(crate) name: Option<String>,
+    /// `true` if it is the scope of the atom alone.
+    pub(crate) is_atom: bool,
+    /// File and line.
+    pub(crate) line: String,
+    /// The condition as it is written; empty if there is none.
+    pub(crate) condition: String,
+    /// Time since the scope was entered.
+    pub(crate) since: Nanos,
+    /// Its part in what happened.
+    pub(crate) part: Part,
+    /// Its condition.
+    pub(crate) examination: Examination,
+    /// The law of the atom that would follow; `None` if the plan would be over.
+    pub(crate) leads_to: Option<String>,
+}
+
+/// Explains the scopes around the atom of a moment.
+pub(crate) fn scopes(plan: &ExaminedPlan, moment: &Moment, facts: &Facts) -> Vec<Scope> {
+    moment.scopes.iter().map(|around| scope(plan, moment, around, facts)).collect()
+}
+
+fn scope(plan: &ExaminedPlan, moment: &Moment, scope: &ScopeMoment, facts: &Facts) -> Scope {
+    let ExaminedPlan { machine, texts } = plan;
+    let element = machine.element(scope.bracket);
+    let words = texts.source();
+    let bracket = words.bracket(scope.bracket);
+    let mut examination = examination(machine, element, scope, facts, words);
+    let is_removed = element.interrupt().is_some_and(|interrupt| interrupt.removed);
+    let is_cause = moment.cause.is_some_and(|cause| cause.level() == scope.level);
+    let part = match moment.cause {
+        Some(Cause::Completed(_)) if is_cause => Part::Completed,
+        Some(Cause::Fired(_)) if is_cause => Part::Ended,
+        _ if is_removed => Part::Removed,
+        _ if examination.operands.is_empty() => Part::NoInterrupt,
+        Some(_) if examination.fired => Part::Shadowed,
+        Some(_) | None => Part::Waits,
+    };
+    if part != Part::Ended {
+        examination.operands.iter_mut().for_each(|operand| operand.decided = false);
+    }
+    let removed = element.interrupt().filter(|_| is_removed).map(|interrupt| interrupt.text.clone());
+    let condition = bracket.map_or_else(String::new, |words| words.condition.to_owned());
+    Scope {
+        name: Some(texts.name(scope.bracket)).filter(|name| !name.is_empty()).map(str::to_owned),
+        is_atom: element.atom().is_some(),
+        line: bracket.map_or_else(String::new, |words| format!("{}:{}", words_file(&**texts, words.at), words.at.line)),
+        condition: removed.unwrap_or(condition),
+        since: scope.since,
+        part,
+        examination,
+        leads_to: scope.leads_to.map(|atom| texts.law(atom).to_owned()),
+    }
+}
+
+fn words_file(plan: &dyn mdle_host::Texts, at: mdle_runtime::SourceLine) -> &str {
+    plan.source().file(at)
+}
