@@ -1,5 +1,6 @@
-//! Tests of the decoder below the sums, which a changed byte never reaches in a file.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+//! Tests of records in memory: the decoder below the sums, which a changed byte never reaches in a file, the chain of
+//! sums, and files that are cut short.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{
@@ -7,10 +8,14 @@ use mdle_runtime::{
     Shape, Supply, Twist,
 };
 
-use crate::TurnMade;
+use std::cell::RefCell;
+use std::io::Write as _;
+use std::rc::Rc;
+
 use crate::bytes::Bytes;
-use crate::turn::{put, take};
-use crate::{Applied, Begin, Change, Overruled, SafetyTexts, Step};
+use crate::frames::{Frames, Turns, first};
+use crate::turn::{Undecoded, put, take};
+use crate::{Applied, Begin, Change, Overruled, ReadError, RecordFile, Records, SafetyTexts, Step, TurnMade};
 
 fn begin() -> Begin {
     let files = vec![("p.mdle".to_owned(), "{ P (null) }".to_owned())];
@@ -109,4 +114,142 @@ fn any_byte_of_a_turn_may_be_another() {
             let _ = Begin::take(&mut Bytes(&changed));
         }
     }
+}
+
+/// The turn of this number of a run with ten turns a second.
+fn made(number: u64) -> TurnMade<'static> {
+    TurnMade {
+        number,
+        t: Nanos(number * 100_000_000),
+        sent: Twist::default(),
+        applied: Applied::Law,
+        plan: 1,
+        state: 0,
+        changes: &[],
+        overruled: None,
+    }
+}
+
+/// The outputs of a run of this many turns, in each of which every sonar pings.
+fn outputs(turns: u64) -> Vec<Sensed> {
+    let mut y = output();
+    let pinged = (0..turns).map(|number| {
+        y.at = Nanos(number * 100_000_000);
+        let range = Some(Meters(0.5 + number as f64));
+        let ping = Ping { range, at: y.at, pose: y.odometry, mount: Mount::default() };
+        y.pings.iter_mut().for_each(|pings| pings.push(ping));
+        y
+    });
+    pinged.collect()
+}
+
+/// The content of the begin and of each turn of a run of this many turns.
+fn contents(begin: &Begin, turns: u64) -> Vec<Vec<u8>> {
+    let (mut frames, mut bytes) = (Frames::default(), Vec::new());
+    let outputs = outputs(turns);
+    frames.begin(begin, &outputs[0], &mut bytes);
+    (0..).zip(&outputs).for_each(|(turn, y)| frames.turn(made(turn), y, std::iter::empty(), &mut bytes));
+    let (mut contents, mut rest) = (Vec::new(), &bytes[..]);
+    while let Some((_, content, length)) = first(rest) {
+        contents.push(content.to_vec());
+        rest = &rest[length..];
+    }
+    contents
+}
+
+/// Reads a begin and turns; returns the number of turns before the first that is refused, and why it is.
+fn read(begin: &[u8], turns: &[&[u8]]) -> (usize, Option<Undecoded>) {
+    let mut chained = match Turns::of(begin) {
+        Ok(turns) => turns,
+        Err(why) => return (0, Some(why)),
+    };
+    for (number, content) in turns.iter().enumerate() {
+        match chained.next(content) {
+            Ok(turn) => assert_eq!(turn.number, number as u64),
+            Err(why) => return (number, Some(why)),
+        }
+    }
+    (turns.len(), None)
+}
+
+#[test]
+fn a_flipped_bit_anywhere_breaks_the_chain_of_sums() {
+    let contents = contents(&begin(), 3);
+    let [first, turns @ ..] = &contents[..] else { panic!("no begin") };
+    let turns: Vec<&[u8]> = turns.iter().map(Vec::as_slice).collect();
+    assert_eq!(read(first, &turns), (3, None));
+    for bit in 0..8 {
+        for place in 0..first.len() {
+            let mut changed = first.clone();
+            changed[place] ^= 1 << bit;
+            assert_eq!(read(&changed, &turns), (0, Some(Undecoded::Changed)), "begin, {place}");
+        }
+        for place in 0..turns[1].len() {
+            let mut changed = turns[1].to_vec();
+            changed[place] ^= 1 << bit;
+            assert_eq!(read(first, &[turns[0], &changed, turns[2]]), (1, Some(Undecoded::Changed)), "turn, {place}");
+        }
+    }
+}
+
+#[test]
+fn each_turn_has_its_place_in_the_chain_of_sums() {
+    let contents = contents(&begin(), 3);
+    let turns: Vec<&[u8]> = contents[1..].iter().map(Vec::as_slice).collect();
+    let changed = Some(Undecoded::Changed);
+    assert_eq!(read(&contents[0], &[turns[0], turns[2]]), (1, changed), "a turn is missing");
+    assert_eq!(read(&contents[0], &[turns[1], turns[0]]), (0, changed), "the turns are in another order");
+    assert_eq!(read(&contents[0], &[turns[0], turns[0]]), (1, changed), "a turn is there twice");
+    let other = self::contents(&Begin { plan: "Q".to_owned(), ..begin() }, 1);
+    assert_eq!(read(&other[0], &turns), (0, changed), "the turns are those of another run");
+}
+
+/// Bytes that several owners share.
+#[derive(Clone, Default)]
+struct SharedBytes(Rc<RefCell<Vec<u8>>>);
+
+impl std::io::Write for SharedBytes {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.borrow_mut().write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_cut_at_any_kilobyte_leaves_all_but_the_last_second() {
+    const TURNS: u64 = 60;
+    let (mut frames, mut bytes, file) = (Frames::default(), Vec::new(), SharedBytes::default());
+    let (mut record, outputs) = (RecordFile::new(file.clone()), outputs(TURNS));
+    frames.begin(&begin(), &outputs[0], &mut bytes);
+    // The length of the file after each turn.
+    let mut lengths = Vec::new();
+    for (turn, y) in (0..).zip(&outputs) {
+        frames.turn(made(turn), y, std::iter::empty(), &mut bytes);
+        record.write_all(&std::mem::take(&mut bytes)).unwrap();
+        lengths.push(file.0.borrow().len());
+    }
+    frames.end(&mut bytes);
+    record.write_all(&bytes).unwrap();
+    let whole = file.0.borrow().clone();
+    assert!(whole.len() > 50_000, "{} bytes", whole.len());
+    for cut in (0..whole.len()).step_by(1000) {
+        let mut records = match Records::open(&whole[..cut]) {
+            Ok((_, records)) => records,
+            Err(ReadError::NotARecord) if cut < lengths[0] => continue,
+            Err(error) => panic!("cut at {cut}: {error}"),
+        };
+        let turns: Vec<_> = records.by_ref().map(Result::unwrap).collect();
+        assert!(!records.is_whole(), "cut at {cut}");
+        assert!((0..).zip(&turns).all(|(number, turn)| turn.number == number));
+        assert!(turns.iter().zip(&outputs).all(|(turn, y)| turn.y == *y), "cut at {cut}");
+        let written = lengths.iter().take_while(|length| **length <= cut).count();
+        let missing = written.saturating_sub(turns.len());
+        assert!(missing <= 10, "cut at {cut}: {missing} of {written} turns are missing");
+    }
+    let (_, mut records) = Records::open(&whole[..]).unwrap();
+    assert_eq!(records.by_ref().count() as u64, TURNS);
+    assert!(records.is_whole());
 }
