@@ -61,6 +61,8 @@ pub enum Spelling {
     CommandLine,
     /// Calls in a build script: `.target("sim")`.
     BuildScript,
+    /// Entries of a TOML file: `target = "sim"`.
+    Entry,
 }
 
 impl Spelling {
@@ -69,6 +71,7 @@ impl Spelling {
         match self {
             Self::CommandLine => format!("--{name} {value}"),
             Self::BuildScript => format!(".{name}({value:?})"),
+            Self::Entry => format!("{name} = {value:?}"),
         }
     }
 }

@@ -8,7 +8,7 @@ use mdle_compiler::diagnostic::{Diagnostic, Severity, judged};
 use mdle_compiler::fsm::{self, Element, Machine, PlanWords};
 use mdle_compiler::load::{self, Loaded};
 use mdle_compiler::{Compiled, compile};
-use mdle_files::{Input, InputError, Known, Settings, Target, read_plan};
+use mdle_files::{Input, InputError, Known, Settings, Spelling, Target, read_plan};
 use mdle_host::Texts;
 use mdle_runtime::{Condition, Fsm, Words};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
@@ -148,7 +148,7 @@ impl Subject {
 /// The error itself.
 fn placed(place: Option<Range<usize>>, error: InputError) -> Result<TestFileError, InputError> {
     let Some(place) = place.filter(|_| !matches!(error, InputError::Faulty(_))) else { return Err(error) };
-    let message = error.to_string();
+    let message = error.message(Spelling::Entry);
     let unread = "`plan` names a file, relative to the folder of the file of tests";
     let (message, help) = message.split_once("\nhelp: ").unwrap_or((&message, unread));
     Ok(TestFileError::at(place, message).help(help))
