@@ -79,7 +79,7 @@ impl ExaminedRun {
     /// The plan cannot be read, has errors or is not that of the record.
     pub(crate) fn of(wanted: &WantedPlan<'_>, record: Record) -> Result<Self, Failure> {
         let begin = wanted.begin;
-        let linked = targets::linked(&begin.target).map_err(Failure::Usage)?;
+        let linked = targets::of_record(begin, wanted.log)?;
         let target = Arc::new(mdle_files::target(Some(&begin.target))?);
         let (machine, sources) = replay::plan(wanted, &target)?;
         let run = (linked.replay)(machine, &sources, &target, begin, record, true)?;

@@ -36,7 +36,7 @@ const ROWS: usize = 20;
 /// The record or the plan cannot be read.
 pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
     let (begin, records) = record(&arguments.log)?;
-    let linked = targets::linked(&begin.target).map_err(Failure::Usage)?;
+    let linked = targets::of_record(&begin, &arguments.log)?;
     let target = Arc::new(mdle_files::target(Some(&begin.target))?);
     let call = format!("mdle replay {}", arguments.log.display());
     let (log, file) = (arguments.log.as_path(), arguments.plan.as_deref());

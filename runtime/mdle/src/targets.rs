@@ -1,6 +1,7 @@
 //! The robots that this program can run plans on.
 
 use std::os::fd::AsFd as _;
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -93,6 +94,20 @@ pub(crate) fn linked(name: &str) -> Result<LinkedTarget, String> {
         did_you_mean(name, &known),
         known.join(", ")
     ))
+}
+
+/// Returns the robot of a record, which is in this file.
+///
+/// # Errors
+/// This program has no such robot.
+pub(crate) fn of_record(begin: &Begin, log: &Path) -> Result<LinkedTarget, Failure> {
+    LINKED.iter().find(|linked| linked.name == begin.target).copied().ok_or_else(|| {
+        let (log, target, known) = (log.display(), &begin.target, LINKED.map(|linked| linked.name).join(", "));
+        Failure::Usage(format!(
+            "the record {log} is of the robot `{target}`, whose plans `mdle` cannot run: its robots are {known}\n\
+             help: `mdle log info {log}` and `mdle log export --csv {log}` read the record of any robot"
+        ))
+    })
 }
 
 impl LinkedTarget {

@@ -1,12 +1,16 @@
 //! A plan that is not the one that ran is refused with exit status 1, by all commands that need that one.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::Command;
 
+use mdle_record::frames::Frames;
+use mdle_record::{Begin, RecordFile};
 use mdle_tests::executable::{folder, run_mdlec};
 
 use super::asked;
+use super::scripted::{PERIOD, outputs};
 
 const RAN: &str = "{ Square (wait 5min)\n  ((Atom (way >= 1m OR r0 < 40cm) (go 20 0)) (Atom (null) turn 90))^4\n}\n";
 
@@ -50,6 +54,20 @@ fn only_the_plan_that_ran_explains() {
     let replayed =
         ["named", "wrong"].map(|plan| asked(&folder, &["replay", "run.mcap", "--plan", &format!("{plan}.mdle")]));
     assert!(replayed.iter().all(|answer| answer.ends_with("[1]\n")), "{replayed:?}");
+}
+
+/// Its turns cannot be made again, but what it contains can be read.
+#[test]
+fn a_record_of_an_unknown_robot_is_told_apart() {
+    let folder = folder("why-other-robot");
+    let begin = Begin { target: "rover".to_owned(), plan: "P".to_owned(), period: PERIOD, ..Begin::default() };
+    let (mut frames, mut bytes) = (Frames::default(), Vec::new());
+    frames.begin(&begin, &outputs(1, |_, _| {})[0], &mut bytes);
+    frames.end(&mut bytes);
+    RecordFile::new(File::create(folder.join("run.mcap")).unwrap()).write_all(&bytes).unwrap();
+    let calls = ["replay run.mcap", "why run.mcap 1", "plot run.mcap run.svg", "log info run.mcap"];
+    let answers = calls.map(|call| asked(&folder, &call.split(' ').collect::<Vec<_>>()));
+    insta::assert_snapshot!(answers.join("\n"));
 }
 
 /// The record of an executable has no text, but its laws, its conditions and its inputs tell another plan.
