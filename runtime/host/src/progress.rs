@@ -62,6 +62,16 @@ impl<'e> Progress<'e> {
         self.show(&format!("[{full}{empty}] {done} of {all} runs, {left:.0} s to go"));
     }
 
+    /// Shows that the time `t` of `end` was simulated.
+    pub fn simulated(&mut self, t: Nanos, end: Nanos) {
+        let Some(now) = self.due() else { return };
+        let (t, end) = (t.seconds(), end.seconds());
+        let full = ((BAR as f64 * t / end.max(f64::MIN_POSITIVE)) as usize).min(BAR);
+        let (full, empty) = ("#".repeat(full), ".".repeat(BAR.saturating_sub(full)));
+        let times = t / now.as_secs_f64();
+        self.show(&format!("[{full}{empty}] {t:.1} of {end:.0} s, {times:.1} times as fast as real"));
+    }
+
     /// The time, if it is time to show something.
     fn due(&mut self) -> Option<Duration> {
         let now = (self.now)();

@@ -24,6 +24,8 @@ pub(super) struct Options {
     pub(super) trips: Option<PathBuf>,
     /// Folder of the paths that robots record.
     pub(super) recorded_paths: Option<PathBuf>,
+    /// Number of threads of a crowd.
+    pub(super) threads: Option<usize>,
 }
 
 impl Options {
@@ -37,9 +39,9 @@ impl Options {
             (run.plan.is_some(), "--plan"),
             (run.safety.is_some(), "--safety"),
             (run.link.is_some(), "--link"),
+            (run.records.is_some(), "--records"),
             (run.session.is_some(), "shell"),
             (!run.modules.is_empty(), "--module"),
-            (run.records.is_some(), "--records"),
             (run.point.is_some(), "--point"),
         ];
         if let Some((_, name)) = of_a_plan.into_iter().find(|(is_given, _)| *is_given) {
@@ -61,7 +63,36 @@ impl Options {
             plot: file("plot"),
             trips: file("trips"),
             recorded_paths: file("recorded-paths"),
+            threads: matches.get_one::<u64>("threads").map(|count| *count as usize),
         }
+    }
+
+    /// Checks that no option is given that a crowd does not have.
+    ///
+    /// # Errors
+    /// One is.
+    pub(super) fn check_crowd(&self) -> Result<(), Failure> {
+        let of_robots = [
+            (self.log.is_some(), "--log"),
+            (self.plot.is_some(), "--plot"),
+            (self.trips.is_some(), "--trips"),
+            (self.recorded_paths.is_some(), "--recorded-paths"),
+        ];
+        let Some((_, name)) = of_robots.into_iter().find(|(is_given, _)| *is_given) else { return Ok(()) };
+        let help = "leave it out; `--trail FILE.csv` has the poses of a crowd";
+        Err(Failure::Usage(format!("{name} is for robots with names, and this is a crowd\nhelp: {help}")))
+    }
+
+    /// Checks that no option is given that only a crowd has.
+    ///
+    /// # Errors
+    /// One is.
+    pub(super) fn check_robots(&self) -> Result<(), Failure> {
+        if self.threads.is_none() {
+            return Ok(());
+        }
+        let sentence = "--threads is for a crowd, and robots with names have one thread";
+        Err(Failure::Usage(format!("{sentence}\nhelp: leave it out")))
     }
 }
 
@@ -90,6 +121,10 @@ fn command() -> Command {
         .arg(
             option("recorded-paths", "FOLDER", "Folder for the paths that robots record, each in a folder of the robot's name")
                 .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            option("threads", "N", "Number of threads of a crowd; results do not depend on it [default: number of processors]")
+                .value_parser(value_parser!(u64).range(1..=1024)),
         )
         .after_help(
             "Exit status: 0 if all plans are over; 1 if a plan has errors; 2 for wrong usage or a file that cannot be read; 3 \

@@ -27,6 +27,23 @@ pub(super) struct ScenarioText {
     /// The robots, the first of which moves first.
     #[serde(default)]
     pub(super) robot: Vec<RobotText>,
+    /// A crowd in place of robots with names.
+    pub(super) crowd: Option<CrowdText>,
+}
+
+/// A crowd, as written.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct CrowdText {
+    /// Number of robots.
+    pub(super) robots: At<u64>,
+    /// File of the plan that each of them runs, relative to the folder of the scenario.
+    pub(super) file: At<PathBuf>,
+    /// Name of the plan, for a file with several.
+    pub(super) plan: Option<At<String>>,
+    pub(super) body: Option<At<String>>,
+    /// Distance between two robots at the start.
+    pub(super) spacing: Option<At<String>>,
 }
 
 /// The link between the robots, as written.
@@ -79,6 +96,11 @@ impl ScenarioError {
         Self { place: Some(place), message: message.into(), help: String::new() }
     }
 
+    /// Returns an error about the whole file.
+    pub(super) fn whole(message: impl Into<String>) -> Self {
+        Self { place: None, message: message.into(), help: String::new() }
+    }
+
     /// Adds a help.
     pub(super) fn help(self, help: impl Into<String>) -> Self {
         Self { help: help.into(), ..self }
@@ -115,7 +137,12 @@ pub(super) fn read(text: &str) -> Result<ScenarioText, ScenarioError> {
             return Err(ScenarioError::at(place, message).help("give each robot a name of its own"));
         }
     }
-    if file.robot.is_empty() {
+    if let (Some(crowd), Some(robot)) = (&file.crowd, file.robot.first()) {
+        let message = format!("`{}` has a name, and the robots of a crowd have none", robot.name.get_ref());
+        let help = format!("leave `[[robot]]` or `[crowd]` with its {} robots out", crowd.robots.get_ref());
+        return Err(ScenarioError::at(robot.name.span(), message).help(help));
+    }
+    if file.robot.is_empty() && file.crowd.is_none() {
         let help = "write `[[robot]]`, then `name = \"…\"`, `file = \"….mdle\"` and `start = \"x, y, degrees\"`";
         let message = "the scenario has no robot".to_owned();
         return Err(ScenarioError { place: None, message, help: help.to_owned() });

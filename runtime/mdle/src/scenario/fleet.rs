@@ -13,7 +13,7 @@ use super::output::Output;
 use super::setup::Scenario;
 
 /// Exit status of a run in which a plan is not over.
-const TIMED_OUT: u8 = 4;
+pub(super) const TIMED_OUT: u8 = 4;
 
 /// Distance beyond which the gap between robots is not measured, in metres.
 const FAR: f64 = 100.0;

@@ -1,6 +1,7 @@
 //! `mdle run SCENARIO.toml`: several robots in one world and one process (docs/src/many_robots.md).
 
 mod arguments;
+mod crowd;
 mod file;
 mod fleet;
 mod member;
@@ -20,6 +21,7 @@ use mdle_runtime::{Printable, Sensed};
 use crate::arguments::Run;
 use crate::failure::{self, Failure};
 use arguments::Options;
+use crowd::CrowdSetup;
 use file::ScenarioError;
 use fleet::Fleet;
 use output::Output;
@@ -41,12 +43,18 @@ pub(crate) fn run(arguments: &Run, library: &Library<Sensed>) -> Result<ExitCode
     let options = Options::read(arguments)?;
     let path = &arguments.file;
     let text = file::text(path).map_err(Failure::Usage)?;
-    let read = file::read(&text).map_err(SetupError::File);
-    let scenario = read.and_then(|file| Scenario::read(file, path, options.seed));
-    let scenario = scenario.map_err(|error| match error {
+    let refused = |error| match error {
         SetupError::Plan(failure) => failure,
         SetupError::File(error) => refused(path, &text, &error),
-    })?;
+    };
+    let file = file::read(&text).map_err(SetupError::File).map_err(refused)?;
+    if let Some(crowd) = &file.crowd {
+        options.check_crowd()?;
+        let crowd = CrowdSetup::read(crowd, &file, path, &options).map_err(refused)?;
+        return crowd::run(crowd, &options);
+    }
+    options.check_robots()?;
+    let scenario = Scenario::read(file, path, options.seed).map_err(refused)?;
     let mut output = Output::open(&options, &scenario).map_err(Failure::Usage)?;
     let timeout = options.timeout.unwrap_or(scenario.timeout);
     let fleet = Fleet::new(scenario, library).map_err(Failure::Usage)?;

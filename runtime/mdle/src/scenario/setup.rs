@@ -1,6 +1,6 @@
 //! A scenario that is ready to run: its plans are compiled, and its robots stand in their world.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ use crate::failure::{self, Failure};
 /// Maximum size of a file of a path or a world, in bytes.
 const LARGEST: u64 = 10_000_000;
 /// Time after which a scenario ends that is given no other limit.
-const TIMEOUT: Duration = Duration::from_secs(3600);
+pub(super) const TIMEOUT: Duration = Duration::from_secs(3600);
 /// Name of the target of all robots.
 const SIM: &str = "sim";
 
@@ -103,7 +103,7 @@ impl Scenario {
     /// Makes a robot, which may not stand in one of those before it.
     fn member(&self, text: &RobotText, path: &Path, names: &[&str]) -> Result<Member, SetupError> {
         let name = text.name.get_ref();
-        let loaded = plan(text, path)?;
+        let loaded = plan(&text.file, text.plan.as_ref(), path)?;
         let plan = loaded.plan();
         for other in plan.robots() {
             if other == name || !names.contains(other) {
@@ -144,11 +144,15 @@ impl Scenario {
 }
 
 /// Compiles and loads the plan of a robot.
-fn plan(text: &RobotText, path: &Path) -> Result<Arc<Loaded<SimAlphabet>>, SetupError> {
-    let file = path.with_file_name("").join(text.file.get_ref());
+pub(super) fn plan(
+    file: &At<PathBuf>,
+    name: Option<&At<String>>,
+    path: &Path,
+) -> Result<Arc<Loaded<SimAlphabet>>, SetupError> {
+    let file = path.with_file_name("").join(file.get_ref());
     let target = Settings::beside(&file)?.target(Some(SIM))?;
     let mut input = read_plan(&file, &target)?;
-    let wanted = text.plan.as_ref().map(|plan| plan.get_ref().as_str());
+    let wanted = name.map(|plan| plan.get_ref().as_str());
     if let Some(name) = wanted {
         input.must_have(name)?;
     }
@@ -176,7 +180,7 @@ fn unknown_peer(text: &RobotText, other: &str, names: &[&str]) -> ScenarioError 
 }
 
 /// Returns the world of this name or file, and its name.
-fn world(text: Option<&At<String>>, path: &Path) -> Result<(World, String), ScenarioError> {
+pub(super) fn world(text: Option<&At<String>>, path: &Path) -> Result<(World, String), ScenarioError> {
     let Some(text) = text else {
         let world = World::parse("the empty floor", "");
         let world =
@@ -208,7 +212,8 @@ fn world(text: Option<&At<String>>, path: &Path) -> Result<(World, String), Scen
     Ok((world, name.clone()))
 }
 
-fn body(text: Option<&At<String>>) -> Result<Body, ScenarioError> {
+/// Returns the body of this name; the ideal one without a name.
+pub(super) fn body(text: Option<&At<String>>) -> Result<Body, ScenarioError> {
     let Some(text) = text else { return Ok(Body::Ideal) };
     let body = [Body::Ideal, Body::Scout, Body::Atrv].into_iter().find(|body| body.to_string() == *text.get_ref());
     body.ok_or_else(|| ScenarioError::at(text.span(), "expected `ideal`, `scout` or `atrv`"))
@@ -241,7 +246,8 @@ fn latency(text: &At<String>) -> Result<(Nanos, Nanos), ScenarioError> {
     Ok((least, most))
 }
 
-fn duration(text: &At<String>, least: f64, most: f64) -> Result<Duration, ScenarioError> {
+/// Reads a time between these limits, in seconds.
+pub(super) fn duration(text: &At<String>, least: f64, most: f64) -> Result<Duration, ScenarioError> {
     let [least, most] = [least, most].map(Duration::from_secs_f64);
     let read = Quantity::duration(text.get_ref(), "s", least, most);
     read.map_err(|sentence| ScenarioError::at(text.span(), sentence))

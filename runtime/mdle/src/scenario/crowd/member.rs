@@ -1,0 +1,79 @@
+//! A robot of a crowd, with its plan.
+
+use std::sync::Arc;
+
+use mdle_compiler::load::{Loaded, LoadedPlan};
+use mdle_runtime::{Machine, Nanos, Pose, Robot as _, Turn, Twist};
+use mdle_sim::alphabet::Alphabet as SimAlphabet;
+use mdle_sim::{Footprint, Others, Simulated};
+
+/// A robot of a crowd.
+pub(super) struct Member {
+    robot: Simulated,
+    /// The plan, once it has begun.
+    machine: Option<Box<Machine<LoadedPlan<SimAlphabet>>>>,
+    input: Twist,
+    /// `true` once the plan is over.
+    pub(super) is_over: bool,
+    /// `true` once the robot has touched something.
+    pub(super) has_touched: bool,
+    /// Way that it has driven, in metres.
+    pub(super) way: f64,
+}
+
+impl Member {
+    pub(super) fn new(robot: Simulated) -> Self {
+        Self { robot, machine: None, input: Twist::default(), is_over: false, has_touched: false, way: 0.0 }
+    }
+
+    pub(super) fn footprint(&self) -> Footprint {
+        self.robot.footprint()
+    }
+
+    pub(super) fn pose(&self) -> Pose {
+        self.robot.pose()
+    }
+
+    /// Drives for one period among these other robots.
+    pub(super) fn moves(&mut self, others: &mut Others) {
+        let before = self.pose();
+        self.robot.swap_others(others);
+        if self.robot.moves(&self.input).is_err() {
+            // The input was no number: the plan is stopped, as on any robot.
+            self.ends();
+        }
+        self.robot.swap_others(others);
+        self.way += self.pose().distance(&before).0;
+    }
+
+    /// Makes the turn of the plan at time `t`, with these other robots near by.
+    pub(super) fn turn(&mut self, t: Nanos, plan: &Arc<Loaded<SimAlphabet>>, others: &mut Others) {
+        self.robot.swap_others(others);
+        let y = self.robot.senses();
+        self.robot.swap_others(others);
+        self.has_touched |= y.switches != 0;
+        if self.is_over {
+            return;
+        }
+        let machine = self.machine.get_or_insert_with(|| Box::new(Machine::begin(plan.plan(), &y, t)));
+        let turn = machine.turn(&y, t, &mut ());
+        self.input = turn.input();
+        if turn == Turn::Over {
+            self.ends();
+        }
+    }
+
+    /// Ends the plan: the robot stands from now on.
+    fn ends(&mut self) {
+        self.is_over = true;
+        self.input = Twist::default();
+        // It takes no more memory.
+        self.machine = None;
+    }
+
+    /// Stops the robot.
+    pub(super) fn stop(&mut self) {
+        // A simulated robot always obeys.
+        let _ = self.robot.stop();
+    }
+}

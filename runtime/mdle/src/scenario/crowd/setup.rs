@@ -1,0 +1,132 @@
+//! A crowd that is ready to run: its plan is compiled, and its robots stand in their world.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+use mdle_compiler::load::Loaded;
+use mdle_host::{Quantity, Target as _};
+use mdle_runtime::{Nanos, Plan as _};
+use mdle_sim::alphabet::Alphabet as SimAlphabet;
+use mdle_sim::{Make, Sim, Simulated};
+
+use super::super::arguments::Options;
+use super::super::file::{At, CrowdText, ScenarioError, ScenarioText};
+use super::super::setup::{self, SetupError, duration};
+use super::places::{Places, hall};
+
+/// Maximum number of robots.
+const ROBOTS_MOST: u64 = 100_000;
+/// Distance between two robots at the start, in metres: a robot on 4 m².
+const SPACING: f64 = 2.0;
+
+/// A crowd.
+pub(in super::super) struct CrowdSetup {
+    pub(super) robots: Vec<Simulated>,
+    pub(super) plan: Arc<Loaded<SimAlphabet>>,
+    pub(super) period: Nanos,
+    pub(super) timeout: Nanos,
+    pub(super) threads: usize,
+}
+
+impl CrowdSetup {
+    /// Makes the robots of the crowd of the file at `path`. Messages about the plan go to standard error.
+    ///
+    /// # Errors
+    /// A value of the file makes no sense, a file that it names cannot be read, the plan has errors or needs what a
+    /// crowd has not, or the world has no room.
+    pub(in super::super) fn read(
+        crowd: &CrowdText,
+        file: &ScenarioText,
+        path: &Path,
+        options: &Options,
+    ) -> Result<Self, SetupError> {
+        let count = *crowd.robots.get_ref();
+        if !(1..=ROBOTS_MOST).contains(&count) {
+            let message = format!("a crowd has from 1 to {ROBOTS_MOST} robots");
+            return Err(ScenarioError::at(crowd.robots.span(), message).into());
+        }
+        let plan = setup::plan(&crowd.file, crowd.plan.as_ref(), path)?;
+        check(&plan, crowd)?;
+        let period = file.period.as_ref().map(|period| duration(period, 0.001, 1.0)).transpose()?;
+        let period = period.unwrap_or(Sim::PERIOD);
+        let timeout = file.timeout.as_ref().map(|timeout| duration(timeout, 0.0, 1e9)).transpose()?;
+        let seed = options.seed.or(file.seed.as_ref().map(|seed| *seed.get_ref()));
+        let robots = robots(crowd, file, path, seed, period)?;
+        let processors = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        Ok(Self {
+            robots,
+            plan,
+            period: nanos(period),
+            timeout: nanos(options.timeout.or(timeout).unwrap_or(setup::TIMEOUT)),
+            threads: options.threads.unwrap_or_else(processors),
+        })
+    }
+}
+
+fn nanos(time: Duration) -> Nanos {
+    Nanos(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX))
+}
+
+/// Checks that a plan needs nothing that the robots of a crowd have not.
+fn check(plan: &Arc<Loaded<SimAlphabet>>, crowd: &CrowdText) -> Result<(), ScenarioError> {
+    let plan = plan.plan();
+    let refused = |message: String| Err(ScenarioError::at(crowd.file.span(), message));
+    if let Some(robot) = plan.robots().first() {
+        return refused(format!("the plan names the robot `{robot}`, and the robots of a crowd have no names"));
+    }
+    if let Some(path) = plan.paths().first() {
+        return refused(format!("the plan replays the path `{path}`, and the robots of a crowd have no paths"));
+    }
+    if let Some(read) = plan.reads().first() {
+        return refused(format!("the plan reads the module `{}`, and a crowd has no modules", read.module));
+    }
+    Ok(())
+}
+
+/// Makes the robots at their places.
+fn robots(
+    crowd: &CrowdText,
+    file: &ScenarioText,
+    path: &Path,
+    seed: Option<u64>,
+    period: Duration,
+) -> Result<Vec<Simulated>, SetupError> {
+    let body = setup::body(crowd.body.as_ref())?;
+    let count = *crowd.robots.get_ref();
+    let spacing = crowd.spacing.as_ref().map(spacing).transpose()?.unwrap_or(SPACING);
+    let seeded = |number: u64| seed.map(|seed| seed.wrapping_mul(count).wrapping_add(number));
+    let make = Make { body, without: Vec::new(), seed: seeded(0) };
+    let width = 2.0 * make.form().radius();
+    if let Some(text) = crowd.spacing.as_ref().filter(|_| spacing <= width) {
+        let message = format!("two robots would overlap: each is {width:.2} m across");
+        return Err(ScenarioError::at(text.span(), message).into());
+    }
+    let world = match &file.world {
+        Some(_) => setup::world(file.world.as_ref(), path)?.0,
+        None => hall(count, spacing)?,
+    };
+    let mut places = Places::of(&world, spacing, seed.unwrap_or_default());
+    let first = places.find_map(|start| Simulated::with(&make, &world, start, period).ok());
+    let Some(first) = first else { return Err(no_room(crowd, 0, spacing).into()) };
+    let mut robots = vec![first];
+    while (robots.len() as u64) < count {
+        let (number, first) = (robots.len() as u64, robots.first());
+        let next = first.and_then(|first| places.find_map(|start| first.another(&world, start, seeded(number)).ok()));
+        let Some(robot) = next else { return Err(no_room(crowd, number, spacing).into()) };
+        robots.push(robot);
+    }
+    Ok(robots)
+}
+
+fn no_room(crowd: &CrowdText, count: u64, spacing: f64) -> ScenarioError {
+    let message = format!("the world has room for {count} robots that are {spacing} m apart");
+    ScenarioError::at(crowd.robots.span(), message).help("ask for fewer, or for a smaller `spacing`")
+}
+
+fn spacing(text: &At<String>) -> Result<f64, ScenarioError> {
+    let read = Quantity::Length.read(text.get_ref(), "m");
+    let read = read.map_err(|sentence| ScenarioError::at(text.span(), sentence))?;
+    let is_length = (0.1..=1000.0).contains(&read);
+    is_length.then_some(read).ok_or_else(|| ScenarioError::at(text.span(), "expected a length from 10 cm to 1 km"))
+}

@@ -1,0 +1,174 @@
+//! The turns of a crowd, on several threads with the same results.
+//!
+//! In each turn robots that may touch each other are a group. A group is the work of one thread: its robots move one
+//! after the other in their order, each among those of its group where they are then; then they make the turns of
+//! their plans. Sonars hear all other robots where they were when the turn began. So no result depends on the order of
+//! groups.
+
+use std::fmt::Write as _;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+
+use mdle_compiler::load::Loaded;
+use mdle_runtime::{Nanos, Pose};
+use mdle_sim::alphabet::Alphabet as SimAlphabet;
+use mdle_sim::{Crowd, Footprint, Groups, Others};
+
+use super::member::Member;
+use super::setup::CrowdSetup;
+
+/// Number of groups that a thread takes at a time.
+const TAKES: usize = 16;
+/// Number of robots for which it pays to begin a thread in each turn.
+const FOR_A_THREAD: usize = 100;
+
+/// The robots of a crowd.
+pub(super) struct Turns {
+    /// The robots. Each is locked by one thread at a time: nobody waits.
+    members: Vec<Mutex<Member>>,
+    plan: Arc<Loaded<SimAlphabet>>,
+    threads: usize,
+    /// Distance from a robot's centre within which it hears the centres of others, in metres.
+    hears: f64,
+    /// Distance between the centres of two robots that may touch in a turn, in metres.
+    touches: f64,
+}
+
+/// What all threads share in a turn.
+struct Shared<'t> {
+    turns: &'t Turns,
+    t: Nanos,
+    crowd: Crowd,
+    groups: Groups,
+    /// Number of the first group that nobody has taken.
+    next: AtomicUsize,
+}
+
+fn lock(member: &Mutex<Member>) -> MutexGuard<'_, Member> {
+    member.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Turns {
+    /// Returns a crowd before its first turn.
+    pub(super) fn new(setup: CrowdSetup) -> Self {
+        let CrowdSetup { robots, plan, threads, .. } = setup;
+        let (hears, touches) = robots.first().map_or((0.0, 0.0), |robot| (robot.hears(), robot.touches()));
+        let members: Vec<_> = robots.into_iter().map(|robot| Mutex::new(Member::new(robot))).collect();
+        let threads = threads.min(members.len().div_ceil(FOR_A_THREAD));
+        Self { members, plan, threads, hears, touches }
+    }
+
+    /// Returns the number of threads that make the turns.
+    pub(super) fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// Makes the turn of all robots at time `t`.
+    pub(super) fn turn(&mut self, t: Nanos) {
+        let bodies: Vec<Footprint> = self.each().map(|member| member.footprint()).collect();
+        let crowd = Crowd::of(bodies);
+        let groups = crowd.groups(self.touches);
+        let shared = Shared { turns: self, t, crowd, groups, next: AtomicUsize::new(0) };
+        thread::scope(|scope| {
+            for _ in 1..self.threads {
+                scope.spawn(|| shared.work());
+            }
+            shared.work();
+        });
+    }
+
+    /// Returns each robot, in order.
+    fn each(&self) -> impl Iterator<Item = MutexGuard<'_, Member>> {
+        self.members.iter().map(lock)
+    }
+
+    /// Calls `take` with the number and the pose of each robot.
+    pub(super) fn poses(&self, mut take: impl FnMut(usize, &Pose)) {
+        for (number, member) in self.each().enumerate() {
+            take(number, &member.pose());
+        }
+    }
+
+    /// Returns `true` if all plans are over.
+    pub(super) fn are_over(&self) -> bool {
+        self.each().all(|member| member.is_over)
+    }
+
+    /// Stops all robots.
+    pub(super) fn stop(&mut self) {
+        self.each().for_each(|mut member| member.stop());
+    }
+
+    /// Returns the report at time `t`.
+    pub(super) fn summary(&self, t: Nanos) -> String {
+        let count = |is_so: fn(&Member) -> bool| self.each().filter(|member| is_so(member)).count();
+        let (over, touched) = (count(|member| member.is_over), count(|member| member.has_touched));
+        let (all, way) = (self.members.len(), self.each().map(|member| member.way).sum::<f64>());
+        let mut text = format!("{all} robots for {:.1} s\n", t.seconds());
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "plans that are over: {over}");
+        let _ = writeln!(text, "robots that touched something: {touched}");
+        let _ = write!(text, "mean way: {:.2} m", way / all.max(1) as f64);
+        text
+    }
+}
+
+impl Shared<'_> {
+    /// Takes groups until there are none left.
+    fn work(&self) {
+        let mut others = Others::default();
+        loop {
+            let first = self.next.fetch_add(TAKES, Ordering::Relaxed);
+            if first >= self.groups.count() {
+                return;
+            }
+            for group in first..(first + TAKES).min(self.groups.count()) {
+                self.group(self.groups.group(group), &mut others);
+            }
+        }
+    }
+
+    /// Makes the turn of a group of robots.
+    fn group(&self, numbers: &[u32], others: &mut Others) {
+        let mut members: Vec<_> = numbers.iter().filter_map(|number| self.locked(*number)).collect();
+        let mut bodies: Vec<Footprint> = members.iter().map(|member| member.footprint()).collect();
+        for (place, number) in numbers.iter().enumerate() {
+            let Some(member) = members.get_mut(place) else { continue };
+            self.look(*number, numbers, &bodies, others);
+            member.moves(others);
+            if let Some(body) = bodies.get_mut(place) {
+                *body = member.footprint();
+            }
+        }
+        for (member, number) in members.iter_mut().zip(numbers) {
+            self.look(*number, numbers, &bodies, others);
+            member.turn(self.t, &self.turns.plan, others);
+        }
+    }
+
+    fn locked(&self, number: u32) -> Option<MutexGuard<'_, Member>> {
+        self.turns.members.get(number as usize).map(lock)
+    }
+
+    /// Takes down the other robots around one: those that it hears where the turn began, and those of its group that it
+    /// may touch where they are now.
+    fn look(&self, number: u32, group: &[u32], now: &[Footprint], others: &mut Others) {
+        let Others { heard, touched } = others;
+        heard.clear();
+        touched.clear();
+        let Some(own) = self.crowd.bodies().get(number as usize) else { return };
+        let touches = self.turns.touches * self.turns.touches;
+        self.crowd.near(own.at(), self.turns.hears, |other, body| {
+            if other == number as usize {
+                return;
+            }
+            heard.push(*body);
+            let (x, y) = (body.pose.x.0 - own.pose.x.0, body.pose.y.0 - own.pose.y.0);
+            if x * x + y * y <= touches {
+                let place = group.binary_search(&(other as u32)).ok();
+                touched.extend(place.and_then(|place| now.get(place)));
+            }
+        });
+    }
+}
