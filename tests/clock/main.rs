@@ -1,8 +1,10 @@
 //! Executables on emulated robots by the clock: signals, suspension and faults. Nothing else runs beside these tests.
 
+mod bad_line;
 mod faults;
 mod links;
 mod phases;
+mod pursuits;
 mod scenarios;
 mod signalled;
 mod stands;

@@ -9,6 +9,7 @@ use std::process::{Command, Output};
 use mdle_tests::chance::repeated;
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
+use mdle_tests::ways::{Place, bulge, excess};
 use serde_json::Value;
 
 /// Number of trips: four laps there and back.
@@ -35,12 +36,12 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
 /// The ways that a robot drove by `path` and `Follow`, in order, by the log of a run.
 struct Trips {
     /// For each trip, if the robot led it, and its places.
-    trips: Vec<(bool, Vec<[f64; 2]>)>,
+    trips: Vec<(bool, Vec<Place>)>,
 }
 
 impl Trips {
     fn of(log: &[Value], robot: &str) -> Self {
-        let mut trips: Vec<(bool, Vec<[f64; 2]>)> = Vec::new();
+        let mut trips: Vec<(bool, Vec<Place>)> = Vec::new();
         let mut last = 0;
         for turn in log.iter().filter(|turn| turn["robot"] == robot) {
             let (state, law) = (turn["state"].as_u64().unwrap(), turn["law"].as_str().unwrap());
@@ -58,29 +59,9 @@ impl Trips {
     }
 
     /// Returns the places of the trips that the robot led.
-    fn led(&self) -> impl Iterator<Item = &Vec<[f64; 2]>> {
+    fn led(&self) -> impl Iterator<Item = &Vec<Place>> {
         self.trips.iter().filter(|(is_led, _)| *is_led).map(|(_, way)| way)
     }
-}
-
-fn distance(one: [f64; 2], other: [f64; 2]) -> f64 {
-    libm::hypot(one[0] - other[0], one[1] - other[1])
-}
-
-/// By how much a way is longer than the distance of its ends, in percent.
-fn excess(way: &[[f64; 2]]) -> f64 {
-    let length: f64 = way.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
-    (length / distance(way[0], way[way.len() - 1]) - 1.0) * 100.0
-}
-
-/// The greatest distance of a way from the line between its ends, in metres.
-fn bulge(way: &[[f64; 2]]) -> f64 {
-    let (from, to) = (way[0], way[way.len() - 1]);
-    let off = |at: &[f64; 2]| {
-        let cross = (to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0]);
-        (cross / distance(from, to)).abs()
-    };
-    way.iter().map(off).fold(0.0, f64::max)
 }
 
 /// Figures of a run: time of its end in seconds, least gap in centimetres, and for the trips the excess of the leader

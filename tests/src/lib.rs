@@ -28,4 +28,5 @@ pub mod repository;
 pub mod scxml;
 pub mod signals;
 pub mod texts;
+pub mod ways;
 pub mod xml;

@@ -1,0 +1,78 @@
+//! A line between two robots that loses and delays states: it stands between a sender and the peer that it connects to.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::io::{self, Read as _, Write as _};
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use mdle_tests::chance::Chance;
+
+/// A line's faults.
+#[derive(Clone, Copy)]
+pub(crate) struct Line {
+    /// States that are lost, in percent.
+    pub(crate) loss: usize,
+    /// The longest time that a state takes; each takes a random one, so that later ones overtake.
+    pub(crate) longest: Duration,
+}
+
+impl Line {
+    /// Begins to carry states to `peer`, and returns the address to which they are to be sent.
+    pub(crate) fn before(self, peer: SocketAddr, seed: u64) -> SocketAddr {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = listener.local_addr().unwrap();
+        thread::spawn(move || {
+            for (number, stream) in (0..).zip(listener.incoming().flatten()) {
+                // A peer that is not there yet: the sender comes again.
+                let Ok(to) = TcpStream::connect(peer) else { continue };
+                let (frames, carried) = channel();
+                let chance = Chance::new(seed + 1000 * number);
+                thread::spawn(move || self.take(stream, &frames, chance));
+                thread::spawn(move || carry(to, &carried));
+            }
+        });
+        address
+    }
+
+    /// Takes the frames of a connection, each with the time at which it arrives, until it ends.
+    fn take(self, mut from: TcpStream, frames: &Sender<(Instant, Vec<u8>)>, mut chance: Chance) -> io::Result<()> {
+        loop {
+            let mut length = [0; 4];
+            from.read_exact(&mut length)?;
+            let mut frame = length.to_vec();
+            frame.resize(4 + u32::from_le_bytes(length) as usize, 0);
+            from.read_exact(&mut frame[4..])?;
+            let is_lost = chance.percent(self.loss);
+            let delay = self.longest.mul_f64(chance.below(1000) as f64 / 1000.0);
+            if !is_lost && frames.send((Instant::now() + delay, frame)).is_err() {
+                return Ok(());
+            }
+        }
+    }
+}
+
+/// Writes each frame when it is due.
+fn carry(mut to: TcpStream, frames: &Receiver<(Instant, Vec<u8>)>) -> io::Result<()> {
+    let mut waiting = BinaryHeap::new();
+    loop {
+        let now = Instant::now();
+        let next =
+            waiting.peek().map_or(now + Duration::from_secs(1), |Reverse((due, _)): &Reverse<(Instant, _)>| *due);
+        match frames.recv_timeout(next.saturating_duration_since(now)) {
+            Ok(frame) => waiting.push(Reverse(frame)),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return Ok(()),
+        }
+        while let Some(Reverse((due, _))) = waiting.peek()
+            && *due <= Instant::now()
+            && let Some(Reverse((_, frame))) = waiting.pop()
+        {
+            to.write_all(&frame)?;
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! Local pursuit by three programs that are linked over TCP (paper, section IV-D): simulated robots on a line that
+//! loses and delays states, and emulated Scouts in one world, one of which may lose its program.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test tells")]
+
+use std::cell::{Cell, RefCell};
+use std::fs;
+use std::net::{SocketAddr, TcpListener};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+use mdle_emulator::{Ailment, Embodied, Emulated, Pace, Port, Seat, Several};
+use mdle_runtime::{Meters, Pose};
+use mdle_scout_emulator::scout::Scout;
+use mdle_sim::{Body, Footprint, Make, Simulated, World};
+use mdle_tests::chance::{Chance, repeated, sized};
+use mdle_tests::executable::{folder, mdle};
+use mdle_tests::repository::root;
+use mdle_tests::ways::{Place, excess};
+
+use crate::bad_line::Line;
+
+const PERIOD: Duration = Duration::from_millis(100);
+/// The robots: name, plan, start on the first axis, and the option by which it records its ways.
+const ROBOTS: [(&str, &str, f64, &str); 3] = [
+    ("robot1", "first_robot", 0.0, " --records lastPath --paths robot1"),
+    ("robot2", "second_robot", -0.95, ""),
+    ("robot3", "third_robot", -1.9, " --records lastPath --paths robot3"),
+];
+const FLOOR: &str =
+    "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[-6, -6], [9, -6], [9, 6], [-6, 6], [-6, -6]]";
+/// The longest time for which programs may run, in real time.
+const LONGEST: Duration = Duration::from_secs(400);
+
+/// A folder with the plans, for this number of laps and with this timer, and with the file of each robot's link, by
+/// lines with these faults.
+fn prepared(test: &str, laps: u64, timer: &str, line: Option<Line>, seed: u64) -> PathBuf {
+    let folder = folder(test);
+    let plans = root().join("plans/pursuit");
+    for (robot, plan, ..) in ROBOTS {
+        fs::create_dir_all(folder.join(robot)).unwrap();
+        let text = fs::read_to_string(plans.join(plan).with_extension("mdle")).unwrap();
+        let text = text.replace("ExecPlan 4", &format!("ExecPlan {laps}")).replace("10min", timer);
+        fs::write(folder.join(plan).with_extension("mdle"), text).unwrap();
+    }
+    fs::copy(plans.join("robot1/lastPath.csv"), folder.join("robot1/lastPath.csv")).unwrap();
+    fs::write(folder.join("floor.toml"), FLOOR).unwrap();
+    let listeners = ROBOTS.map(|_| TcpListener::bind("127.0.0.1:0").unwrap());
+    let addresses = listeners.map(|listener| listener.local_addr().unwrap());
+    for (own, ((name, _, x, _), listen)) in ROBOTS.into_iter().zip(addresses).enumerate() {
+        let mut text = format!("name = \"{name}\"\nlisten = \"{listen}\"\nkey = \"key\"\nstart = \"{x},0,0\"\n");
+        for (other, ((name, ..), peer)) in ROBOTS.into_iter().zip(addresses).enumerate() {
+            if other != own {
+                let of_the_line = |line: Line| line.before(peer, seed + (3 * own + other) as u64);
+                let address: SocketAddr = line.map_or(peer, of_the_line);
+                text += &format!("[[robot]]\nname = \"{name}\"\naddress = \"{address}\"\n");
+            }
+        }
+        fs::write(folder.join(format!("{name}-link.toml")), text).unwrap();
+    }
+    folder
+}
+
+/// Starts the program of a robot with these options of its target.
+fn begin(folder: &Path, number: usize, options: &str) -> Child {
+    let (name, plan, _, records) = ROBOTS[number];
+    let _ = fs::remove_file(folder.join(format!("{name}.mcap")));
+    let line = format!("run {plan}.mdle --link {name}-link.toml{records} --log {name}.mcap {options}");
+    let mut command = Command::new(mdle());
+    let command = command.args(line.split_whitespace()).current_dir(folder);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// The run of a robot.
+struct Course {
+    status: Option<i32>,
+    report: String,
+    /// For each trip, if the robot led it, and its places by odometry.
+    trips: Vec<(bool, Vec<Place>)>,
+}
+
+impl Course {
+    /// Returns the run of a program that has ended, or has been killed.
+    fn of(folder: &Path, number: usize, child: Child) -> Self {
+        let Output { status, stdout, stderr } = child.wait_with_output().unwrap();
+        let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        let log = format!("{}.mcap", ROBOTS[number].0);
+        let table = Command::new(mdle()).args(["log", "export", "--csv", &log]).current_dir(folder).output().unwrap();
+        let table = String::from_utf8(table.stdout).unwrap();
+        let places = table.lines().skip(1).map(|line| {
+            let number = |column: usize| line.split(',').nth(column).unwrap().parse().unwrap();
+            (number(1), [number(4), number(5)])
+        });
+        let trips = trips(&out, &places.collect::<Vec<_>>());
+        Self { status: status.code(), report: out + &err, trips }
+    }
+}
+
+/// Returns the ways of `path` and `Follow` by the report of a run, and its places over time.
+fn trips(report: &str, places: &[(f64, Place)]) -> Vec<(bool, Vec<Place>)> {
+    let lines: Vec<(f64, &str)> = report
+        .lines()
+        .filter_map(|line| line.split_once(" s  "))
+        .filter_map(|(time, rest)| Some((time.trim().parse().ok()?, rest)))
+        .collect();
+    let trip = |pair: &[(f64, &str)]| {
+        let [(from, law), (to, _)] = pair else { return None };
+        let is_led = law.starts_with("path");
+        let within = places.iter().filter(|(t, _)| from <= t && t <= to).map(|(_, place)| *place);
+        (is_led || law.starts_with("Follow")).then(|| (is_led, within.collect()))
+    };
+    lines.windows(2).filter_map(trip).collect()
+}
+
+/// Checks that the ways of three robots became straight, and prints how straight.
+fn assert_converge(test: &str, courses: &[Course; 3], laps: u64) {
+    let all = courses.iter().map(|course| course.report.as_str()).collect::<Vec<_>>().join("\n");
+    for course in courses {
+        assert_eq!(course.status, Some(0), "{all}");
+        assert!(course.report.contains("plan over: completed"), "{all}");
+    }
+    let led = |robot: usize| courses[robot].trips.iter().filter(|(is_led, _)| *is_led).map(|(_, way)| excess(way));
+    let leaders: Vec<f64> = led(0).zip(led(2)).flat_map(|(there, back)| [there, back]).collect();
+    let seconds = courses[0].report.lines().rfind(|line| line.contains("plan over")).unwrap();
+    println!("{test}: leaders {leaders:.1?} %, {seconds}");
+    assert_eq!(leaders.len() as u64, 2 * laps, "{all}");
+    assert!(leaders[0] >= 20.0 && leaders[2] <= 6.0 && leaders[3] <= 3.5, "{leaders:?}\n{all}");
+    assert!(leaders.windows(3).all(|trips| trips[2] < trips[0]), "{leaders:?}\n{all}");
+    assert!(laps < 4 || leaders[4] <= 2.0 && leaders[6] <= 1.0, "{leaders:?}\n{all}");
+}
+
+#[test]
+fn simulated_robots_learn_over_a_bad_line() {
+    // As fast as the clock with all laps, or else four times as fast with a line that is.
+    let (laps, speed) = (sized(2, 4), sized(4, 1));
+    for seed in 0..sized(1, 5) {
+        let line = Line { loss: 10, longest: Duration::from_millis(200) / speed };
+        let folder = prepared("bad_line", laps, "10min", Some(line), 100 * seed);
+        let children = [0, 1, 2].map(|number| {
+            let (x, seed) = (ROBOTS[number].2, 3 * seed + number as u64);
+            let world = format!("--target sim --world floor.toml --body scout --seed {seed} --start {x},0,0");
+            begin(&folder, number, &format!("{world} --speed {speed}"))
+        });
+        let mut number = 0;
+        let courses = children.map(|child| {
+            number += 1;
+            Course::of(&folder, number - 1, child)
+        });
+        assert_converge("bad line", &courses, laps);
+    }
+}
+
+/// A robot whose program is killed: its number, and the time of its world.
+type Victim = (usize, Duration);
+
+/// An emulated Scout that tells the time of its world.
+struct Timed {
+    scout: Scout,
+    time: Rc<Cell<Duration>>,
+}
+
+impl Emulated for Timed {
+    fn push(&mut self, bytes: &[u8]) {
+        self.scout.push(bytes);
+    }
+
+    fn obey(&mut self) -> Option<bool> {
+        self.scout.obey()
+    }
+
+    fn pass(&mut self, time: Duration) -> Result<(), String> {
+        self.time.set(self.time.get() + time);
+        self.scout.pass(time)
+    }
+
+    fn take_frames(&mut self) -> Vec<Vec<u8>> {
+        self.scout.take_frames()
+    }
+
+    fn can_suffer(ailment: Ailment) -> bool {
+        Scout::can_suffer(ailment)
+    }
+
+    fn suffer(&mut self, ailment: Ailment) {
+        self.scout.suffer(ailment);
+    }
+}
+
+impl Embodied for Timed {
+    fn footprint(&self) -> Footprint {
+        self.scout.footprint()
+    }
+
+    fn see(&mut self, others: &[Footprint]) {
+        self.scout.see(others);
+    }
+}
+
+/// Runs the plans on three emulated Scouts in one world; returns their runs. Programs that do not end in time are
+/// killed.
+fn on_scouts(folder: &Path, pace: Pace, seed: u64, victim: Option<Victim>) -> [Course; 3] {
+    let (world, time) = (World::parse("floor", FLOOR).unwrap(), Rc::new(Cell::new(Duration::ZERO)));
+    let seat = |number: usize| {
+        let make = Make { body: Body::Scout, without: Vec::new(), seed: Some(3 * seed + number as u64) };
+        let start = Pose { x: Meters(ROBOTS[number].2), ..world.start };
+        let body = Simulated::with(&make, &world, start, pace.step()).unwrap();
+        let robot = Timed { scout: Scout::new(body).unwrap(), time: Rc::clone(&time) };
+        Seat { robot, port: Port::open().unwrap() }
+    };
+    let mut robots = Several::of((0..3).map(seat).collect()).unwrap();
+    let lockstep = if pace == Pace::Real { "" } else { "--lockstep" };
+    let started = [0, 1, 2].map(|number| {
+        let device = robots.seats()[number].port.path().display();
+        begin(folder, number, &format!("--target scout {lockstep} --device {device}"))
+    });
+    let (children, begun) = (RefCell::new(started), Instant::now());
+    let goes_on = || {
+        let mut children = children.borrow_mut();
+        // Each of the three robots counts.
+        if let Some((number, _)) = victim.filter(|(_, at)| time.get() / 3 >= *at) {
+            // It may have been killed before, which changes nothing.
+            children[number].kill().unwrap();
+        }
+        if begun.elapsed() > LONGEST {
+            children.iter_mut().for_each(|child| child.kill().unwrap());
+        }
+        children.iter_mut().any(|child| child.try_wait().unwrap().is_none())
+    };
+    robots.serve(pace, &goes_on).unwrap();
+    let mut number = 0;
+    children.into_inner().map(|child| {
+        number += 1;
+        Course::of(folder, number - 1, child)
+    })
+}
+
+#[test]
+fn scouts_in_one_world_learn_over_tcp() {
+    let laps = sized(2, 4);
+    for seed in 0..sized(1, 10) {
+        let folder = prepared("scouts", laps, "10min", None, 0);
+        let courses = on_scouts(&folder, Pace::Lockstep(PERIOD), seed, None);
+        assert_converge("scouts", &courses, laps);
+    }
+}
+
+#[test]
+fn a_program_that_dies_leaves_no_scout_waiting() {
+    let mut chance = Chance::new(7);
+    for run in 0..repeated(4) {
+        let folder = prepared("scouts_killed", 2, "2min", None, 0);
+        let victim = run as usize % 3;
+        let time = Duration::from_millis(chance.below(65_000) as u64);
+        let courses = on_scouts(&folder, Pace::Lockstep(PERIOD), run, Some((victim, time)));
+        assert_eq!(courses[victim].status, None, "it was killed: {}", courses[victim].report);
+        println!("{} killed after {} s", ROBOTS[victim].0, time.as_secs_f64());
+        for (number, Course { status, report, .. }) in courses.iter().enumerate() {
+            let (name, ..) = ROBOTS[number];
+            let last = report.lines().rfind(|line| line.contains(" s  ")).unwrap_or_default();
+            if number == victim {
+                continue;
+            }
+            println!("    {name}: {last}");
+            assert_eq!(*status, Some(0), "{name}: {report}");
+            let words = ["plan over: wait 2min", "plan over: bumper", "plan over: completed"];
+            assert!(words.iter().any(|words| last.contains(words)), "{name}: {report}");
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! Figures of ways that robots drove: by how much they are longer than straight.
+
+/// A place on the floor, in metres.
+pub type Place = [f64; 2];
+
+/// Returns the distance between two places, in metres.
+#[must_use]
+pub fn distance(one: Place, other: Place) -> f64 {
+    libm::hypot(one[0] - other[0], one[1] - other[1])
+}
+
+/// Returns by how much a way is longer than the distance of its ends, in percent.
+///
+/// # Panics
+///
+/// If the way has no places.
+#[must_use]
+pub fn excess(way: &[Place]) -> f64 {
+    let length: f64 = way.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
+    (length / distance(way[0], way[way.len() - 1]) - 1.0) * 100.0
+}
+
+/// Returns the greatest distance of a way from the line between its ends, in metres.
+///
+/// # Panics
+///
+/// If the way has no places.
+#[must_use]
+pub fn bulge(way: &[Place]) -> f64 {
+    let (from, to) = (way[0], way[way.len() - 1]);
+    let off = |at: &Place| {
+        let cross = (to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0]);
+        (cross / distance(from, to)).abs()
+    };
+    way.iter().map(off).fold(0.0, f64::max)
+}
