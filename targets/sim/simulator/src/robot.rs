@@ -128,7 +128,7 @@ impl Simulated {
             body: self.body.another(start, seed),
             ring: Ring::new(Arc::clone(&self.ring.hearing), seed),
             compass: Compass::default(),
-            battery: self.battery.clone(),
+            battery: self.battery,
             exchanges: 0,
             ..*self
         })
