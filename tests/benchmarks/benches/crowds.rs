@@ -1,0 +1,131 @@
+//! Crowds of Scouts, whose sonars fire in turn and whose plan drives by `goAvoid` or by `go`: microseconds of the
+//! processor for a robot and a second, times real time, and memory, beside the rays of its sonars alone.
+#![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
+
+use std::hint::black_box;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+use std::{env, fs, thread};
+
+use mdle_sim::{Place, Walls, World};
+use mdle_tests::executable::target;
+use mdle_tests::repository::root;
+
+/// Numbers of robots, and simulated seconds of their runs.
+const CROWDS: [(u32, u32); 5] = [(1, 20_000), (10, 4_000), (100, 400), (1_000, 60), (10_000, 20)];
+/// Rays of a Scout in a second: seven for each ping, one ping in 60 ms.
+const RAYS: f64 = 7.0 / 0.06;
+/// Maximum range of a Scout's sonars, in metres.
+const REACH: f64 = 6.477;
+/// Distance between two robots at the start, in metres.
+const SPACING: f64 = 2.0;
+/// Exit status of a run whose time is over.
+const TIMED_OUT: i32 = 4;
+
+fn main() {
+    let mdle = built();
+    println!(
+        "{:<12}{:>8}{:>14}{:>12}{:>18}{:>10}",
+        "law", "robots", "rays alone", "crowd", "times real time", "memory"
+    );
+    for (law, name) in [("goAvoid 0 40 20", "goAvoid"), ("go 20 0", "go")] {
+        for (robots, seconds) in CROWDS {
+            let Run { processor, wall, memory } = run(&mdle, law, robots, seconds);
+            let each = f64::from(robots) * f64::from(seconds);
+            println!(
+                "{name:<12}{robots:>8}{:>11.1} us{:>9.1} us{:>18.2}{:>7.0} MB",
+                rays(robots) * 1e6,
+                processor / each * 1e6,
+                f64::from(seconds) / wall,
+                memory
+            );
+        }
+    }
+}
+
+/// Builds the program; returns its path.
+fn built() -> PathBuf {
+    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut build = Command::new(cargo);
+    build.args(["build", "--quiet", "--release", "-p", "mdle", "--bin", "mdle", "--target-dir"]).arg(target());
+    assert!(build.current_dir(root()).status().expect("cargo runs").success(), "mdle does not build");
+    Path::new(&target()).join("release/mdle")
+}
+
+/// Figures of a run.
+struct Run {
+    /// Seconds of all processors.
+    processor: f64,
+    /// Seconds of the clock.
+    wall: f64,
+    /// Greatest memory, in megabytes.
+    memory: f64,
+}
+
+/// Runs a crowd with this law.
+fn run(mdle: &Path, law: &str, robots: u32, seconds: u32) -> Run {
+    let folder = target();
+    let plan = format!(
+        "{{ Wander (wait 9h)\n  ExecPlan inf {{\n    (Atom (wait 20 OR bumper) ({law}))\n    (Atom (wait 1) (go -20 0))\n    \
+         (Atom (wait 9) (turn 100))\n  }}\n}}\n"
+    );
+    let crowd = format!("seed = 1\n[crowd]\nrobots = {robots}\nfile = \"crowd-benchmark.mdle\"\nbody = \"scout\"\n");
+    fs::write(folder.join("crowd-benchmark.mdle"), plan).expect("a folder to write to");
+    fs::write(folder.join("crowd-benchmark.toml"), crowd).expect("a folder to write to");
+    let mut command = Command::new(mdle);
+    command.args(["run", "crowd-benchmark.toml", "--timeout", &seconds.to_string()]).current_dir(folder);
+    let begun = Instant::now();
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("mdle runs");
+    let (mut processor, mut memory) = (0.0, 0.0);
+    let status = loop {
+        (processor, memory) = (seconds_of(child.id()).unwrap_or(processor), memory_of(child.id()).unwrap_or(memory));
+        match child.try_wait().expect("a child") {
+            Some(status) => break status,
+            None => thread::sleep(Duration::from_millis(5)),
+        }
+    };
+    assert_eq!(status.code(), Some(TIMED_OUT), "{robots} robots");
+    Run { processor, wall: begun.elapsed().as_secs_f64(), memory }
+}
+
+/// Returns the seconds of the processor that a process has taken; `None` once it has ended.
+fn seconds_of(process: u32) -> Option<f64> {
+    let stat = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
+    let (_, fields) = stat.rsplit_once(") ")?;
+    let ticks = |number: usize| fields.split(' ').nth(number)?.parse::<f64>().ok();
+    // In hundredths, of the program and of the system for it.
+    Some((ticks(11)? + ticks(12)?) / 100.0).filter(|seconds| *seconds > 0.0)
+}
+
+/// Returns the greatest memory of a process so far, in megabytes.
+fn memory_of(process: u32) -> Option<f64> {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(line.trim().split(' ').next()?.parse::<f64>().ok()? / 1000.0)
+}
+
+/// Returns the seconds of the processor that the rays of a robot and a second take, in the hall of a crowd without
+/// other robots.
+fn rays(robots: u32) -> f64 {
+    let rows = f64::from(robots).sqrt().ceil();
+    let side = rows * SPACING;
+    let hall = format!("[[wall]]\npoints = [[0, 0], [{side}, 0], [{side}, {side}], [0, {side}], [0, 0]]\n");
+    let walls = Walls::of(&World::parse("hall", &hall).expect("a good world"));
+    let own = std::process::id();
+    let begun = seconds_of(own).unwrap_or_default();
+    let (mut number, mut heard) = (0_u64, 0.0);
+    // Long enough for a clock of hundredths.
+    while seconds_of(own).unwrap_or_default() - begun < 1.0 {
+        for _ in 0..100_000 {
+            let robot = (number % u64::from(robots)) as f64;
+            let from = Place { x: SPACING * (0.5 + robot % rows), y: SPACING * (0.5 + (robot / rows).floor()) };
+            let (sin, cos) = libm::sincos(number as f64);
+            heard += walls.cast(from, Place { x: cos, y: sin }, black_box(REACH)).unwrap_or_default();
+            number += 1;
+        }
+    }
+    black_box(heard);
+    RAYS * (seconds_of(own).unwrap_or_default() - begun) / number as f64
+}
