@@ -89,8 +89,8 @@ pub(crate) fn linked(name: &str) -> Result<LinkedTarget, String> {
     }
     let known = LINKED.map(|linked| linked.name);
     Err(format!(
-        "`mdle` has no target `{name}`{}\nhelp: its targets are {}; `mdlec run` builds the executable of a plan for a \
-         target of your own",
+        "`mdle` has no target `{name}`{}\nhelp: its targets are {}; `mdlec run` builds the executable of a plan for \
+         `ros2`, or for a target of your own",
         did_you_mean(name, &known),
         known.join(", ")
     ))
