@@ -34,15 +34,16 @@ def new_domain():
     return next(_domains)
 
 
-def built(name, target="ros2", plan=None):
-    """The executable of a plan for a target, built once."""
+def built(name, target="ros2", plan=None, machine=None):
+    """The executable of a plan for a target, and for this machine or another, built once."""
     WORK.mkdir(parents=True, exist_ok=True)
-    executable = WORK / f"{name}_{target}"
+    executable = WORK / "_".join(filter(None, [name, target, machine]))
     if plan is None:
         plan = WORK / f"{name}.mdle"
         plan.write_text(PLANS[name] + "\n")
     if executable not in built.done:
         command = [MDLEC, plan, "--target", target, "-o", executable]
+        command += ["--machine", machine] if machine else []
         subprocess.run(command, check=True, capture_output=True, text=True, timeout=3600)
         built.done.add(executable)
     return executable
@@ -72,10 +73,11 @@ def toml(value):
 
 
 class Run:
-    """A running plan."""
+    """A running plan; with an emulator, in an emulated processor."""
 
-    def __init__(self, executable, config, *options):
-        command = [executable, "--config", config, *options]
+    def __init__(self, executable, config, *options, emulator=None):
+        command = [emulator] if emulator else []
+        command += [executable, "--config", config, *options]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def end(self):

@@ -2,7 +2,9 @@
 
 import json
 import math
+import shutil
 import subprocess
+from pathlib import Path
 
 import pytest
 from cyclonedds.core import Policy, Qos
@@ -10,7 +12,7 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 
 import messages as m
-from harness import ROOT, built, configuration, drives, new_domain, running, stopped, until
+from harness import ROOT, Run, built, configuration, drives, new_domain, running, stopped, until
 from robot import RELIABLE, Robot
 
 LATCHED = Qos(Policy.Reliability.Reliable(0), Policy.Durability.TransientLocal, Policy.History.KeepLast(8))
@@ -116,6 +118,25 @@ def test_a_low_battery_ends_its_atom():
             drives(robot)
             charge[0] = 0.1
             arrives(run, robot)
+
+
+def is_installed(machine):
+    """Whether Rust compiles for this machine here."""
+    command = ["rustc", "--print", "target-libdir", "--target", machine]
+    libraries = subprocess.run(command, capture_output=True, text=True).stdout.strip()
+    return libraries != "" and any(Path(libraries).glob("libstd-*"))
+
+
+def test_an_executable_for_aarch64_drives():
+    emulator = shutil.which("qemu-aarch64-static")
+    if not emulator or not is_installed("aarch64-unknown-linux-musl"):
+        pytest.skip("needs qemu-user-static, and `rustup target add aarch64-unknown-linux-musl`")
+    domain = new_domain()
+    with Robot(domain) as robot:
+        # An emulated processor is slow.
+        config = configuration(domain, stale_odom=5000, stale_scan=20000)
+        arrives(Run(built("hop", machine="aarch64"), config, emulator=emulator), robot)
+        assert 0.19 < robot.body.place.x < 1.0
 
 
 def test_a_simulation_has_its_own_time():
