@@ -107,8 +107,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         let key = |number: &usize| {
             let module = loaded.get(*number);
             let priority = module.map_or(0, |module| module.declared.priority);
-            let occupant = module.and_then(|module| module.seat()?.occupant());
-            (std::cmp::Reverse((priority, occupant.map_or(Duration::ZERO, |occupant| occupant.cost))), *number)
+            let cost = module.and_then(Loaded::seat).map_or(Duration::ZERO, |seat| seat.cost());
+            (std::cmp::Reverse((priority, cost)), *number)
         };
         order.sort_unstable_by_key(key);
     }

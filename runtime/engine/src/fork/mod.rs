@@ -3,16 +3,23 @@
 
 mod seat;
 
+use std::hint::spin_loop;
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use mdle_runtime::Nanos;
 use rustix::thread::futex;
 use rustix::time::Timespec;
 pub(crate) use seat::{Progress, Seat, Task};
+
+/// Work of a round up to which one worker makes it: another one would take longer to wake.
+const SMALL: Duration = Duration::from_micros(50);
+/// Maximum time for which the control thread looks for the end of a small round before it sleeps, as it would take as long
+/// to wake.
+const LOOKS: Duration = Duration::from_micros(200);
 
 /// Threads on which modules make their turns.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +43,8 @@ struct Round<Y> {
     number: u64,
     now: Nanos,
     seats: Vec<Arc<Seat<Y>>>,
+    /// Time that the modules took lately.
+    cost: Duration,
     /// Place of the next module to be taken.
     next: AtomicUsize,
     /// Number of modules that are not done; the control thread waits for zero.
@@ -46,6 +55,8 @@ struct Round<Y> {
 struct Crew<Y> {
     call: Arc<Call<Y>>,
     workers: usize,
+    /// `true` if a worker runs while the control thread does.
+    is_parallel: bool,
     prepare: fn(),
 }
 
@@ -87,7 +98,10 @@ impl<Y: Send + Sync + 'static> Fork<Y> {
             None => _ = round.work(),
             Some(crew) => {
                 crew.call(&round);
-                round.wait(deadline);
+                if !crew.makes_alone(&round, deadline) {
+                    crew.wake_all();
+                    round.wait(deadline);
+                }
                 crew.replace(round.seats.iter().filter(|seat| seat.cut()).count());
             }
         }
@@ -117,6 +131,7 @@ impl<Y: Send + Sync + 'static> Fork<Y> {
             round.seats.clear();
             round.seats.extend(seats.map(Arc::clone));
             round.seats.iter().for_each(|seat| seat.queue());
+            round.cost = round.seats.iter().map(|seat| seat.cost()).sum();
             *round.next.get_mut() = 0;
             *round.left.get_mut() = u32::try_from(round.seats.len()).unwrap_or(u32::MAX);
         }
@@ -131,6 +146,7 @@ impl<Y> Default for Round<Y> {
             number: 0,
             now: Nanos::ZERO,
             seats: Vec::new(),
+            cost: Duration::ZERO,
             next: AtomicUsize::new(0),
             left: AtomicU32::new(0),
         }
@@ -154,6 +170,17 @@ impl<Y> Round<Y> {
         true
     }
 
+    /// Looks for the end until this time; returns `true` if all modules are done.
+    fn ends_before(&self, until: Instant) -> bool {
+        while self.left.load(Ordering::Acquire) > 0 {
+            if Instant::now() >= until {
+                return false;
+            }
+            spin_loop();
+        }
+        true
+    }
+
     /// Waits until all modules are done, or the deadline has come.
     fn wait(&self, deadline: Option<Instant>) {
         loop {
@@ -169,7 +196,8 @@ impl<Y> Round<Y> {
 impl<Y: Send + Sync + 'static> Crew<Y> {
     fn new(workers: usize, prepare: fn()) -> io::Result<Self> {
         let call = Call { round: Mutex::default(), epoch: AtomicU32::new(0), quit: AtomicBool::new(false) };
-        let crew = Self { call: Arc::new(call), workers, prepare };
+        let is_parallel = thread::available_parallelism().is_ok_and(|cores| cores.get() > 1);
+        let crew = Self { call: Arc::new(call), workers, is_parallel, prepare };
         (0..workers).try_for_each(|_| crew.hire())?;
         Ok(crew)
     }
@@ -189,10 +217,23 @@ impl<Y: Send + Sync + 'static> Crew<Y> {
         (0..late).for_each(|_| _ = self.hire());
     }
 
-    /// Has the workers make a round.
+    /// Gives the workers a round, for which they are not woken yet.
     fn call(&self, round: &Arc<Round<Y>>) {
         *self.call.round.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(round));
         self.call.epoch.fetch_add(1, Ordering::AcqRel);
+    }
+
+    /// Wakes one worker if the round is small, and looks for its end; returns `true` if it came.
+    fn makes_alone(&self, round: &Round<Y>, deadline: Option<Instant>) -> bool {
+        let is_small = self.is_parallel && round.cost <= SMALL;
+        is_small && {
+            wake(&self.call.epoch, 1);
+            let until = Instant::now() + LOOKS;
+            round.ends_before(deadline.map_or(until, |deadline| deadline.min(until)))
+        }
+    }
+
+    fn wake_all(&self) {
         wake(&self.call.epoch, u32::try_from(self.workers).unwrap_or(u32::MAX));
     }
 }

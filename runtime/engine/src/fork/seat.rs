@@ -1,7 +1,7 @@
 //! A registered module with its ports, and the progress of its turn.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
@@ -12,6 +12,8 @@ use crate::module::{Fault, Module, Ports, Turn, panicked};
 /// Place of a module among those that make turns.
 pub(crate) struct Seat<Y> {
     progress: AtomicU8,
+    /// Mean time of a turn, in nanoseconds.
+    cost: AtomicU64,
     occupant: Mutex<Occupant<Y>>,
 }
 
@@ -23,8 +25,6 @@ pub(crate) struct Occupant<Y> {
     pub(crate) task: Task,
     /// Why the module cannot go on.
     pub(crate) fault: Option<Fault>,
-    /// Mean time of a turn.
-    pub(crate) cost: Duration,
 }
 
 /// Work of a module in a round.
@@ -58,13 +58,19 @@ const PROGRESS: [Progress; 5] =
 
 impl<Y> Seat<Y> {
     pub(crate) fn new(module: Box<dyn Module<Y>>, ports: Ports) -> Arc<Self> {
-        let occupant = Occupant { module, ports, task: Task::Start, fault: None, cost: Duration::ZERO };
-        Arc::new(Self { progress: AtomicU8::new(Progress::Done as u8), occupant: Mutex::new(occupant) })
+        let occupant = Occupant { module, ports, task: Task::Start, fault: None };
+        let (progress, cost) = (AtomicU8::new(Progress::Done as u8), AtomicU64::new(0));
+        Arc::new(Self { progress, cost, occupant: Mutex::new(occupant) })
     }
 
     /// Returns the progress of the last turn.
     pub(crate) fn progress(&self) -> Progress {
         PROGRESS.get(usize::from(self.progress.load(Ordering::Acquire))).copied().unwrap_or(Progress::Done)
+    }
+
+    /// Returns the mean time of a turn; zero before the first.
+    pub(crate) fn cost(&self) -> Duration {
+        Duration::from_nanos(self.cost.load(Ordering::Relaxed))
     }
 
     /// Queues the module for a round.
@@ -93,8 +99,11 @@ impl<Y> Seat<Y> {
             return false;
         }
         let mut occupant = self.occupant.lock().unwrap_or_else(PoisonError::into_inner);
+        let begun = Instant::now();
         occupant.run(y, number, now);
         drop(occupant);
+        let cost = (self.cost().saturating_mul(7).saturating_add(begun.elapsed())) / 8;
+        self.cost.store(u64::try_from(cost.as_nanos()).unwrap_or(u64::MAX), Ordering::Relaxed);
         self.progress.swap(Progress::Done as u8, Ordering::AcqRel) == Progress::Late as u8
     }
 
@@ -105,8 +114,7 @@ impl<Y> Seat<Y> {
 
 impl<Y> Occupant<Y> {
     fn run(&mut self, y: &Y, number: u64, now: Nanos) {
-        let Self { module, ports, task, fault, cost } = self;
-        let begun = Instant::now();
+        let Self { module, ports, task, fault } = self;
         let result = catch_unwind(AssertUnwindSafe(|| {
             match task {
                 Task::Start => module.start(),
@@ -118,7 +126,6 @@ impl<Y> Occupant<Y> {
             }
             module.turn(&mut Turn { number, now, y, ports })
         }));
-        *cost = (*cost * 7 + begun.elapsed()) / 8;
         *fault = match result {
             Ok(result) => result.err(),
             Err(payload) => Some(Fault(format!("its code panicked, which is a bug: {}", panicked(payload)))),
