@@ -163,10 +163,10 @@ fn assert_end<R: Robot>(blow: Blow, ran: &Ran<R>) {
 
 #[test]
 fn a_robot_stands_after_a_signal_in_each_phase() {
-    // Without the engine the watchdogs stop them: that of a Scout after a second, that of an ATRV after half a second.
+    // Without the engine the watchdogs of both stop them after a second.
     let (scout, atrv) = thread::scope(|scope| {
         let scout = scope.spawn(|| every_phase::<Scout>([16, 8, 16]));
-        let atrv = every_phase::<Atrv>([12, 8, 16]);
+        let atrv = every_phase::<Atrv>([16, 8, 16]);
         (scout.join().unwrap(), atrv)
     });
     println!("{scout}{atrv}");
