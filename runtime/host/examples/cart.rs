@@ -214,8 +214,10 @@ impl Plan for Shuttle {
     }
 
     fn input(&mut self, y: &Sensed, _: Nanos) -> Speed {
-        while y.hangs {
-            std::thread::park();
+        if y.hangs {
+            loop {
+                std::thread::park();
+            }
         }
         Speed(MetersPerSecond(if self.forward { 0.5 } else { -0.5 }))
     }
