@@ -25,8 +25,8 @@ const PLAN: &str = "{ Listen (age(ears module) > 500ms OR wait 20s) (Atom (null)
 const EARS: &str = "echo $$ > $1; echo '{\"publishes\": {\"bearing\": \"deg\"}}'\n\
                     while read line; do echo '{\"bearing\": 0}'; done\n";
 const PERIOD: Duration = Duration::from_millis(100);
-/// Times from a command to the signal, in milliseconds: during the exchange, in a turn, of which a module takes 40 ms, at
-/// its break, and while the engine waits for the next.
+/// Times from a command to the signal, in milliseconds: during the exchange, in a turn, of which a module takes 40 ms,
+/// at its break, and while the engine waits for the next.
 const MOMENTS: [u64; 6] = [0, 10, 30, 45, 60, 80];
 /// Time for which the robot drives before.
 const DRIVES: Duration = Duration::from_millis(500);
@@ -65,7 +65,7 @@ impl Blow {
     }
 }
 
-/// Runs the plan, and strikes this long after a command; returns the run, and the number of turns until the robot stood.
+/// Runs the plan, and strikes this long after a command; returns the run, and the turns until the robot stood.
 fn struck<R: Robot>(folder: &Path, blow: Blow, moment: Duration) -> (Ran<R>, u32) {
     let pid = folder.join(format!("{blow:?}-{}", moment.as_millis()));
     let mut command = Command::new(env!("CARGO_BIN_EXE_ahead"));

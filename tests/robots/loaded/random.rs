@@ -1,5 +1,5 @@
-//! Random plans on the simulated robot with each body and on both emulated robots. The emitted plans of a target are one
-//! program, which is built once.
+//! Random plans on the simulated robot with each body and on both emulated robots. The emitted plans of a target are
+//! one program, which is built once.
 
 use std::fmt::Write as _;
 use std::fs;

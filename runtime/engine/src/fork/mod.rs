@@ -17,8 +17,8 @@ pub(crate) use seat::{Progress, Seat, Task};
 
 /// Work of a round up to which one worker makes it: another one would take longer to wake.
 const SMALL: Duration = Duration::from_micros(50);
-/// Maximum time for which the control thread looks for the end of a small round before it sleeps, as it would take as long
-/// to wake.
+/// Maximum time for which the control thread looks for the end of a small round before it sleeps, as it would take as
+/// long to wake.
 const LOOKS: Duration = Duration::from_micros(200);
 
 /// Threads on which modules make their turns.

@@ -1,7 +1,7 @@
 //! `/recorder`: writes the turns that follow to a record, until it is stopped (docs/src/shell.md).
 //!
-//! A thread of its own opens and writes the file, so that no turn of a real robot waits for it; turns for which it has no
-//! room are left out and counted.
+//! A thread of its own opens and writes the file, so that no turn of a real robot waits for it; turns for which it has
+//! no room are left out and counted.
 
 use std::any::Any;
 use std::fs::File;
@@ -232,9 +232,12 @@ fn write_all(orders: &Receiver<Order>, opened: &Sender<Result<(), String>>, prog
 
 /// Creates the file of a record, if there is none of this name.
 fn created(path: &Path) -> Result<File, String> {
-    File::create_new(path).map_err(|error| match error.kind() {
-        io::ErrorKind::AlreadyExists => format!("{} is there already: name a new file", path.display()),
-        _ => format!("{} cannot be written: {error}", path.display()),
+    File::create_new(path).map_err(|error| {
+        if error.kind() == io::ErrorKind::AlreadyExists {
+            format!("{} is there already: name a new file", path.display())
+        } else {
+            format!("{} cannot be written: {error}", path.display())
+        }
     })
 }
 
