@@ -122,8 +122,8 @@ pub(crate) fn plan(wanted: &WantedPlan<'_>, target: &Target) -> Result<(Machine,
     let WantedPlan { log, file, begin, call, has_run } = *wanted;
     if begin.beside == Begin::MIDDLE {
         return Err(Failure::Usage(format!(
-            "the record {} begins in the middle of a run, and its turns follow from those before it\nhelp: `--log FILE.mcap` \
-             of a run records all turns; `mdle log` and `mdle plot` take this record too",
+            "the record {} begins in the middle of a run, and its turns follow from those before it\n\
+             help: `--log FILE.mcap` of a run records all turns; `mdle log` and `mdle plot` take this record too",
             log.display()
         )));
     }
