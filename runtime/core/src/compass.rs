@@ -4,9 +4,14 @@
 //! Walls are taken to run at right angles to each other. The drift is a number with an error, which grows with each
 //! turn and way; a measurement counts by its own error, and one that is off by more than both is of something else.
 
+mod line;
+#[cfg(test)]
+mod tests;
+
 use core::f64::consts::FRAC_PI_2;
 
 use crate::{Meters, Nanos, PINGS_KEPT, Pings, Pose, Radians, SONARS, Shape};
+use line::Line;
 
 /// The sonars that look to the left and to the right, and the sign of the direction.
 const SIDES: [(usize, f64); 2] = [(4, 1.0), (12, -1.0)];
@@ -14,16 +19,7 @@ const SIDES: [(usize, f64); 2] = [(4, 1.0), (12, -1.0)];
 const ALONG: Radians = Radians::from_degrees(25.0);
 /// Walls further away than this, in metres, are not looked at.
 const WITHIN: f64 = 1.5;
-/// Greatest distance, in metres, of an echo from the line of its wall.
-const APART: f64 = 0.1;
-/// Greatest number of echoes that a line remembers.
-const KEPT: f64 = 24.0;
-/// Least sum of squared distances along a wall, in square metres, by which its direction is known: errors of 1.5 cm are
-/// then 1 degree. Sides of boxes are shorter, and may stand at any angle.
-const KNOWN: f64 = 1.0;
-/// Least such sum by which the next echo of the wall is expected.
-const GUESSED: f64 = 0.02;
-/// Least such sum by which the direction of a wall alone is known.
+/// Least sum of squared distances along a single wall, in square metres, by which its direction is known.
 const LONG: f64 = 4.0;
 /// Greatest difference of the slopes of walls on both sides.
 const PARALLEL: f64 = 0.14;
@@ -72,26 +68,12 @@ pub struct Compass {
     askew: Option<f64>,
     /// The pose by odometry when the last output was taken in.
     last: Pose,
-    /// The place from which lines are measured, with the direction along which the robot drives, and the number of that
-    /// quarter of the circle; `None` while it drives along no wall.
-    way: Option<(Pose, i32)>,
+    /// The place from which lines are measured, with the direction along which the robot drives; `None` while it drives
+    /// along no wall.
+    way: Option<Pose>,
     sides: [Line; 2],
     /// Time of the last ping when three pings were last looked at.
     judged: Nanos,
-}
-
-/// A line through echoes: distances along the axis and across it, in metres.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Line {
-    count: f64,
-    along: f64,
-    across: f64,
-    /// Sums of squares and of products of the distances from the means.
-    squares: f64,
-    products: f64,
-    /// `true` if the last echo was not of this line.
-    strays: bool,
-    last: Nanos,
 }
 
 impl Default for Compass {
@@ -145,6 +127,8 @@ impl Compass {
         if self.askew.is_none() {
             let askew = if off.abs() <= ALONG_AXES { 0.0 } else { off };
             (self.askew, self.drift) = (Some(askew), self.drift + askew);
+            // Lines are measured along the walls from now on.
+            self.way = self.way.filter(|_| askew == 0.0);
         }
         let (ours, theirs) = (self.error * self.error, error * error);
         let off = drift - self.drift;
@@ -155,24 +139,25 @@ impl Compass {
     }
 
     /// Returns the place from which lines are measured; `None` if the robot does not head along walls.
+    ///
+    /// Before any wall was measured, walls may run in any direction: then lines are measured along the robot's heading.
     fn along(&mut self, pings: &[Pings; SONARS], odometry: Pose) -> Option<Pose> {
-        let heading = odometry.theta.0 - self.drift;
-        let off = off_quarter(heading);
-        if off.abs() > ALONG.0 {
-            self.way = None;
+        let heads_along = |axis: Radians| Radians(odometry.theta.0 - axis.0).wrapped().0.abs() <= ALONG.0;
+        self.way = self.way.filter(|origin| heads_along(origin.theta));
+        if self.way.is_some() {
+            return self.way;
+        }
+        let off = self.askew.map_or(0.0, |_| off_quarter(odometry.theta.0 - self.drift));
+        let axis = Radians(odometry.theta.0 - off);
+        if !heads_along(axis) {
             return None;
         }
-        let quarter = libm::round(Radians(heading).wrapped().0 / FRAC_PI_2) as i32 & 3;
-        if let Some((origin, _)) = self.way.filter(|(_, before)| *before == quarter) {
-            return Some(origin);
-        }
-        let origin = Pose { theta: Radians(odometry.theta.0 - off), ..odometry };
         self.sides = SIDES.map(|(sonar, _)| {
             let newest = pings.get(sonar).and_then(|pings| pings.newest_first().next());
-            Line { last: newest.map_or(Nanos::ZERO, |ping| ping.at), ..Line::default() }
+            Line::since(newest.map_or(Nanos::ZERO, |ping| ping.at))
         });
-        self.way = Some((origin, quarter));
-        Some(origin)
+        self.way = Some(Pose { theta: axis, ..odometry });
+        self.way
     }
 
     /// Measures the drift by walls beside the way.
@@ -185,7 +170,7 @@ impl Compass {
             line.last = ping.at;
             let Some(range) = ping.range.filter(|range| range.0 < WITHIN) else { continue };
             // The echo comes from where the wall faces the sonar, whichever way that looks.
-            let off = off_quarter(ping.pose.theta.0 - self.drift);
+            let off = ping.pose.theta.0 - origin.theta.0;
             let (sin, cos) = libm::sincos(origin.theta.0);
             let (x, y) = (ping.pose.x.0 - origin.x.0, ping.pose.y.0 - origin.y.0);
             let across = y * cos - x * sin + side * (shape.ring_radius.0 * libm::cos(off) + range.0);
@@ -251,172 +236,4 @@ impl Compass {
 fn off_quarter(angle: f64) -> f64 {
     let Radians(angle) = Radians(angle).wrapped();
     angle - libm::round(angle / FRAC_PI_2) * FRAC_PI_2
-}
-
-impl Line {
-    /// Takes in an echo; the second one in a row that is not of the line begins another.
-    fn take(&mut self, along: f64, across: f64) {
-        let slope = if self.squares >= GUESSED { self.products / self.squares } else { 0.0 };
-        let line = self.across + slope * (along - self.along);
-        let strays = self.count > 0.0 && (across - line).abs() > APART;
-        if strays && !self.strays {
-            self.strays = true;
-            return;
-        }
-        if strays {
-            *self = Self { last: self.last, ..Self::default() };
-        }
-        self.strays = false;
-        if self.count >= KEPT {
-            self.squares *= 1.0 - 1.0 / KEPT;
-            self.products *= 1.0 - 1.0 / KEPT;
-        } else {
-            self.count += 1.0;
-        }
-        let (from_along, from_across) = (along - self.along, across - self.across);
-        self.along += from_along / self.count;
-        self.across += from_across / self.count;
-        self.squares += from_along * (along - self.along);
-        self.products += from_along * (across - self.across);
-    }
-
-    /// The slope of the line, if it is known.
-    fn slope(&self) -> Option<f64> {
-        (self.squares >= KNOWN).then(|| self.products / self.squares)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::capability::Steering;
-    use crate::{Mount, Ping};
-
-    const SHAPE: Shape = Shape {
-        body_radius: Meters(0.3),
-        half_length: Meters(0.3),
-        half_width: Meters(0.3),
-        wheel_base: Meters(0.4),
-        sonars_apart: Some(Meters(0.33)),
-        ring_radius: Meters(0.19),
-        confirmation: 2,
-        steering: Steering::USUAL,
-    };
-
-    /// The pings and the compass of a robot.
-    struct Trial {
-        pings: [Pings; SONARS],
-        compass: Compass,
-        now: Nanos,
-    }
-
-    impl Trial {
-        fn new() -> Self {
-            Self { pings: [Pings::default(); SONARS], compass: Compass::default(), now: Nanos::ZERO }
-        }
-
-        /// Takes in these ranges, in metres, heard half a second later at a pose.
-        fn hears(&mut self, pose: Pose, ranges: &[(usize, f64)], shape: &Shape) {
-            self.now = Nanos(self.now.0 + 500_000_000);
-            for (sonar, range) in ranges {
-                let range = Some(Meters(*range));
-                self.pings[*sonar].push(Ping { range, at: self.now, pose, mount: Mount::default() });
-            }
-            self.compass.take(&self.pings, pose, shape);
-        }
-
-        /// Drives in a hallway 1.5 m wide that odometry has this many degrees off its axis. Every seventh echo of the
-        /// left sonar strays, and the right wall leads off by `leads` for each step of 10 cm.
-        fn drives(&mut self, turned: f64, metres: f64, leads: f64) {
-            let theta = Radians::from_degrees(turned);
-            for step in 1..=libm::round(metres / 0.1) as u32 {
-                let pose = Pose { theta, ..Pose::ORIGIN.towards(theta, Meters(0.1 * f64::from(step))) };
-                let left = if step % 7 == 0 { 1.2 } else { 0.56 };
-                self.hears(pose, &[(4, left), (12, leads * f64::from(step) + 0.56)], &SHAPE);
-            }
-        }
-
-        /// Returns the drift, in degrees, in a frame of which an axis has this direction, in degrees.
-        fn drift(&self, axis: f64) -> f64 {
-            self.compass.drift(Radians::from_degrees(axis)).degrees()
-        }
-    }
-
-    #[test]
-    fn walls_on_both_sides_tell_how_far_the_heading_is_off() {
-        for turned in [-6.0, -4.0, 0.0, 4.0, 6.0] {
-            let mut trial = Trial::new();
-            trial.drives(turned, 4.0, 0.0);
-            assert!((trial.drift(0.0) - turned).abs() < 1.0, "{turned}: {}", trial.drift(0.0));
-            assert_eq!(trial.drift(0.0), trial.drift(90.0));
-        }
-    }
-
-    /// A plan that begins 20 degrees off the walls keeps its heading in the room, and knows what odometry drifts later.
-    #[test]
-    fn walls_askew_to_the_first_heading_are_no_drift() {
-        let mut trial = Trial::new();
-        trial.drives(20.0, 4.0, 0.0);
-        assert!(trial.drift(0.0).abs() < 0.1, "{}", trial.drift(0.0));
-        trial.drives(24.0, 6.0, 0.0);
-        assert!((trial.drift(0.0) - 4.0).abs() < 1.5, "{}", trial.drift(0.0));
-        assert_eq!(trial.drift(30.0), 0.0, "of a frame that is not along odometry's axes nothing is known");
-    }
-
-    #[test]
-    fn a_short_way_and_walls_apart_tell_nothing() {
-        for (metres, leads) in [(0.5, 0.0), (3.0, 0.03)] {
-            let mut trial = Trial::new();
-            trial.drives(6.0, metres, leads);
-            assert!(trial.drift(0.0).abs() < 0.01, "{metres} m, {leads}: {}", trial.drift(0.0));
-        }
-    }
-
-    #[test]
-    fn the_drift_is_kept_while_the_robot_turns() {
-        let mut trial = Trial::new();
-        trial.drives(6.0, 4.0, 0.0);
-        for step in 0..=18 {
-            let theta = Radians::from_degrees(6.0 + 5.0 * f64::from(step));
-            trial.hears(Pose { theta, ..Pose::ORIGIN }, &[], &SHAPE);
-        }
-        assert!((trial.drift(0.0) - 6.0).abs() < 1.0, "{}", trial.drift(0.0));
-        // A wall that would be 30 degrees off is of something else.
-        trial.drives(126.0, 3.0, 0.0);
-        assert!((trial.drift(0.0) - 6.0).abs() < 1.0, "{}", trial.drift(0.0));
-    }
-
-    #[test]
-    fn a_wall_square_to_a_robot_measures_its_heading() {
-        let measured = |degrees: f64, ranges: [f64; 3]| {
-            let (mut trial, theta) = (Trial::new(), Radians::from_degrees(degrees));
-            let [before, middle, behind] = ranges;
-            trial.drives(0.0, 4.0, 0.0);
-            // After a full circle the heading is no longer known well.
-            for step in 0..36 {
-                let theta = Radians::from_degrees(10.0 * f64::from(step) + degrees);
-                trial.hears(Pose { theta, ..Pose::ORIGIN }, &[], &SHAPE);
-            }
-            for _ in 0..20 {
-                let ranges = [(3, before), (4, middle), (5, behind)];
-                trial.hears(Pose { theta, ..Pose::ORIGIN }, &ranges, &SHAPE);
-            }
-            trial.drift(0.0)
-        };
-        let drift = measured(8.0, [0.5, 0.49, 0.5]);
-        assert!((3.0..=8.0).contains(&drift), "{drift}");
-        for ranges in [[0.5, 0.5, 0.7], [0.7, 0.5, 0.7], [1.7, 1.6, 1.7]] {
-            assert!(measured(8.0, ranges).abs() < 0.5, "{ranges:?}");
-        }
-    }
-
-    #[test]
-    fn a_robot_whose_sonars_ping_together_does_not_drift() {
-        let mut trial = Trial::new();
-        for step in 1..=40 {
-            let pose = Pose { x: Meters(0.1 * f64::from(step)), theta: Radians::from_degrees(6.0), ..Pose::ORIGIN };
-            trial.hears(pose, &[(4, 0.56), (12, 0.56)], &Shape { confirmation: 3, ..SHAPE });
-        }
-        assert_eq!(trial.drift(0.0), 0.0);
-    }
 }

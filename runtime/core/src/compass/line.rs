@@ -1,0 +1,65 @@
+//! A wall as a line through the echoes of the sonar that looks at it, while the robot drives along.
+
+use crate::Nanos;
+
+/// Greatest distance, in metres, of an echo from the line of its wall.
+const APART: f64 = 0.1;
+/// Greatest number of echoes that a line remembers.
+const KEPT: f64 = 24.0;
+/// Least sum of squared distances along a wall, in square metres, by which its direction is known: errors of 1.5 cm are
+/// then 1 degree. Sides of boxes are shorter, and may stand at any angle.
+const KNOWN: f64 = 1.0;
+/// Least such sum by which the next echo of the wall is expected.
+const GUESSED: f64 = 0.02;
+
+/// A line through echoes: distances along the axis and across it, in metres.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Line {
+    count: f64,
+    along: f64,
+    across: f64,
+    /// Sums of squares and of products of the distances from the means.
+    pub(super) squares: f64,
+    products: f64,
+    /// `true` if the last echo was not of this line.
+    strays: bool,
+    pub(super) last: Nanos,
+}
+
+impl Line {
+    /// The line before the first echo after this time.
+    pub(super) fn since(last: Nanos) -> Self {
+        Self { last, ..Self::default() }
+    }
+
+    /// Takes in an echo; the second one in a row that is not of the line begins another.
+    pub(super) fn take(&mut self, along: f64, across: f64) {
+        let slope = if self.squares >= GUESSED { self.products / self.squares } else { 0.0 };
+        let line = self.across + slope * (along - self.along);
+        let strays = self.count > 0.0 && (across - line).abs() > APART;
+        if strays && !self.strays {
+            self.strays = true;
+            return;
+        }
+        if strays {
+            *self = Self { last: self.last, ..Self::default() };
+        }
+        self.strays = false;
+        if self.count >= KEPT {
+            self.squares *= 1.0 - 1.0 / KEPT;
+            self.products *= 1.0 - 1.0 / KEPT;
+        } else {
+            self.count += 1.0;
+        }
+        let (from_along, from_across) = (along - self.along, across - self.across);
+        self.along += from_along / self.count;
+        self.across += from_across / self.count;
+        self.squares += from_along * (along - self.along);
+        self.products += from_along * (across - self.across);
+    }
+
+    /// The slope of the line, if it is known.
+    pub(super) fn slope(&self) -> Option<f64> {
+        (self.squares >= KNOWN).then(|| self.products / self.squares)
+    }
+}
