@@ -4,7 +4,7 @@
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
 
-use crate::gains::Gains;
+use crate::gains::{Gains, fire_in_turn};
 
 /// Number of cells along a side.
 pub(crate) const CELLS: i32 = 64;
@@ -32,6 +32,8 @@ const WITHIN: f64 = 1.6;
 const INSTEAD: f64 = 0.1;
 /// Greatest number of a cell: differences of two do not overflow.
 const FURTHEST: f64 = 1e8;
+/// Number of turns in which each sonar is taken in once, where all of them ping in every turn.
+const THIRDS: usize = 3;
 /// Distance before an echo, in metres, from which a cell is not taken to be free.
 const BEFORE: f64 = 0.08;
 
@@ -45,7 +47,7 @@ pub(crate) struct Cell {
 impl Cell {
     /// Returns the cell that contains this place.
     pub(crate) fn of(x: f64, y: f64) -> Self {
-        let [x, y] = [x, y].map(|metres| libm::floor(metres / CELL).clamp(-FURTHEST, FURTHEST) as i32);
+        let [x, y] = [x, y].map(|metres| below((metres / CELL).clamp(-FURTHEST, FURTHEST)));
         Self { x, y }
     }
 
@@ -55,27 +57,47 @@ impl Cell {
     }
 }
 
+/// The greatest whole number that is not greater than this one. The function of `libm` takes most of a turn, so many
+/// cells does a ping pass.
+fn below(number: f64) -> i32 {
+    let towards_zero = number as i32;
+    towards_zero - i32::from(number < f64::from(towards_zero))
+}
+
 /// Evidence for obstacles around the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Map {
     evidence: [u8; BYTES],
     /// The cell with the smallest numbers.
     pub(crate) corner: Cell,
-    /// Time up to which pings have been taken in; `None` before the first.
-    taken: Option<Nanos>,
+    /// Time up to which pings of each third of the sonars have been taken in; `None` before the first. Sonars that fire in
+    /// turn all belong to the first.
+    taken: [Option<Nanos>; THIRDS],
+    /// Number of the third that is taken in next.
+    third: usize,
 }
 
 impl Map {
-    pub(crate) const EMPTY: Self =
-        Self { evidence: [UNKNOWN | UNKNOWN << 4; BYTES], corner: Cell { x: 0, y: 0 }, taken: None };
+    pub(crate) const EMPTY: Self = Self {
+        evidence: [UNKNOWN | UNKNOWN << 4; BYTES],
+        corner: Cell { x: 0, y: 0 },
+        taken: [None; THIRDS],
+        third: 0,
+    };
 
-    /// Takes in the pings since the last turn, made around `here`.
+    /// Takes in the pings since the last turn, made around `here`. Of sonars that all ping in every turn, each is taken in
+    /// in every third turn, which is as often as those that fire in turn.
     pub(crate) fn take<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose) {
         self.move_to(here);
         let least = Gains::of(y).least_range;
-        for sonar in (0..SONARS as u8).map(SonarId::new) {
+        let thirds = if fire_in_turn(y) { 1 } else { THIRDS };
+        let third = self.third % thirds;
+        self.third = (third + 1) % thirds;
+        let taken = self.taken.get_mut(third).and_then(|taken| taken.replace(y.now()));
+        let of_third = |sonar: &SonarId| sonar.number() % thirds == third;
+        for sonar in (0..SONARS as u8).map(SonarId::new).filter(of_third) {
             let mut pings = y.pings(sonar).newest_first();
-            let Some(ping) = pings.next().filter(|ping| self.taken.is_none_or(|taken| ping.at > taken)) else {
+            let Some(ping) = pings.next().filter(|ping| taken.is_none_or(|taken| ping.at > taken)) else {
                 continue;
             };
             // A single missed echo clears nothing.
@@ -94,7 +116,6 @@ impl Map {
                 }
             }
         }
-        self.taken = Some(y.now());
     }
 
     /// Notes that a ping passed from this place in the direction of `axis`.
@@ -176,7 +197,9 @@ impl Map {
 
     /// Returns `true` if the cell is on the map.
     pub(crate) fn contains(&self, cell: Cell) -> bool {
-        (0..CELLS).contains(&(cell.x - self.corner.x)) && (0..CELLS).contains(&(cell.y - self.corner.y))
+        // A number below 0 is a great one without its sign.
+        let is_within = |place: i32| (place as u32) < CELLS as u32;
+        is_within(cell.x - self.corner.x) && is_within(cell.y - self.corner.y)
     }
 
     fn change(&mut self, cell: Cell, to: impl Fn(u8) -> u8) {
@@ -217,7 +240,8 @@ impl Map {
 /// The place of a cell's evidence, which stays the same while the map moves, and the number of bits by which it is
 /// shifted there.
 fn place(Cell { x, y }: Cell) -> (usize, u8) {
-    let (x, y) = (x.rem_euclid(CELLS), y.rem_euclid(CELLS));
+    const { assert!(CELLS.count_ones() == 1) };
+    let (x, y) = (x & (CELLS - 1), y & (CELLS - 1));
     ((y * (CELLS / 2) + x / 2) as usize, 4 * (x & 1) as u8)
 }
 
@@ -242,13 +266,18 @@ mod tests {
 
     const AHEAD: SonarId = SonarId::new(0);
 
+    /// Takes in the newest pings, of all sonars.
+    fn take(map: &mut Map, y: &Sensed) {
+        (0..THIRDS).for_each(|_| map.take(y, y.pose));
+    }
+
     /// Takes in pings straight ahead, 0.1 s apart.
     fn heard(ranges: &[Option<f64>], confirmation: usize) -> (Map, Sensed) {
         let (mut y, mut map) = (Sensed { confirmation, ..Sensed::default() }, Map::EMPTY);
         for range in ranges {
             y.now = Nanos(y.now.0 + 100_000_000);
             y.ping_at(AHEAD, *range, y.now);
-            map.take(&y, y.pose);
+            take(&mut map, &y);
         }
         (map, y)
     }
@@ -276,7 +305,7 @@ mod tests {
         let mut map = map;
         y.now = Nanos(y.now.0 + 1);
         y.ping_at(AHEAD, Some(1.2), y.now);
-        map.take(&y, y.pose);
+        take(&mut map, &y);
         assert!(is_ahead(&map, 0.99), "one ping against four");
     }
 
@@ -286,7 +315,7 @@ mod tests {
         map.occupy((0.97, 0.15), (0.97, 0.15));
         y.now = Nanos(1);
         y.ping_at(AHEAD, Some(0.8), y.now);
-        map.take(&y, y.pose);
+        take(&mut map, &y);
         assert!(!is_ahead(&map, 0.99));
     }
 
@@ -302,11 +331,11 @@ mod tests {
     fn the_map_moves_with_the_robot_and_forgets_what_is_far() {
         let (mut map, mut y) = heard(&[Some(0.8)], 3);
         y.pose.x = Meters(1.0);
-        map.take(&y, y.pose);
+        take(&mut map, &y);
         assert!(is_ahead(&map, 0.99));
         for x in [9.0, 0.0] {
             y.pose.x = Meters(x);
-            map.take(&y, y.pose);
+            take(&mut map, &y);
         }
         assert!(!is_ahead(&map, 0.99));
         assert_eq!(map.around(y.pose, Meters(1.2)).count(), 0);

@@ -161,9 +161,14 @@ impl Obstacles {
     /// Returns the distance in metres, at most 3, that the body, with its margin, can go in this direction before it
     /// meets a point; negative when a point is already inside the margin.
     pub(crate) fn free(&self, direction: Radians) -> Meters {
+        self.free_along(Axis::of(direction))
+    }
+
+    fn free_along(&self, axis: Axis) -> Meters {
         let mut free = FREE_MOST;
-        for (along, across) in self.along(direction) {
-            if along > 0.0 && across.abs() < self.hard {
+        for (along, across) in self.along(axis) {
+            // A point whose whole margin lies further away is quickly seen.
+            if along > 0.0 && across.abs() < self.hard && along - self.nose - self.hard < free {
                 free = free.min(along - self.nose - libm::sqrt(self.hard * self.hard - across * across));
             }
         }
@@ -173,13 +178,13 @@ impl Obstacles {
     /// The distance of the nearest point beside the way in this direction, from a place along it; infinite without any.
     ///
     /// What the way ends at after its `free` length is not beside it, but on a wide body.
-    fn beside(&self, direction: Radians, free: Meters) -> f64 {
+    fn beside(&self, axis: Axis, free: Meters) -> f64 {
         let (back, ahead) = (BESIDE.0, BESIDE.1.min(free.0 + self.gains.beyond));
         let place = self.gains.room_at.min(free.0).max(0.0);
         let mut least = f64::INFINITY;
-        for (along, across) in self.along(direction).filter(|(along, _)| back < *along && *along < ahead) {
+        for (along, across) in self.along(axis) {
             // Most points lie further away by one axis alone, which is quickly seen.
-            if (along - place).abs() < least && across.abs() < least {
+            if back < along && along < ahead && (along - place).abs() < least && across.abs() < least {
                 least = least.min(libm::hypot(along - place, across));
             }
         }
@@ -199,7 +204,7 @@ impl Obstacles {
             if wish.along && counted.abs() > TURNED_MOST.0 || counted.abs() + turns > best.0 + ROUNDING {
                 continue;
             }
-            let cost = self.cost(counted, turns, wish);
+            let Some(cost) = self.cost(counted, turns, wish, best.0) else { continue };
             // Of two that are equally good, the one further clockwise.
             if cost < best.0 || cost == best.0 && step < best.1 {
                 best = (cost, step, counted);
@@ -208,30 +213,45 @@ impl Obstacles {
         Radians(best.2)
     }
 
-    /// The cost of a direction, of which `turns` is what the change from the turn before costs.
-    fn cost(&self, offset: f64, turns: f64, wish: &Wish) -> f64 {
-        let direction = Radians(wish.goal.0 + offset);
+    /// The cost of a direction, of which `turns` is what the change from the turn before costs; `None` if a part of it
+    /// is more than `best`.
+    fn cost(&self, offset: f64, turns: f64, wish: &Wish, best: f64) -> Option<f64> {
+        let axis = Axis::of(Radians(wish.goal.0 + offset));
         let mut cost = offset.abs();
         let Meters(look_ahead) = wish.look_ahead;
-        let free = self.free(direction);
+        let free = self.free_along(axis);
         if free.0 < look_ahead {
             cost += BLOCKED_COSTS * (look_ahead - free.0) / look_ahead;
         }
-        let beside = self.beside(direction, free);
+        if cost + turns > best + ROUNDING {
+            return None;
+        }
+        let beside = self.beside(axis, free);
         let soft = if wish.close { 0.0 } else { self.soft };
         if beside < soft {
             cost += CLOSE_COSTS * (soft - beside) / (soft - self.close);
         }
-        cost + turns
+        Some(cost + turns)
     }
 
-    /// Every point as its distance along a direction and its distance to the left of it.
-    fn along(&self, direction: Radians) -> impl Iterator<Item = (f64, f64)> {
+    /// Every point as its distance along an axis and its distance to the left of it.
+    fn along(&self, Axis { sin, cos }: Axis) -> impl Iterator<Item = (f64, f64)> {
+        let points = self.points.get(..self.count).unwrap_or(&self.points);
+        points.iter().map(move |point| (point.x * cos + point.y * sin, point.y * cos - point.x * sin))
+    }
+}
+
+/// The sine and the cosine of a direction.
+#[derive(Debug, Clone, Copy)]
+struct Axis {
+    sin: f64,
+    cos: f64,
+}
+
+impl Axis {
+    fn of(direction: Radians) -> Self {
         let (sin, cos) = libm::sincos(direction.0);
-        self.points
-            .iter()
-            .take(self.count)
-            .map(move |point| (point.x * cos + point.y * sin, point.y * cos - point.x * sin))
+        Self { sin, cos }
     }
 }
 
@@ -335,7 +355,7 @@ mod tests {
         y.pose.x = Meters(0.6);
         y.ping(SonarId::new(4), Some(range));
         y.pose = Pose::ORIGIN;
-        Obstacles::seen(&y, y.pose).beside(Radians(0.0), Meters(FREE_MOST))
+        Obstacles::seen(&y, y.pose).beside(Axis::of(Radians(0.0)), Meters(FREE_MOST))
     }
 
     #[test]
