@@ -26,17 +26,17 @@ struct Echo {
     across: f64,
 }
 
-/// Returns `true` if somebody comes from a side and would cross the way ahead of a robot that stands still here, but
-/// perhaps not ahead of one that goes on at this speed, in m/s.
-pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, here: Pose, speed: f64) -> bool {
-    (0..SONARS as u8).map(SonarId::new).any(|sonar| comes(y, sonar, here, speed).unwrap_or(false))
+/// Returns the seconds until somebody has passed who comes from a side and would cross the way ahead of a robot that
+/// stands still here, but perhaps not ahead of one that goes on at this speed, in m/s; `None` if nobody comes.
+pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, here: Pose, speed: f64) -> Option<f64> {
+    (0..SONARS as u8).map(SonarId::new).filter_map(|sonar| comes(y, sonar, here, speed)).reduce(f64::max)
 }
 
-/// Returns `true` if the sonar hears such a person in all the pings kept; `None` if it misses an echo.
-fn comes<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, speed: f64) -> Option<bool> {
+/// Returns the seconds until such a person has passed whom the sonar hears in all the pings kept.
+fn comes<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, speed: f64) -> Option<f64> {
     const { assert!(PINGS_KEPT == 3) };
     if sonar.bearing().wrapped().0.abs() > core::f64::consts::FRAC_PI_2 {
-        return Some(false);
+        return None;
     }
     let (sin, cos) = libm::sincos(here.theta.0);
     let mut echoes = y.pings(sonar).newest_first().map(|ping| {
@@ -64,7 +64,8 @@ fn comes<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, speed: f64
     let seconds = new.across.abs() / mean;
     let meets = new.along < y.body_radius().0 + 2.0 * PERSON + speed * seconds && seconds < SOON;
     let is_nearer = mean * (new.at - old.at) >= NEARER;
-    Some(moves(first) && moves(second) && is_nearer && passes && meets)
+    let passed = seconds + (y.body_radius().0 + PERSON) / mean;
+    (moves(first) && moves(second) && is_nearer && passes && meets).then_some(passed)
 }
 
 #[cfg(test)]
@@ -73,13 +74,19 @@ mod tests {
     use crate::trial::Sensed;
     use mdle_runtime::Nanos;
 
-    /// Returns `true` if a robot at rest waits for somebody whom its sonar 3 hears at these ranges, one second apart.
-    fn waits(ranges: [f64; 3]) -> bool {
+    /// Returns the seconds for which a robot at rest waits for somebody whom its sonar 3 hears at these ranges, one
+    /// second apart.
+    fn seconds(ranges: [f64; 3]) -> Option<f64> {
         let mut y = Sensed::default();
         for (second, range) in (0..).zip(ranges) {
             y.ping_at(SonarId::new(3), Some(range), Nanos(second * 1_000_000_000));
         }
         crosses(&y, y.pose, 0.2)
+    }
+
+    /// Returns `true` if it waits for him.
+    fn waits(ranges: [f64; 3]) -> bool {
+        seconds(ranges).is_some()
     }
 
     #[test]
@@ -89,6 +96,13 @@ mod tests {
         assert!(!waits([1.8, 2.3, 2.8]), "somebody who leaves");
         assert!(!waits([2.8, 2.8, 1.8]), "two different things");
         assert!(!waits([6.0, 5.5, 5.0]), "somebody far away");
+    }
+
+    #[test]
+    fn the_robot_waits_until_he_has_passed() {
+        // He is 1.84 m beside the way, and leaves it half a metre further on.
+        let passed = seconds([2.8, 2.3, 1.8]).expect("somebody");
+        assert!((4.5..4.8).contains(&passed), "{passed}");
     }
 
     #[test]

@@ -6,11 +6,10 @@ use mdle_runtime::{
     Begin, Completes, Control, Law, Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Twist,
 };
 
-use crate::approach::Approach;
-use crate::crossing::crosses;
-use crate::gains::{Gains, fire_in_turn};
+use crate::gains::Gains;
 use crate::memory::Memory;
 use crate::narrow::Narrow;
+use crate::passers::Passers;
 use crate::stuck::Progress;
 use crate::tangent::{Obstacles, Side, Wish};
 use crate::way::Ahead;
@@ -38,23 +37,12 @@ const GAINED: Meters = Meters(0.1);
 const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
 /// Angle from the goal's direction in which the robot gives way to a person who approaches.
 const ASIDE: Radians = Radians::from_degrees(60.0);
-/// Room on its right with which the robot gives way to the right, as people do; with less it gives way to the side with
-/// more room.
-const ROOM: Meters = Meters(0.4);
-/// Time, in seconds, for which the robot keeps out of the way after somebody should have passed.
-const PASSES: f64 = 1.0;
-/// Maximum time, in seconds, for which the robot avoids a person who no longer approaches.
-const PASSES_MOST: f64 = 8.0;
-/// Number of turns in a row in which somebody must be heard: the edge of a cone that touches a wall is heard in fewer.
-const SURE: u32 = 5;
 /// Time without progress for which the robot follows ways on its map, which is too small to show a way out of a large
 /// corner, and for which it then goes round obstacles without the map, in turns.
 const SQUEEZES: Nanos = Nanos(30_000_000_000);
 const GOES_ROUND: Nanos = Nanos(60_000_000_000);
 /// Time without progress after which the robot follows ways on its map.
 const HELD_UP: Nanos = Nanos(1_200_000_000);
-/// Time for which the robot stands after it has heard somebody come who is about to cross its way.
-const STANDS: Nanos = Nanos(2_500_000_000);
 
 /// Drives to the point at a bearing and range from where the atom begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,30 +64,27 @@ impl GoAvoid {
 /// The law of [`GoAvoid`]: done within 0.12 m of the goal, or within 0.3 m where something is in the way of the rest.
 ///
 /// Wheels that slip when they turn leave odometry a heading that is off, and the goal off with it. A robot that knows
-/// the drift of its heading by walls ([`Odometry::drift`]) therefore turns the goal by it, around the place where the
-/// atom began: walls are taken to run along the axes of the frame.
+/// the drift of its heading by walls ([`Odometry::drift`]) therefore turns the goal by what the drift changes, around
+/// the place where it was measured before: walls are taken to run along the axes of the frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoingRound {
     goal: Pose,
     progress: Progress,
-    /// The pose where the atom began, the direction of the goal from there, and its distance.
-    from: (Pose, Radians, Meters),
     /// The direction of the frame's first axis.
     axis: Radians,
+    /// The drift of the heading by which the goal is turned, and the pose where the drift was last measured.
+    drift: (Radians, Pose),
     speed: MetersPerSecond,
     look_ahead: Meters,
     /// Distance from the goal at which the robot is near enough.
     near: Meters,
     previous: Option<Radians>,
+    /// Time at which the robot first headed in the direction that it had chosen, after the turn with which it begins.
+    headed: Option<Nanos>,
     detour: Option<Detour>,
-    approach: Approach,
-    gives_way: Option<GivesWay>,
     /// Time since when something has kept the robot, which is near the goal, from coming nearer.
     kept_off: Option<Nanos>,
-    /// Number of turns in a row in which somebody was about to cross the way.
-    crossed: u32,
-    /// Time until which the robot stands, since somebody crosses its way.
-    stands_until: Nanos,
+    passers: Passers,
     memory: Memory,
     narrow: Narrow,
 }
@@ -114,33 +99,23 @@ struct Detour {
     since: Nanos,
 }
 
-/// The side and the end of giving way to a person who approaches the robot.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct GivesWay {
-    side: Side,
-    until: Nanos,
-}
-
 impl GoingRound {
     /// Returns this law on its way to the goal of another.
     pub(crate) fn with_goal_of(self, other: &Self) -> Self {
-        Self { goal: other.goal, from: other.from, axis: other.axis, ..self }
+        Self { goal: other.goal, axis: other.axis, drift: other.drift, ..self }
     }
 
-    /// Detects a person who approaches along the way to the goal, so that the robot gives way.
-    fn look_out<Y: SonarRing>(&mut self, y: &Y, obstacles: &Obstacles, here: Pose, t: Nanos) {
-        let goal = self.direction(here);
-        self.approach.take(y, here, goal);
-        let gives_way = self.gives_way.filter(|gives_way| t < gives_way.until);
-        self.gives_way = match self.approach.seconds(here, goal, fire_in_turn(y)) {
-            Some(seconds) => {
-                let seconds = (seconds + PASSES).min(PASSES_MOST);
-                let until = Nanos(t.0.saturating_add((seconds * 1e9) as u64));
-                let side = gives_way.map_or_else(|| freer(obstacles, goal), |gives_way| gives_way.side);
-                Some(GivesWay { side, until })
-            }
-            None => gives_way,
-        };
+    /// Turns the goal by what the drift has changed since it was last measured, around the place where that was.
+    fn turn_goal(&mut self, drift: Radians, here: Pose) {
+        let (before, at) = self.drift;
+        if drift == before {
+            return;
+        }
+        let (sin, cos) = libm::sincos(drift.0 - before.0);
+        let (x, y) = (self.goal.x.0 - at.x.0, self.goal.y.0 - at.y.0);
+        self.goal.x = Meters(at.x.0 + x * cos - y * sin);
+        self.goal.y = Meters(at.y.0 + x * sin + y * cos);
+        self.drift = (drift, here);
     }
 
     /// The direction of the goal.
@@ -184,8 +159,8 @@ impl GoingRound {
                 && t.since(detour.since) > DETOUR_LEAST
         };
         self.detour = self.detour.filter(|detour| !over(*detour));
-        if let Some(gives_way) = self.gives_way {
-            return self.aside(gives_way.side, goal, obstacles, look_ahead);
+        if let Some(side) = self.passers.gives_way() {
+            return self.aside(side, goal, obstacles, look_ahead);
         }
         let side = self.detour.map(|detour| detour.side);
         // On a detour along the obstacle: as far towards it as there is room, from where the robot heads.
@@ -224,16 +199,9 @@ impl GoingRound {
     #[inline(never)]
     fn look<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose, t: Nanos) -> Option<Chosen> {
         let mut obstacles = Obstacles::seen(y, here);
-        self.look_out(y, &obstacles, here, t);
+        self.passers.take(y, &obstacles, here, (self.direction(here), self.speed), t);
         self.notice(&obstacles, here, t);
-        let crosses = self.gives_way.is_none() && crosses(y, here, self.speed.0);
-        self.crossed = if crosses { self.crossed.saturating_add(1) } else { 0 };
-        if self.gives_way.is_some() {
-            self.stands_until = Nanos::ZERO;
-        } else if self.crossed >= SURE {
-            self.stands_until = Nanos(t.0.saturating_add(STANDS.0));
-        }
-        if t < self.stands_until {
+        if self.passers.stops(t) {
             return None;
         }
         let direction = if self.goes_along(t) {
@@ -250,12 +218,15 @@ impl GoingRound {
 
     /// The input in a narrow place, or before one; `None` elsewhere.
     fn squeeze<Y: DiffDrive>(&mut self, y: &Y, here: Pose, t: Nanos, chosen: &Chosen) -> Option<Twist> {
-        let stalled = self.progress.stalled(here, &self.goal, t);
+        let off = Radians(chosen.direction.0 - here.theta.0).wrapped().0.abs();
+        self.headed = self.headed.or((off < ON_THE_SPOT.0).then_some(t));
+        let since = self.headed.map_or(Nanos::ZERO, |headed| t.since(headed));
+        let stalled = self.progress.stalled(here, &self.goal, t).min(since);
         if stalled < HELD_UP && !self.narrow.follows() {
             return None;
         }
         let goes_round = stalled.0 % (SQUEEZES.0 + GOES_ROUND.0) >= SQUEEZES.0;
-        if self.gives_way.is_some() || goes_round {
+        if self.passers.gives_way().is_some() || goes_round {
             self.narrow.leave();
             let keeps_off = goes_round.then(|| self.narrow.round(y, here, chosen.direction, self.speed));
             return keeps_off.flatten();
@@ -270,12 +241,6 @@ impl GoingRound {
     }
 }
 
-/// The side to which to give way.
-fn freer(obstacles: &Obstacles, goal: Radians) -> Side {
-    let [left, right] = [90.0, -90.0].map(|side| obstacles.free(Radians(goal.0 + Radians::from_degrees(side).0)));
-    if right >= ROOM || right >= left { Side::Right } else { Side::Left }
-}
-
 impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
     type Law = GoingRound;
 
@@ -287,18 +252,16 @@ impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
         GoingRound {
             goal,
             progress: Progress::begin(here, &goal, begin.now),
-            from: (here, bearing, self.range),
             axis: begin.frame.outward(Radians(0.0)),
+            drift: (Radians(0.0), here),
             speed: self.speed,
             look_ahead: Gains::of(y).look_ahead,
             near: Meters(y.body_radius().0 + NEAR),
             previous: None,
+            headed: None,
             detour: None,
-            approach: Approach::default(),
-            gives_way: None,
             kept_off: None,
-            crossed: 0,
-            stands_until: Nanos::ZERO,
+            passers: Passers::default(),
             memory: Memory::EMPTY,
             narrow: Narrow::EMPTY,
         }
@@ -312,8 +275,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
         let here = y.pose();
         // Beside obstacles that the robot passes closely, walls are no hallway.
         if !self.narrow.follows() {
-            let (begun, bearing, range) = self.from;
-            self.goal = begun.towards(Radians(bearing.0 + y.drift(self.axis).0), range);
+            self.turn_goal(y.drift(self.axis), here);
         }
         self.progress.take(here, &self.goal, t);
         self.memory.take(y);
@@ -344,7 +306,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Completes<Y> for GoingRound {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trial::{Sensed, begun, framed, until_completed};
+    use crate::trial::{Sensed, begun, framed, sized, until_completed};
 
     fn quark(bearing: f64, range: f64) -> GoAvoid {
         GoAvoid::new(Radians::from_degrees(bearing), Meters(range), MetersPerSecond(0.2))
@@ -392,5 +354,34 @@ mod tests {
         for turn in 0..50 {
             assert_eq!(law.input(&y, Nanos(turn * 100_000_000)).v.0, 0.0);
         }
+    }
+
+    #[test]
+    fn the_goal_turns_round_where_the_drift_was_measured_before() {
+        let quarter = Radians::from_degrees(90.0);
+        let mut law = quark(0.0, 3.0).begin(&Sensed::default(), begun());
+        let at = |x: f64, y: f64| Pose { x: Meters(x), y: Meters(y), theta: Radians(0.0) };
+        law.turn_goal(quarter, at(1.0, 0.0));
+        assert!(law.goal.distance(&at(0.0, 3.0)).0 < 1e-12, "{:?}", law.goal);
+        law.turn_goal(quarter, at(2.0, 0.0));
+        law.turn_goal(Radians(0.0), at(2.0, 0.0));
+        assert!(law.goal.distance(&at(4.0, 1.0)).0 < 1e-12, "{:?}", law.goal);
+    }
+
+    /// An ATRV-mini between two walls begins with a turn of 170 degrees; no way on the map leads elsewhere meanwhile.
+    #[test]
+    fn the_turn_at_the_beginning_is_no_delay() {
+        let mut y = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+        let mut law = quark(170.0, 5.0).begin(&y, begun());
+        for turn in 1..=20 {
+            let now = Nanos(turn * 100_000_000);
+            y.now = now;
+            for (number, range) in [(0, 0.3), (4, 0.45), (8, 0.3), (12, 0.45)] {
+                y.ping_at(mdle_runtime::SonarId::new(number), Some(range), now);
+            }
+            law.input(&y, now);
+            assert!(law.headed.is_some() || !law.narrow.follows(), "after {turn} turns");
+        }
+        assert!(law.headed.is_none());
     }
 }

@@ -27,6 +27,7 @@ mod map;
 mod memory;
 mod modules;
 mod narrow;
+mod passers;
 mod path;
 mod power;
 mod rotate;

