@@ -1,8 +1,9 @@
 //! Splits text into tokens (docs/src/reference/language.md, 2): they have no spaces, comments or typesetting, and each
 //! parenthesis records whether it touches a name.
 
-use logos::Logos;
+use logos::{Lexer, Logos};
 
+use super::label::label_length;
 use super::lexical;
 use super::number::split;
 use super::source::{Place, Source};
@@ -24,8 +25,10 @@ pub(super) struct Lexed<'s> {
 pub(super) fn lex(source: Source<'_>) -> Lexed<'_> {
     let mut reader =
         Reader { source, lexed: Lexed::default(), text_ends: usize::MAX, touches: 0, run: None, skipped: 0 };
-    for (token, range) in Tok::lexer(source.text).spanned() {
-        let place = Place::new(range.start, range.end);
+    let mut lexer = Tok::lexer(source.text);
+    while let Some(token) = lexer.next() {
+        let token = token.map(|kind| labelled(kind, &mut lexer));
+        let place = Place::new(lexer.span().start, lexer.span().end);
         if place.start < reader.skipped || reader.file(token.as_ref().ok(), place) {
             continue;
         }
@@ -39,6 +42,16 @@ pub(super) fn lex(source: Source<'_>) -> Lexed<'_> {
     }
     reader.end_run();
     reader.lexed
+}
+
+/// Returns the label that begins with a token, whose rest it takes, or the token.
+fn labelled<'s>(kind: Tok<'s>, lexer: &mut Lexer<'s, Tok<'s>>) -> Tok<'s> {
+    let begins = matches!(kind, Tok::Name(name) if name.starts_with("Γ_") || name.starts_with("Gamma_"))
+        || (kind == Tok::Command && lexer.slice() == r"\Gamma");
+    let text = lexer.source().get(lexer.span().start..).filter(|_| begins);
+    let Some(length) = text.and_then(label_length) else { return kind };
+    lexer.bump(length.saturating_sub(lexer.slice().len()));
+    Tok::Label(lexer.slice())
 }
 
 /// Collects tokens.

@@ -10,6 +10,7 @@ pub(crate) mod foreign;
 mod format;
 mod header;
 mod indentation;
+mod label;
 mod lexer;
 mod lexical;
 mod mistakes;

@@ -9,8 +9,9 @@ use std::ops::Range;
 use bumpalo::Bump;
 use lalrpop_util::ErrorRecovery;
 
+use super::label::label;
 use super::source::{Location, Source};
-use super::token::{Tok, Token, label};
+use super::token::{Tok, Token};
 use super::tree::{
     Arg, Atom, Call, Condition, ConditionNode, Count, Element, Exec, File, Formal, Frame, Marks, Name, Number, Param,
     Plan, Primary, Spanned,

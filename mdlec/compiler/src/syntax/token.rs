@@ -1,7 +1,5 @@
 //! Kinds of tokens (docs/src/reference/language.md, 2).
 
-use std::borrow::Cow;
-
 use logos::Logos;
 
 use super::scan::{comment, doc, number, string};
@@ -56,7 +54,7 @@ pub(super) enum Tok<'s> {
     SigmaNull,
     #[regex(r"[\p{L}_][\p{L}\p{M}\p{Nd}_]*")]
     Name(&'s str),
-    #[regex(r"(Γ|\\?Gamma)_([\p{L}\p{M}\p{Nd}_]+|\{\s*(\\text\{)?[\s\p{L}\p{M}\p{Nd}_]+\}?\s*\})(\^([\p{L}\p{M}\p{Nd}_]+|\{\s*(\\text\{)?[\s\p{L}\p{M}\p{Nd}_]+\}?\s*\}))?", priority = 40)]
+    /// A name or a command that goes on as a label; see [`super::label::label_length`].
     Label(&'s str),
     #[regex(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?", number)]
     Number(&'s str),
@@ -121,18 +119,4 @@ pub(super) enum Tok<'s> {
     /// A typesetting command that is not part of MDLe; never reaches the parser.
     #[regex(r"\\[A-Za-z]+", priority = 1)]
     Command,
-}
-
-/// The text of a label, normalized: `Γ_from^to`.
-pub(super) fn label(text: &str) -> Cow<'_, str> {
-    if text.starts_with('Γ') && !text.contains('{') {
-        return Cow::Borrowed(text);
-    }
-    let names = text.find('_').and_then(|at| text.get(at..)).unwrap_or("");
-    let mut label = String::with_capacity(text.len() + 1);
-    label.push('Γ');
-    for part in names.split(r"\text") {
-        label.extend(part.chars().filter(|c| !c.is_whitespace() && !matches!(c, '{' | '}')));
-    }
-    Cow::Owned(label)
 }

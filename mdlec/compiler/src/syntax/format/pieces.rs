@@ -3,10 +3,11 @@
 use std::borrow::Cow;
 
 use super::super::header;
+use super::super::label::label;
 use super::super::lexer::{Lexed, lex};
 use super::super::printed;
 use super::super::source::{Place, Source};
-use super::super::token::{Tok, Token, label};
+use super::super::token::{Tok, Token};
 use super::comments::{Gap, gap};
 
 /// A token as it is printed.
