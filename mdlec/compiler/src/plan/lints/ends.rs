@@ -106,7 +106,7 @@ impl<'p> EndsLint<'p, '_> {
             Code::W0201,
             format!("nothing ever ends `{law}`, so the plan `{name}` never ends"),
             atom.span,
-            "neither this nor an enclosing scope has an interrupt",
+            "neither this nor an enclosing scope has an interrupt that can fire",
         )
         .help(format!("say when it ends, `(Atom (wait 10) {law})`, or what ends the plan, `{{ {name} (bumper) … }}`"))
     }
