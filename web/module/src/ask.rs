@@ -39,6 +39,8 @@ enum Request {
     Format { text: String },
     /// Floor of a world.
     Floor { world: String },
+    /// Checks world, body and start of a run.
+    Ready(Setup),
     /// Begins a run.
     Begin(Setup),
     /// Makes turns of the run.
@@ -99,16 +101,17 @@ impl Session {
             Request::Signature { text, at } => editing::signature(&mut Document::of(&text)?, at.into()),
             Request::Format { text } => Ok(editing::format(&text)),
             Request::Floor { world } => floor::floor(&world),
+            Request::Ready(setup) => setup.ready().and_then(|ready| floor::ready(&ready)),
             Request::Begin(setup) => {
                 // The memory of the last run is given back before the next is made.
                 self.run = None;
-                let run = self.run.insert(Run::begin(setup)?);
-                Ok(run.description())
+                let run = self.run.insert(Run::begin(&setup)?);
+                run.description()
             }
             Request::Step { turns } => self.run().map(|run| run.step(turns)),
             Request::Why { turn } => self.run().and_then(|run| run.why(turn)),
-            Request::Trial(setup) => trial::trial(setup),
-            Request::Export { what, setup } => export::export(what, setup),
+            Request::Trial(setup) => trial::trial(&setup),
+            Request::Export { what, setup } => export::export(what, &setup),
         }
     }
 

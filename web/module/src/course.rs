@@ -3,8 +3,8 @@
 use mdle_compiler::load::{LoadedPlan, Moment};
 use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Machine, Measured, Nanos, Plan as _, Robot as _, Sensed, Transition, Turn, Twist, Watch};
-use mdle_simulator::Simulated;
 use mdle_simulator::alphabet::Alphabet;
+use mdle_simulator::{Goal, Simulated};
 
 use crate::plan::Plan;
 use crate::setup::{PERIOD, Ready};
@@ -154,6 +154,16 @@ impl Course {
     pub(crate) fn stop(&mut self) {
         // The run has ended in any case.
         let _ = self.robot.stop();
+    }
+
+    /// Returns how `mdle run --goal` judges the pose of the robot; `None` without a goal.
+    pub(crate) fn judged(&self, goal: Option<&Goal>) -> Option<&'static str> {
+        let arrives = goal?.holds(&self.robot.pose());
+        Some(match (self.touches, arrives) {
+            (true, _) => "bumped",
+            (false, true) => "arrived",
+            (false, false) => "astray",
+        })
     }
 
     /// Returns the name of the plan.

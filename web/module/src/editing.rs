@@ -7,6 +7,7 @@ use mdle_language_service::diagnostics::{Finding, findings};
 use mdle_language_service::fixes::fixes;
 use mdle_language_service::formatting;
 use mdle_language_service::hover::hover as about;
+use mdle_language_service::lenses::runnables;
 use mdle_language_service::lines::{Lines, Position};
 use mdle_language_service::tokens::{KINDS, tokens};
 use serde_json::{Value, json};
@@ -35,7 +36,8 @@ impl<'t> Places<'t> {
     }
 }
 
-/// Returns the diagnostics with their fixes, the names of the plans, and the colours by meaning.
+/// Returns the diagnostics with their fixes, the names of the plans and of those that run by themselves, and the colours
+/// by meaning.
 pub(crate) fn diagnose(document: &mut Document) -> Result<Value, String> {
     let found = document.check();
     let text = document.text().to_owned();
@@ -63,15 +65,16 @@ pub(crate) fn diagnose(document: &mut Document) -> Result<Value, String> {
     };
     let findings = findings(&document.sources, &found);
     let diagnostics: Vec<_> = findings.iter().enumerate().map(diagnostic).collect();
-    let (tokens, plans) = document.view(|view| {
+    let (tokens, plans, roots) = document.view(|view| {
         let plans: Vec<_> = view.own().iter().map(|plan| plan.name.node.to_owned()).collect();
-        (tokens(view), plans)
+        let roots: Vec<_> = runnables(view).into_iter().map(|plan| plan.name).collect();
+        (tokens(view), plans, roots)
     });
     let tokens: Vec<_> = tokens
         .iter()
         .map(|token| json!([places.range(&token.range), KINDS.get(token.kind).copied().unwrap_or("")]))
         .collect();
-    Ok(json!({ "diagnostics": diagnostics, "plans": plans, "tokens": tokens }))
+    Ok(json!({ "diagnostics": diagnostics, "plans": plans, "roots": roots, "tokens": tokens }))
 }
 
 /// Returns the proposals at a place.

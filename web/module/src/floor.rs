@@ -1,7 +1,9 @@
 //! A world as a page draws it.
 
-use mdle_simulator::{Walls, World, Zone};
+use mdle_simulator::{Form, Goal, Walls, World, Zone};
 use serde_json::{Value, json};
+
+use crate::setup::Ready;
 
 /// Maximum number of corners that a page is given to draw.
 const CORNERS_MOST: usize = 200_000;
@@ -10,32 +12,54 @@ const CORNERS_MOST: usize = 200_000;
 pub(crate) fn floor(text: &str) -> Result<Value, String> {
     let world = World::parse("world", text).map_err(|error| error.to_string())?;
     Walls::of_any(&world).map_err(|what| format!("world: {what}"))?;
+    drawn(&world, world.goal)
+}
+
+/// Returns the robot's pose at the start, and its form.
+fn robot(ready: &Ready) -> Value {
+    let form = ready.make.form();
+    let (half_length, half_width) = form.halves();
+    let pose = ready.begins;
+    json!({
+        "pose": [pose.x.0, pose.y.0, pose.theta.0],
+        "round": matches!(form, Form::Disc { .. }), "length": half_length, "width": half_width,
+    })
+}
+
+/// Returns the floor before a run, with the robot.
+///
+/// # Errors
+/// The world is too large to be drawn: a sentence.
+pub(crate) fn ready(ready: &Ready) -> Result<Value, String> {
+    Ok(json!({ "floor": drawn(&ready.world, ready.goal)?, "robot": robot(ready) }))
+}
+
+/// Returns the floor of a world, with the goal of a run.
+///
+/// # Errors
+/// The world is too large to be drawn: a sentence.
+fn drawn(world: &World, goal: Option<Goal>) -> Result<Value, String> {
     let corners: usize = world.outlines.iter().map(|outline| outline.points.len()).sum();
     if corners > CORNERS_MOST {
         return Err(format!("world: {corners} corners are too many to be drawn; expected at most {CORNERS_MOST}"));
     }
-    Ok(drawn(&world))
-}
-
-/// Returns the floor of a world.
-pub(crate) fn drawn(world: &World) -> Value {
     let points = |points: &[mdle_simulator::Place]| points.iter().map(|place| json!([place.x, place.y])).collect();
     let outline = |outline: &mdle_simulator::Outline| {
         let corners: Value = points(&outline.points);
         json!({ "name": outline.name, "solid": outline.solid, "points": corners })
     };
-    let goal = world.goal.map(|goal| match goal.zone {
+    let goal = goal.map(|goal| match goal.zone {
         Zone::Rectangle { min, max } => json!({ "min": [min.x, min.y], "max": [max.x, max.y] }),
         Zone::Circle { center, radius } => json!({ "center": [center.x, center.y], "radius": radius }),
     });
     let charger = world.charger.map(|charger| {
         json!({ "at": [charger.pose.x.0, charger.pose.y.0], "heading": charger.pose.theta.0, "reach": charger.reach })
     });
-    json!({
+    Ok(json!({
         "outlines": world.outlines.iter().map(outline).collect::<Vec<_>>(),
         "things": world.things.iter().map(|thing| outline(&thing.outline)).collect::<Vec<_>>(),
         "start": [world.start.x.0, world.start.y.0, world.start.theta.0],
         "goal": goal,
         "charger": charger,
-    })
+    }))
 }

@@ -1,5 +1,7 @@
 //! A turn as a page draws it. Numbers are rounded: a page draws them, and files of a run have all their digits.
 
+use std::collections::BTreeMap;
+
 use mdle_compiler::load::Moment;
 use mdle_runtime::capability::SonarRing as _;
 use mdle_runtime::{Cause, Nanos, SONARS, SonarId};
@@ -33,6 +35,7 @@ pub(crate) fn frame(course: &Course, exchange: &Exchange, made: &Made, before: O
         "atom": course.machine.as_ref().and_then(|machine| machine.atom()),
         "began": made.began.is_some(),
         "since": since(made.moments.last()),
+        "skipped": skipped(&made.moments),
         "made": course.seen.transitions.len(),
         "fired": fired(course),
     })
@@ -45,10 +48,20 @@ fn range(exchange: &Exchange, number: usize) -> Value {
     newest.and_then(|ping| ping.range).map_or(Value::Null, |range| json!(round(range.0)))
 }
 
-/// Returns the enclosing scopes of the current atom, each with the time since it was entered.
+/// Returns the times since the current atom and the scope around it were entered, the atom's last.
 fn since(moment: Option<&Moment>) -> Value {
     let scopes = moment.filter(|moment| moment.cause.is_none()).map_or(&[][..], |moment| &moment.scopes);
-    scopes.iter().map(|scope| json!([scope.bracket, round(scope.since.seconds())])).collect()
+    let inner = scopes.get(scopes.len().saturating_sub(2)..).unwrap_or(scopes);
+    inner.iter().map(|scope| round(scope.since.seconds())).collect()
+}
+
+/// Returns the atoms that ended in the turn in which they were entered, each with the number of times.
+fn skipped(moments: &[Moment]) -> Value {
+    let mut times = BTreeMap::<u32, u32>::new();
+    for moment in moments.iter().filter(|moment| moment.cause.is_some() && moment.is_new()) {
+        *times.entry(moment.atom).or_default() += 1;
+    }
+    times.into_iter().map(|(atom, times)| json!([atom, times])).collect()
 }
 
 /// Returns the transitions: the scope that ended, the cause, and the atom that followed. Of very many the last are left

@@ -1,9 +1,8 @@
 //! A run that a page steps by turns.
 
 use mdle_compiler::fsm::{Element, ElementKind};
-use mdle_compiler::load::Moment;
+use mdle_compiler::load::{Moment, ScopeMoment};
 use mdle_runtime::{Nanos, Plan as _};
-use mdle_simulator::Form;
 use serde_json::{Value, json};
 
 use crate::causes;
@@ -12,18 +11,33 @@ use crate::plan::Plan;
 use crate::setup::{PERIOD, Ready, Setup};
 use crate::{floor, frame, why};
 
-/// Maximum number of moments of a turn that are kept.
+/// Maximum number of moments of a turn that are shown.
 const MOMENTS_MOST: usize = 40;
 /// Maximum number of transitions in one answer: a turn can make 4,096.
 const TRANSITIONS_MOST: usize = 20_000;
+
+/// Limits on what is kept of a run.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    /// Maximum size of all moments in bytes; a turn whose moments are not kept is explained by making the run again.
+    moments: usize,
+    /// Maximum size of all turns in bytes, as a page receives them: it keeps them all. The run then ends.
+    turns: usize,
+}
+
+const LIMITS: Limits = Limits { moments: 128 << 20, turns: 64 << 20 };
 
 /// A run, with what is needed to explain each of its turns.
 pub(crate) struct Run {
     plan: Plan,
     ready: Ready,
     course: Course,
-    /// Moments of each turn.
+    /// Moments of the first turns, up to the limit.
     moments: Vec<Vec<Moment>>,
+    /// What the limits still leave.
+    left: Limits,
+    /// `true` once the turns have reached their limit.
+    is_full: bool,
     /// Time of the last exchange.
     before: Option<Nanos>,
 }
@@ -33,26 +47,28 @@ impl Run {
     ///
     /// # Errors
     /// Messages about the plan, or a sentence about the setup.
-    pub(crate) fn begin(setup: Setup) -> Result<Self, String> {
+    pub(crate) fn begin(setup: &Setup) -> Result<Self, String> {
+        Self::within(LIMITS, setup)
+    }
+
+    fn within(left: Limits, setup: &Setup) -> Result<Self, String> {
         let plan = Plan::of(&setup.text, setup.plan.as_deref())?;
         let ready = setup.ready()?;
         let course = Course::new(&plan, &ready, true)?;
-        Ok(Self { plan, ready, course, moments: Vec::new(), before: None })
+        Ok(Self { plan, ready, course, moments: Vec::new(), left, is_full: false, before: None })
     }
 
     /// Returns the plan's elements, and the floor with the robot's form.
-    pub(crate) fn description(&self) -> Value {
-        let form = self.ready.make.form();
-        let (half_length, half_width) = form.halves();
-        let pose = self.ready.begins;
-        json!({
-            "elements": self.plan.machine.elements().map(|element| self.element(element)).collect::<Vec<_>>(),
-            "floor": floor::drawn(&self.ready.world),
-            "form": { "round": matches!(form, Form::Disc { .. }), "length": half_length, "width": half_width },
-            "start": [pose.x.0, pose.y.0, pose.theta.0],
-            "period": PERIOD.seconds(),
-            "limit": self.ready.limit.seconds(),
-        })
+    ///
+    /// # Errors
+    /// The world is too large to be drawn: a sentence.
+    pub(crate) fn description(&self) -> Result<Value, String> {
+        let elements: Vec<_> = self.plan.machine.elements().map(|element| self.element(element)).collect();
+        let mut description = floor::ready(&self.ready)?;
+        description["elements"] = elements.into();
+        description["period"] = PERIOD.seconds().into();
+        description["limit"] = self.ready.limit.seconds().into();
+        Ok(description)
     }
 
     fn element(&self, element: Element<'_>) -> Value {
@@ -78,20 +94,17 @@ impl Run {
     pub(crate) fn step(&mut self, turns: u64) -> Value {
         let (mut frames, mut transitions) = (Vec::new(), 0);
         for _ in 0..turns {
-            if self.course.end.is_some() || transitions > TRANSITIONS_MOST {
+            if self.is_full || self.course.end.is_some() || transitions > TRANSITIONS_MOST {
                 break;
             }
             let Some(exchange) = self.course.exchange() else { break };
-            let Some(mut made) = self.course.turn(&exchange.y) else { break };
+            let Some(made) = self.course.turn(&exchange.y) else { break };
             transitions += self.course.seen.transitions.len();
-            if made.moments.len() > MOMENTS_MOST {
-                let last = made.moments.pop();
-                made.moments.truncate(MOMENTS_MOST);
-                made.moments.extend(last);
-            }
-            frames.push(frame::frame(&self.course, &exchange, &made, self.before));
+            let frame = frame::frame(&self.course, &exchange, &made, self.before);
             self.before = Some(exchange.t);
-            self.moments.push(made.moments);
+            self.count(&frame);
+            frames.push(frame);
+            self.keep(made.number, shown(made.moments));
             if self.course.end.is_some() {
                 self.course.release();
                 self.course.stop();
@@ -100,15 +113,32 @@ impl Run {
         json!({ "turns": frames, "end": self.end() })
     }
 
-    /// Returns how the run has ended; null before that.
+    fn count(&mut self, frame: &Value) {
+        let size = frame.to_string().len();
+        self.is_full = size > self.left.turns;
+        self.left.turns = self.left.turns.saturating_sub(size);
+    }
+
+    /// Keeps the moments of a turn if those of all turns before are kept, and the limit allows it.
+    fn keep(&mut self, turn: u64, moments: Vec<Moment>) {
+        let size: usize = moments.iter().map(size).sum();
+        if self.moments.len() as u64 == turn && size <= self.left.moments {
+            self.left.moments -= size;
+            self.moments.push(moments);
+        }
+    }
+
+    /// Returns how the run has ended, and how its goal judges it; null before that.
     fn end(&self) -> Value {
+        let judged = self.course.judged(self.ready.goal.as_ref());
         match &self.course.end {
+            None if self.is_full => json!({ "how": "full" }),
             None => Value::Null,
             Some(End::Over) => {
-                let by = self.course.machine.as_ref();
-                json!({ "how": "over", "by": by.map(|machine| causes::last(machine.plan(), &self.course.seen)) })
+                let by = self.course.machine.as_ref().map(|machine| causes::last(machine.plan(), &self.course.seen));
+                json!({ "how": "over", "by": by, "judged": judged })
             }
-            Some(End::Limit) => json!({ "how": "limit" }),
+            Some(End::Limit) => json!({ "how": "limit", "judged": judged }),
             Some(End::Fault(sentence)) => json!({ "how": "fault", "by": sentence }),
         }
     }
@@ -118,8 +148,51 @@ impl Run {
     /// # Errors
     /// The turn was not made.
     pub(crate) fn why(&self, turn: usize) -> Result<Value, String> {
-        let moments = self.moments.get(turn).ok_or_else(|| format!("turn {turn} was not made"))?;
+        if turn as u64 >= self.course.turns {
+            return Err(format!("turn {turn} was not made"));
+        }
         let machine = self.course.machine.as_ref().ok_or("the run has not begun")?;
+        let again;
+        let moments = match self.moments.get(turn) {
+            Some(moments) => moments,
+            None => {
+                again = self.made_again(turn as u64)?;
+                &again
+            }
+        };
         Ok(json!({ "moments": why::moments(&self.plan.machine, machine.plan().source(), moments) }))
     }
+
+    /// Makes the run again up to a turn, and returns the moments of that turn.
+    fn made_again(&self, turn: u64) -> Result<Vec<Moment>, String> {
+        let mut course = Course::new(&self.plan, &self.ready, true)?;
+        loop {
+            let made = course.exchange().and_then(|exchange| course.turn(&exchange.y));
+            let made = made.ok_or_else(|| format!("turn {turn} was not made"))?;
+            if made.number == turn {
+                return Ok(shown(made.moments));
+            }
+        }
+    }
 }
+
+/// Leaves of very many moments the first and the very last.
+fn shown(mut moments: Vec<Moment>) -> Vec<Moment> {
+    if moments.len() > MOMENTS_MOST {
+        let last = moments.pop();
+        moments.truncate(MOMENTS_MOST);
+        moments.extend(last);
+        // A turn can have 4,096.
+        moments.shrink_to_fit();
+    }
+    moments
+}
+
+/// Size of a moment in bytes.
+fn size(moment: &Moment) -> usize {
+    let scope = |scope: &ScopeMoment| size_of::<ScopeMoment>() + size_of_val(scope.parts.as_slice());
+    size_of::<Moment>() + moment.scopes.iter().map(scope).sum::<usize>()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
 //! The setup of a run, as the options of the target `sim` describe it.
 
 use mdle_runtime::{Nanos, Pose};
-use mdle_simulator::{Body, Make, PARTS, Simulated, Start, StartNoise, Walls, World, alphabet, check};
+use mdle_simulator::{Body, Goal, Make, PARTS, Simulated, Start, StartNoise, Walls, World, alphabet, check};
 use serde::Deserialize;
 use std::time::Duration;
 
@@ -30,6 +30,10 @@ pub(crate) struct Setup {
     pub(crate) start_noise: String,
     /// Random seed; without one there are no random errors.
     pub(crate) seed: Option<u64>,
+    /// Charge of the battery at the start, in percent.
+    pub(crate) battery: Option<u64>,
+    /// Place in which the robot is to end, as `x,y,radius`; empty for the goal of the world.
+    pub(crate) goal: String,
     /// Time at which the run ends, in seconds.
     pub(crate) limit: Option<f64>,
 }
@@ -40,6 +44,9 @@ pub(crate) struct Ready {
     pub(crate) make: Make,
     /// Start pose of this seed.
     pub(crate) begins: Pose,
+    /// Charge of the battery, from 0 to 1.
+    charge: f64,
+    pub(crate) goal: Option<Goal>,
     pub(crate) limit: Nanos,
 }
 
@@ -71,12 +78,20 @@ impl Setup {
                 pose.map_err(|error| format!("start noise: no random start pose is free: {error}"))?
             }
         };
+        let battery = self.battery.unwrap_or(100);
+        if battery > 100 {
+            return Err("battery: expected a percentage from 0 to 100".to_owned());
+        }
+        let goal = match self.goal.trim() {
+            "" | "world" => world.goal,
+            text => Some(Goal::read(text).map_err(|error| format!("goal: {error}"))?),
+        };
         let limit = self.limit.unwrap_or(LONGEST);
         if !(limit > 0.0 && limit <= LONGEST) {
             return Err(format!("time limit: expected more than 0 s and at most {LONGEST} s"));
         }
         let limit = Nanos((limit * 1e9) as u64);
-        Ok(Ready { world, make, begins, limit })
+        Ok(Ready { world, make, begins, charge: battery as f64 / 100.0, goal, limit })
     }
 
     fn make(&self) -> Result<Make, String> {
@@ -111,6 +126,7 @@ impl Ready {
     /// A sentence about the start.
     pub(crate) fn robot(&self) -> Result<Simulated, String> {
         let period = Duration::from_nanos(PERIOD.0);
-        Simulated::with(&self.make, &self.world, self.begins, period).map_err(|error| format!("start: {error}"))
+        let robot = Simulated::with(&self.make, &self.world, self.begins, period);
+        robot.map(|robot| robot.charged(self.charge)).map_err(|error| format!("start: {error}"))
     }
 }

@@ -7,9 +7,9 @@ use crate::course::{Course, End};
 use crate::plan::Plan;
 use crate::setup::Setup;
 
-/// Makes a run, and returns how it ended: `over`, `limit` or `fault`; and, if the world has a goal, whether the robot
-/// is `arrived`, `bumped` or `astray`, as `mdle run --goal world` judges it.
-pub(crate) fn trial(setup: Setup) -> Result<Value, String> {
+/// Makes a run, and returns how it ended: `over`, `limit` or `fault`; and, if there is a goal, whether the robot is
+/// `arrived`, `bumped` or `astray`, as `mdle run --goal` judges it.
+pub(crate) fn trial(setup: &Setup) -> Result<Value, String> {
     let plan = Plan::of(&setup.text, setup.plan.as_deref())?;
     let ready = setup.ready()?;
     let mut course = Course::new(&plan, &ready, false)?;
@@ -30,15 +30,7 @@ pub(crate) fn trial(setup: Setup) -> Result<Value, String> {
         Some(End::Limit) | None => ("limit", None),
     };
     let pose = course.robot.pose();
-    let judged = ready.world.goal.map(|goal| {
-        if course.touches {
-            "bumped"
-        } else if goal.holds(&pose) {
-            "arrived"
-        } else {
-            "astray"
-        }
-    });
+    let judged = course.judged(ready.goal.as_ref());
     let at = [pose.x.0, pose.y.0, pose.theta.degrees()];
     Ok(json!({
         "seed": setup.seed, "end": end, "fault": fault, "t": t.seconds(), "contacts": course.contacts,
