@@ -2,19 +2,47 @@
 import { accessSync } from "node:fs";
 import { createServer } from "node:http";
 import { readFileSync } from "node:fs";
-import { gzipSync } from "node:zlib";
+import { gunzipSync, gzipSync } from "node:zlib";
 import { chromium } from "playwright-core";
 
 const page = readFileSync(process.env.MDLE_PAGE);
 const packed = gzipSync(page, { level: 9 });
 export const sizes = { page: page.length, packed: packed.length };
 
-/** Serves the page, packed, on this machine alone; returns its address and what ends it. */
+/** Returns the page with a module that may have less memory, in pages of 64 kB: it runs out. */
+function withMemory(most) {
+  const html = page.toString();
+  const base64 = /id="module">([^<]*)</.exec(html)[1];
+  const module = gunzipSync(Buffer.from(base64, "base64"));
+  let at = 8;
+  const number = () => {
+    let value = 0;
+    for (let shift = 0; ; shift += 7) {
+      const byte = module[at++];
+      value += (byte & 127) * 2 ** shift;
+      if (byte < 128) return value;
+    }
+  };
+  for (;;) {
+    const [section, length] = [module[at++], number()];
+    if (section === 5) break;
+    at += length;
+  }
+  // One memory, with a limit; then its size at first, and the limit.
+  if (number() !== 1 || number() !== 1 || number() > most) throw new Error("the module has another memory");
+  const from = at;
+  number();
+  for (let byte = from, left = most; byte < at; byte++, left >>= 7) module[byte] = (left & 127) | (byte + 1 < at ? 128 : 0);
+  return gzipSync(html.replace(base64, gzipSync(module).toString("base64")));
+}
+
+/** Serves the page, packed, on this machine alone, and as `small` with little memory; returns its address and what ends it. */
 export async function serve() {
+  const small = withMemory(400);
   const server = createServer((request, response) => {
-    const found = request.url === "/" || request.url === "/index.html";
+    const found = { "/": packed, "/index.html": packed, "/small": small }[request.url];
     response.writeHead(found ? 200 : 404, found ? { "content-type": "text/html", "content-encoding": "gzip", "cache-control": "no-store" } : {});
-    response.end(found ? packed : "");
+    response.end(found ?? "");
   });
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
   return { address: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
@@ -74,6 +102,12 @@ export async function goTo(tab, turn) {
     slider.value = String(turn);
     slider.dispatchEvent(new Event("input"));
   }, turn);
+}
+
+/** Shows the last turn of a run, and returns what the page says of its end. */
+export async function ended(tab) {
+  await goTo(tab, 1e9);
+  return tab.locator("#status").innerText();
 }
 
 export const tabOf = (tab, name) => tab.getByRole("tab", { name, exact: true });

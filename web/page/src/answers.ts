@@ -11,6 +11,8 @@ export interface Edit {
 export interface Diagnosis {
   diagnostics: { code: string; title: string; error: boolean; range: Range; message: string; fixes: (Edit & { title: string })[] }[];
   plans: string[];
+  /** Plans that no other plan uses. */
+  roots: string[];
   tokens: [Range, string][];
 }
 
@@ -47,11 +49,21 @@ export interface Element {
   line: number;
 }
 
-export interface Description {
-  elements: Element[];
+export interface Robot {
+  pose: Pose;
+  round: boolean;
+  /** Half of the length, or the radius, in metres. */
+  length: number;
+  width: number;
+}
+
+export interface Ready {
   floor: Floor;
-  form: { round: boolean; length: number; width: number };
-  start: Pose;
+  robot: Robot;
+}
+
+export interface Description extends Ready {
+  elements: Element[];
   period: number;
   limit: number;
 }
@@ -75,14 +87,22 @@ export interface Frame {
   gone: (Point | null)[];
   atom: number | null;
   began: boolean;
-  since: [number, number][];
+  /** Times since the scope around the atom and the atom itself were entered, the atom's last. */
+  since: number[];
+  /** Atoms that were skipped in this turn, each with the number of times. */
+  skipped: [number, number][];
   made: number;
   fired: Fired[];
 }
 
+/** What the goal says of the end of a run. */
+export type Judged = "arrived" | "bumped" | "astray";
+
 export interface End {
-  how: "over" | "limit" | "fault";
+  /** `full`: a page would have to keep too many turns; `stopped`: by the reader; `broken`: the module stopped. */
+  how: "over" | "limit" | "fault" | "full" | "stopped" | "broken";
   by?: string;
+  judged?: Judged | null;
 }
 
 export interface Steps {
@@ -104,6 +124,6 @@ export interface Trial {
   fault: string | null;
   t: number;
   contacts: number;
-  judged: "arrived" | "bumped" | "astray" | null;
+  judged: Judged | null;
   pose: Pose;
 }

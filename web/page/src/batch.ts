@@ -2,9 +2,19 @@
 import type { Trial } from "./answers";
 import { button, element } from "./dom";
 import { Module, Refusal } from "./module";
+import { JUDGED } from "./status";
 
 /** Longest time for one run, in milliseconds. */
 const PATIENCE = 60_000;
+
+const OVER = "plan over";
+const GOOD = `plan over, ${JUDGED.arrived}`;
+
+/** How a run ended, for people. */
+function endOf({ end, judged }: Trial): string {
+  if (end === "over") return judged ? `plan over, ${JUDGED[judged]}` : OVER;
+  return end === "limit" ? "time limit" : "fault";
+}
 
 export class Batch {
   private modules: Module[] = [];
@@ -68,13 +78,14 @@ export class Batch {
   private report(trials: Trial[], runs: number, begun: number): void {
     const groups = new Map<string, Trial[]>();
     for (const trial of [...trials].sort((one, other) => one.seed - other.seed)) {
-      const name = trial.end === "over" ? (trial.judged ?? "over") : trial.end === "limit" ? "time limit" : "fault";
+      const name = endOf(trial);
       groups.set(name, [...(groups.get(name) ?? []), trial]);
     }
     const rows = [...groups].sort(([one], [other]) => one.localeCompare(other)).map(([name, group]) => {
       const times = group.map(({ t }) => t);
-      const span = `${Math.min(...times).toFixed(1)} to ${Math.max(...times).toFixed(1)} s`;
-      const isGood = name === "arrived" || name === "over";
+      const [least, most] = [Math.min(...times).toFixed(1), Math.max(...times).toFixed(1)];
+      const span = least === most ? `${least} s` : `${least} to ${most} s`;
+      const isGood = name === GOOD || name === OVER;
       const seeds = element("div", { class: "seeds" });
       for (const { seed } of group.slice(0, 60)) seeds.append(button(String(seed), () => this.show(seed), { title: `Show the run of seed ${seed}` }));
       if (group.length > 60) seeds.append(`and ${group.length - 60} more`);

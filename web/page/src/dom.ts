@@ -51,6 +51,24 @@ export function later(milliseconds: number, act: () => void): () => void {
   };
 }
 
+/** Acts at once, or as soon as what it began before is done; what is asked for meanwhile is done once. */
+export function oneAtATime(act: () => Promise<void>): () => void {
+  let isBusy = false;
+  let isAsked = false;
+  const go = async () => {
+    isBusy = true;
+    do {
+      isAsked = false;
+      await act();
+    } while (isAsked);
+    isBusy = false;
+  };
+  return () => {
+    isAsked = true;
+    if (!isBusy) void go();
+  };
+}
+
 /** Offers a text as a file to save. */
 export function save(name: string, type: string, text: string): void {
   const address = URL.createObjectURL(new Blob([text], { type }));

@@ -11,6 +11,7 @@ export function files(menu: HTMLElement, settings: () => Settings, tell: (senten
   // In a module of its own: the run that is shown goes on.
   const module = new Module();
   const offer = (name: string, type: string, text: () => Promise<string>) => async () => {
+    tell("");
     byId<HTMLDetailsElement>("export").open = false;
     try {
       save(name, type, await text());
@@ -42,7 +43,20 @@ export function files(menu: HTMLElement, settings: () => Settings, tell: (senten
     element("div", { class: "quiet" }, "The same run natively:"), shown,
     button("Copy the command", () => void copy(command(settings()), tell)),
   );
-  byId("export").addEventListener("toggle", () => (shown.textContent = command(settings())));
+  const whole = byId<HTMLDetailsElement>("export");
+  whole.addEventListener("toggle", () => (shown.textContent = command(settings())));
+  // A menu closes when something else is meant.
+  document.addEventListener("pointerdown", ({ target }) => {
+    if (!(target instanceof Node && whole.contains(target))) whole.open = false;
+  });
+  whole.addEventListener("focusout", ({ relatedTarget }) => {
+    if (relatedTarget instanceof Node && !whole.contains(relatedTarget)) whole.open = false;
+  });
+  whole.addEventListener("keydown", ({ key }) => {
+    if (key !== "Escape" || !whole.open) return;
+    whole.open = false;
+    whole.querySelector("summary")?.focus();
+  });
 }
 
 /** Copies a text, or shows it where that is not allowed. */

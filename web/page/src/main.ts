@@ -1,153 +1,208 @@
 // The page: editor, setup, run, and the views of a run.
-import type { Floor } from "./answers";
+import type { Floor, Ready } from "./answers";
 import { Batch } from "./batch";
-import { byId, element, later } from "./dom";
+import { byId, element, later, oneAtATime } from "./dom";
 import { Editor } from "./editor";
 import { EXAMPLES, settingsOfExample } from "./examples";
 import { copy, files } from "./files";
 import { FloorView } from "./floor";
+import { checkSetup, choiceOfPlan, field, FIELDS, forgetPlans, offerPlans, planToRun } from "./form";
 import { fragmentOf, settingsIn } from "./link";
 import { Module } from "./module";
+import { tell } from "./notice";
 import { Picture } from "./picture";
 import { Player } from "./player";
 import { showProblems } from "./problems";
 import { Run } from "./run";
 import { EMPTY, type Settings, settingsOf, setupOf, worldText, WORLDS } from "./settings";
 import { Signals } from "./signals";
+import { stateOf, status } from "./status";
 import { kept, keep } from "./storage";
 import { tabs } from "./tabs";
+import { Transitions } from "./transitions";
 import { Why } from "./why";
 
-/** Time without a keystroke after which the text is checked, in milliseconds. */
-const QUIET = 15;
+/** Time without a keystroke after which the text is kept and its picture is drawn, in milliseconds. */
+const QUIET = 200;
+/** What the picture shows while the text has errors. */
+const LAST = "The last plan without errors.";
+/** Time after which a check of an older text is given up, in milliseconds. */
+const OLD = 2000;
 
 const language = new Module();
 const simulator = new Module();
-const FIELDS = ["plan", "world", "body", "seed", "start", "noise", "without", "limit"] as const;
-const field = (name: (typeof FIELDS)[number]) => byId<HTMLInputElement | HTMLSelectElement>(name);
 const ownWorld = element("textarea", { id: "world-text", spellcheck: "false", "aria-label": "World as TOML" });
 const worldError = element("p", { class: "bad", role: "status" });
 
 let run: Run | undefined;
-const editor = new Editor(byId("editor"), language, later(QUIET, () => void changed()), () => void begin());
-const floor = new FloorView(byId<HTMLCanvasElement>("floor"));
+/** The settings of the run that is shown. */
+let ranWith: Settings | undefined;
+/** What has changed since. */
+let stale: "" | "plan" | "fields" = "";
+/** Number of runs begun. */
+let runs = 0;
+let hasErrors = false;
+const editor = new Editor(byId("editor"), language, changed, () => void begin());
+const floor = new FloorView(byId<HTMLCanvasElement>("floor"), byId("pointed"));
 const picture = new Picture(byId("panel-plan"), language);
 const why = new Why(byId("panel-why"), (line) => editor.goTo(line));
 const signals = new Signals(byId("panel-signals"));
 const player = new Player(show);
+const transitions = new Transitions(byId("panel-transitions"), (turn) => player.go(turn));
 const showTab = tabs(document.querySelector<HTMLElement>(".tabs") as HTMLElement, () => run && show(run, player.turn));
 
-/** Tells the reader something; a text, never HTML. */
-function tell(sentence: string, bad = false): void {
-  const notice = byId("notice");
-  notice.textContent = sentence;
-  notice.classList.toggle("bad", bad);
-  notice.hidden = sentence === "";
-}
-
-function status(text: string, bad = false): void {
-  byId("status").textContent = text;
-  byId("status").classList.toggle("bad", bad);
-}
-
+/** The settings, with the plan as it was chosen. */
 function settings(): Settings {
   const fields = Object.fromEntries(FIELDS.map((name) => [name, field(name).value]));
   return { ...EMPTY, ...fields, text: editor.text, ownWorld: ownWorld.value };
 }
 
+/** The settings of a run, in which the plan is named if the text leaves it open. */
+const toRun = (): Settings => ({ ...settings(), plan: planToRun() });
+
 function set(next: Settings): void {
-  run?.stop();
-  run = undefined;
+  clearRun();
   ownWorld.value = next.world === "own" ? next.ownWorld : (WORLDS[next.world] ?? "");
-  editor.text = next.text;
-  choices([], next.plan);
+  forgetPlans(next.plan);
   for (const name of FIELDS) if (name !== "plan") field(name).value = next[name];
-  status("");
+  editor.text = next.text;
+  changed();
   void drawWorld();
 }
 
-/** Offers the plans of the text. */
-function choices(plans: string[], chosen = field("plan").value): void {
-  const names = ["", ...new Set([...plans, ...(chosen ? [chosen] : [])])];
-  field("plan").replaceChildren(...names.map((name) => element("option", { value: name }, name === "" ? "auto" : name)));
-  field("plan").value = plans.length === 0 || plans.includes(chosen) ? chosen : "";
+/** Shows no run any more. */
+function clearRun(): void {
+  run?.stop({ how: "stopped" });
+  [run, ranWith] = [undefined, undefined];
+  player.clear();
+  picture.clear("");
+  for (const view of [why, signals, transitions]) view.clear();
+  status("");
+  showStale();
 }
 
-/** Time after which a check of an older text is given up, in milliseconds. */
-const OLD = 2000;
+/** The text has changed. */
+function changed(): void {
+  if (checking > 0 && performance.now() - checking > OLD) language.stop("The text has changed.");
+  check();
+  showStale();
+  settled();
+}
+
 /** Beginning of the check that goes on; 0 if there is none. */
 let checking = 0;
-
-/** The text has changed: it is kept, checked and drawn. */
-async function changed(): Promise<void> {
-  keep(settings());
+const check = oneAtATime(async () => {
   const { text } = editor;
-  const begun = performance.now();
-  if (checking > 0 && begun - checking > OLD) language.stop("The text has changed.");
-  checking = begun;
+  checking = performance.now();
   try {
     const diagnosis = await editor.diagnose();
     if (!diagnosis) return;
     showProblems(byId("problems"), diagnosis, editor, language);
-    choices(diagnosis.plans);
+    hasErrors = diagnosis.diagnostics.some(({ error }) => error);
+    if (!hasErrors) offerPlans(diagnosis.plans, diagnosis.roots);
+    byId("choice").textContent = choiceOfPlan();
     document.documentElement.dataset.checked = String(performance.now());
-    if (diagnosis.diagnostics.some(({ error }) => error)) return;
-    await picture.draw(editor.text, field("plan").value).catch((error: Error) => picture.say(error.message));
-    if (run) show(run, player.turn);
   } catch (error) {
     // What an older text was refused for is of no use.
     if (editor.text === text) tell((error as Error).message, true);
   } finally {
-    if (checking === begun) checking = 0;
+    checking = 0;
   }
+});
+
+/** Keeps the settings and draws the plan once the reader pauses. */
+const settled = later(QUIET, () => {
+  keep(settings());
+  void drawPlan();
+});
+
+async function drawPlan(): Promise<void> {
+  const { text, plan } = toRun();
+  // While the text has errors, the picture is that of the last one without.
+  if (!hasErrors) await picture.draw(text, plan).catch((error: Error) => picture.say(error.message));
+  if (run) show(run, player.turn);
+  else picture.clear(hasErrors ? LAST : "");
 }
 
-/** Draws the world, unless a run is shown in it. */
+/** Draws the world with the robot at its start, unless a run is shown in it; marks a field that is refused. */
 async function drawWorld(): Promise<void> {
+  const now = settings();
+  const ready = await checkSetup(simulator, now);
+  worldError.textContent = "";
   try {
-    const drawn = await simulator.ask<Floor>({ ask: "floor", world: worldText(settings()) });
-    worldError.textContent = "";
-    if (!run) floor.show(drawn);
+    const shown = ready ?? (await worldAlone(now));
+    if (!run) floor.show(shown);
   } catch (error) {
     worldError.textContent = (error as Error).message;
   }
 }
 
+async function worldAlone(now: Settings): Promise<Ready> {
+  const drawn = await simulator.ask<Floor>({ ask: "floor", world: worldText(now) });
+  return { floor: drawn, robot: { pose: drawn.start, round: true, length: 0.205, width: 0.205 } };
+}
+
 /** Begins a run, and plays it while it is being made. */
 async function begin(): Promise<void> {
-  run?.stop();
-  run = undefined;
-  status("…");
+  clearRun();
+  status("Compiling …");
+  byId<HTMLButtonElement>("stop").disabled = false;
+  const number = ++runs;
+  const given = toRun();
   const begun = performance.now();
+  let next: Run | undefined;
   try {
-    const next = await Run.begin(simulator, setupOf(settings()));
-    run = next;
+    next = await Run.begin(simulator, setupOf(given));
+    if (number !== runs) return;
+    [run, ranWith] = [next, given];
+    // The text may have changed while it was compiled.
+    showStale();
     player.begin(next);
-    await next.make(() => {
-      if (run !== next) return;
-      player.more();
-      status(ended(next));
-    });
+    await next.make(() => run === next && player.more());
     document.documentElement.dataset.simulated = String(performance.now() - begun);
   } catch (error) {
-    status((error as Error).message, true);
+    if (number === runs) broken(next, (error as Error).message);
   }
 }
 
-/** How a run has ended, for people. */
-function ended({ end, frames }: Run): string {
-  const time = `${(frames.at(-1)?.t ?? 0).toFixed(1)} s`;
-  if (!end) return `Simulated ${time} …`;
-  if (end.how === "over") return `The plan is over after ${time}: ${end.by ?? ""}`;
-  return end.how === "limit" ? `Stopped after ${time} by the time limit; the plan is not over.` : `A fault after ${time}: ${end.by ?? ""}`;
+/** A run could not be begun, or the module stopped while it was made. */
+function broken(made: Run | undefined, sentence: string): void {
+  if (made && made.frames.length > 0) {
+    made.stop({ how: "broken", by: sentence });
+    return player.go(made.frames.length - 1);
+  }
+  clearRun();
+  status(sentence, true);
+  void drawWorld();
+}
+
+/** Ends the run that is being made, and its playback. */
+function stop(): void {
+  if (!run) return simulator.stop("Stopped by you.");
+  run.stop({ how: "stopped" });
+  player.pause();
+  show(run, player.turn);
+}
+
+/** Says that the run that is shown is not that of the text and the fields. */
+function showStale(): void {
+  const now = run && toRun();
+  const differs = (names: readonly (keyof Settings)[]) => now !== undefined && names.some((name) => now[name] !== ranWith?.[name]);
+  stale = differs(["text", "plan"]) ? "plan" : differs(FIELDS) ? "fields" : "";
+  byId("stale").hidden = stale === "";
+  byId("stale").textContent = stale === "" ? "" : `This run is of the ${stale} before your change. Run again to see the change.`;
+  byId("floor").parentElement?.classList.toggle("stale", stale !== "");
 }
 
 /** Shows a turn in all views. */
 function show(shown: Run, turn: number): void {
-  floor.at(shown, turn);
-  picture.at(shown, turn);
+  floor.at(shown, turn, stale === "plan");
+  if (stale === "plan") picture.clear(`${hasErrors ? LAST : "The plan as it is now."} The run above is of the plan before your change.`);
+  else picture.at(shown, turn);
   signals.at(shown, turn);
+  transitions.at(shown, turn);
   void why.at(shown, turn);
+  status(...stateOf(shown, turn));
   const frame = shown.frames[turn];
   const law = shown.atom(frame?.atom)?.law ?? "plan over";
   byId("floor").setAttribute("aria-label", frame
@@ -156,7 +211,7 @@ function show(shown: Run, turn: number): void {
 }
 
 async function share(): Promise<void> {
-  const fragment = await fragmentOf(settings());
+  const fragment = await fragmentOf(toRun());
   history.replaceState(null, "", fragment);
   await copy(location.href, (sentence) => tell(sentence === "Copied." ? "The link is copied. The plan is in it: nothing was sent anywhere." : sentence));
 }
@@ -173,6 +228,13 @@ async function open(): Promise<void> {
   set(kept(settingsOf) ?? (first ? settingsOfExample(first) : EMPTY));
 }
 
+/** The world has changed: a run in another one is not shown in it. */
+function worldChanged(): void {
+  clearRun();
+  settled();
+  void drawWorld();
+}
+
 function wire(): void {
   const examples = byId<HTMLSelectElement>("example");
   examples.append(element("option", { value: "" }, "choose one …"), ...EXAMPLES.map(({ name }, number) => element("option", { value: String(number) }, name)));
@@ -182,33 +244,32 @@ function wire(): void {
     tell("");
   });
   byId("run").addEventListener("click", () => void begin());
+  byId("stop").addEventListener("click", stop);
   byId("share").addEventListener("click", () => void share());
   byId("format").addEventListener("click", () => void editor.format().then((done) => tell(done ? "" : "A plan with errors is not formatted.", !done)));
   byId("setup").addEventListener("submit", (event) => event.preventDefault());
-  byId("setup").addEventListener("change", () => {
-    keep(settings());
-    void changed();
-  });
-  field("world").addEventListener("change", () => {
-    if (field("world").value !== "own") ownWorld.value = worldText(settings());
-    run?.stop();
-    run = undefined;
-    void drawWorld();
-  });
-  ownWorld.addEventListener("input", later(150, () => {
-    field("world").value = "own";
-    run?.stop();
-    run = undefined;
-    keep(settings());
+  byId("setup").addEventListener("input", later(QUIET, () => {
+    byId("choice").textContent = choiceOfPlan();
+    showStale();
+    settled();
     void drawWorld();
   }));
+  field("world").addEventListener("change", () => {
+    if (field("world").value !== "own") ownWorld.value = worldText(settings());
+    worldChanged();
+  });
+  ownWorld.addEventListener("input", later(QUIET, () => {
+    field("world").value = "own";
+    worldChanged();
+  }));
   byId("panel-world").append(element("p", { class: "quiet" }, "Change the text, and the floor is drawn again. Lengths are in metres; the book has the format."), worldError, ownWorld);
-  new Batch(byId("panel-batch"), () => setupOf(settings()), (seed) => {
+  new Batch(byId("panel-batch"), () => setupOf(toRun()), (seed) => {
     field("seed").value = String(seed);
     void begin();
   });
-  files(byId("files"), settings, tell);
+  files(byId("files"), toRun, tell);
   window.addEventListener("hashchange", () => void open());
+  document.addEventListener("visibilitychange", () => document.visibilityState === "hidden" && keep(settings()));
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey && event.key === "Enter" && !event.defaultPrevented) void begin();
   });

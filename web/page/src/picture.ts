@@ -1,7 +1,7 @@
 // The picture of the plan, as `mdlec draw` makes it, with the active path and the number of times that atoms were entered.
 import { element } from "./dom";
 import type { Module } from "./module";
-import type { Run } from "./run";
+import type { Run, Visits } from "./run";
 
 const SVG = "http://www.w3.org/2000/svg";
 const STYLE = `
@@ -10,6 +10,7 @@ const STYLE = `
   g.current > rect:first-of-type { stroke-width: 4px; stroke: var(--robot) }
   g.ended > rect:first-of-type { stroke: var(--bad) }
   .visits { font: 11px system-ui, sans-serif; fill: var(--quiet) }
+  .skipped { fill: var(--warn) }
 `;
 
 export class Picture {
@@ -18,12 +19,12 @@ export class Picture {
   private atom: number | null = null;
   private boxes: Element[] = [];
   private visits: Element[] = [];
-  private readonly last = element("p", { class: "quiet" });
+  private readonly caption = element("p", { class: "quiet" });
   private drawn = "";
 
   constructor(parent: HTMLElement, private module: Module) {
     this.host = element("div", { class: "scrolled", tabindex: "0", role: "group", "aria-label": "Picture of the plan" });
-    parent.append(this.last, this.host);
+    parent.append(this.caption, this.host);
     // The picture has a style of its own.
     this.shadow = this.host.attachShadow({ mode: "open" });
   }
@@ -36,6 +37,7 @@ export class Picture {
     const svg = new DOMParser().parseFromString(output, "image/svg+xml").documentElement;
     this.drawn = output;
     this.shadow.replaceChildren(element("style", {}, STYLE), document.importNode(svg, true));
+    this.atom = null;
     this.boxes = [...this.shadow.querySelectorAll("svg > g")];
     this.visits = this.boxes.map((box) => {
       const rect = box.querySelector("rect");
@@ -54,7 +56,15 @@ export class Picture {
   say(sentence: string): void {
     this.drawn = "";
     [this.boxes, this.visits] = [[], []];
-    this.shadow.replaceChildren(element("p", {}, sentence));
+    this.shadow.replaceChildren(element("pre", {}, sentence));
+  }
+
+  /** Shows the picture without a run. */
+  clear(caption: string): void {
+    this.caption.textContent = caption;
+    for (const box of this.boxes) box.classList.remove("path", "current", "ended");
+    for (const label of this.visits) label.replaceChildren();
+    this.atom = null;
   }
 
   /** Marks the path to the current atom of a turn, and what ended last. */
@@ -69,13 +79,12 @@ export class Picture {
       box?.classList.toggle("path", path.has(number));
       box?.classList.toggle("current", kind === "atom" && path.has(number));
       box?.classList.toggle("ended", ended.has(number));
-      const count = atom === null ? 0 : (visits[atom] ?? 0);
       const label = this.visits[number];
-      if (label) label.textContent = count > 0 ? `${count}×` : "";
+      if (label && atom !== null) showVisits(label, visits[atom]);
     });
     const last = run.last(turn);
-    const by = last?.frame.fired.at(-1);
-    this.last.textContent = last && by ? `Last transition, at ${last.frame.t.toFixed(1)} s: ${run.named(by.scope)} ended: ${by.by}` : "No transition yet.";
+    const by = last?.fired.at(-1);
+    this.caption.textContent = last && by ? `Last transition, at ${last.t.toFixed(1)} s: ${run.named(by.scope)} ended: ${by.by}` : "No transition yet.";
     if (frame.atom !== this.atom) this.scroll();
     this.atom = frame.atom;
   }
@@ -89,4 +98,12 @@ export class Picture {
     if (box.left < around.left || box.right > around.right) host.scrollLeft += (box.left + box.right - around.left - around.right) / 2;
     if (box.top < around.top || box.bottom > around.bottom) host.scrollTop += (box.top + box.bottom - around.top - around.bottom) / 2;
   }
+}
+
+/** Writes how often an atom ran, and how often it was skipped. */
+function showVisits(label: Element, { ran, skipped }: Visits = { ran: 0, skipped: 0 }): void {
+  const words = [ran > 0 ? `ran ${ran}×` : "", skipped > 0 ? `skipped ${skipped}×` : ""].filter((part) => part !== "").join(", ");
+  if (label.textContent === words) return;
+  label.textContent = words;
+  label.classList.toggle("skipped", skipped > 0);
 }

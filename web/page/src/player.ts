@@ -2,6 +2,8 @@
 import { byId } from "./dom";
 import type { Run } from "./run";
 
+const BUTTONS = ["play", "previous", "back", "forward", "next", "time"];
+
 export class Player {
   turn = 0;
   private run: Run | undefined;
@@ -16,6 +18,7 @@ export class Player {
     this.play.addEventListener("click", () => this.toggle());
     byId("back").addEventListener("click", () => this.go(this.turn - 1));
     byId("forward").addEventListener("click", () => this.go(this.turn + 1));
+    byId("previous").addEventListener("click", () => this.go(this.run?.transitions.findLast((turn) => turn < this.turn) ?? this.turn));
     byId("next").addEventListener("click", () => this.go(this.run?.transitions.find((turn) => turn > this.turn) ?? this.turn));
     this.slider.addEventListener("input", () => this.go(Number(this.slider.value)));
   }
@@ -23,13 +26,23 @@ export class Player {
   /** Plays a run from its first turn. */
   begin(run: Run): void {
     [this.run, this.turn, this.time] = [run, 0, 0];
-    for (const id of ["play", "back", "forward", "next", "time"]) byId<HTMLButtonElement>(id).disabled = false;
+    for (const id of BUTTONS) byId<HTMLButtonElement>(id).disabled = false;
     this.set(true);
+  }
+
+  /** Has no run any more. */
+  clear(): void {
+    this.set(false);
+    this.run = undefined;
+    for (const id of BUTTONS) byId<HTMLButtonElement>(id).disabled = true;
+    [this.slider.max, this.slider.value, this.turn] = ["0", "0", 0];
+    byId("clock").textContent = "0.0 s";
   }
 
   /** Takes note of turns that were made meanwhile. */
   more(): void {
     this.slider.max = String(Math.max(0, (this.run?.frames.length ?? 1) - 1));
+    this.allowStop();
     this.shown();
   }
 
@@ -49,10 +62,20 @@ export class Player {
     this.set(!this.playing);
   }
 
+  pause(): void {
+    this.set(false);
+  }
+
+  /** There is something to stop while a run is made or played. */
+  private allowStop(): void {
+    byId<HTMLButtonElement>("stop").disabled = !this.playing && (!this.run || this.run.end !== undefined);
+  }
+
   private set(playing: boolean): void {
     const begins = playing && !this.playing;
     this.playing = playing;
     this.play.textContent = playing ? "Pause" : "Play";
+    this.allowStop();
     if (begins) {
       this.last = performance.now();
       requestAnimationFrame((now) => this.tick(now));

@@ -10,7 +10,9 @@ export function showProblems(panel: HTMLElement, { diagnostics }: Diagnosis, edi
   const list = element("ul");
   for (const { code, error, range, message, fixes } of diagnostics) {
     const line = range[0] + 1;
-    const [first, ...rest] = message.split("\n");
+    const [first, ...lines] = message.split("\n");
+    // A help that can be clicked is not written twice.
+    const rest = lines.filter((line) => !fixes.some(({ title }) => line === `help: ${title}`));
     const item = element("li", { class: error ? "error" : "warning" });
     item.append(button(`Line ${line}: ${first}`, () => editor.goTo(line)), " ");
     item.append(button(code, () => void explain(item, module, code), { class: "code", title: `Explain ${code}` }));

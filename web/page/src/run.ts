@@ -5,6 +5,14 @@ import type { Module } from "./module";
 /** Number of turns of one request: small enough that a run can be stopped between two. */
 const PIECE = 100;
 
+/** How often an atom was entered. */
+export interface Visits {
+  /** Times its law was applied. */
+  ran: number;
+  /** Times it ended before that. */
+  skipped: number;
+}
+
 export class Run {
   readonly frames: Frame[] = [];
   /** Turns in which the law of an atom was applied first. */
@@ -12,8 +20,10 @@ export class Run {
   /** Turns with transitions. */
   readonly transitions: number[] = [];
   end: End | undefined;
-  private stopped = false;
   private readonly atoms: Element[];
+  /** Visits up to the turn before `counted`. */
+  private counts: Visits[] = [];
+  private counted = 0;
 
   private constructor(readonly description: Description, private module: Module) {
     this.atoms = description.elements.filter(({ kind }) => kind === "atom");
@@ -26,9 +36,9 @@ export class Run {
 
   /** Makes the turns to the end, and calls `made` after each piece. */
   async make(made: () => void): Promise<void> {
-    while (!this.end && !this.stopped) {
+    while (!this.end) {
       const { turns, end } = await this.module.ask<Steps>({ ask: "step", turns: PIECE });
-      if (this.stopped) return;
+      if (this.end) return;
       for (const frame of turns) {
         if (frame.began) this.beginnings.push(this.frames.length);
         if (frame.made > 0) this.transitions.push(this.frames.length);
@@ -40,8 +50,13 @@ export class Run {
   }
 
   /** Makes no more turns. */
-  stop(): void {
-    this.stopped = true;
+  stop(how: End): void {
+    this.end ??= how;
+  }
+
+  /** Time of the last turn in seconds. */
+  get duration(): number {
+    return this.frames.at(-1)?.t ?? 0;
   }
 
   /** Explains a turn. */
@@ -65,25 +80,29 @@ export class Run {
     return path;
   }
 
-  /** How often each atom was entered up to a turn; skipped atoms count. */
-  visits(turn: number): number[] {
-    const visits = this.atoms.map(() => 0);
-    const count = (atom: number | null) => {
-      if (atom !== null) visits[atom] = (visits[atom] ?? 0) + 1;
-    };
-    if (this.frames.length > 0) count(0);
-    for (const number of this.transitions) {
-      if (number > turn) break;
-      for (const { to } of this.frames[number]?.fired ?? []) count(to);
+  /** How often each atom ran and was skipped up to a turn. */
+  visits(turn: number): Visits[] {
+    if (turn + 1 < this.counted || this.counts.length === 0) {
+      this.counts = this.atoms.map(() => ({ ran: 0, skipped: 0 }));
+      this.counted = 0;
     }
-    return visits;
+    for (; this.counted <= turn; this.counted++) {
+      const frame = this.frames[this.counted];
+      if (!frame) break;
+      const ran = frame.began && frame.atom !== null ? this.counts[frame.atom] : undefined;
+      if (ran) ran.ran++;
+      for (const [atom, times] of frame.skipped) {
+        const skipped = this.counts[atom];
+        if (skipped) skipped.skipped += times;
+      }
+    }
+    return this.counts;
   }
 
   /** The last transition up to a turn. */
-  last(turn: number): { turn: number; frame: Frame } | undefined {
-    const found = this.transitions.filter((number) => number <= turn).at(-1);
-    const frame = found === undefined ? undefined : this.frames[found];
-    return frame && found !== undefined ? { turn: found, frame } : undefined;
+  last(turn: number): Frame | undefined {
+    const found = this.transitions.findLast((number) => number <= turn);
+    return found === undefined ? undefined : this.frames[found];
   }
 
   /** A name of an element for people. */

@@ -23,10 +23,12 @@ export interface Settings {
   noise: string;
   seed: string;
   limit: string;
+  battery: string;
+  goal: string;
 }
 
 export const EMPTY: Settings = {
-  text: "", plan: "", world: "office", ownWorld: "", body: "ideal", without: "", start: "", noise: "", seed: "", limit: "600",
+  text: "", plan: "", world: "office", ownWorld: "", body: "ideal", without: "", start: "", noise: "", seed: "", limit: "600", battery: "", goal: "",
 };
 
 /** Maximum number of letters of a text, and of any other setting. */
@@ -59,10 +61,13 @@ export function setupOf(settings: Settings): Record<string, unknown> {
   if (!/^\d{0,15}$/.test(seed)) throw new Error("seed: expected a whole number of at most 15 digits, or nothing");
   const limit = Number(settings.limit);
   if (!(limit > 0 && limit <= 3600)) throw new Error("time limit: expected seconds, more than 0 and at most 3600");
+  const battery = settings.battery.trim();
+  if (!/^\d{0,3}$/.test(battery)) throw new Error("battery: expected a whole percentage from 0 to 100, or nothing");
   return {
     text: settings.text, plan: settings.plan || null, world: worldText(settings),
     world_name: settings.world === "own" ? "world.toml" : settings.world, body: settings.body, without: settings.without,
     start: settings.start.trim(), start_noise: settings.noise.trim(), seed: seed === "" ? null : Number(seed), limit,
+    battery: battery === "" ? null : Number(battery), goal: settings.goal.trim(),
   };
 }
 
@@ -80,6 +85,8 @@ export function command(settings: Settings): string {
   option("start", settings.start);
   option("start-noise", settings.noise);
   option("seed", settings.seed);
+  option("battery", settings.battery);
+  option("goal", settings.goal);
   option("timeout", settings.limit);
   return `${words.join(" ")} --speed=max`;
 }

@@ -19,8 +19,8 @@ const SIGNALS: Signal[] = [
   { name: "y", unit: "m", of: (frame) => frame.odometry[1] },
   { name: "theta", unit: "rad", of: (frame) => frame.odometry[2] },
   { name: "battery", unit: "V", of: (frame) => frame.battery },
-  { name: "timer of the atom", unit: "s", of: (frame) => frame.since.at(-1)?.[1] ?? null },
-  { name: "timer around it", unit: "s", of: (frame) => frame.since.at(-2)?.[1] ?? null },
+  { name: "timer of the atom", unit: "s", of: (frame) => frame.since.at(-1) ?? null },
+  { name: "timer around it", unit: "s", of: (frame) => frame.since.at(-2) ?? null },
 ];
 const COLOURS = ["way", "echo", "good", "bad", "warn", "quiet"];
 
@@ -43,6 +43,12 @@ export class Signals {
     this.canvas = new Canvas(canvas, (context, width, height) => this.paint(context, width, height));
   }
 
+  /** Shows no run. */
+  clear(): void {
+    this.run = undefined;
+    this.canvas.draw();
+  }
+
   at(run: Run, turn: number): void {
     [this.run, this.turn] = [run, turn];
     if (!this.panel.hidden) this.canvas.draw();
@@ -54,7 +60,10 @@ export class Signals {
     context.fillStyle = colour("quiet");
     if (!run || run.frames.length === 0) return context.fillText("Run the plan to see its signals.", 8, 20);
     const chosen = SIGNALS.filter((_, number) => this.boxes[number]?.checked);
-    const [left, top, bottom] = [44, 18 + 16 * Math.ceil(chosen.length / 4), height - 22];
+    // Columns as wide as the longest entry of the legend can be, with its value.
+    const widest = chosen.reduce((widest, { name, unit }) => Math.max(widest, context.measureText(`${name} -88.88 ${unit}`).width), 0) + 28;
+    const columns = Math.max(1, Math.floor((width - 44) / widest));
+    const [left, top, bottom] = [44, 18 + 16 * Math.ceil(chosen.length / columns), height - 22];
     const last = run.frames.length - 1;
     const toX = (turn: number) => left + ((width - left - 8) * turn) / Math.max(last, 1);
     const values = chosen.map((signal) => run.frames.map(signal.of));
@@ -88,7 +97,7 @@ export class Signals {
       });
       context.stroke();
       const now = values[number]?.[this.turn];
-      const [x, y] = [left + ((width - left) / 4) * (number % 4), 14 + 16 * Math.floor(number / 4)];
+      const [x, y] = [left + widest * (number % columns), 14 + 16 * Math.floor(number / columns)];
       context.fillStyle = shade;
       context.fillRect(x, y - 5, 12, 3);
       context.fillStyle = colour("ink");

@@ -1,7 +1,7 @@
 // Tabs: one panel is shown, arrows move between them.
 import { byId, element } from "./dom";
 
-const NAMES = ["plan", "why", "signals", "batch", "world"];
+const NAMES = ["plan", "why", "transitions", "signals", "batch", "world"];
 
 /** Makes the tabs; `shown` is called when another panel is shown. Returns a function that shows a panel. */
 export function tabs(list: HTMLElement, shown: (name: string) => void): (name: string) => void {

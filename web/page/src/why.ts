@@ -5,20 +5,37 @@ import type { Run } from "./run";
 
 export class Why {
   private shown = "";
+  /** The run whose turn is shown: its turns have the same numbers as those of another. */
+  private run: Run | undefined;
 
   constructor(private panel: HTMLElement, private goTo: (line: number) => void) {
-    panel.append("Run the plan: this panel then explains the turn that is shown.");
+    this.clear();
+  }
+
+  /** Explains nothing. */
+  clear(): void {
+    [this.shown, this.run] = ["", undefined];
+    this.panel.replaceChildren("Run the plan: this panel then explains the turn that is shown.");
   }
 
   /** Explains a turn, if the panel can be seen. */
   async at(run: Run, turn: number): Promise<void> {
     const frame = run.frames[turn];
-    const asked = `${turn} ${run.frames.length}`;
-    if (this.panel.hidden || !frame || this.shown === asked) return;
-    this.shown = asked;
-    const moments = await run.why(turn).catch(() => undefined);
-    if (!moments || this.shown !== asked) return;
-    const parts: HTMLElement[] = [element("h2", {}, `Turn ${turn}, at ${frame.t.toFixed(1)} s`)];
+    const asked = String(turn);
+    if (this.panel.hidden || !frame || (this.run === run && this.shown === asked)) return;
+    [this.shown, this.run] = [asked, run];
+    const title = element("h2", {}, `Turn ${turn}, at ${frame.t.toFixed(1)} s`);
+    let moments: Moment[];
+    try {
+      moments = await run.why(turn);
+    } catch (error) {
+      if (this.run === run && this.shown === asked) {
+        this.panel.replaceChildren(title, element("p", {}, `This turn cannot be explained: ${(error as Error).message}. Run the plan again.`));
+      }
+      return;
+    }
+    if (this.run !== run || this.shown !== asked) return;
+    const parts: HTMLElement[] = [title];
     if (frame.made > moments.length) parts.push(element("p", { class: "bad" }, `${frame.made} transitions in this turn; not all are shown.`));
     moments.forEach((moment, place) => parts.push(this.moment(run, moment, frame.fired[place]?.by, moments.length === place + 1)));
     if (frame.atom === null) parts.push(element("p", {}, "The plan was over."));
