@@ -27,7 +27,7 @@ export class Batch {
     this.start = button("Run the batch", () => void this.make(), { class: "primary" });
     const label = element("label", { class: "field short", for: "seeds" }, element("span", {}, "Seeds"), this.number);
     panel.append(
-      element("p", { class: "quiet" }, "Runs with consecutive seeds, from the seed above or 1. Choose the body scout or atrv, or a noise of the start: else all runs are alike."),
+      element("p", { class: "quiet" }, "Runs with consecutive seeds, from the seed above or 1. Choose the body Super Scout or ATRV-mini, or a start noise: else all runs are alike."),
       element("div", { class: "row" }, label, this.start, button("Stop", () => this.stop())), this.bar, this.results,
     );
   }

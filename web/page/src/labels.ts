@@ -16,29 +16,28 @@ export function beginnings(
   context.textAlign = "center";
   context.textBaseline = "middle";
   context.lineWidth = 1;
-  const taken: [number, number][] = [];
+  const way = colour("way");
+  context.strokeStyle = way;
+  const labels: { text: string; at: [number, number] }[] = [];
   for (const number of run.beginnings.filter((number) => number <= turn).slice(-MOST)) {
     const frame = run.frames[number];
     const state = frame && run.atom(frame.atom)?.state;
     if (!frame || state == null) continue;
     const [x, y] = [toX(frame.pose[0]), toY(frame.pose[1])];
-    context.strokeStyle = colour("way");
-    if (isStale) {
-      circle(context, x, y, 2.5, colour("way"));
-      continue;
-    }
-    const place = free(x, y, taken);
-    taken.push(place);
-    if (place[0] !== x || place[1] !== y) {
-      circle(context, x, y, 2, colour("way"));
-      context.beginPath();
-      context.moveTo(x, y);
-      context.lineTo(...place);
-      context.stroke();
-    }
-    circle(context, ...place, RADIUS, colour("paper"));
+    const at = free(x, y, labels.map(({ at }) => at));
+    circle(context, x, y, 2.5, way);
+    if (isStale) continue;
+    labels.push({ text: String(state), at });
+    context.beginPath();
+    context.moveTo(x, y);
+    context.lineTo(...at);
+    context.stroke();
+  }
+  // Above all lines that lead to them.
+  for (const { text, at: [x, y] } of labels) {
+    circle(context, x, y, RADIUS, colour("paper"));
     context.fillStyle = colour("ink");
-    context.fillText(String(state), place[0], place[1] + 0.5);
+    context.fillText(text, x, y + 0.5);
   }
 }
 
