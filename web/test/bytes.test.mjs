@@ -137,8 +137,9 @@ test("a batch judges its runs as mdle run does", () => {
   const low = "{ Low (bumper)\n  (Atom (lowBattery) (go 20 0))\n}\n";
   for (const [goal, battery] of [["0,0,0.5", 5], ["9,9,0.5", 5], ["0,0,0.5", 90]]) {
     const { judged, end } = ask({ ask: "trial", text: low, world: worlds.office, goal, battery, limit: 3 });
-    const { stdout } = native(MDLE, ["run", "plan.mdle", "--target", "sim", "--speed", "max", `--goal=${goal}`, `--battery=${battery}`, "--timeout=3"], low);
-    assert.match(stdout, new RegExp(`\\b${judged}\\b`), stdout);
+    const { stdout, stderr } = native(MDLE, ["run", "plan.mdle", "--target", "sim", "--speed", "max", `--goal=${goal}`, `--battery=${battery}`, "--timeout=3"], low);
     assert.equal(end, battery === 5 ? "over" : "limit");
+    // A plan that is not over is not judged on a terminal.
+    assert.match(stdout + stderr, end === "over" ? new RegExp(`\\b${judged}\\b`) : /stopped by --timeout/);
   }
 });
