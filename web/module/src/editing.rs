@@ -36,8 +36,8 @@ impl<'t> Places<'t> {
     }
 }
 
-/// Returns the diagnostics with their fixes, the names of the plans and of those that run by themselves, and the colours
-/// by meaning.
+/// Returns the diagnostics with their fixes, the names of all plans and of those that run by themselves, and the
+/// colours by meaning.
 pub(crate) fn diagnose(document: &mut Document) -> Result<Value, String> {
     let found = document.check();
     let text = document.text().to_owned();

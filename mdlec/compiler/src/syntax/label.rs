@@ -1,5 +1,5 @@
-//! Labels of plans, as `Γ_from^to` (docs/src/reference/language.md, 2): where one ends in the text, and its text without
-//! typesetting.
+//! Labels of plans, as `Γ_from^to` (docs/src/reference/language.md, 2): where a label ends in the text, and its words
+//! without typesetting.
 
 use std::borrow::Cow;
 

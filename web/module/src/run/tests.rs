@@ -1,4 +1,4 @@
-//! Tests of what a run keeps: turns whose moments are not kept have the same explanation, and a run that is too large ends.
+//! Tests of a run's limits: turns whose moments are not kept are explained as others, and a run that is too large ends.
 
 use serde_json::Value;
 
@@ -28,7 +28,7 @@ fn made(run: &mut Run) -> (Vec<Value>, Value) {
 }
 
 #[test]
-fn turns_are_explained_alike_with_and_without_their_moments() {
+fn turns_are_explained_without_their_moments() {
     let mut run = begun(DOCK, LIMITS);
     let mut lean = begun(DOCK, Limits { moments: 2000, ..LIMITS });
     let (turns, end) = made(&mut run);
