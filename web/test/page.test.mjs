@@ -40,6 +40,14 @@ async function checkedText(tab, text) {
   await tab.waitForFunction((names) => [...document.querySelectorAll("#plan option")].slice(1).map((option) => option.value).join() === names, names);
 }
 
+/** Opens the exports, and returns the command of the run once it is there. */
+async function command(tab) {
+  await tab.locator("#export summary").click();
+  const code = tab.locator("#export code");
+  await code.filter({ hasText: "mdle run" }).waitFor();
+  return code.innerText();
+}
+
 const picture = (tab, name) => tab.screenshot({ path: join(pictures, `${name}.png`), fullPage: true });
 const problems = (tab) => tab.locator("#problems").innerText();
 
@@ -117,6 +125,8 @@ test("a turn is explained, and an atom that was skipped", () => using(async (tab
   await tab.waitForFunction(() => /Skip/.test(document.querySelector("#plan").textContent));
   await run(tab);
   await goTo(tab, 10);
+  // The picture follows once the text rests.
+  await tab.locator("#panel-plan svg .visits").filter({ hasText: "skipped" }).waitFor();
   const visits = (await tab.locator("#panel-plan svg .visits").allTextContents()).filter((text) => text !== "");
   assert.deepEqual(visits, ["ran 1×", "skipped 1×", "ran 1×"]);
   await tabOf(tab, "Why").click();
@@ -208,8 +218,7 @@ test("files have the bytes of the native commands", () => using(async (tab) => {
   assert.match(await offered(/Way of the run/), /^t,x,y,heading\n0,0\.7,0\.7,0\n/);
   assert.match(await offered(/^Picture of the run/), /^<svg/);
   assert.match(await offered(/Picture of the plan/), /^<svg.*The plan Dock/);
-  await tab.locator("#export summary").click();
-  assert.equal(await tab.locator("#export code").innerText(), "mdle run plan.mdle --target sim --world=room --start=0.7,0.7,0 --timeout=600 --speed=max");
+  assert.equal(await command(tab), "mdle run plan.mdle --target sim --world=room --start=0.7,0.7,0 --timeout=600 --speed=max");
   // The menu closes by a key, and when something else is clicked.
   await tab.keyboard.press("Escape");
   await tab.locator("#export code").waitFor({ state: "hidden" });
@@ -304,8 +313,7 @@ test("a plan that an edit leaves alone is not run in place of the one before", (
   assert.equal(await tab.locator("#plan option").first().innerText(), "auto: Outer");
   await run(tab);
   assert.match(await ended(tab), /^The plan is over after 1\.0 s/);
-  await tab.locator("#export summary").click();
-  assert.match(await tab.locator("#export code").innerText(), /--plan=Outer/);
+  assert.match(await command(tab), /--plan=Outer/);
   await tab.locator("#plan").selectOption("Inner");
   await run(tab);
   assert.match(await ended(tab), /^The plan is over after 2\.0 s/);
@@ -341,8 +349,7 @@ test("a goal of one's own judges the end, and a battery is charged as asked", ()
   await tab.locator("#goal").fill("3,3,0.2");
   await run(tab);
   assert.match(await ended(tab), /The robot is away from the goal\.$/);
-  await tab.locator("#export summary").click();
-  assert.match(await tab.locator("#export code").innerText(), /--battery=5 --goal=3,3,0\.2 /);
+  assert.match(await command(tab), /--battery=5 --goal=3,3,0\.2 /);
 }));
 
 test("transitions are listed, and lead to their turns", () => using(async (tab) => {
