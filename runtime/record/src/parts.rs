@@ -2,9 +2,9 @@
 
 use std::io::{self, Read};
 
-use mcap::McapError;
-use mcap::records::Record;
+use mcap::records::{Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use mcap::{MAGIC, McapError};
 
 /// Maximum size of a part of the file, in bytes: more than a second of a robot.
 const LARGEST: usize = 64_000_000;
@@ -32,6 +32,8 @@ pub(crate) struct Parts<R> {
     source: R,
     reader: LinearReader,
     chunk: Option<Chunk>,
+    /// The bytes that were read last.
+    last: [u8; MAGIC.len()],
     /// `true` once the end of the file was read: it was not cut short.
     pub(crate) is_whole: bool,
 }
@@ -53,7 +55,13 @@ impl<R: Read> Parts<R> {
             .with_emit_chunks(true)
             .with_validate_data_section_crc(true)
             .with_validate_summary_section_crc(true);
-        Self { source, reader: LinearReader::new_with_options(options), chunk: None, is_whole: false }
+        Self {
+            source,
+            reader: LinearReader::new_with_options(options),
+            chunk: None,
+            last: [0; MAGIC.len()],
+            is_whole: false,
+        }
     }
 
     /// Returns the next part; `None` at the end of the file, or where it was cut short.
@@ -67,19 +75,24 @@ impl<R: Read> Parts<R> {
             }
             match self.reader.next_event() {
                 Some(Ok(LinearReadEvent::ReadRequest(wanted))) => {
-                    let read = self.source.read(self.reader.insert(wanted)).map_err(Unreadable::System)?;
+                    let into = self.reader.insert(wanted);
+                    let read = self.source.read(into).map_err(Unreadable::System)?;
+                    for byte in into.get(..read).unwrap_or_default().iter().rev().take(MAGIC.len()).rev() {
+                        self.last.rotate_left(1);
+                        self.last[MAGIC.len() - 1] = *byte;
+                    }
                     self.reader.notify_read(read);
                 }
                 Some(Ok(LinearReadEvent::Record { opcode, data })) => {
-                    let record = mcap::parse_record(opcode, data).map_err(|error| damage(&error))?;
-                    self.is_whole |= matches!(record, Record::Footer(_));
-                    if let Record::Chunk { header, data } = record {
-                        if !header.compression.is_empty() {
-                            return Err(Unreadable::Damaged("its chunks are compressed".to_owned()));
-                        }
-                        let is_sound = crc32fast::hash(&data) == header.uncompressed_crc;
-                        self.chunk = Some(Chunk { data: data.into_owned(), at: 0, is_sound });
+                    self.is_whole |= opcode == op::FOOTER;
+                    if opcode == op::CHUNK {
+                        self.chunk = Some(Chunk::of(data)?);
                     }
+                }
+                // A length that was changed leads over the end.
+                Some(Err(McapError::UnexpectedEof)) | None if !self.is_whole && self.last == *MAGIC => {
+                    let why = "nothing leads to its end, so that bytes outside of its turns were changed";
+                    return Err(Unreadable::Damaged(why.to_owned()));
                 }
                 // The file ends in the middle of a chunk: all chunks before it have been read.
                 Some(Err(McapError::UnexpectedEof)) | None => return Ok(None),
@@ -90,6 +103,32 @@ impl<R: Read> Parts<R> {
 }
 
 impl Chunk {
+    /// Bytes of a chunk's head before the name of its compression, and those after it.
+    const HEAD: [usize; 2] = [32, 8];
+
+    /// Takes a chunk that is not compressed. The library must not see one that is shorter than it says: it panics.
+    fn of(data: &[u8]) -> Result<Self, Unreadable> {
+        let shorter = || Unreadable::Damaged("a chunk is shorter than it says".to_owned());
+        let [before, after] = Self::HEAD;
+        let name = data.get(before - 4..before).and_then(|bytes| bytes.try_into().ok()).map(u32::from_le_bytes);
+        if name.ok_or_else(shorter)? != 0 {
+            return Err(Unreadable::Damaged("its chunks are compressed".to_owned()));
+        }
+        let size = data.get(before..before + after).and_then(|bytes| bytes.try_into().ok()).map(u64::from_le_bytes);
+        let content = data.get(before + after..).unwrap_or_default();
+        if size != Some(content.len() as u64) {
+            return Err(shorter());
+        }
+        match mcap::parse_record(op::CHUNK, data) {
+            Ok(Record::Chunk { header, data }) => {
+                let is_sound = crc32fast::hash(&data) == header.uncompressed_crc;
+                Ok(Self { data: data.into_owned(), at: 0, is_sound })
+            }
+            Ok(_) => Err(shorter()),
+            Err(error) => Err(damage(&error)),
+        }
+    }
+
     /// Returns the next channel or message; its damage at the end, so that a turn is named that was changed.
     fn next(&mut self) -> Result<Option<Part>, Unreadable> {
         const HEAD: usize = 9;
@@ -101,6 +140,9 @@ impl Chunk {
             let length = usize::try_from(u64::from_le_bytes(*length)).map_err(|_| changed())?;
             let data = rest.get(..length).ok_or_else(changed)?;
             self.at += HEAD + length;
+            if !matches!(*opcode, op::CHANNEL | op::MESSAGE) {
+                continue;
+            }
             match mcap::parse_record(*opcode, data) {
                 Ok(Record::Channel(channel)) => {
                     return Ok(Some(Part::Channel(channel.id, channel.topic, channel.message_encoding)));

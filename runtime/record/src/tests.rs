@@ -218,15 +218,12 @@ impl std::io::Write for SharedBytes {
     }
 }
 
-#[test]
-fn a_cut_at_any_kilobyte_leaves_all_but_the_last_second() {
-    const TURNS: u64 = 60;
+/// Returns a record of these outputs, and its length after each turn.
+fn written(outputs: &[Sensed]) -> (Vec<u8>, Vec<usize>) {
     let (mut frames, mut bytes, file) = (Frames::default(), Vec::new(), SharedBytes::default());
-    let (mut record, outputs) = (RecordFile::new(file.clone()), outputs(TURNS));
+    let (mut record, mut lengths) = (RecordFile::new(file.clone()), Vec::new());
     frames.begin(&begin(), &outputs[0], &mut bytes);
-    // The length of the file after each turn.
-    let mut lengths = Vec::new();
-    for (turn, y) in (0..).zip(&outputs) {
+    for (turn, y) in (0..).zip(outputs) {
         frames.turn(made(turn), y, std::iter::empty(), &mut bytes);
         record.write_all(&std::mem::take(&mut bytes)).unwrap();
         lengths.push(file.0.borrow().len());
@@ -234,6 +231,14 @@ fn a_cut_at_any_kilobyte_leaves_all_but_the_last_second() {
     frames.end(&mut bytes);
     record.write_all(&bytes).unwrap();
     let whole = file.0.borrow().clone();
+    (whole, lengths)
+}
+
+#[test]
+fn a_cut_at_any_kilobyte_leaves_all_but_the_last_second() {
+    const TURNS: u64 = 60;
+    let outputs = outputs(TURNS);
+    let (whole, lengths) = written(&outputs);
     assert!(whole.len() > 50_000, "{} bytes", whole.len());
     for cut in (0..whole.len()).step_by(1000) {
         let mut records = match Records::open(&whole[..cut]) {
@@ -252,4 +257,30 @@ fn a_cut_at_any_kilobyte_leaves_all_but_the_last_second() {
     let (_, mut records) = Records::open(&whole[..]).unwrap();
     assert_eq!(records.by_ref().count() as u64, TURNS);
     assert!(records.is_whole());
+}
+
+/// A length that leads over the end of the file is no cut: the end is there.
+#[test]
+fn a_flipped_bit_in_the_head_of_any_part_is_noticed() {
+    const TURNS: u64 = 12;
+    let (whole, _) = written(&outputs(TURNS));
+    let mut at = mcap::MAGIC.len();
+    let mut parts = 0;
+    while let Some(length) = whole.get(at + 1..at + 9) {
+        for bit in (0..5 * 8).chain([9 * 8 - 1]) {
+            let mut flipped = whole.clone();
+            flipped[at + bit / 8] ^= 1 << (bit % 8);
+            let Ok((_, mut records)) = Records::open(&flipped[..]) else { continue };
+            let turns: Vec<_> = records.by_ref().take(TURNS as usize + 1).collect();
+            let is_same = turns.len() as u64 == TURNS && records.is_whole();
+            assert!(
+                is_same || turns.iter().any(Result::is_err),
+                "bit {bit} of the part at {at}: {} turns",
+                turns.len()
+            );
+        }
+        at += 9 + u64::from_le_bytes(length.try_into().unwrap()) as usize;
+        parts += 1;
+    }
+    assert!(parts > 5, "{parts} parts");
 }
