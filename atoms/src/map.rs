@@ -57,8 +57,8 @@ impl Cell {
     }
 }
 
-/// The greatest whole number that is not greater than this one. The function of `libm` takes most of a turn, so many
-/// cells does a ping pass.
+/// Returns the greatest whole number that is not greater than `number`. A ping passes many cells: `floor` of `libm`
+/// would take most of the turn's time.
 fn below(number: f64) -> i32 {
     let towards_zero = number as i32;
     towards_zero - i32::from(number < f64::from(towards_zero))

@@ -15,8 +15,8 @@ use crate::run_end;
 
 /// Time between two looks at the turns.
 const LOOK: Duration = Duration::from_millis(100);
-/// Number of looks at which a turn is still the same one before it ends the program. Looks are counted, not time: a
-/// computer that was suspended has not looked.
+/// Maximum number of looks that find the same turn; then the program ends. Looks are counted instead of time, because a
+/// suspended computer does not look.
 const LOOKS: u32 = 100;
 /// Time that the writers of the program have for what was handed over before.
 const LAST_LINES: Duration = Duration::from_millis(300);

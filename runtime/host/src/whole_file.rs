@@ -18,7 +18,7 @@ impl WholeFile {
     /// there.
     ///
     /// # Errors
-    /// It cannot be written: a sentence.
+    /// A sentence for the user, if the file cannot be written.
     pub fn at(option: &str, path: &Path) -> Result<Self, String> {
         let shown = path.display();
         if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
@@ -58,7 +58,7 @@ impl WholeFile {
     /// Writes the file; an error names it as `what`.
     ///
     /// # Errors
-    /// It cannot be written: a sentence.
+    /// A sentence for the user, if the file cannot be written.
     pub fn write(&self, what: &str, text: &str) -> Result<(), String> {
         let mut unfinished = Unfinished::new(self.clone());
         unfinished.write(text);
@@ -104,7 +104,7 @@ impl<W: Write> Unfinished<W> {
     /// Puts the file in its place; an error names it as `what`.
     ///
     /// # Errors
-    /// It cannot be written: a sentence.
+    /// A sentence for the user, if the file cannot be written.
     pub fn finish(mut self, what: &str) -> Result<(), String> {
         let written = std::mem::replace(&mut self.written, Err(ErrorKind::Other.into()));
         let put = written.and_then(|mut file| file.flush());

@@ -38,7 +38,7 @@ pub(crate) struct ExaminedRun {
 pub(crate) struct ExaminedPlan {
     /// The plan as a state machine.
     pub(crate) machine: Arc<Machine>,
-    /// Its texts.
+    /// The texts of the plan's files.
     pub(crate) texts: Box<dyn Texts>,
 }
 

@@ -105,7 +105,7 @@ fn opened(path: &Path) -> io::Result<Box<dyn Read>> {
 /// The plan that is wanted for a record.
 pub(crate) struct WantedPlan<'a> {
     pub(crate) log: &'a Path,
-    /// Its file; `None` for the text in the record.
+    /// File of the plan; `None` for the text in the record.
     pub(crate) file: Option<&'a Path>,
     pub(crate) begin: &'a Begin,
     /// The call without `--plan`, for messages.

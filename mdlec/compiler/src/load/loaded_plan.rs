@@ -52,7 +52,7 @@ impl<A: Alphabet> LoadedPlan<A> {
         Self { rows, looked_at }
     }
 
-    /// Returns the plan without being looked at.
+    /// Returns the plan, which no longer notes the moments of its turns.
     #[must_use]
     pub fn unobserved(self) -> Self {
         Self { looked_at: None, ..self }

@@ -32,7 +32,7 @@ impl Moment {
     }
 }
 
-/// A scope at a moment.
+/// State of a scope at a moment of a turn.
 #[derive(Debug, Clone)]
 pub struct ScopeMoment {
     /// The scope, by its bracket.

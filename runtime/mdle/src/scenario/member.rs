@@ -32,9 +32,9 @@ pub(super) struct Runner {
 /// State of a robot of a scenario: driven or not.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Standing {
-    /// Its plan runs.
+    /// The robot's plan runs.
     Drives,
-    /// Its plan is over.
+    /// The robot's plan is over.
     Over,
     /// Its program was killed.
     Killed,

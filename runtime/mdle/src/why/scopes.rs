@@ -16,13 +16,13 @@ pub(crate) enum Part {
     Shadowed,
     /// Its interrupt has not fired.
     Waits,
-    /// It has no interrupt that can fire.
+    /// The element has no interrupt that can fire.
     NoInterrupt,
-    /// Its interrupt was removed, because an enclosing scope has the same one.
+    /// The element's interrupt was removed, because an enclosing scope has the same one.
     Removed,
 }
 
-/// A scope at a moment.
+/// State of a scope at a moment of a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Scope {
     /// Name of the scope; `None` for an atom and for a scope without a name.

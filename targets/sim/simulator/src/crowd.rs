@@ -128,7 +128,7 @@ impl Crowd {
     }
 }
 
-/// Returns the least number of the group of `number` as known so far, and shortens the way there.
+/// Returns the least known number in the group of `number`, and shortens the chain that leads to it.
 fn leader(leaders: &mut [u32], mut number: u32) -> u32 {
     while leaders[number as usize] != number {
         leaders[number as usize] = leaders[leaders[number as usize] as usize];

@@ -202,8 +202,7 @@ impl Simulated {
         self.walls.put_others(others);
     }
 
-    /// Exchanges the other robots in the world for these: those that the robot hears, and those that it cannot pass
-    /// through.
+    /// Replaces the other robots, which this robot hears and cannot pass through; `others` receives those before.
     pub fn swap_others(&mut self, others: &mut Others) {
         self.walls.swap_others(others);
     }

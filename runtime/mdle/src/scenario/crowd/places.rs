@@ -50,7 +50,7 @@ impl Iterator for Places {
     }
 }
 
-/// Returns a square hall with room for so many robots that are so far apart, in metres.
+/// Returns a square hall with room for this number of robots, at this distance from each other in metres.
 ///
 /// # Errors
 /// None: the text is good.

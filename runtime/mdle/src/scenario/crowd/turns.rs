@@ -35,7 +35,7 @@ pub(super) struct Turns {
     touches: f64,
 }
 
-/// What all threads share in a turn.
+/// State of a turn that all threads share.
 struct Shared<'t> {
     turns: &'t Turns,
     t: Nanos,
