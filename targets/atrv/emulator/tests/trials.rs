@@ -62,7 +62,7 @@ const EFFECTS: &[Effect] = &[
     Effect::of(&["stuck-wheel"], Braked, &[Brake]).turns_right(),
     Effect::of(&["emergency"], Braked, &[Brake]).fails("brake is set"),
     Effect::of(&["check"], Braked, &[Brake]).fails("the check of a frame").stop_fails("the check of a frame"),
-    Effect::of(&["lose"], Braked, &[Brake]).fails("the ATRV does not").stop_fails("the ATRV does not"),
+    Effect::of(&["lose"], Braked, &[Brake]).fails("the ATRV does not").stop_fails("the ATRV does not").may_stop(),
     // A robot that falls silent stands before it is braked.
     Effect::of(&["silence"], Braked, &[Stand, Stand, Stand, Stand, Stand, Stand, Stand, Stand, Brake])
         .fails("does not answer")
