@@ -12,7 +12,7 @@ use crate::choices::{Distribution, Stamped};
 use crate::config::Config;
 use crate::driver::LOOK;
 use crate::fault::Fault;
-use crate::graph::Graph;
+use crate::graph::{Graph, TWIST, TWIST_STAMPED};
 use crate::link::Link;
 use crate::messages::{
     Gid, Header, NodeEntitiesInfo, ParticipantEntitiesInfo, Time, TwistMessage, TwistStamped, Vector3,
@@ -29,9 +29,6 @@ use crate::stamp::ros_now;
 const GRAPH: Duration = Duration::from_millis(50);
 /// The time between two zero velocities.
 const AGAIN: Duration = Duration::from_millis(100);
-/// Types of velocity commands.
-const TWIST: &str = "geometry_msgs/msg/Twist";
-const TWIST_STAMPED: &str = "geometry_msgs/msg/TwistStamped";
 
 /// A link over DDS.
 pub struct DdsLink {
@@ -161,8 +158,8 @@ fn find(
             if !is_heard {
                 missing.insert(0, graph.about_commands(&topic, kind_of(config.stamped == Stamped::Yes)));
             }
-            let sentences = missing.join("; ");
-            return Err(Fault::Missing(format!("{sentences}; {}", graph.listed(config))));
+            let help = graph.help(sensing.inputs(), &topic);
+            return Err(Fault::Missing(format!("{}{help}", graph.about_missing(&missing, config))));
         }
     }
 }

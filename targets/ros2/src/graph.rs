@@ -4,6 +4,9 @@ use crate::config::Config;
 use crate::names::{dds_topic, dds_type, ros_topic, ros_type};
 use crate::source::Input;
 
+/// Types of velocity commands.
+pub(crate) const TWIST: &str = "geometry_msgs/msg/Twist";
+pub(crate) const TWIST_STAMPED: &str = "geometry_msgs/msg/TwistStamped";
 /// Maximum number of topics that a sentence lists.
 const LISTED: usize = 30;
 
@@ -82,6 +85,29 @@ impl Graph {
         }
     }
 
+    /// Returns the sentences about all that is missing, and about what is on the graph instead. Where no program answers,
+    /// nothing else is worth a sentence.
+    #[must_use]
+    pub fn about_missing(&self, missing: &[String], config: &Config) -> String {
+        let is_empty = !self.readers.iter().chain(&self.writers).any(|endpoint| ros_topic(&endpoint.topic).is_some());
+        let listed = self.listed(config);
+        if is_empty { listed } else { format!("{}; {listed}", missing.join("; ")) }
+    }
+
+    /// Returns the line with what to write into the configuration for each missing topic whose type has one other topic;
+    /// empty if there is none.
+    #[must_use]
+    pub fn help<'i>(&self, inputs: impl Iterator<Item = &'i Input>, commands: &str) -> String {
+        let mut entries: Vec<_> = inputs
+            .filter_map(|input| proposed(&self.writers, &input.topic, &[input.kind], input.source.key()?))
+            .collect();
+        entries.extend(proposed(&self.readers, commands, &[TWIST, TWIST_STAMPED], "cmd-vel"));
+        if entries.is_empty() {
+            return String::new();
+        }
+        format!("\nhelp: write {} into the file of --config", entries.join(" and "))
+    }
+
     /// Returns the sentence about all topics on the graph.
     #[must_use]
     pub fn listed(&self, config: &Config) -> String {
@@ -108,6 +134,19 @@ impl Graph {
         let more = if more == 0 { String::new() } else { format!(" and {more} more") };
         format!("domain {domain} has {}{more}", topics.join(", "))
     }
+}
+
+/// Returns the entry of the configuration that names the only topic with one of these types; `None` if `topic` is there,
+/// or if there are several.
+fn proposed(endpoints: &[Endpoint], topic: &str, kinds: &[&str], key: &str) -> Option<String> {
+    let name = dds_topic(topic);
+    if endpoints.iter().any(|endpoint| endpoint.topic == name) {
+        return None;
+    }
+    let has_type = |endpoint: &&Endpoint| kinds.iter().any(|kind| endpoint.kind == dds_type(kind));
+    let mut topics = endpoints.iter().filter(has_type).filter_map(|endpoint| ros_topic(&endpoint.topic));
+    let first = topics.next()?;
+    topics.all(|other| other == first).then(|| format!("`{key} = \"{first}\"`"))
 }
 
 #[cfg(test)]
@@ -146,14 +185,37 @@ mod tests {
     }
 
     #[test]
+    fn the_only_topic_of_a_type_is_proposed() {
+        let config = Configured::read(None).unwrap().config;
+        let inputs = crate::source::inputs(&config).unwrap();
+        let help = |graph: &Graph| graph.help(inputs.iter(), "/cmd_vel");
+        let mut graph = Graph::default();
+        assert_eq!(help(&graph), "");
+        graph.writers.push(endpoint("/robot/odom", "nav_msgs/msg/Odometry"));
+        graph.writers.push(endpoint("/robot/odom", "nav_msgs/msg/Odometry"));
+        graph.readers.push(endpoint("/robot/cmd_vel", "geometry_msgs/msg/TwistStamped"));
+        let expected =
+            "\nhelp: write `odom = \"/robot/odom\"` and `cmd-vel = \"/robot/cmd_vel\"` into the file of --config";
+        assert_eq!(help(&graph), expected);
+        graph.writers.push(endpoint("/odom_filtered", "nav_msgs/msg/Odometry"));
+        graph.readers.push(endpoint("/cmd_vel", "geometry_msgs/msg/Twist"));
+        assert_eq!(help(&graph), "", "one of several would be a guess");
+    }
+
+    #[test]
     fn an_empty_graph_names_the_settings() {
         let config = Configured::read(None).unwrap().config;
+        let missing = ["nobody publishes `/odom`".to_owned()];
+        assert!(
+            Graph::default().about_missing(&missing, &config).starts_with("no program of ROS 2 answers in domain 0:")
+        );
         assert!(Graph::default().listed(&config).contains("no program of ROS 2 answers in domain 0"));
         let mut graph = Graph::default();
         for number in 0..35 {
             graph.writers.push(endpoint(&format!("/t{number:02}"), "std_msgs/msg/Bool"));
         }
         graph.readers.push(endpoint("/t00", "std_msgs/msg/Bool"));
+        assert!(graph.about_missing(&missing, &config).starts_with("nobody publishes `/odom`; domain 0 has /t00 "));
         let listed = graph.listed(&config);
         assert!(listed.starts_with("domain 0 has /t00 (std_msgs/msg/Bool), /t01") && listed.ends_with("and 5 more"));
     }

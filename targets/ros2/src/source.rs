@@ -20,6 +20,20 @@ pub enum Source {
     Clock,
 }
 
+impl Source {
+    /// Returns the key of the configuration that names the topic, if another topic of its type can be proposed: sensors of
+    /// ranges have tables, the clock has one name, and the type of a bumper may mean anything.
+    #[must_use]
+    pub const fn key(self) -> Option<&'static str> {
+        match self {
+            Self::Odometry => Some("odom"),
+            Self::Scan => Some("scan"),
+            Self::Battery => Some("battery"),
+            Self::Bumper | Self::Range(_) | Self::Clock => None,
+        }
+    }
+}
+
 /// A topic that the driver reads.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Input {

@@ -182,12 +182,13 @@ def test_a_missing_topic_names_what_is_there():
     with Robot(domain), running("ride", configuration(domain, odom="wheel_odom", discovery=8000)) as run:
         err = ends_with(3, "nobody publishes `/wheel_odom` (nav_msgs/msg/Odometry)", run)
         assert f"domain {domain} has /bumper (std_msgs/msg/Bool), /cmd_vel (geometry_msgs/msg/Twist), /odom" in err
+        assert err.endswith('help: write `odom = "/odom"` into the file of --config\n'), err
 
 
 def test_an_empty_graph_is_a_fault():
     domain = new_domain()
     with running("ride", configuration(domain, discovery=3000)) as run:
-        ends_with(3, f"no program of ROS 2 answers in domain {domain}", run)
+        ends_with(3, f"error: no program of ROS 2 answers in domain {domain}", run)
 
 
 def test_an_unknown_network_is_a_fault():
