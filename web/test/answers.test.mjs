@@ -18,6 +18,43 @@ test("requests of other versions are refused", () => {
   assert.equal(ask({ ask: "step", turns: 1 }).error, "no run has begun");
 });
 
+test("files that the plan uses are checked, run and named in messages", () => {
+  const text = 'use "lib/leg.mdle"\n{ Main (bumper)\n  Leg\n}\n';
+  const leg = 'use "./foot.mdle"\n{ Leg (null)\n  (Atom (wait 1s) (go 20 0))\n  Foot\n}\n';
+  const foot = "{ Foot (null)\n  (Atom (wait 1s) (go 0 0.3))\n}\n";
+  const draft = { text, files: { "lib/leg.mdle": leg, "lib/foot.mdle": foot } };
+  assert.deepEqual(ask({ ask: "diagnose", ...draft }).diagnostics, []);
+  const { elements } = ask({ ask: "begin", ...draft, world: office });
+  assert.deepEqual(elements.filter(({ kind }) => kind === "atom").map(({ file, line }) => [file, line]), [["lib/leg.mdle", 3], ["lib/foot.mdle", 2]]);
+  assert.equal(ask({ ask: "step", turns: 100 }).end.how, "over");
+  // The file in the editor is checked for the plan, and has its own colours and proposals.
+  const broken = { ...draft, files: { ...draft.files, "lib/foot.mdle": foot.replace("wait", "wayt") }, file: "lib/foot.mdle" };
+  const { diagnostics, tokens } = ask({ ask: "diagnose", ...broken });
+  assert.deepEqual(diagnostics.map(({ file, range }) => [file, range[0]]), [["lib/foot.mdle", 1]]);
+  assert.deepEqual(diagnostics[0].fixes.map(({ insert }) => insert), ["wait"]);
+  assert.ok(tokens.every(([range]) => range[0] <= 3) && tokens.length > 0);
+  const { items } = ask({ ask: "complete", ...broken, at: { line: 0, character: 0 } });
+  assert.ok(items.length > 0);
+  // A file that nothing uses yet is checked by itself.
+  const alone = ask({ ask: "diagnose", text: dock, files: { "a.mdle": "{ A (bumbper)\n  (Atom (null) stop)\n}\n" }, file: "a.mdle" });
+  assert.deepEqual(alone.diagnostics.map(({ code, file }) => [code, file]), [["E0201", "a.mdle"]]);
+  // Paths that lead nowhere, and circles.
+  const message = (text, files = {}) => ask({ ask: "diagnose", text, files }).diagnostics[0]?.message ?? "";
+  assert.match(message(text.replace("lib/leg", "lib/lek"), draft.files), /^there is no file `lib\/lek\.mdle`; did you mean `lib\/leg\.mdle`\?/);
+  assert.match(message('use "../../etc/passwd"\n{ A (null) (Atom (null) stop) }\n'), /^there is no file/);
+  assert.match(message('use "plan.mdle"\n{ A (null) (Atom (null) stop) }\n'), /^this file uses itself/);
+});
+
+test("a plan is checked for the robot that is chosen, and run on the simulated one", () => {
+  const text = "{ Fast (bumper)\n  (Atom (wait 1s) (go 150 0))\n}\n";
+  const codes = (robot) => ask({ ask: "diagnose", text, robot }).diagnostics.map(({ code }) => code);
+  assert.deepEqual([codes("ros2"), codes("sim"), codes("scout"), codes("atrv")], [[], ["E0402"], ["E0402"], ["E0402"]]);
+  assert.match(ask({ ask: "draw", text, robot: "ros2" }).output, /^<svg/);
+  assert.match(ask({ ask: "begin", text, robot: "ros2", world: office }).error, /E0402/);
+  assert.equal(ask({ ask: "begin", text: dock, robot: "scout", world: office }).error, undefined);
+  assert.match(ask({ ask: "check", text, robot: "skout" }).error, /^robot: there is no robot "skout"; did you mean `scout`\?/);
+});
+
 test("a setup that cannot be names its field", () => {
   const refused = (setup) => ask({ ask: "begin", text: dock, world: office, ...setup }).error;
   assert.match(refused({ world: "[[wall]]\npoints = 7" }), /^world:2:/);
@@ -29,8 +66,8 @@ test("a setup that cannot be names its field", () => {
   assert.match(refused({ limit: 1e9 }), /^time limit/);
   assert.match(refused({ battery: 101 }), /^battery: expected/);
   assert.match(refused({ goal: "1,2" }), /^goal: expected/);
-  assert.match(ask({ ask: "ready", world: office, start: "1,2" }).error, /^start: expected/);
-  assert.deepEqual(ask({ ask: "ready", world: office, start: "1,0.1,90" }).robot.pose.slice(0, 2), [1, 0.1]);
+  assert.match(ask({ ask: "ready", text: "", world: office, start: "1,2" }).error, /^start: expected/);
+  assert.deepEqual(ask({ ask: "ready", text: "", world: office, start: "1,0.1,90" }).robot.pose.slice(0, 2), [1, 0.1]);
   assert.match(refused({ text: "{ Dock (bumper)" }), /E0\d\d\d/);
 });
 
@@ -68,7 +105,7 @@ test("texts and worlds that are too large are refused with a sentence", () => {
   assert.ok(diagnostics.length > 0 && diagnostics.length <= 101);
   // A wall in each of many squares.
   const walls = Array.from({ length: 120_000 }, (_, n) => `[[wall]]\npoints = [[${n % 400}, ${Math.floor(n / 400)}], [${(n % 400) + 0.5}, ${Math.floor(n / 400)}]]\n`).join("");
-  assert.match(ask({ ask: "floor", world: walls.repeat(2) }).error, /too large/);
+  for (const times of [2, 9]) assert.match(ask({ ask: "floor", world: walls.repeat(times) }).error, /too large/);
   assert.match(ask({ ask: "floor", world: walls }).error, /corners are too many to be drawn/);
   console.log(`${((performance.now() - started) / 1000).toFixed(1)} s`);
 });

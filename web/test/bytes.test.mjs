@@ -83,6 +83,24 @@ test("draw, analyze and trace have the bytes of mdlec", () => {
   assert.ok(traced >= 4, `${traced} traces`);
 });
 
+test("plans in several files, and for every robot, have the bytes of mdlec", () => {
+  const files = { "leg.mdle": "{ Leg (null)\n  (Atom (wait 1s) (go 20 0))\n}\n", "bad.mdle": "{ Bad (bumbper)\n  (Atom (null) (go 150 0))\n}\n" };
+  for (const [name, text] of Object.entries(files)) writeFileSync(join(folder, name), text);
+  const plans = ['use "leg.mdle"\n{ Main (bumper)\n  Leg\n}\n', 'use "leg.mdle" use "bad.mdle"\n{ Main (bumper)\n  Leg\n  Bad\n}\n', 'use "lek.mdle"\n{ Main (bumper)\n  Leg\n}\n', "{ Fast (bumper)\n  (Atom (wait 1s) (go 150 0))\n}\n"];
+  for (const text of plans) {
+    for (const robot of ["sim", "scout", "atrv", "ros2"]) {
+      const checked = native(MDLEC, ["check", "--target", robot, "--message-format", "json", "plan.mdle"], text);
+      assert.equal(ask({ ask: "check", text, files, robot }).output, checked.stderr, `${robot} ${text}`);
+      const drawn = native(MDLEC, ["draw", "--target", robot, "plan.mdle"]);
+      if (drawn.status === 0) assert.equal(ask({ ask: "draw", text, files, robot }).output, drawn.stdout);
+    }
+  }
+  const ran = native(MDLE, ["run", "plan.mdle", "--target", "sim", "--speed", "max", "--timeout=5", "--log", "run.jsonl"], plans[0]);
+  assert.equal(ran.status, 0, ran.stderr);
+  const { output } = ask({ ask: "export", what: "log", text: plans[0], files, world: worlds.office, world_name: "office", limit: 5 });
+  assert.equal(output, readFileSync(join(folder, "run.jsonl"), "utf8"));
+});
+
 test("runs have the bytes of mdle run", () => {
   const plan = (name) => readFileSync(join(root, `plans/${name}.mdle`), "utf8");
   const every = [];

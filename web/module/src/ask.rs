@@ -5,6 +5,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::document::Document;
+use crate::draft::Draft;
 use crate::run::Run;
 use crate::setup::Setup;
 use crate::{editing, export, floor, tools, trial};
@@ -14,28 +15,56 @@ use crate::{editing, export, floor, tools, trial};
 #[serde(tag = "ask", rename_all = "snake_case")]
 enum Request {
     /// Messages of `mdlec check --message-format json`.
-    Check { text: String },
+    Check(Draft),
     /// Text of `mdlec fmt`.
-    Fmt { text: String },
+    Fmt(Draft),
     /// Text of `mdlec explain`.
     Explain { code: String },
     /// List of `mdlec quarks`.
-    Quarks,
+    Quarks {
+        #[serde(default)]
+        robot: String,
+    },
     /// Report of `mdlec analyze`.
-    Analyze { text: String, plan: Option<String> },
+    Analyze {
+        #[serde(flatten)]
+        draft: Draft,
+        plan: Option<String>,
+    },
     /// Picture of `mdlec draw`.
-    Draw { text: String, plan: Option<String> },
+    Draw {
+        #[serde(flatten)]
+        draft: Draft,
+        plan: Option<String>,
+    },
     /// Lines of `mdlec trace`.
-    Trace { text: String, plan: Option<String>, script: String },
+    Trace {
+        #[serde(flatten)]
+        draft: Draft,
+        plan: Option<String>,
+        script: String,
+    },
     /// Diagnostics with their fixes, the names of plans, and colours by meaning.
-    Diagnose { text: String },
+    Diagnose(Draft),
     /// Proposals at a place.
-    Complete { text: String, at: At },
+    Complete {
+        #[serde(flatten)]
+        draft: Draft,
+        at: At,
+    },
     /// Text about a place.
-    Hover { text: String, at: At },
+    Hover {
+        #[serde(flatten)]
+        draft: Draft,
+        at: At,
+    },
     /// Signature of the call around a place.
-    Signature { text: String, at: At },
-    /// Edits that format the text.
+    Signature {
+        #[serde(flatten)]
+        draft: Draft,
+        at: At,
+    },
+    /// Edits that format the text of one file.
     Format { text: String },
     /// Floor of a world.
     Floor { world: String },
@@ -88,17 +117,19 @@ impl Session {
 
     fn answered(&mut self, request: Request) -> Result<Value, String> {
         match request {
-            Request::Check { text } => Document::of(&text).map(|mut document| tools::check(&mut document)),
-            Request::Fmt { text } => Document::of(&text).map(|document| tools::fmt(&document)),
+            Request::Check(draft) => Document::of(&draft).map(|mut document| tools::check(&mut document)),
+            Request::Fmt(draft) => Document::of(&draft).map(|document| tools::fmt(&document)),
             Request::Explain { code } => tools::explain(&code),
-            Request::Quarks => tools::quarks(),
-            Request::Analyze { text, plan } => tools::analyze(&mut Document::of(&text)?, plan.as_deref()),
-            Request::Draw { text, plan } => tools::draw(&mut Document::of(&text)?, plan.as_deref()),
-            Request::Trace { text, plan, script } => tools::trace(&mut Document::of(&text)?, plan.as_deref(), &script),
-            Request::Diagnose { text } => editing::diagnose(&mut Document::of(&text)?),
-            Request::Complete { text, at } => editing::complete(&mut Document::of(&text)?, at.into()),
-            Request::Hover { text, at } => editing::hover(&mut Document::of(&text)?, at.into()),
-            Request::Signature { text, at } => editing::signature(&mut Document::of(&text)?, at.into()),
+            Request::Quarks { robot } => tools::quarks(&robot),
+            Request::Analyze { draft, plan } => tools::analyze(&mut Document::of(&draft)?, plan.as_deref()),
+            Request::Draw { draft, plan } => tools::draw(&mut Document::of(&draft)?, plan.as_deref()),
+            Request::Trace { draft, plan, script } => {
+                tools::trace(&mut Document::of(&draft)?, plan.as_deref(), &script)
+            }
+            Request::Diagnose(draft) => editing::diagnose(&mut Document::of(&draft)?),
+            Request::Complete { draft, at } => editing::complete(&mut Document::of(&draft)?, at.into()),
+            Request::Hover { draft, at } => editing::hover(&mut Document::of(&draft)?, at.into()),
+            Request::Signature { draft, at } => editing::signature(&mut Document::of(&draft)?, at.into()),
             Request::Format { text } => Ok(editing::format(&text)),
             Request::Floor { world } => floor::floor(&world),
             Request::Ready(setup) => setup.ready().and_then(|ready| floor::ready(&ready)),

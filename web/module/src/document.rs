@@ -1,29 +1,40 @@
-//! The text of the editor as a plan file.
+//! The files of a page as the compiler reads them.
 
-use mdle_compiler::alphabet::Alphabet;
+use std::collections::BTreeMap;
+
+use mdle_compiler::alphabet::{Alphabet, did_you_mean};
 use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
 use mdle_compiler::syntax::Loader;
 use mdle_compiler::{Compiled, Limit, check_with, compile_within};
 use mdle_language_service::view::{View, view};
 
+use crate::draft::{Draft, FILE, looked_up};
 use crate::robot::robot;
 
-/// Name of the file in messages.
-pub(crate) const FILE: &str = "plan.mdle";
-
-/// A text with the files of its robot's alphabet.
-pub(crate) struct Document {
+/// The file that is run, with the files that it uses and those of its robot's alphabet.
+pub(crate) struct Document<'d> {
     /// All these files.
     pub(crate) sources: Sources,
-    /// The text.
+    /// The file that is run.
     pub(crate) source: SourceId,
     /// Alphabet of the robot.
     pub(crate) alphabet: &'static Alphabet,
+    draft: &'d Draft,
+    /// Plan files that were read, by their places.
+    read: BTreeMap<String, SourceId>,
 }
 
-impl Loader for Document {
-    fn find(&mut self, _: SourceId, path: &str) -> Result<SourceId, String> {
-        Err(format!("`{path}` cannot be used: the playground has one file"))
+impl Loader for Document<'_> {
+    fn find(&mut self, from: SourceId, path: &str) -> Result<SourceId, String> {
+        let from = self.place(from).unwrap_or(FILE).to_owned();
+        let (name, place) = looked_up(&from, path);
+        let missing = || format!("there is no file `{name}`{}", did_you_mean(path, &self.draft.names()));
+        let place = place.ok_or_else(missing)?;
+        if let Some(source) = self.read.get(&place) {
+            return Ok(*source);
+        }
+        let text = self.draft.at(&place).ok_or_else(missing)?;
+        self.add(&name, place, text)
     }
 
     fn text(&self, source: SourceId) -> &str {
@@ -31,33 +42,79 @@ impl Loader for Document {
     }
 }
 
-impl Document {
-    /// Makes the document of a text.
+impl<'d> Document<'d> {
+    /// Makes the document of a page's files.
     ///
     /// # Errors
-    /// The text is too long: a sentence.
-    pub(crate) fn of(text: &str) -> Result<Self, String> {
-        let robot = robot()?;
+    /// The text is too long, or there is no such robot: a sentence.
+    pub(crate) fn of(draft: &'d Draft) -> Result<Self, String> {
+        Self::for_robot(&draft.robot, draft)
+    }
+
+    /// Makes the document of a page's files for another robot than theirs.
+    ///
+    /// # Errors
+    /// The text is too long, or there is no such robot: a sentence.
+    pub(crate) fn for_robot(name: &str, draft: &'d Draft) -> Result<Self, String> {
+        let robot = robot(name)?;
         let mut sources = Sources::default();
         for (name, text) in &robot.files {
             sources.add(name, text);
         }
-        if let Some(refusal) = sources.refusal(FILE, text.len()) {
+        if let Some(refusal) = sources.refusal(FILE, draft.text.len()) {
             return Err(refusal);
         }
-        let source = sources.add(FILE, text);
-        Ok(Self { sources, source, alphabet: &robot.alphabet })
+        let source = sources.add(FILE, &draft.text);
+        let read = BTreeMap::from([(FILE.to_owned(), source)]);
+        Ok(Self { sources, source, alphabet: &robot.alphabet, draft, read })
     }
 
-    /// Returns the text.
+    fn add(&mut self, name: &str, place: String, text: &str) -> Result<SourceId, String> {
+        if let Some(refusal) = self.sources.refusal(name, text.len()) {
+            return Err(refusal);
+        }
+        let source = self.sources.add(name, text);
+        self.read.insert(place, source);
+        Ok(source)
+    }
+
+    /// Returns the place of a plan file that was read.
+    pub(crate) fn place(&self, source: SourceId) -> Option<&str> {
+        self.read.iter().find(|(_, read)| **read == source).map(|(place, _)| place.as_str())
+    }
+
+    /// Returns the places of all plan files that were read.
+    pub(crate) fn places(&self) -> BTreeMap<SourceId, String> {
+        self.read.iter().map(|(place, source)| (*source, place.clone())).collect()
+    }
+
+    /// Returns the file in the editor, and `true` if it was read for the file that is run.
+    ///
+    /// # Errors
+    /// There is no such file, or it is too long: a sentence.
+    pub(crate) fn shown(&mut self) -> Result<(SourceId, bool), String> {
+        let place = if self.draft.file.is_empty() { FILE } else { &self.draft.file };
+        if let Some(source) = self.read.get(place) {
+            return Ok((*source, true));
+        }
+        let text = self.draft.at(place).ok_or_else(|| format!("there is no file `{place}`"))?;
+        self.add(place, place.to_owned(), text).map(|source| (source, false))
+    }
+
+    /// Returns the text of the file that is run.
     pub(crate) fn text(&self) -> &str {
         self.sources.text(self.source)
     }
 
-    /// Returns the diagnostics of the text.
+    /// Returns the diagnostics of the file that is run, and of the files that it uses.
     pub(crate) fn check(&mut self) -> Vec<Diagnostic> {
-        let text = self.text().to_owned();
-        check_with(self.source, &text, self.alphabet, self)
+        self.check_file(self.source)
+    }
+
+    /// Returns the diagnostics of a file, and of the files that it uses.
+    pub(crate) fn check_file(&mut self, source: SourceId) -> Vec<Diagnostic> {
+        let text = self.sources.text(source).to_owned();
+        check_with(source, &text, self.alphabet, self)
     }
 
     /// Compiles the plan `wanted`, or the only plan that no other plan uses.
@@ -83,9 +140,9 @@ impl Document {
         found.iter().map(|diagnostic| self.sources.render(diagnostic)).collect::<Vec<_>>().join("\n")
     }
 
-    /// Shows the document to a feature of the language service.
-    pub(crate) fn view<T>(&mut self, feature: impl FnOnce(&View<'_>) -> T) -> T {
-        let (source, alphabet) = (self.source, self.alphabet);
+    /// Shows a file to a feature of the language service.
+    pub(crate) fn view<T>(&mut self, source: SourceId, feature: impl FnOnce(&View<'_>) -> T) -> T {
+        let alphabet = self.alphabet;
         view(source, self, |document| &document.sources, alphabet, feature)
     }
 }

@@ -1,7 +1,9 @@
 //! Features of the editor: places are lines and columns in UTF-16 code units, both from 0.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
+use mdle_compiler::diagnostic::{Diagnostic, SourceId};
 use mdle_language_service::completion::{Item, ItemKind, completion, signature_at};
 use mdle_language_service::diagnostics::{Finding, findings};
 use mdle_language_service::fixes::fixes;
@@ -13,6 +15,7 @@ use mdle_language_service::tokens::{KINDS, tokens};
 use serde_json::{Value, json};
 
 use crate::document::Document;
+use crate::draft::FILE;
 
 /// Converts places of bytes in one text.
 struct Places<'t> {
@@ -36,52 +39,73 @@ impl<'t> Places<'t> {
     }
 }
 
-/// Returns the diagnostics with their fixes, the names of all plans and of those that run by themselves, and the
-/// colours by meaning.
-pub(crate) fn diagnose(document: &mut Document) -> Result<Value, String> {
+/// Returns the diagnostics of the file that is run and of the file in the editor, with their fixes; the names of all
+/// plans and of those that run by themselves; and the colours by meaning of the file in the editor.
+pub(crate) fn diagnose(document: &mut Document<'_>) -> Result<Value, String> {
     let found = document.check();
-    let text = document.text().to_owned();
-    let places = Places::of(&text);
-    let own = document.source;
-    let all = 0..text.len();
-    let fixes = fixes(&document.sources, &found, |place| place.source == own, &all);
-    let diagnostic = |(number, finding): (usize, &Finding)| {
-        let fixes = fixes.iter().filter(|fix| fix.diagnostic == number && fix.place.source == own);
-        let fixes: Vec<_> = fixes
-            .map(
-                |fix| json!({ "title": fix.title, "range": places.range(&fix.place.range), "insert": fix.replacement }),
-            )
-            .collect();
-        // A place in an alphabet is none of the text.
-        let here = if finding.place.source == own { finding.place.range.clone() } else { 0..0 };
-        json!({
-            "code": finding.code.name(),
-            "title": finding.code.title(),
-            "error": finding.is_error(),
-            "range": places.range(&here),
-            "message": finding.message,
-            "fixes": fixes,
-        })
-    };
-    let findings = findings(&document.sources, &found);
-    let diagnostics: Vec<_> = findings.iter().enumerate().map(diagnostic).collect();
-    let (tokens, plans, roots) = document.view(|view| {
+    let mut diagnostics = diagnostics(document, &found, |_| true);
+    let (shown, is_read) = document.shown()?;
+    if !is_read {
+        // A file that the plan does not use yet.
+        let found = document.check_file(shown);
+        diagnostics.extend(self::diagnostics(document, &found, |source| source == shown));
+    }
+    let (plans, roots) = document.view(document.source, |view| {
         let plans: Vec<_> = view.own().iter().map(|plan| plan.name.node.to_owned()).collect();
         let roots: Vec<_> = runnables(view).into_iter().map(|plan| plan.name).collect();
-        (tokens(view), plans, roots)
+        (plans, roots)
     });
-    let tokens: Vec<_> = tokens
+    let text = document.sources.text(shown).to_owned();
+    let places = Places::of(&text);
+    let tokens: Vec<_> = document
+        .view(shown, tokens)
         .iter()
         .map(|token| json!([places.range(&token.range), KINDS.get(token.kind).copied().unwrap_or("")]))
         .collect();
     Ok(json!({ "diagnostics": diagnostics, "plans": plans, "roots": roots, "tokens": tokens }))
 }
 
+/// Returns the diagnostics that are in files that `is_wanted` accepts.
+fn diagnostics(document: &Document<'_>, found: &[Diagnostic], is_wanted: impl Fn(SourceId) -> bool) -> Vec<Value> {
+    let mut lines = BTreeMap::new();
+    let places = findings(&document.sources, found);
+    let numbered = places.iter().enumerate().filter(|(_, finding)| is_wanted(finding.place.source));
+    let diagnostic = |(number, finding): (usize, &Finding)| {
+        let source = finding.place.source;
+        let text = document.sources.text(source);
+        let places = lines.entry(source).or_insert_with(|| Places::of(text));
+        let all = 0..text.len();
+        let fixes =
+            fixes(&document.sources, found.get(number..=number).unwrap_or(&[]), |place| place.source == source, &all);
+        let fixes: Vec<_> = fixes
+            .iter()
+            .filter(|fix| fix.place.source == source)
+            .map(
+                |fix| json!({ "title": fix.title, "range": places.range(&fix.place.range), "insert": fix.replacement }),
+            )
+            .collect();
+        // A place in an alphabet is in no file of the page.
+        let file = document.place(source);
+        let here = if file.is_some() { finding.place.range.clone() } else { 0..0 };
+        json!({
+            "code": finding.code.name(),
+            "title": finding.code.title(),
+            "error": finding.is_error(),
+            "file": file.unwrap_or(FILE),
+            "range": places.range(&here),
+            "message": finding.message,
+            "fixes": fixes,
+        })
+    };
+    numbered.map(diagnostic).collect()
+}
+
 /// Returns the proposals at a place.
-pub(crate) fn complete(document: &mut Document, at: Position) -> Result<Value, String> {
-    let text = document.text().to_owned();
+pub(crate) fn complete(document: &mut Document<'_>, at: Position) -> Result<Value, String> {
+    let (shown, _) = document.shown()?;
+    let text = document.sources.text(shown).to_owned();
     let places = Places::of(&text);
-    let completion = document.view(|view| completion(view, places.byte(at)));
+    let completion = document.view(shown, |view| completion(view, places.byte(at)));
     let items: Vec<_> = completion.items.iter().map(item).collect();
     Ok(json!({ "range": places.range(&completion.range), "items": items }))
 }
@@ -107,18 +131,20 @@ fn item(item: &Item) -> Value {
 }
 
 /// Returns the text about a place, in Markdown, or null.
-pub(crate) fn hover(document: &mut Document, at: Position) -> Result<Value, String> {
-    let text = document.text().to_owned();
+pub(crate) fn hover(document: &mut Document<'_>, at: Position) -> Result<Value, String> {
+    let (shown, _) = document.shown()?;
+    let text = document.sources.text(shown).to_owned();
     let places = Places::of(&text);
-    let found = document.view(|view| about(view, places.byte(at)));
+    let found = document.view(shown, |view| about(view, places.byte(at)));
     Ok(found.map_or(Value::Null, |found| json!({ "range": places.range(&found.range), "text": found.text })))
 }
 
 /// Returns the signature of the call around a place, or null.
-pub(crate) fn signature(document: &mut Document, at: Position) -> Result<Value, String> {
-    let text = document.text().to_owned();
+pub(crate) fn signature(document: &mut Document<'_>, at: Position) -> Result<Value, String> {
+    let (shown, _) = document.shown()?;
+    let text = document.sources.text(shown).to_owned();
     let places = Places::of(&text);
-    let found = document.view(|view| signature_at(view, places.byte(at)));
+    let found = document.view(shown, |view| signature_at(view, places.byte(at)));
     Ok(found.map_or(
         Value::Null,
         |found| json!({ "label": found.label, "about": found.docs, "params": found.params, "active": found.active }),

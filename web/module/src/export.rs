@@ -32,7 +32,7 @@ pub(crate) enum Kind {
 
 /// Makes a run again, and returns a file of it.
 pub(crate) fn export(kind: Kind, setup: &Setup) -> Result<Value, String> {
-    let plan = Plan::of(&setup.text, setup.plan.as_deref())?;
+    let plan = Plan::of(&setup.draft, setup.plan.as_deref())?;
     let ready = setup.ready()?;
     let mut course = Course::new(&plan, &ready, false)?;
     let words = setup.in_words(&ready.make);

@@ -7,6 +7,7 @@ mod ask;
 mod causes;
 mod course;
 mod document;
+mod draft;
 mod editing;
 mod export;
 mod floor;

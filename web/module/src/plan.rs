@@ -1,34 +1,39 @@
 //! A compiled plan, loaded for the robot of the playground.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use mdle_compiler::diagnostic::Sources;
+use mdle_compiler::diagnostic::{SourceId, Sources};
 use mdle_compiler::fsm;
 use mdle_compiler::load::{self, Loaded, LoadedPlan};
-use mdle_simulator::alphabet::Alphabet;
+use mdle_simulator::alphabet::{Alphabet, NAME};
 
 use crate::document::Document;
+use crate::draft::Draft;
 
 /// A plan that can begin any number of times.
 pub(crate) struct Plan {
     /// The plan as a state machine.
     pub(crate) machine: Arc<fsm::Machine>,
-    /// Text of the plan.
+    /// Texts of the plan.
     pub(crate) sources: Sources,
+    /// Places of its files.
+    pub(crate) files: BTreeMap<SourceId, String>,
     loaded: Arc<Loaded<Alphabet>>,
 }
 
 impl Plan {
-    /// Compiles and loads a plan.
+    /// Compiles and loads a plan for the robot `sim`, whichever robot its files are written for.
     ///
     /// # Errors
     /// Messages as `mdlec` prints them.
-    pub(crate) fn of(text: &str, name: Option<&str>) -> Result<Self, String> {
-        let mut document = Document::of(text)?;
+    pub(crate) fn of(draft: &Draft, name: Option<&str>) -> Result<Self, String> {
+        let mut document = Document::for_robot(NAME, draft)?;
         let machine = Arc::new(document.compile(name, |_| Ok(()))?.machine);
         let loaded = load::load(&machine, &document.sources, document.alphabet).map_err(|error| error.to_string())?;
         let loaded = Arc::new(loaded.looked_at(Arc::clone(&machine)));
-        Ok(Self { machine, sources: document.sources, loaded })
+        let files = document.places();
+        Ok(Self { machine, sources: document.sources, files, loaded })
     }
 
     /// Returns the plan before it begins, looked at while it makes turns.

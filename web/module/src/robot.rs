@@ -1,20 +1,30 @@
-//! The robot of the playground: the target `sim`.
+//! The robots for which the playground checks plans. It runs them on the target `sim`.
 
 use std::sync::OnceLock;
 
+use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::builtin::{self, ReadAlphabet};
 use mdle_simulator::alphabet::NAME;
 
-/// Returns the alphabet of the target `sim`, which is read once.
+/// An alphabet that is read once, when it is needed first.
+type Once = OnceLock<Result<ReadAlphabet, String>>;
+
+/// Returns the alphabet of a robot that is part of mdlec, or that of `sim` for an empty name.
 ///
 /// # Errors
-/// Never: it is part of mdlec. A sentence all the same.
-pub(crate) fn robot() -> Result<&'static ReadAlphabet, String> {
-    static ROBOT: OnceLock<Result<ReadAlphabet, String>> = OnceLock::new();
+/// There is no such robot: a sentence.
+pub(crate) fn robot(name: &str) -> Result<&'static ReadAlphabet, String> {
+    static ROBOTS: OnceLock<Vec<(&builtin::Alphabet, Once)>> = OnceLock::new();
+    let name = if name.is_empty() { NAME } else { name };
+    let targets = || builtin::alphabets().iter().filter(|alphabet| alphabet.target);
+    let robots = ROBOTS.get_or_init(|| targets().map(|alphabet| (alphabet, Once::new())).collect());
+    let (alphabet, once) = robots.iter().find(|(alphabet, _)| alphabet.name == name).ok_or_else(|| {
+        let names: Vec<_> = targets().map(|alphabet| alphabet.name).collect();
+        format!("robot: there is no robot {name:?}{}", did_you_mean(name, &names))
+    })?;
     let read = || {
-        let own = builtin::alphabets().iter().find(|alphabet| alphabet.target && alphabet.name == NAME);
-        let own = own.map(|own| (own.file.to_owned(), own.text.to_owned()));
-        builtin::read(own).map_err(|(_, found)| format!("the alphabet of `{NAME}` has {} errors", found.len()))
+        let own = Some((alphabet.file.to_owned(), alphabet.text.to_owned()));
+        builtin::read(own).map_err(|(_, found)| format!("the alphabet of `{name}` has {} errors", found.len()))
     };
-    ROBOT.get_or_init(read).as_ref().map_err(Clone::clone)
+    once.get_or_init(read).as_ref().map_err(Clone::clone)
 }

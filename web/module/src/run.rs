@@ -52,7 +52,7 @@ impl Run {
     }
 
     fn within(left: Limits, setup: &Setup) -> Result<Self, String> {
-        let plan = Plan::of(&setup.text, setup.plan.as_deref())?;
+        let plan = Plan::of(&setup.draft, setup.plan.as_deref())?;
         let ready = setup.ready()?;
         let course = Course::new(&plan, &ready, true)?;
         Ok(Self { plan, ready, course, moments: Vec::new(), left, is_full: false, before: None })
@@ -78,6 +78,7 @@ impl Run {
             ElementKind::Scope => ("scope", None),
         };
         let (_, line) = self.plan.sources.line(element.span());
+        let (source, _) = self.plan.sources.range(element.span());
         json!({
             "kind": kind,
             "law": law,
@@ -87,6 +88,7 @@ impl Run {
             "atom": element.atom().map(|atom| atom.number()),
             "state": element.atom().map(|atom| atom.state()),
             "line": line,
+            "file": self.plan.files.get(&source),
         })
     }
 

@@ -5,6 +5,8 @@ use mdle_simulator::{Body, Goal, Make, PARTS, Simulated, Start, StartNoise, Wall
 use serde::Deserialize;
 use std::time::Duration;
 
+use crate::draft::Draft;
+
 /// Longest run, in seconds of its own time.
 const LONGEST: f64 = 3600.0;
 
@@ -12,8 +14,9 @@ const LONGEST: f64 = 3600.0;
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct Setup {
-    /// Text of the plan.
-    pub(crate) text: String,
+    /// Files of the plan.
+    #[serde(flatten)]
+    pub(crate) draft: Draft,
     /// Name of the plan to run; the only one without a name.
     pub(crate) plan: Option<String>,
     /// World as TOML.

@@ -21,17 +21,17 @@ fn output(text: impl Into<String>) -> Value {
 }
 
 /// Returns the messages as JSON, one a line.
-pub(crate) fn check(document: &mut Document) -> Value {
+pub(crate) fn check(document: &mut Document<'_>) -> Value {
     let found = document.check();
     output(messages(document, &found))
 }
 
-fn messages(document: &Document, found: &[Diagnostic]) -> String {
+fn messages(document: &Document<'_>, found: &[Diagnostic]) -> String {
     found.iter().map(|diagnostic| document.sources.message(diagnostic).to_json() + "\n").collect()
 }
 
 /// Returns the text in the canonical layout; with errors, the messages as JSON.
-pub(crate) fn fmt(document: &Document) -> Value {
+pub(crate) fn fmt(document: &Document<'_>) -> Value {
     match syntax::format(document.source, document.text()) {
         Ok(text) => output(text),
         Err(found) => json!({ "messages": messages(document, &found) }),
@@ -45,9 +45,9 @@ pub(crate) fn explain(code: &str) -> Result<Value, String> {
     Ok(output(format!("{code}: {}\n\n{}", code.title(), code.explanation().text())))
 }
 
-/// Returns the interrupts, laws and signals of the robot, each with its signature and a sentence.
-pub(crate) fn quarks() -> Result<Value, String> {
-    let alphabet = &robot()?.alphabet;
+/// Returns the interrupts, laws and signals of a robot, each with its signature and a sentence.
+pub(crate) fn quarks(name: &str) -> Result<Value, String> {
+    let alphabet = &robot(name)?.alphabet;
     let able = alphabet.declarations().filter(|declaration| declaration.needs.iter().all(|need| alphabet.has(need)));
     let quark = |declaration: &Declaration| {
         let kind = match declaration.kind {
@@ -61,20 +61,20 @@ pub(crate) fn quarks() -> Result<Value, String> {
 }
 
 /// Returns the static analysis of a plan as text and as JSON.
-pub(crate) fn analyze(document: &mut Document, plan: Option<&str>) -> Result<Value, String> {
+pub(crate) fn analyze(document: &mut Document<'_>, plan: Option<&str>) -> Result<Value, String> {
     let Compiled { machine, .. } = document.compile(plan, |_| Ok(()))?;
     let analysis = analysis(&machine);
     Ok(json!({ "output": analysis.to_text(), "json": analysis.to_json() }))
 }
 
 /// Returns the picture of a plan.
-pub(crate) fn draw(document: &mut Document, plan: Option<&str>) -> Result<Value, String> {
+pub(crate) fn draw(document: &mut Document<'_>, plan: Option<&str>) -> Result<Value, String> {
     let Compiled { machine, .. } = document.compile(plan, picture::fits)?;
     picture::svg(&machine).map(output).map_err(|too_large| document.rendered(&[too_large]))
 }
 
 /// Returns the trace of a plan on a script.
-pub(crate) fn trace(document: &mut Document, plan: Option<&str>, script: &str) -> Result<Value, String> {
+pub(crate) fn trace(document: &mut Document<'_>, plan: Option<&str>, script: &str) -> Result<Value, String> {
     let compiled = document.compile(plan, |_| Ok(()))?;
     let script = Script::read(script).and_then(|script| script.in_words_of(&compiled.plan, document.alphabet));
     let script = script.map_err(|error| format!("line {} of the script: {}", error.line, error.message))?;

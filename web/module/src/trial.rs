@@ -10,7 +10,7 @@ use crate::setup::Setup;
 /// Makes a run, and returns how it ended: `over`, `limit` or `fault`; and, if there is a goal, whether the robot is
 /// `arrived`, `bumped` or `astray`, as `mdle run --goal` judges it.
 pub(crate) fn trial(setup: &Setup) -> Result<Value, String> {
-    let plan = Plan::of(&setup.text, setup.plan.as_deref())?;
+    let plan = Plan::of(&setup.draft, setup.plan.as_deref())?;
     let ready = setup.ready()?;
     let mut course = Course::new(&plan, &ready, false)?;
     let mut atom = None;

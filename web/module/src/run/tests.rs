@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::{LIMITS, Limits, Run};
+use crate::draft::Draft;
 use crate::setup::Setup;
 
 const DOCK: &str =
@@ -12,7 +13,8 @@ const SPIN: &str = "{ Spin (wait 1h)\n ExecPlan inf {\n  (Atom (NOT bumper) stop
 
 fn begun(text: &str, limits: Limits) -> Run {
     let world = "[[wall]]\npoints = [[-1, -1], [9, -1], [9, 1], [-1, 1], [-1, -1]]\n".to_owned();
-    let setup = Setup { text: text.to_owned(), world, limit: Some(60.0), ..Setup::default() };
+    let draft = Draft { text: text.to_owned(), ..Draft::default() };
+    let setup = Setup { draft, world, limit: Some(60.0), ..Setup::default() };
     Run::within(limits, &setup).expect("a run")
 }
 

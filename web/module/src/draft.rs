@@ -1,0 +1,71 @@
+//! The plan files of a page, and the robot for which they are written.
+
+use std::collections::BTreeMap;
+use std::path::{Component, Path};
+
+use serde::Deserialize;
+
+/// Name of the file that is run.
+pub(crate) const FILE: &str = "plan.mdle";
+
+/// The plan files of a page, as they are typed.
+#[derive(Debug, Clone, Default, Deserialize)]
+pub(crate) struct Draft {
+    /// Text of the file that is run, [`FILE`].
+    pub(crate) text: String,
+    /// Texts of the other files, by their names; a name may begin with folders.
+    #[serde(default)]
+    pub(crate) files: BTreeMap<String, String>,
+    /// Name of the file in the editor; empty for [`FILE`].
+    #[serde(default)]
+    pub(crate) file: String,
+    /// Name of the robot for which the plan is checked; empty for `sim`.
+    #[serde(default)]
+    pub(crate) robot: String,
+}
+
+impl Draft {
+    /// Returns the text of the file at `place`, or `None` if there is none.
+    pub(crate) fn at(&self, place: &str) -> Option<&str> {
+        if place == FILE { Some(&self.text) } else { self.files.get(place).map(String::as_str) }
+    }
+
+    /// Names of all files.
+    pub(crate) fn names(&self) -> Vec<&str> {
+        std::iter::once(FILE).chain(self.files.keys().map(String::as_str)).collect()
+    }
+}
+
+/// Returns the path that `path` means in the folder of the file `from`, and its place: the path without `.` and `..`.
+/// A place outside the page's folder is `None`.
+pub(crate) fn looked_up(from: &str, path: &str) -> (String, Option<String>) {
+    let whole = Path::new(from).parent().unwrap_or(Path::new("")).join(path);
+    let mut parts = Vec::new();
+    for part in whole.components() {
+        match part {
+            Component::Normal(name) => parts.push(name.to_string_lossy().into_owned()),
+            Component::CurDir => {}
+            Component::ParentDir if parts.pop().is_some() => {}
+            Component::ParentDir | Component::RootDir | Component::Prefix(_) => {
+                return (whole.display().to_string(), None);
+            }
+        }
+    }
+    (whole.display().to_string(), Some(parts.join("/")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::looked_up;
+
+    #[test]
+    fn paths_are_looked_up_from_the_using_file() {
+        let place = |from, path| looked_up(from, path).1;
+        assert_eq!(place("plan.mdle", "leg.mdle").as_deref(), Some("leg.mdle"));
+        assert_eq!(place("lib/leg.mdle", "./foot.mdle").as_deref(), Some("lib/foot.mdle"));
+        assert_eq!(place("lib/leg.mdle", "../plan.mdle").as_deref(), Some("plan.mdle"));
+        assert_eq!(place("lib/leg.mdle", "../../plan.mdle"), None);
+        assert_eq!(place("plan.mdle", "/plan.mdle"), None);
+        assert_eq!(looked_up("lib/leg.mdle", "../foot.mdle").0, "lib/../foot.mdle");
+    }
+}
