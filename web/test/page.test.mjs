@@ -4,6 +4,7 @@ import { mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
+import { deflateRawSync } from "node:zlib";
 import { browser, checked, ended, goTo, open, run, serve, sizes, tabOf, type } from "./page.mjs";
 
 const pictures = process.env.MDLE_PICTURES;
@@ -20,6 +21,9 @@ after(async () => {
   await chromium?.close();
   server?.close();
 });
+
+/** Packs settings as a link has them. */
+const packed = (settings) => deflateRawSync(JSON.stringify(settings)).toString("base64url");
 
 /** Opens the page, does something, and expects no fault. */
 async function using(act, { address = server.address, ...options } = {}) {
@@ -158,6 +162,7 @@ test("a batch judges seeds, and shows the run of one", () => using(async (tab) =
   await tab.getByLabel("Seeds").fill("6");
   await tab.getByRole("button", { name: "Run the batch" }).click();
   await tab.getByText(/^6 of 6 runs in/).waitFor({ timeout: 60_000 });
+  assert.equal(await tab.locator("#panel-batch").getByRole("button", { name: "Stop" }).isDisabled(), true);
   await tab.locator("#panel-batch").getByRole("button", { name: "7", exact: true }).click();
   assert.equal(await tab.locator("#seed").inputValue(), "7");
   assert.match(await tab.locator("#panel-batch tbody th").first().innerText(), /^plan over, (at the goal|away from the goal|touching something)$|^time limit$/);
@@ -194,11 +199,77 @@ test("a plan is shared by a link, and opened from it", () => using(async (tab, c
   await theirs.close();
 }));
 
+test("a plan in several files is checked, run, shared and kept", () => using(async (tab, context) => {
+  await context.grantPermissions(["clipboard-read", "clipboard-write"]);
+  await type(tab, 'use "leg.mdle"\n{ Main (bumper)\n  Leg\n}\n');
+  await tab.getByRole("button", { name: "add the file leg.mdle" }).click();
+  await tab.getByText("No errors.").waitFor();
+  assert.equal(await tabOf(tab, "leg.mdle").getAttribute("aria-selected"), "true");
+  await run(tab);
+  assert.match(await ended(tab), /^The plan is over after 2\.0 s: .*\(leg\.mdle:3\)/);
+  // A defect of a file that is not shown leads to it.
+  await type(tab, "{ Leg (null)\n  (Atom (wayt 3s) (go 20 0))\n}\n");
+  await tabOf(tab, "plan.mdle").click();
+  await tab.getByRole("button", { name: /^leg\.mdle, line 2: / }).click();
+  assert.equal(await tabOf(tab, "leg.mdle").getAttribute("aria-selected"), "true");
+  await tab.locator("#problems .fix").first().click();
+  await tab.getByText("No errors.").waitFor();
+  await tab.getByText("This run is of the plan before your change.").waitFor();
+  await run(tab);
+  assert.match(await ended(tab), /^The plan is over after 3\.0 s/);
+  await tabOf(tab, "Why").click();
+  await tabOf(tab, "plan.mdle").click();
+  await tab.locator("#panel-why").getByRole("button", { name: "leg.mdle, line 2" }).first().click();
+  assert.equal(await tabOf(tab, "leg.mdle").getAttribute("aria-selected"), "true");
+  await tab.locator("#export summary").click();
+  const [download] = await Promise.all([tab.waitForEvent("download"), tab.getByRole("button", { name: "Plan (leg.mdle)" }).click()]);
+  assert.match(readFileSync(await download.path(), "utf8"), /^\{ Leg .*\n.*wait 3s/);
+  await tab.getByRole("button", { name: "Copy link" }).click();
+  await tab.getByText(/The link is copied/).waitFor();
+  const { tab: other, context: theirs } = await open(chromium, await tab.evaluate(() => navigator.clipboard.readText()));
+  await other.getByText("No errors.").waitFor();
+  await tabOf(other, "leg.mdle").click();
+  assert.match(await other.locator(".cm-content").innerText(), /wait 3s/);
+  await theirs.close();
+  await tab.reload();
+  await tab.getByText("No errors.").waitFor();
+  // A name is changed, refused, and a file removed.
+  await tabOf(tab, "leg.mdle").click();
+  const name = tab.getByLabel("Name of this file");
+  await name.fill("foot");
+  await name.press("Tab");
+  assert.equal(await name.getAttribute("aria-invalid"), "true");
+  await name.fill("foot.mdle");
+  await name.press("Tab");
+  await tab.getByRole("button", { name: /^plan\.mdle, line 1: there is no file/ }).waitFor();
+  await picture(tab, "files");
+  await tab.getByRole("button", { name: "Remove it" }).click();
+  await tab.getByRole("button", { name: /^Line 1: there is no file/ }).waitFor();
+}));
+
+test("a plan is checked for the robot that is chosen, and run on the simulated one", () => using(async (tab) => {
+  await checkedText(tab, "{ Far (bumper)\n  (Atom (wait 1s) (go 100 0))\n}\n");
+  await tab.locator("#robot").selectOption("scout");
+  await tab.getByText("The plan is checked for the robot scout. Here it runs on the simulated robot").waitFor();
+  assert.equal(await tab.locator("#body").inputValue(), "scout");
+  await run(tab);
+  assert.match(await ended(tab), /^The plan is over/);
+  assert.match(await command(tab), /--target sim .*--body=scout/);
+  await tab.keyboard.press("Escape");
+  await type(tab, "{ Far (bumper)\n  (Atom (wait 1s) (go 150 0))\n}\n");
+  await tab.getByRole("button", { name: /^Line 2: / }).waitFor();
+  await tab.locator("#robot").selectOption("ros2");
+  await tab.getByText("No errors.").waitFor();
+  // What only another robot can do is refused by the simulated one, with the reason.
+  await tab.getByRole("button", { name: "Run", exact: true }).click();
+  await tab.locator("#report").getByText(/E0402/).waitFor();
+}));
+
 test("a link that is cut, of another version, or with script in it does no harm", async () => {
   const script = encodeURIComponent('{ A (bumper) <img src=x onerror="document.title=1"> }<script>document.title=2</script>');
   for (const [fragment, sentence] of [
     ["#1.AAAA", /cut or damaged/], ["#1.", /cut or damaged/], ["#2.abc", /another version/], ["#<script>alert(1)</script>", /no plan in it/],
-    ["#plan=%E0%A4%A", /cannot be read/], [`#plan=${script}`, undefined],
+    ["#plan=%E0%A4%A", /cannot be read/], [`#1.${packed({ text: DOCK, files: { "<b>.mdle": "" } })}`, /cut or damaged/], [`#1.${packed({ text: DOCK, robot: "fish" })}`, /cut or damaged/], [`#plan=${script}`, undefined],
   ]) {
     await using(async (tab) => {
       if (sentence) assert.match(await tab.locator("#notice").innerText(), sentence);

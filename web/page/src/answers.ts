@@ -9,7 +9,7 @@ export interface Edit {
 }
 
 export interface Diagnosis {
-  diagnostics: { code: string; title: string; error: boolean; range: Range; message: string; fixes: (Edit & { title: string })[] }[];
+  diagnostics: { code: string; title: string; error: boolean; file: string; range: Range; message: string; fixes: (Edit & { title: string })[] }[];
   plans: string[];
   /** Plans that no other plan uses. */
   roots: string[];
@@ -47,6 +47,8 @@ export interface Element {
   atom: number | null;
   state: number | null;
   line: number;
+  /** Name of the file in which it is written. */
+  file: string;
 }
 
 export interface Robot {

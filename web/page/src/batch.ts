@@ -22,20 +22,21 @@ export class Batch {
   private readonly bar = element("progress", { max: "1", value: "0", "aria-label": "Runs made", hidden: true });
   private readonly results = element("div", { "aria-live": "polite" });
   private readonly start: HTMLButtonElement;
+  private readonly end = button("Stop", () => this.stop(), { disabled: true });
 
   constructor(panel: HTMLElement, private setup: () => object, private show: (seed: number) => void) {
     this.start = button("Run the batch", () => void this.make(), { class: "primary" });
     const label = element("label", { class: "field short", for: "seeds" }, element("span", {}, "Seeds"), this.number);
     panel.append(
       element("p", { class: "quiet" }, "Runs with consecutive seeds, from the seed above or 1. Choose the body Super Scout or ATRV-mini, or a start noise: else all runs are alike."),
-      element("div", { class: "row" }, label, this.start, button("Stop", () => this.stop())), this.bar, this.results,
+      element("div", { class: "row" }, label, this.start, this.end), this.bar, this.results,
     );
   }
 
   private stop(): void {
     this.modules.forEach((module) => module.stop("stopped"));
     this.modules = [];
-    this.start.disabled = false;
+    [this.start.disabled, this.end.disabled] = [false, true];
   }
 
   private async make(): Promise<void> {
@@ -50,7 +51,7 @@ export class Batch {
     }
     const first = setup.seed ?? 1;
     const trials: Trial[] = [];
-    this.start.disabled = true;
+    [this.start.disabled, this.end.disabled] = [true, false];
     [this.bar.hidden, this.bar.max, this.bar.value] = [false, runs, 0];
     let next = 0;
     const begun = performance.now();

@@ -4,7 +4,7 @@ import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirro
 import { bracketMatching, HighlightStyle, syntaxHighlighting } from "@codemirror/language";
 import { type Diagnostic, lintGutter, lintKeymap, setDiagnostics } from "@codemirror/lint";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
-import { EditorState, StateEffect, StateField, type Text } from "@codemirror/state";
+import { EditorState, type Extension, StateEffect, StateField, type Text } from "@codemirror/state";
 import { Decoration, type DecorationSet, drawSelection, EditorView, highlightActiveLine, hoverTooltip, keymap, lineNumbers, tooltips } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
 import type { Completion, Diagnosis, Edit, Range } from "./answers";
@@ -74,38 +74,44 @@ const colours = StateField.define<DecorationSet>({
   provide: (field) => EditorView.decorations.from(field),
 });
 
+/** The plan files, and the name of the one in the editor. */
+export interface Draft {
+  text: string;
+  files: Record<string, string>;
+  file: string;
+  robot: string;
+}
+
 export class Editor {
   readonly view: EditorView;
+  private readonly extensions: Extension[];
 
-  constructor(parent: HTMLElement, private module: Module, changed: () => void, run: () => void) {
-    this.view = new EditorView({
-      parent,
-      state: EditorState.create({
-        extensions: [
-          lineNumbers(), history(), drawSelection(), bracketMatching(), closeBrackets(), highlightActiveLine(), highlightSelectionMatches(),
-          mdle, syntaxHighlighting(COLOURS), colours, lintGutter(), tooltips({ parent: document.body }),
-          autocompletion({ override: [(context) => this.complete(context)] }),
-          hoverTooltip((_, position) => this.hover(position)),
-          keymap.of([
-            { key: "Mod-Enter", run: () => (run(), true) },
-            { key: "Mod-Shift-f", run: () => (void this.format(), true) },
-            { key: "Tab", run: acceptCompletion },
-            ...closeBracketsKeymap, ...defaultKeymap, ...searchKeymap, ...historyKeymap, ...completionKeymap, ...lintKeymap, indentWithTab,
-          ]),
-          THEME, EditorView.lineWrapping,
-          EditorView.contentAttributes.of({ tabindex: "0", "aria-label": "Text of the plan. Escape, then Tab, leaves the editor." }),
-          EditorView.updateListener.of((update) => update.docChanged && changed()),
-        ],
-      }),
-    });
+  constructor(parent: HTMLElement, private module: Module, private draft: () => Draft, changed: () => void, run: () => void) {
+    this.extensions = [
+      lineNumbers(), history(), drawSelection(), bracketMatching(), closeBrackets(), highlightActiveLine(), highlightSelectionMatches(),
+      mdle, syntaxHighlighting(COLOURS), colours, lintGutter(), tooltips({ parent: document.body }),
+      autocompletion({ override: [(context) => this.complete(context)] }),
+      hoverTooltip((_, position) => this.hover(position)),
+      keymap.of([
+        { key: "Mod-Enter", run: () => (run(), true) },
+        { key: "Mod-Shift-f", run: () => (void this.format(), true) },
+        { key: "Tab", run: acceptCompletion },
+        ...closeBracketsKeymap, ...defaultKeymap, ...searchKeymap, ...historyKeymap, ...completionKeymap, ...lintKeymap, indentWithTab,
+      ]),
+      THEME, EditorView.lineWrapping,
+      EditorView.contentAttributes.of({ tabindex: "0", "aria-label": "Text of the plan. Escape, then Tab, leaves the editor." }),
+      EditorView.updateListener.of((update) => update.docChanged && changed()),
+    ];
+    this.view = new EditorView({ parent, state: this.fresh("") });
+  }
+
+  /** Makes the state of a file. */
+  fresh(text: string): EditorState {
+    return EditorState.create({ doc: text, extensions: this.extensions });
   }
 
   get text(): string {
     return this.view.state.doc.toString();
-  }
-
-  set text(text: string) {
-    this.view.dispatch({ changes: { from: 0, to: this.view.state.doc.length, insert: text }, selection: { anchor: 0 }, scrollIntoView: true });
   }
 
   /** Moves the cursor to a line, from 1. */
@@ -119,9 +125,11 @@ export class Editor {
   /** Asks for the diagnostics of the text, and shows them unless it has changed meanwhile. */
   async diagnose(): Promise<Diagnosis | undefined> {
     const { doc } = this.view.state;
-    const diagnosis = await this.module.ask<Diagnosis>({ ask: "diagnose", text: doc.toString() });
+    const draft = this.draft();
+    const diagnosis = await this.module.ask<Diagnosis>({ ask: "diagnose", ...draft });
     if (this.view.state.doc !== doc) return undefined;
-    const shown = diagnosis.diagnostics.map(({ code, error, range, message, fixes }): Diagnostic => ({
+    const here = diagnosis.diagnostics.filter(({ file }) => file === draft.file);
+    const shown = here.map(({ code, error, range, message, fixes }): Diagnostic => ({
       ...span(doc, range),
       severity: error ? "error" : "warning",
       source: code,
@@ -154,7 +162,7 @@ export class Editor {
     const { doc } = context.state;
     const word = context.matchBefore(/[\p{L}\p{Nd}_]+$/u);
     if (!context.explicit && !word && !context.matchBefore(/[( {]$/)) return null;
-    const { range, items } = await this.module.ask<Completion>({ ask: "complete", text: doc.toString(), at: place(doc, context.pos) });
+    const { range, items } = await this.module.ask<Completion>({ ask: "complete", ...this.draft(), at: place(doc, context.pos) });
     if (items.length === 0) return null;
     const options = items.map((item) => {
       const option = { label: item.label, detail: item.detail, type: item.kind, info: item.about === "" ? undefined : () => markdown(item.about) };
@@ -165,7 +173,7 @@ export class Editor {
 
   private async hover(position: number) {
     const { doc } = this.view.state;
-    const found = await this.module.ask<{ range: Range; text: string } | null>({ ask: "hover", text: doc.toString(), at: place(doc, position) });
+    const found = await this.module.ask<{ range: Range; text: string } | null>({ ask: "hover", ...this.draft(), at: place(doc, position) });
     if (found === null) return null;
     const { from, to } = span(doc, found.range);
     return { pos: from, end: to, create: () => ({ dom: markdown(found.text) }) };

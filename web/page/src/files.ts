@@ -1,7 +1,7 @@
 // Files of the plan and of its run, with the bytes that the native commands write.
 import { button, byId, element, save } from "./dom";
 import { Module } from "./module";
-import { command, setupOf, type Settings, worldText } from "./settings";
+import { command, draftOf, FILE, setupOf, type Settings, worldText } from "./settings";
 
 /** Longest time to make a file, in milliseconds. */
 const PATIENCE = 60_000;
@@ -24,16 +24,19 @@ export function files(menu: HTMLElement, settings: () => Settings, tell: (senten
     return output;
   };
   const drawn = async () => {
-    const { text, plan } = settings();
-    return (await module.ask<{ output: string }>({ ask: "draw", text, plan: plan || null })).output;
+    const now = settings();
+    return (await module.ask<{ output: string }>({ ask: "draw", ...draftOf(now), plan: now.plan || null })).output;
   };
   const item = (title: string, name: string, type: string, text: () => Promise<string>) => {
     const act = offer(name, type, text);
     return button(title, () => void act());
   };
   const shown = element("code");
+  const plans = element("div", { class: "plans" });
+  const offerPlans = () => plans.replaceChildren(...Object.keys({ [FILE]: "", ...settings().files }).map((name) =>
+    item(`Plan (${name})`, name.replace(/^.*\//, ""), "text/plain", async () => ({ ...settings().files, [FILE]: settings().text })[name] ?? "")));
   menu.append(
-    item("Plan (plan.mdle)", "plan.mdle", "text/plain", async () => settings().text),
+    plans,
     item("World (world.toml)", "world.toml", "text/plain", async () => worldText(settings())),
     item("Picture of the plan (SVG)", "plan.svg", "image/svg+xml", drawn),
     item("Picture of the run (SVG)", "run.svg", "image/svg+xml", exported("plot")),
@@ -44,7 +47,10 @@ export function files(menu: HTMLElement, settings: () => Settings, tell: (senten
     button("Copy the command", () => void copy(command(settings()), tell)),
   );
   const whole = byId<HTMLDetailsElement>("export");
-  whole.addEventListener("toggle", () => (shown.textContent = command(settings())));
+  whole.addEventListener("toggle", () => {
+    shown.textContent = command(settings());
+    offerPlans();
+  });
   // A menu closes when something else is meant.
   document.addEventListener("pointerdown", ({ target }) => {
     if (!(target instanceof Node && whole.contains(target))) whole.open = false;

@@ -4,7 +4,7 @@ import { byId, element } from "./dom";
 import type { Module } from "./module";
 import { type Settings, setupOf } from "./settings";
 
-export const FIELDS = ["plan", "world", "body", "seed", "start", "noise", "without", "limit", "battery", "goal"] as const;
+export const FIELDS = ["robot", "plan", "world", "body", "seed", "start", "noise", "without", "limit", "battery", "goal"] as const;
 type Name = (typeof FIELDS)[number];
 
 /** The fields that sentences of the module name otherwise. */
@@ -45,8 +45,14 @@ export function planToRun(): string {
   return field("plan").value || (roots.length > 1 ? automatic : "");
 }
 
-/** Says which plan is run if the text leaves it open; empty otherwise. */
-export function choiceOfPlan(): string {
+/** Says which plan is run if the text leaves it open, and on which robot if it is checked for another. */
+export function choices(): string {
+  const robot = field("robot").value;
+  const other = robot === "sim" ? "" : `The plan is checked for the robot ${robot}. Here it runs on the simulated robot; the command mdle run --target ${robot} drives the real one.`;
+  return [choiceOfPlan(), other].filter((sentence) => sentence !== "").join(" ");
+}
+
+function choiceOfPlan(): string {
   if (field("plan").value !== "" || roots.length < 2) return "";
   return `The text has ${roots.length} plans that no other uses: ${roots.join(", ")}. ${automatic} is run; the field Plan chooses another.`;
 }
@@ -65,7 +71,7 @@ export function refuse(sentence: string): void {
 /** Asks the module whether the setup can be run, and marks the field that cannot. Returns the floor with the robot. */
 export async function checkSetup(module: Module, settings: Settings): Promise<Ready | undefined> {
   try {
-    const ready = await module.ask<Ready>({ ask: "ready", ...setupOf(settings), text: "" });
+    const ready = await module.ask<Ready>({ ask: "ready", ...setupOf(settings), text: "", files: {} });
     refuse("");
     return ready;
   } catch (error) {

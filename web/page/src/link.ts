@@ -1,5 +1,5 @@
 // Settings in the fragment of a link, which a browser sends to nobody. `#1.…` is packed; `#plan=…` is a text as it is.
-import { EMPTY, settingsOf, type Settings } from "./settings";
+import { EMPTY, isSame, settingsOf, type Settings } from "./settings";
 
 /** Maximum number of bytes of an unpacked link. */
 const LONGEST = 16_000_000;
@@ -26,7 +26,7 @@ async function piped(bytes: Uint8Array<ArrayBuffer>, through: CompressionStream 
 
 /** Returns the fragment of these settings, with `#`. */
 export async function fragmentOf(settings: Settings): Promise<string> {
-  const given = Object.entries(settings).filter(([key, value]) => value !== EMPTY[key as keyof Settings] && (key !== "ownWorld" || settings.world === "own"));
+  const given = Object.entries(settings).filter(([key]) => !isSame(key as keyof Settings, settings, EMPTY) && (key !== "ownWorld" || settings.world === "own"));
   const bytes = new TextEncoder().encode(JSON.stringify(Object.fromEntries(given)));
   const packed = await piped(bytes, new CompressionStream("deflate-raw"));
   const letters = Array.from(packed, (byte) => String.fromCharCode(byte)).join("");

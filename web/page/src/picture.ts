@@ -1,6 +1,7 @@
 // The picture of the plan, as `mdlec draw` makes it, with the active path and the number of times that atoms were entered.
 import { element } from "./dom";
 import type { Module } from "./module";
+import { draftOf, type Settings } from "./settings";
 import type { Run, Visits } from "./run";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -30,9 +31,9 @@ export class Picture {
   }
 
   /** Draws a plan. */
-  async draw(text: string, plan: string): Promise<void> {
-    if (text.trim() === "") return this.say("");
-    const { output } = await this.module.ask<{ output: string }>({ ask: "draw", text, plan: plan || null });
+  async draw(settings: Settings): Promise<void> {
+    if (settings.text.trim() === "") return this.say("");
+    const { output } = await this.module.ask<{ output: string }>({ ask: "draw", ...draftOf(settings), plan: settings.plan || null });
     if (output === this.drawn) return;
     const svg = new DOMParser().parseFromString(output, "image/svg+xml").documentElement;
     this.drawn = output;

@@ -9,8 +9,12 @@ export const WORLDS: Record<string, string> = { office, maze, hall, room };
 
 /** Everything that a link or the browser's storage keeps. */
 export interface Settings {
-  /** Text of the plan. */
+  /** Text of the file that is run. */
   text: string;
+  /** Texts of the other files, by their names. */
+  files: Record<string, string>;
+  /** Name of the robot for which the plan is checked. */
+  robot: string;
   /** Name of the plan to run; empty for the only one. */
   plan: string;
   /** Name of a world, or `own`. */
@@ -28,11 +32,33 @@ export interface Settings {
 }
 
 export const EMPTY: Settings = {
-  text: "", plan: "", world: "office", ownWorld: "", body: "ideal", without: "", start: "", noise: "", seed: "", limit: "600", battery: "", goal: "",
+  text: "", files: {}, robot: "sim", plan: "", world: "office", ownWorld: "", body: "ideal", without: "", start: "", noise: "", seed: "", limit: "600", battery: "", goal: "",
 };
 
-/** Maximum number of letters of a text, and of any other setting. */
-const LONGEST = { text: 5_000_000, ownWorld: 8_000_000, other: 200 };
+/** Name of the file that is run. */
+export const FILE = "plan.mdle";
+/** Robots for which plans are checked. They run on `sim`. */
+const ROBOTS = ["sim", "scout", "atrv", "ros2"];
+/** Maximum number of letters of a text, and of any other setting; and of files beside the one that is run. */
+export const LONGEST = { text: 5_000_000, ownWorld: 8_000_000, other: 200, files: 50 };
+
+/** Returns `true` for the name of a file beside the one that is run: it may begin with folders. */
+export function isName(name: string): boolean {
+  return name.length <= 100 && name !== FILE && /^(?:[\p{L}\p{Nd}_-][\p{L}\p{Nd}_.-]*\/)*[\p{L}\p{Nd}_-][\p{L}\p{Nd}_.-]*\.mdle$/u.test(name);
+}
+
+/** Returns `true` if two settings have the same value under this key. */
+export function isSame(key: keyof Settings, one: Settings, other: Settings): boolean {
+  return key === "files" ? JSON.stringify(one.files) === JSON.stringify(other.files) : one[key] === other[key];
+}
+
+function filesOf(value: unknown): Record<string, string> {
+  if (value === null || typeof value !== "object") throw new Error("files are no files");
+  const files = Object.entries(value as Record<string, unknown>);
+  const whole = files.reduce((sum, [, text]) => sum + (typeof text === "string" ? text.length : Infinity), 0);
+  if (files.length > LONGEST.files || whole > LONGEST.text || !files.every(([name]) => isName(name))) throw new Error("files are not as they can be");
+  return Object.fromEntries(files) as Record<string, string>;
+}
 
 /** Takes the known settings of an object of unknown origin; throws if one is no text or too long. */
 export function settingsOf(object: unknown): Settings {
@@ -41,13 +67,23 @@ export function settingsOf(object: unknown): Settings {
   for (const key of Object.keys(EMPTY) as (keyof Settings)[]) {
     const value = (object as Record<string, unknown>)[key];
     if (value === undefined) continue;
+    if (key === "files") {
+      settings.files = filesOf(value);
+      continue;
+    }
     const most = key === "text" || key === "ownWorld" ? LONGEST[key] : LONGEST.other;
     if (typeof value !== "string" || value.length > most) throw new Error(`${key} is no text of at most ${most} letters`);
     settings[key] = value;
   }
   if (settings.world !== "own" && !(settings.world in WORLDS)) throw new Error(`there is no world ${settings.world}`);
+  if (!ROBOTS.includes(settings.robot)) throw new Error(`there is no robot ${settings.robot}`);
   if (!["ideal", "scout", "atrv"].includes(settings.body)) throw new Error(`there is no body ${settings.body}`);
   return settings;
+}
+
+/** The plan files of the settings for the module. */
+export function draftOf({ text, files, robot }: Settings): { text: string; files: Record<string, string>; robot: string } {
+  return { text, files, robot };
 }
 
 /** The world of the settings as TOML. */
@@ -64,7 +100,7 @@ export function setupOf(settings: Settings): Record<string, unknown> {
   const battery = settings.battery.trim();
   if (!/^\d{0,3}$/.test(battery)) throw new Error("battery: expected a whole percentage from 0 to 100, or nothing");
   return {
-    text: settings.text, plan: settings.plan || null, world: worldText(settings),
+    ...draftOf(settings), plan: settings.plan || null, world: worldText(settings),
     world_name: settings.world === "own" ? "world.toml" : settings.world, body: settings.body, without: settings.without,
     start: settings.start.trim(), start_noise: settings.noise.trim(), seed: seed === "" ? null : Number(seed), limit,
     battery: battery === "" ? null : Number(battery), goal: settings.goal.trim(),

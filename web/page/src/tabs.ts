@@ -3,8 +3,8 @@ import { byId, element } from "./dom";
 
 const NAMES = ["plan", "why", "transitions", "signals", "batch", "world"];
 
-/** Makes the tabs; `shown` is called when another panel is shown. Returns a function that shows a panel. */
-export function tabs(list: HTMLElement, shown: (name: string) => void): (name: string) => void {
+/** Makes the tabs; `shown` is called when another panel is shown. */
+export function tabs(list: HTMLElement, shown: (name: string) => void): void {
   const buttons = NAMES.map((name) => {
     const title = name[0]?.toUpperCase() + name.slice(1);
     const tab = element("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}` }, title);
@@ -29,5 +29,4 @@ export function tabs(list: HTMLElement, shown: (name: string) => void): (name: s
     shown(name);
   };
   show("plan");
-  return show;
 }

@@ -2,13 +2,14 @@
 import type { Moment } from "./answers";
 import { button, element } from "./dom";
 import type { Run } from "./run";
+import { FILE } from "./settings";
 
 export class Why {
   private shown = "";
   /** The run whose turn is shown: its turns have the same numbers as those of another. */
   private run: Run | undefined;
 
-  constructor(private panel: HTMLElement, private goTo: (line: number) => void) {
+  constructor(private panel: HTMLElement, private goTo: (file: string, line: number) => void) {
     this.clear();
   }
 
@@ -48,8 +49,9 @@ export class Why {
     const step = element("div", { class: skipped ? "step skipped" : "step" });
     const what = skipped ? "was skipped" : moment.ends ? "ended" : "runs";
     const cause = moment.ends && !(isLast && !by) ? `: ${by ?? ""}` : "";
-    const line = atom?.line ?? 1;
-    step.append(element("p", {}, element("strong", {}, atom?.law ?? ""), ` (`, button(`line ${line}`, () => this.goTo(line), { class: "link" }), `) ${what}${cause}`));
+    const { line = 1, file = FILE } = atom ?? {};
+    const place = file === FILE ? `line ${line}` : `${file}, line ${line}`;
+    step.append(element("p", {}, element("strong", {}, atom?.law ?? ""), ` (`, button(place, () => this.goTo(file, line), { class: "link" }), `) ${what}${cause}`));
     for (const { element: number, since, fired, operands } of moment.scopes) {
       const scope = run.description.elements[number];
       if (!scope) continue;
