@@ -140,6 +140,8 @@ test("a turn is explained, and an atom that was skipped", () => using(async (tab
   await why.locator(".skipped").getByRole("button").click();
   assert.equal(await tab.evaluate(() => document.activeElement.classList.contains("cm-content")), true);
   await picture(tab, "why");
+  await tabOf(tab, "Transitions").click();
+  await tab.locator("#panel-transitions tbody tr").filter({ hasText: "skipped: stop" }).getByRole("button", { name: "1.0 s" }).waitFor();
 }));
 
 test("signals and timers are drawn", () => using(async (tab) => {

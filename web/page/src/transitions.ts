@@ -64,6 +64,8 @@ export class Transitions {
     const more = (frame?.made ?? 0) - OF_A_TURN;
     if (more > 0) ended.append(element("div", { class: "quiet" }, `and ${more} more in this turn`));
     const to = fired.at(-1)?.to;
+    const skipped = (frame?.skipped ?? []).slice(0, OF_A_TURN).map(([atom]) => run.atom(atom)?.law ?? "");
+    if (skipped.length > 0) ended.append(element("div", { class: "skipped" }, `skipped: ${skipped.join(", ")}`));
     const time = `${(frame?.t ?? 0).toFixed(1)} s`;
     const go = button(time, () => this.goTo(turn), { class: "link", title: `Show the turn at ${time}` });
     return element("tr", {}, element("td", {}, go), ended, element("td", {}, to == null ? "plan over" : (run.atom(to)?.law ?? "")));
