@@ -527,14 +527,20 @@ test("axe finds nothing serious, in light, in dark and on a phone", async () => 
       await tab.getByText("No errors.").waitFor();
       await run(tab);
       await goTo(tab, 700);
-      for (const view of ["Plan", "Why", "Transitions", "Signals", "Batch", "World"]) {
-        await tabOf(tab, view).click();
+      const look = async (what) => {
         await tab.waitForTimeout(200);
         // Not by a script element, which the page forbids.
         const { violations } = await tab.evaluate(`${axe}\naxe.run()`);
         const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-        assert.deepEqual(serious.map(({ id, nodes }) => [id, nodes.map(({ html }) => html.slice(0, 120))]), [], `${name} ${view}`);
+        assert.deepEqual(serious.map(({ id, nodes }) => [id, nodes.map(({ html }) => html.slice(0, 120))]), [], `${name} ${what}`);
+      };
+      for (const view of ["Plan", "Why", "Transitions", "Signals", "Batch", "World"]) {
+        await tabOf(tab, view).click();
+        await look(view);
       }
+      await tab.getByRole("button", { name: "+ File" }).click();
+      await look("files");
+      await tab.getByRole("button", { name: "Remove it" }).click();
       await tabOf(tab, "Plan").click();
       const overflow = await tab.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
       assert.equal(overflow, 0, `${name} is wider than the screen`);
