@@ -97,6 +97,14 @@ fn a_plan_waits_for_what_a_process_publishes() {
 }
 
 #[test]
+fn a_run_that_is_stopped_gives_up_no_process() {
+    let undisturbed = report(run(&with_process("undisturbed", "", "pass"), "max"));
+    // The process itself stops the run for longer than a module may take, as Ctrl-Z does, and answers afterwards.
+    let pause = "mdle = os.getppid(); os.kill(mdle, signal.SIGSTOP); time.sleep(1.5); os.kill(mdle, signal.SIGCONT)";
+    assert_eq!(report(run(&with_process("stopped", "", pause), "max")), undisturbed);
+}
+
+#[test]
 fn what_a_process_does_wrong_ends_its_module() {
     let faults = [
         ("dies", "sys.exit(3)"),

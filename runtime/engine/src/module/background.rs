@@ -9,6 +9,9 @@ use mdle_runtime::Nanos;
 use super::{Fault, Ports};
 use crate::attribute::{Attribute, In, Out, Reading, Value};
 
+/// Number of times that a break looks for an offer before it gives a module up.
+const LOOKS: u32 = 50;
+
 /// A module that runs in the background.
 pub trait Background: Send + 'static {
     /// Runs on a thread of its own until an exchange returns [`Stopped`]. When it returns, the module has ended.
@@ -126,6 +129,13 @@ pub(crate) enum ThreadEnd {
     Panicked(String),
 }
 
+impl Meeting {
+    /// Returns `true` while the module neither waits for a break nor has ended.
+    const fn is_awaited(&self) -> bool {
+        self.offered.is_none() && self.ended.is_none()
+    }
+}
+
 impl Gate {
     fn lock(&self) -> MutexGuard<'_, Meeting> {
         self.meeting.lock().unwrap_or_else(PoisonError::into_inner)
@@ -184,11 +194,19 @@ impl Gate {
         self.changed.notify_all();
     }
 
-    /// Waits until the module waits for a break, or has ended; returns `false` if neither is so within this time.
+    /// Waits until the module waits for a break, or has ended; returns `false` if neither is so within this time. Each of
+    /// [`LOOKS`] counts as its part of the time, however late this thread goes on: a process that was stopped, or that a
+    /// busy machine kept waiting, gives up no module for that.
     pub(crate) fn wait_for_offer(&self, patience: Duration) -> bool {
-        let none = |meeting: &mut Meeting| meeting.offered.is_none() && meeting.ended.is_none();
-        let waited = self.changed.wait_timeout_while(self.lock(), patience, none);
-        !waited.unwrap_or_else(PoisonError::into_inner).1.timed_out()
+        let mut meeting = self.lock();
+        for _ in 0..LOOKS {
+            let waited = self.changed.wait_timeout_while(meeting, patience / LOOKS, |meeting| meeting.is_awaited());
+            meeting = waited.unwrap_or_else(PoisonError::into_inner).0;
+            if !meeting.is_awaited() {
+                return true;
+            }
+        }
+        false
     }
 
     /// Returns how the module's thread has ended, once.
