@@ -13,7 +13,7 @@ const CONNECTS: Duration = Duration::from_millis(500);
 /// Time between two tries.
 const AGAIN: Duration = Duration::from_millis(200);
 /// Time after which a peer that reads nothing is given up, and connected to anew.
-const WRITES: Duration = Duration::from_millis(500);
+pub(super) const WRITES: Duration = Duration::from_millis(500);
 /// Time without a new state after which the last one is sent again, so that the connection stays open.
 const HEARTBEAT: Duration = Duration::from_millis(500);
 

@@ -1,5 +1,6 @@
 //! Links over TCP on this machine: what arrives, and what is refused.
 
+use std::collections::VecDeque;
 use std::io::{Read as _, Write as _};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::thread::sleep;
@@ -7,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use mdle_runtime::{Meters, Nanos, Pose, Twist};
 
+use super::sender::WRITES;
 use super::*;
 use crate::link::frame::{LONGEST, written};
 
@@ -192,16 +194,24 @@ fn a_peer_that_never_reads_delays_no_turn() {
     let (at_ada, place) = (address(&listener), address(&own));
     let mut bob = Tcp::on(own, &settings("bob", &[("ada", at_ada)], "key")).unwrap();
     let (deaf, _) = listener.accept().unwrap();
-    let (begun, mut number, mut longest) = (Instant::now(), 0, Duration::ZERO);
-    while begun.elapsed() < Duration::from_secs(2) {
+    let (begun, mut number, mut turns) = (Instant::now(), 0, VecDeque::new());
+    // As fast as it goes: the buffers of the system are full soon. The sender has then waited for half a second before it
+    // gives the peer up. A turn that waited with it would be the only one in that time; a busy machine may make it so once.
+    loop {
+        assert!(begun.elapsed() < SOON, "turns wait for the peer");
         number += 1;
-        let turn = Instant::now();
         bob.send(&state("bob", number), Nanos::ZERO);
         received(&mut bob);
-        longest = longest.max(turn.elapsed());
-        // As fast as it goes: the buffers of the system are full soon.
+        turns.push_back(Instant::now());
+        while turns.front().is_some_and(|turn: &Instant| turn.elapsed() > WRITES) {
+            turns.pop_front();
+        }
+        let mut is_given_up = false;
+        bob.messages(&mut |message| is_given_up |= message.contains("cannot be reached"));
+        if is_given_up && turns.len() > 100 {
+            break;
+        }
     }
-    assert!(longest < Duration::from_millis(500) && number > 1000, "{longest:?} in {number} turns");
     assert_goes_on(&mut bob, place);
     drop(deaf);
 }
