@@ -85,8 +85,8 @@ impl Graph {
         }
     }
 
-    /// Returns the sentences about all that is missing, and about what is on the graph instead. Where no program answers,
-    /// nothing else is worth a sentence.
+    /// Returns the sentences about all that is missing, and about what is on the graph instead. Where no program
+    /// answers, nothing else is worth a sentence.
     #[must_use]
     pub fn about_missing(&self, missing: &[String], config: &Config) -> String {
         let is_empty = !self.readers.iter().chain(&self.writers).any(|endpoint| ros_topic(&endpoint.topic).is_some());
@@ -94,8 +94,8 @@ impl Graph {
         if is_empty { listed } else { format!("{}; {listed}", missing.join("; ")) }
     }
 
-    /// Returns the line with what to write into the configuration for each missing topic whose type has one other topic;
-    /// empty if there is none.
+    /// Returns the line with what to write into the configuration for each missing topic whose type has one other
+    /// topic; empty if there is none.
     #[must_use]
     pub fn help<'i>(&self, inputs: impl Iterator<Item = &'i Input>, commands: &str) -> String {
         let mut entries: Vec<_> = inputs
@@ -136,8 +136,8 @@ impl Graph {
     }
 }
 
-/// Returns the entry of the configuration that names the only topic with one of these types; `None` if `topic` is there,
-/// or if there are several.
+/// Returns the entry of the configuration that names the only topic with one of these types; `None` if `topic` is
+/// there, or if there are several.
 fn proposed(endpoints: &[Endpoint], topic: &str, kinds: &[&str], key: &str) -> Option<String> {
     let name = dds_topic(topic);
     if endpoints.iter().any(|endpoint| endpoint.topic == name) {

@@ -21,8 +21,8 @@ pub enum Source {
 }
 
 impl Source {
-    /// Returns the key of the configuration that names the topic, if another topic of its type can be proposed: sensors of
-    /// ranges have tables, the clock has one name, and the type of a bumper may mean anything.
+    /// Returns the key of the configuration that names the topic, if another topic of its type can be proposed:
+    /// sensors of ranges have tables, the clock has one name, and the type of a bumper may mean anything.
     #[must_use]
     pub const fn key(self) -> Option<&'static str> {
         match self {

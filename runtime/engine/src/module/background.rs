@@ -194,9 +194,9 @@ impl Gate {
         self.changed.notify_all();
     }
 
-    /// Waits until the module waits for a break, or has ended; returns `false` if neither is so within this time. Each of
-    /// [`LOOKS`] counts as its part of the time, however late this thread goes on: a process that was stopped, or that a
-    /// busy machine kept waiting, gives up no module for that.
+    /// Waits until the module waits for a break, or has ended; returns `false` if neither is so within this time.
+    /// Each of [`LOOKS`] counts as its part of the time, however late this thread goes on: a process that was
+    /// stopped, or that a busy machine kept waiting, gives up no module for that.
     pub(crate) fn wait_for_offer(&self, patience: Duration) -> bool {
         let mut meeting = self.lock();
         for _ in 0..LOOKS {

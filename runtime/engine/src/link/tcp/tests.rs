@@ -195,8 +195,9 @@ fn a_peer_that_never_reads_delays_no_turn() {
     let mut bob = Tcp::on(own, &settings("bob", &[("ada", at_ada)], "key")).unwrap();
     let (deaf, _) = listener.accept().unwrap();
     let (begun, mut number, mut turns) = (Instant::now(), 0, VecDeque::new());
-    // As fast as it goes: the buffers of the system are full soon. The sender has then waited for half a second before it
-    // gives the peer up. A turn that waited with it would be the only one in that time; a busy machine may make it so once.
+    // As fast as it goes: the buffers of the system are full soon. The sender has then waited for half a second
+    // before it gives the peer up. A turn that waited with it would be the only one in that time; a busy machine may
+    // make it so once.
     loop {
         assert!(begun.elapsed() < SOON, "turns wait for the peer");
         number += 1;
