@@ -37,6 +37,16 @@ fn a_record_begins_and_ends_while_the_robot_drives() {
 }
 
 #[test]
+fn a_robot_with_errors_is_recorded() {
+    let folder = folder("recorder_body");
+    fs::write(folder.join("plan.mdle"), "{ Ahead (bumper)\n  (Atom (wait 60s) (go 20 0))\n}\n").unwrap();
+    let commands = "step 3\ncall /recorder/start part.mcap\nstep 10\ncall /recorder/stop\n";
+    let answer = dialogue(&folder, &["--body", "scout", "--seed", "7"], commands);
+    assert!(answer.contains("10 turns in part.mcap"), "{answer}");
+    assert_eq!(rows(&folder, "part.mcap").len(), 10);
+}
+
+#[test]
 fn only_an_admin_may_record() {
     let folder = folder("recorder_role");
     fs::write(folder.join("plan.mdle"), "{ Ahead (bumper)\n  (Atom (wait 60s) (go 20 0))\n}\n").unwrap();

@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 use mdle_host::{Break, RunTerms, Time};
 use mdle_record::frames::Frames;
 use mdle_record::{Applied, Begin, RecordFile, TurnMade};
-use mdle_runtime::{Nanos, Sensed, Twist};
+use mdle_runtime::{Compass, Nanos, Sensed, Twist};
 
 use crate::engine::Engine;
 use crate::plans::EngineAlphabet;
@@ -124,6 +124,8 @@ impl RecorderPart {
             changes: &[],
             overruled: None,
         };
+        // The compass follows from all outputs since the start of the run, which this record does not have.
+        let y = &Sensed { compass: Compass::default(), ..*y };
         // A turn is encoded by what has changed since the last one that was written.
         let (mut frames, mut bytes) = (tape.frames.clone(), Vec::new());
         if !tape.has_begun {
