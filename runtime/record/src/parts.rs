@@ -27,6 +27,9 @@ pub(crate) enum Unreadable {
     Damaged(String),
 }
 
+/// Number of parts of nine zeros each that are the end of a file: more than a megabyte, which no chunk of a record has.
+const MOST_ZEROS: u32 = 120_000;
+
 /// The parts of a file that is being read.
 pub(crate) struct Parts<R> {
     source: R,
@@ -34,6 +37,8 @@ pub(crate) struct Parts<R> {
     chunk: Option<Chunk>,
     /// The bytes that were read last.
     last: [u8; MAGIC.len()],
+    /// Number of parts in a row that consist of zeros.
+    zeros: u32,
     /// `true` once the end of the file was read: it was not cut short.
     pub(crate) is_whole: bool,
 }
@@ -60,6 +65,7 @@ impl<R: Read> Parts<R> {
             reader: LinearReader::new_with_options(options),
             chunk: None,
             last: [0; MAGIC.len()],
+            zeros: 0,
             is_whole: false,
         }
     }
@@ -83,7 +89,15 @@ impl<R: Read> Parts<R> {
                     }
                     self.reader.notify_read(read);
                 }
+                // A system that lost its power may leave gigabytes of zeros behind what was written.
+                Some(Ok(LinearReadEvent::Record { opcode: 0, data: [] })) => {
+                    self.zeros += 1;
+                    if self.zeros == MOST_ZEROS {
+                        return Ok(None);
+                    }
+                }
                 Some(Ok(LinearReadEvent::Record { opcode, data })) => {
+                    self.zeros = 0;
                     self.is_whole |= opcode == op::FOOTER;
                     if opcode == op::CHUNK {
                         self.chunk = Some(Chunk::of(data)?);

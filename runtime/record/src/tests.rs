@@ -259,6 +259,28 @@ fn a_cut_at_any_kilobyte_leaves_all_but_the_last_second() {
     assert!(records.is_whole());
 }
 
+/// A source that fails once it is read.
+struct Unreadable;
+
+impl std::io::Read for Unreadable {
+    fn read(&mut self, _: &mut [u8]) -> std::io::Result<usize> {
+        Err(std::io::Error::other("the zeros were read to their end"))
+    }
+}
+
+/// A system that lost its power leaves a file with zeros at its end, of any length.
+#[test]
+fn zeros_after_a_cut_record_are_its_end() {
+    use std::io::Read as _;
+    let (whole, lengths) = written(&outputs(60));
+    let cut = &whole[..lengths[50]];
+    let turns = Records::open(cut).unwrap().1.count();
+    let zeros = std::io::repeat(0).take(1 << 24).chain(Unreadable);
+    let (_, mut records) = Records::open(cut.chain(zeros)).unwrap();
+    assert_eq!(records.by_ref().map(Result::unwrap).count(), turns);
+    assert!(turns >= 40 && !records.is_whole(), "{turns}");
+}
+
 /// A length that leads over the end of the file is no cut: the end is there.
 #[test]
 fn a_flipped_bit_in_the_head_of_any_part_is_noticed() {
