@@ -48,6 +48,7 @@ fn failures_to_run_have_a_help() {
         "run plan.mdle --target sim --world moon",
         "run plan.mdle --target sim --turns 0",
         "run plan.mdle --target sim --log plan.mdle",
+        "run plan.mdle --target sim --log -",
         "man repley",
         "man log cut up",
         "completions tcsh",

@@ -349,8 +349,12 @@ fn ready<'p>(
     opened.unwrap_or_else(bug_before)
 }
 
-/// Refuses a record of a robot whose outputs or inputs a record cannot hold.
+/// Refuses a log without the name of a file, and a record of a robot whose outputs or inputs a record cannot hold.
 fn check_record(target: &TargetOptions, options: &Options) -> Result<(), Refusal> {
+    if options.log.as_deref() == Some(Path::new("-")) {
+        let sentence = "--log -: expected the name of a file; `--log /dev/stdout` writes JSON lines to standard output";
+        return Err(Refusal::Usage(sentence.to_owned()));
+    }
     let Some(path) = options.log.as_deref().filter(|path| !target.records && is_record(path)) else { return Ok(()) };
     let (path, lines) = (path.display(), path.with_extension("jsonl"));
     Err(Refusal::Usage(format!(
