@@ -138,6 +138,7 @@ fn faulty_files_of_tests_have_a_help() {
     let tests = [
         "wrold = \"room\"",
         "expect.nevr = []",
+        "expect.never",
         "expect.atoms = [\"go 20 1\"]",
         "expect.order = [\"Shak\"]",
         "expect.end = \"bumber\"",
@@ -153,6 +154,7 @@ fn faulty_files_of_tests_have_a_help() {
         "body = \"tank\"",
         "seeds = 0",
         "seeds = -2",
+        "world = \"room\"\nstart-noise = \"0.1,5\"",
         "battery = 1.5",
         "faults = [{ fault = \"bumber\" }]",
         "faults = [{ fault = \"sonar\", sonar = 16, range = \"1m\" }]",

@@ -223,7 +223,9 @@ fn refused(error: &toml::de::Error) -> TestFileError {
         false => message,
     });
     let Some((unknown, known)) = message.strip_prefix("unknown field `").and_then(|rest| rest.split_once('`')) else {
-        return TestFileError { place, message, help: String::new() };
+        let has_no_value = message.starts_with("key with no value");
+        let help = if has_no_value { "write `= ` and a value, as in `expect.never = [\"bumper\"]`" } else { "" };
+        return TestFileError { place, message, help: help.to_owned() };
     };
     let known: Vec<&str> = known.split('`').skip(1).step_by(2).collect();
     let message = format!("there is no key `{}`{}", Printable(unknown), did_you_mean(unknown, &known));

@@ -140,15 +140,13 @@ impl Judge<'_> {
         let is_named = |named: &Option<AtomsNamed>, atom: Option<u32>| {
             named.as_ref().is_none_or(|named| atom.is_some_and(|atom| named.holds(atom)))
         };
-        let fits = |step: &&Step| {
-            let to = match &wanted.to {
-                None => true,
-                Some(None) => step.to.is_none(),
-                Some(named) => is_named(named, step.to),
-            };
-            let by = wanted.by.as_ref().is_none_or(|(_, cause)| self.is_by(step, cause));
-            is_named(&wanted.from, step.from) && to && by
+        let is_to = |step: &Step| match &wanted.to {
+            None => true,
+            Some(None) => step.to.is_none(),
+            Some(named) => is_named(named, step.to),
         };
+        let is_by = |step: &Step| wanted.by.as_ref().is_none_or(|(_, cause)| self.is_by(step, cause));
+        let fits = |step: &&Step| is_named(&wanted.from, step.from) && is_to(step) && is_by(step);
         let is_in_time = |step: &&Step| {
             wanted.after.is_none_or(|after| step.t >= after) && wanted.within.is_none_or(|within| step.t <= within)
         };
@@ -159,12 +157,29 @@ impl Judge<'_> {
         let words = wanted.words();
         let (message, got, step) = match candidates.first() {
             Some(step) => ("a transition was made at another time", format!("at {} s", Seconds(step.t)), Some(*step)),
-            None => ("a transition was not made", "no such transition".to_owned(), None),
+            None => {
+                let nearest = self.nearest(&[&|step| is_named(&wanted.from, step.from), &is_to, &is_by]);
+                let got = nearest.map_or("no transition".to_owned(), |step| self.step_words(step));
+                ("a transition was not made", got, nearest)
+            }
         };
         let failure = self.failure(place, message.to_owned(), words, got);
         let Some(step) = step else { return Some(failure) };
         let atom = step.from.map(|atom| (atom, format!("left at {} s by {}", Seconds(step.t), step.words)));
         Some(Failure { atom, t: step.t, ..failure })
+    }
+
+    /// Returns the first of the transitions that meet the most of these conditions.
+    fn nearest(&self, conditions: &[&dyn Fn(&Step) -> bool]) -> Option<&Step> {
+        let met = |step: &Step| conditions.iter().filter(|condition| condition(step)).count();
+        let most = self.course.steps.iter().map(met).max()?;
+        self.course.steps.iter().find(|step| met(step) == most)
+    }
+
+    /// Returns a transition in words.
+    fn step_words(&self, step: &Step) -> String {
+        let [from, to] = [step.from, step.to].map(|atom| atom_words(self.machine, self.words, atom));
+        format!("the nearest was from {from} to {to} at {} s by {}", Seconds(step.t), step.words)
     }
 
     fn is_by(&self, step: &Step, cause: &Cause) -> bool {

@@ -51,6 +51,11 @@ impl Simulation {
             let help = "write `target = \"sim\"` above the tests, if the plan fits that robot, or give a `script`";
             return Err(TestFileError::at(test.name.span(), message).help(help));
         };
+        if let Some(noise) = test.start_noise.as_ref().filter(|_| test.seed.is_none() && test.seeds.is_none()) {
+            let message = "`start-noise` draws the start at random, and the test has no seed";
+            let help = "add `seed = 1`, or `seeds = 20` for 20 runs";
+            return Err(TestFileError::at(noise.span(), message).help(help));
+        }
         let given = test.options();
         let options: Vec<_> = given.iter().map(|(name, value, _)| word(name, value, path)).collect();
         let is_given = |word: &&String| !given.iter().any(|(name, ..)| word.starts_with(&format!("--{name}=")));

@@ -52,8 +52,17 @@ impl Suite {
         let tests = file::read(&text).map_err(|error| refused(path, &text, &error))?;
         let (subject, mut input) = Subject::read(path, &tests, &|error| refused(path, &text, error))?;
         let source = input.sources.add(path.display().to_string(), text.clone());
-        let cases = tests.test.into_iter().map(|test| Case::read(test, path, &subject, is_recorded));
-        let cases = cases.collect::<Result<_, _>>().map_err(|error| refused(path, &text, &error))?;
+        let (mut cases, mut errors) = (Vec::new(), Vec::new());
+        for test in tests.test {
+            match Case::read(test, path, &subject, is_recorded) {
+                Ok(case) => cases.push(case),
+                Err(error) => errors.push(error),
+            }
+        }
+        if let Some((last, others)) = errors.split_last() {
+            others.iter().for_each(|error| report(path, &text, error));
+            return Err(refused(path, &text, last));
+        }
         Ok((Self { path: path.to_owned(), source, subject, cases }, input))
     }
 }
@@ -100,18 +109,23 @@ impl Case {
 
 /// Prints what is wrong with a file of tests.
 fn refused(path: &Path, text: &str, error: &TestFileError) -> Failure {
-    let mut sources = Sources::default();
-    let source = sources.add(path.display().to_string(), text);
-    let Some(place) = &error.place else {
+    if error.place.is_none() {
         let help = if error.help.is_empty() { String::new() } else { format!("\nhelp: {}", error.help) };
         return Failure::Usage(format!("{}: {}{help}", path.display(), error.message));
-    };
-    let label = Label::primary(source, place.clone());
-    let mut report = Diagnostic::error().with_message(&error.message).with_labels(vec![label]);
+    }
+    report(path, text, error);
+    failure::error(&format!("the file of tests {} has errors", Printable(&path.display().to_string())));
+    Failure::TestFile
+}
+
+/// Prints an error with its place in a file of tests.
+fn report(path: &Path, text: &str, error: &TestFileError) {
+    let mut sources = Sources::default();
+    let source = sources.add(path.display().to_string(), text);
+    let labels = error.place.iter().map(|place| Label::primary(source, place.clone())).collect();
+    let mut report = Diagnostic::error().with_message(&error.message).with_labels(labels);
     if !error.help.is_empty() {
         report = report.with_notes(vec![format!("help: {}", error.help)]);
     }
     messages::write(&sources, report);
-    failure::error(&format!("the file of tests {} has errors", Printable(&path.display().to_string())));
-    Failure::TestFile
 }
