@@ -109,8 +109,8 @@ fn times_before_the_run_have_a_help() {
 #[test]
 fn a_reader_that_has_gone_is_no_error() {
     let folder = recorded("closed");
-    let calls =
-        ["log export --csv", "log export --script", "log info", "replay"].map(|call| format!("{call} square.mcap"));
+    let calls = ["log export --csv", "log export --script", "log info", "replay", "replay --step"]
+        .map(|call| format!("{call} square.mcap"));
     for call in calls.into_iter().chain(["why square.mcap 5".to_owned(), "why square.mcap --not turn".to_owned()]) {
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
@@ -221,6 +221,16 @@ fn a_record_is_drawn() {
 }
 
 /// The plan goes on under a rule, and its own input is computed again.
+#[test]
+fn a_picture_is_svg_alone() {
+    let folder = recorded("format");
+    let (out, err, status) = run(&folder, "plot square.mcap path.png");
+    let message = "invalid value 'path.png' for '<FILE>': this option writes SVG, not PNG; name the file `path.svg`";
+    assert!(err.starts_with(&format!("error: {message}\n")), "{err}");
+    assert_eq!((out.as_str(), status), ("", 2));
+    assert!(!folder.join("path.png").exists());
+}
+
 #[test]
 fn a_rule_that_changed_an_input_is_named() {
     let folder = recorded("safety");

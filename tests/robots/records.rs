@@ -157,6 +157,18 @@ fn another_plan_differs_in_a_turn() {
     assert_eq!(rows, expected);
 }
 
+/// The causes of the record are those of its own plan, not of the one that replaces it.
+#[test]
+fn recorded_causes_have_the_texts_of_their_plan() {
+    let folder = folder("own-texts");
+    recorded(&folder, &["--seed", "5"]);
+    fs::write(folder.join("edited.mdle"), PLAN.replace("wait 4s", "wait 5s")).unwrap();
+    let (out, err, status) = replay(&folder, &["run.mcap", "--plan", "edited.mdle"]);
+    assert_eq!((err.as_str(), status), ("", Some(1)));
+    let expected = "turn 40 at 4.0 s differs\ntransitions\n  recorded: 1 to 2 by wait 4\n  replayed: none\nstate\n";
+    assert!(out.starts_with(expected), "{out}");
+}
+
 #[test]
 fn a_plan_that_uses_others_replays_without_their_files() {
     let folder = folder("used");

@@ -6,6 +6,11 @@ use codespan_reporting::diagnostic::Diagnostic;
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use mdle_compiler::diagnostic::{SourceId, Sources};
 
+/// Returns a number of things in words: `1 turn`, `2 turns`.
+pub(crate) fn counted(count: u64, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
 /// Prints a report, in colours on a terminal.
 pub(crate) fn write(sources: &Sources, report: Diagnostic<SourceId>) {
     let choice = if io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };

@@ -16,6 +16,7 @@ use mdle_runtime::{Nanos, Printable};
 
 use crate::arguments::Replay;
 use crate::failure::{self, Failure};
+use crate::messages::counted;
 use crate::record::Record;
 use crate::recorded_files;
 use crate::replayed::{Difference, Outcome, Parting, ReplayTerms, replayed};
@@ -173,7 +174,7 @@ fn tell(outcome: &Outcome, plan: &str) -> io::Result<()> {
     match outcome {
         Outcome::Same { turns, is_whole } => {
             let end = if *is_whole { "" } else { "; the record has no end" };
-            writeln!(out, "the same to the bit, {turns} turns{end}")
+            writeln!(out, "the same to the bit, {}{end}", counted(*turns, "turn"))
         }
         Outcome::Differs(Difference { turn, t, parts, after }) => {
             writeln!(out, "turn {turn} at {} s differs", mdle_runtime::trace::Seconds(*t))?;
@@ -183,7 +184,9 @@ fn tell(outcome: &Outcome, plan: &str) -> io::Result<()> {
             })?;
             out.write_all(side_by_side(after, plan).as_bytes())
         }
-        Outcome::Unread(turns, error) => writeln!(out, "the same to the bit, {turns} turns; then {error}"),
+        Outcome::Unread(turns, error) => {
+            writeln!(out, "the same to the bit, {}; then {error}", counted(*turns, "turn"))
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use mdle_engine::{Engine, EngineAlphabet, Library, When};
 use mdle_files::Target;
 use mdle_host::{Helm, Intervention, Pace, Pilot as _, Refusal, RunTerms, StopRequest, Supervised, Texts, Time};
 use mdle_host::{PilotFault, Transitions, Verdict};
-use mdle_record::{Applied, Begin, Change, Message, ReadError, RecordedTurn, Step, TurnsWithMessages};
+use mdle_record::{Applied, Begin, Change, Message, MessageKind, ReadError, RecordedTurn, Step, TurnsWithMessages};
 use mdle_runtime::{Alphabet, Nanos, Plan, Sensed, Turn, Twist};
 
 use crate::failure::Failure;
@@ -207,7 +207,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
             (Some(_) | None, _) => OVER.to_owned(),
         });
         let laws = laws.collect();
-        let parts = self.differing(&recorded, &made, &transitions);
+        let parts = self.differing((&recorded, &messages), &made, &transitions);
         let machine = self.helm.pilot().machine();
         let law = machine.and_then(|machine| Some(Plan::law(machine.plan(), machine.atom()?).to_owned()));
         if let Some(Intervention { verdict: Verdict::Ended, rule, .. }) = self.helm.intervention() {
@@ -221,7 +221,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
     /// Returns the parts of a turn that differ from the record.
     fn differing(
         &self,
-        recorded: &RecordedTurn,
+        (recorded, messages): (&RecordedTurn, &[Message]),
         made: &Result<Turn<()>, PilotFault>,
         transitions: &Transitions,
     ) -> Vec<Part> {
@@ -254,7 +254,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
         };
         let texts = pilot.machine().map(|machine| machine.plan());
         part("plan", recorded.plan == number, &|| [recorded.plan, number].map(|number| number.to_string()));
-        part("transitions", recorded.steps == steps, &|| [&recorded.steps, &steps].map(|steps| listed(texts, steps)));
+        part("transitions", recorded.steps == steps, &|| [recorded_transitions(messages), listed(texts, &steps)]);
         part("state", recorded.state == state, &|| [recorded.state, state].map(|state| state.to_string()));
         part("input by", recorded.applied == applied, &|| [recorded.applied, applied].map(words));
         part("asked input", bits(recorded_asked) == bits(asked) || overruled.is_none() && rule.is_empty(), &|| {
@@ -281,6 +281,18 @@ fn words(applied: Applied) -> String {
         Applied::Over => "the end of the plan",
     }
     .to_owned()
+}
+
+/// The transitions of a turn, in the words of the plan that ran.
+fn recorded_transitions(messages: &[Message]) -> String {
+    let transitions = messages.iter().filter(|message| message.kind == MessageKind::Transition).filter_map(|message| {
+        let json: serde_json::Value = serde_json::from_str(&message.json).ok()?;
+        let operands = json.get("operands")?.as_array()?.iter().filter_map(serde_json::Value::as_str);
+        let operands = operands.collect::<Vec<_>>().join(" and ");
+        let by = if operands.is_empty() { json.get("by")?.as_str()? } else { &operands };
+        Some(format!("{} to {} by {by}", json.get("from")?, json.get("to")?))
+    });
+    transitions.collect::<Vec<_>>().join("; ")
 }
 
 /// The transitions of a turn, as a trace has them.

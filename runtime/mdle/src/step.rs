@@ -8,7 +8,7 @@ use mdle_host::Clocked;
 use mdle_record::{Message, MessageKind, Overruled};
 use mdle_runtime::{Nanos, Printable};
 
-use crate::failure::Failure;
+use crate::failure::{self, Failure};
 use crate::record::OVER;
 use crate::replayer::{RecordedRun, ReplayedTurn, Stop};
 use crate::run_time::run_time;
@@ -50,6 +50,8 @@ struct Turns<'r> {
     /// Why there are no more turns, once there are none.
     end: Option<String>,
     differs: bool,
+    /// Number of the plan that made the last turn; `None` before the first.
+    plan: Option<u64>,
 }
 
 /// Steps through a record by these commands, which a person types if `is_typed`; prints the turns on standard output.
@@ -63,12 +65,11 @@ pub(crate) fn step(
     is_typed: bool,
 ) -> Result<Steps, Failure> {
     let (mut lines, mut out) = (commands.lines(), io::stdout().lock());
-    let mut turns = Turns { replay, until, made: Vec::new(), place: 0, end: None, differs: false };
-    let unwritten = |error: io::Error| Failure::Usage(format!("standard output cannot be written: {error}"));
+    let mut turns = Turns { replay, until, made: Vec::new(), place: 0, end: None, differs: false, plan: None };
     let (mut answer, mut is_refused) = (turns.forward(1)?, false);
     loop {
         let prompt = if is_typed { "> " } else { "" };
-        write!(out, "{answer}{prompt}").and_then(|()| out.flush()).map_err(unwritten)?;
+        write!(out, "{answer}{prompt}").and_then(|()| out.flush()).map_err(|error| failure::unprinted(&error))?;
         let Some(Ok(line)) = lines.next() else { break };
         answer = match turns.command(line.trim()) {
             Ok(Some(text)) => text,
@@ -193,7 +194,10 @@ impl Turns<'_> {
         let end = match self.replay.turn() {
             Some(Ok(turn)) if self.until.is_none_or(|until| turn.recorded.t <= until) => {
                 self.differs |= !turn.parts.is_empty();
-                let (t, has_transition) = (turn.recorded.t, !turn.laws.is_empty() || !turn.recorded.steps.is_empty());
+                let plan = turn.recorded.plan;
+                let is_other = self.plan.replace(plan).is_some_and(|before| before != plan);
+                let has_transition = is_other || !turn.laws.is_empty() || !turn.recorded.steps.is_empty();
+                let t = turn.recorded.t;
                 self.made.push(MadeTurn { t, has_transition, text: text(&turn) });
                 return Ok(true);
             }

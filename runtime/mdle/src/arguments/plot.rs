@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use mdle_host::output_format;
 
 /// The arguments of `mdle plot`.
 #[derive(Debug, PartialEq, Eq)]
@@ -45,7 +46,13 @@ pub(crate) fn plot() -> Command {
              atom, and signals as curves below.",
         )
         .arg(path("log").value_name("LOG").required(true).help("Record that `--log FILE.mcap` has written; `-` reads standard input"))
-        .arg(path("file").value_name("FILE").required(true).help("SVG file to write, which must not exist"))
+        .arg(
+            Arg::new("file")
+                .value_parser(output_format("SVG", "svg"))
+                .value_name("FILE")
+                .required(true)
+                .help("SVG file to write, which must not exist"),
+        )
         .arg(Arg::new("over-time").long("over-time").action(ArgAction::SetTrue).help("Draw atoms and signals over time"))
         .arg(
             Arg::new("signal")

@@ -10,6 +10,7 @@ use mdle_runtime::Nanos;
 
 use super::{created, damaged, unwritten};
 use crate::failure::{self, Failure};
+use crate::messages::counted;
 use crate::replay;
 
 /// Writes the turns up to `until` as a record of its own.
@@ -34,7 +35,8 @@ pub(super) fn cut(log: &Path, until: Nanos, file: &Path) -> Result<ExitCode, Fai
         part.turn(&begin, turn, messages).map_err(|error| unwritten(&file.display(), &error))?;
     }
     let turns = part.end().map_err(|error| unwritten(&file.display(), &error))?;
-    writeln!(io::stdout().lock(), "{}: {turns} turns", file.display()).map_err(|error| failure::unprinted(&error))?;
+    writeln!(io::stdout().lock(), "{}: {}", file.display(), counted(turns, "turn"))
+        .map_err(|error| failure::unprinted(&error))?;
     Ok(ExitCode::SUCCESS)
 }
 

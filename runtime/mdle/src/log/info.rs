@@ -10,6 +10,7 @@ use mdle_runtime::{Printable, trace::Seconds};
 
 use super::damaged;
 use crate::failure::{self, Failure};
+use crate::messages::counted;
 use crate::replay;
 
 /// Prints what a record contains.
@@ -19,11 +20,13 @@ use crate::replay;
 pub(super) fn info(log: &Path) -> Result<ExitCode, Failure> {
     let (begin, mut records) = replay::record(log)?;
     let (mut turns, mut transitions, mut end, mut plans, mut error) = (0_u64, 0, Nanos::ZERO, 1, None);
+    let mut plan = None;
     for turn in &mut records {
         match turn {
             Ok(turn) => {
                 turns += 1;
-                transitions += turn.steps.len();
+                let is_other = plan.replace(turn.plan).is_some_and(|before| before != turn.plan);
+                transitions += turn.steps.len() + usize::from(is_other);
                 (end, plans) = (turn.t, turn.plan.max(plans));
             }
             Err(found) => error = Some(found),
@@ -42,7 +45,7 @@ pub(super) fn info(log: &Path) -> Result<ExitCode, Failure> {
         ("version", begin.version.clone()),
         ("command", begin.command.clone()),
         ("period", format!("{} s", Seconds(begin.period))),
-        ("length", format!("{turns} turns up to {}{is_whole}", Clocked(end))),
+        ("length", format!("{} up to {}{is_whole}", counted(turns, "turn"), Clocked(end))),
         ("transitions", transitions.to_string()),
         ("plans", plans.to_string()),
         ("depends on", beside.to_owned()),
