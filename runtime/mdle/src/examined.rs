@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use mdle_compiler::fsm::Machine;
 pub(crate) use mdle_compiler::load::{Moment, ScopeMoment};
+use mdle_engine::safety::{Guard, read};
 use mdle_host::{Texts, Transitions};
 use mdle_record::{Message, MessageKind, ReadError, RecordedTurn};
 use mdle_runtime::{Nanos, Printable, Twist};
@@ -26,8 +27,12 @@ pub(crate) struct ExaminedRun {
     run: Box<dyn RecordedRun>,
     /// `true` if inputs and the texts of transitions have to be those of the record, which does not have the plan.
     is_compared: bool,
-    /// The last event of the turns that were made.
-    event: String,
+    /// The safety rule that acts, and how; empty if none does.
+    safety: String,
+    /// The guards of the safety rules with their conditions.
+    guards: Vec<Guard>,
+    /// Name of the safety file.
+    safety_file: String,
     /// The plans that have driven, by their numbers.
     plans: BTreeMap<u64, Rc<ExaminedPlan>>,
     /// Number of the plan that drove in the last turn.
@@ -55,8 +60,10 @@ pub(crate) struct ExaminedTurn {
     pub(crate) asked: Twist,
     /// The reason for which the plan replaced another one; empty for the first plan.
     pub(crate) reason: String,
-    /// The event that the record has last up to this turn, as JSON; empty before the first.
-    pub(crate) event: String,
+    /// The safety rule that acts in the turn, and how; empty if none does.
+    pub(crate) safety: String,
+    /// The cause of the end of the record, if it ends here.
+    pub(crate) end: Option<String>,
     /// Time of the next turn; `None` at the end of the record.
     pub(crate) next: Option<Nanos>,
 }
@@ -84,7 +91,10 @@ impl ExaminedRun {
         let (machine, sources) = replay::plan(wanted, &target)?;
         let run = (linked.replay)(machine, &sources, &target, begin, record, true)?;
         let is_compared = begin.files.is_empty();
-        Ok(Self { run, is_compared, event: String::new(), plans: BTreeMap::new(), number: 0 })
+        let rules = begin.safety.as_ref().and_then(|texts| Some((texts.name.clone(), read(&texts.text).ok()?.guards)));
+        let (safety_file, guards) = rules.unwrap_or_default();
+        let plans = BTreeMap::new();
+        Ok(Self { run, is_compared, safety: String::new(), guards, safety_file, plans, number: 0 })
     }
 
     /// Makes the next turn; returns `None` at the end of the record.
@@ -94,8 +104,8 @@ impl ExaminedRun {
             Err(replayer::Stop::Unread(error)) => return Some(Err(Stop::Unread(error))),
             Err(replayer::Stop::Failed(failure)) => return Some(Err(Stop::Failed(failure))),
         };
-        if let Some(event) = turn.messages.iter().rfind(|message| is_standing(message)) {
-            self.event.clone_from(&event.json);
+        if let Some(safety) = event(&turn.messages, "safety") {
+            self.safety = self.with_condition(safety);
         }
         self.number = turn.recorded.plan;
         let looked_at = self.run.looked_at();
@@ -110,9 +120,31 @@ impl ExaminedRun {
             return Some(Err(Stop::Differs(turn.recorded.number, difference)));
         }
         let moments = looked_at.map_or(&[][..], |(_, moments)| moments).to_vec();
-        let (event, next) = (self.event.clone(), self.run.next_time());
-        let ReplayedTurn { recorded, transitions, asked, reason, .. } = turn;
-        Some(Ok(ExaminedTurn { recorded, transitions, moments, asked, reason, event, next }))
+        let (safety, next) = (self.safety.clone(), self.run.next_time());
+        let ReplayedTurn { recorded, messages, transitions, asked, reason, .. } = turn;
+        let reason = if reason.is_empty() { self.diversion(&messages) } else { reason };
+        let end = event(&messages, "end");
+        Some(Ok(ExaminedTurn { recorded, transitions, moments, asked, reason, safety, end, next }))
+    }
+
+    /// Returns the text with the condition of the guard that it ends with, if it ends with one.
+    fn with_condition(&self, text: String) -> String {
+        let rule = text.rsplit(": ").next().unwrap_or_default();
+        match self.guards.iter().find(|guard| guard.name == rule) {
+            Some(Guard { when, .. }) => format!("{text} ({}:{}, \"{}\")", self.safety_file, when.line, when.text),
+            None => text,
+        }
+    }
+
+    /// Returns the safety rule for which a plan took over in a turn with these messages; empty if none did.
+    fn diversion(&self, messages: &[Message]) -> String {
+        let taken = event(messages, "plan").and_then(|text| text.split_once(": ").map(|(_, why)| why.to_owned()));
+        taken.map_or_else(String::new, |why| self.with_condition(why))
+    }
+
+    /// Returns the plan of this number, if it has driven.
+    pub(crate) fn plan_of(&self, number: u64) -> Option<&Rc<ExaminedPlan>> {
+        self.plans.get(&number)
     }
 
     /// Returns the plan that drove in the last turn; `None` before it begins.
@@ -141,10 +173,12 @@ impl ExaminedRun {
     }
 }
 
-/// Returns `true` for an event that holds until the next: not for a request, or for a plan that took over.
-fn is_standing(message: &Message) -> bool {
-    let is_moment = || ["request", "plan"].iter().any(|kind| message.json.contains(&format!("\"kind\":\"{kind}\"")));
-    message.kind == MessageKind::Event && !is_moment()
+/// Returns the text of the last event of this kind among the messages of a turn.
+fn event(messages: &[Message], kind: &str) -> Option<String> {
+    let events = messages.iter().rev().filter(|message| message.kind == MessageKind::Event);
+    let mut events = events.filter_map(|message| serde_json::from_str::<serde_json::Value>(&message.json).ok());
+    let event = events.find(|event| event.get("kind").and_then(serde_json::Value::as_str) == Some(kind))?;
+    event.get("text")?.as_str().map(str::to_owned)
 }
 
 /// Returns how the texts of transitions differ from those of the record.

@@ -54,6 +54,60 @@ fn answers_go_on_where_plans_replace_each_other() {
 }
 
 #[test]
+fn safety_rules_are_named_with_their_conditions() {
+    let folder = folder("why-guards");
+    let files = [
+        ("ahead.mdle", "{ Ahead (wait 60s) (Atom (null) (go 60 0)) }\n"),
+        ("back.mdle", "{ Back (wait 2s) (Atom (null) (go -20 0)) }\n"),
+        ("ends.toml", "[guards.near]\nwhen = \"r0 < 60cm AND NOT bumper\"\nthen = \"end\"\n"),
+        ("diverts.toml", "[guards.near]\nwhen = \"r0 < 60cm AND NOT bumper\"\nthen = \"back.mdle\"\n"),
+    ];
+    files.iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());
+    for rules in ["ends", "diverts"] {
+        let run =
+            format!("run ahead.mdle --target sim --world hall --speed max --safety {rules}.toml --log {rules}.mcap");
+        assert!(all(&folder, &[&run]).ends_with("[6]\n"));
+    }
+    let answers = all(&folder, &["why ends.mcap 26.6", "why diverts.mcap 26.6", "why diverts.mcap 26.7"]);
+    let condition = "near (ends.toml:2, \"r0 < 60cm AND NOT bumper\")";
+    assert!(answers.contains(&format!("and 0 m/s, 0 rad/s was sent  <- safety ended: {condition}")), "{answers}");
+    let diverted = "go -20 0 (back.mdle:1) ran from this turn on  <- safety: near (diverts.toml:2, ";
+    assert!(answers.contains(diverted), "{answers}");
+    let replaced =
+        "go 60 0 (ahead.mdle:1) ran for 26.7 s until another plan took over  <- safety: near (diverts.toml:2, ";
+    assert!(answers.contains(replaced), "{answers}");
+    let json = all(&folder, &["why --json ends.mcap 26.6", "why --json diverts.mcap 26.7"]);
+    assert!(json.contains("\"safety\":\"ended: near (ends.toml:2, "), "{json}");
+    assert!(json.contains("\"began\":\"safety: near (diverts.toml:2, ") && json.contains("\"replaced\":{"), "{json}");
+}
+
+#[test]
+fn a_plan_that_goes_on_ran_since_it_was_entered() {
+    let folder = recorded("goes-on", "shell out.mdle --paused -c commands");
+    let answer = all(&folder, &["why run.mcap 6.5"]);
+    assert!(answer.contains(" but for 2.0 s in which another plan drove  <- rolled back"), "{answer}");
+    assert!(answer.contains("(back.mdle:3) ran for") && answer.contains("until another plan took over"), "{answer}");
+}
+
+#[test]
+fn a_plan_that_takes_over_is_a_transition() {
+    let folder = recorded("take-over", "shell out.mdle --paused -c commands");
+    fs::write(folder.join("steps"), "next\nnext\nnext\nnext\nnext\n").unwrap();
+    let steps = all(&folder, &["replay --step run.mcap -c steps"]);
+    let turns: Vec<_> = steps.lines().filter(|line| line.starts_with("turn ")).collect();
+    assert!(turns.iter().any(|turn| turn.starts_with("turn 45 at 4.5 s")), "{steps}");
+    assert!(turns.iter().any(|turn| turn.starts_with("turn 65 at 6.5 s")), "{steps}");
+    let table = all(&folder, &["log export --csv run.mcap"]);
+    let rows = table.lines().skip(2).filter(|line| line.contains(',')).collect::<Vec<_>>();
+    let plan = |row: &str| row.split(',').nth(2).unwrap().to_owned();
+    let others = rows.windows(2).filter(|pair| plan(pair[0]) != plan(pair[1])).count();
+    assert_eq!(others, 2, "{table}");
+    let info = all(&folder, &["log info run.mcap"]);
+    let causes = rows.iter().filter(|row| row.contains("<") || row.contains("wait")).count();
+    assert!(info.contains(&format!("transitions  {}\n", others + causes)), "{info}{table}");
+}
+
+#[test]
 fn pictures_have_the_atoms_of_all_plans() {
     let folder = recorded("several-drawn", "shell out.mdle --paused -c commands");
     let drawn = all(&folder, &["plot run.mcap path.svg", "plot run.mcap time.svg --over-time"]);

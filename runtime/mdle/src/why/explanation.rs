@@ -41,14 +41,27 @@ pub(crate) struct Ended {
 pub(crate) struct Runs {
     /// The atom.
     pub(crate) atom: AtomWords,
-    /// Time since it was entered.
+    /// Time since it was entered, without the time in which other plans drove.
     pub(crate) since: Nanos,
+    /// Time for which other plans drove since it was entered.
+    pub(crate) paused: Nanos,
     /// Cause of the transition to it; empty for the first atom of the plan.
     pub(crate) began: String,
     /// `true` if its law completes.
     pub(crate) completes: bool,
     /// The scopes around it, the plan first.
     pub(crate) scopes: Vec<Scope>,
+}
+
+/// The atom that ran when another plan took over.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Replaced {
+    /// The atom.
+    pub(crate) atom: AtomWords,
+    /// Time for which it had run.
+    pub(crate) since: Nanos,
+    /// Reason for which the other plan took over.
+    pub(crate) cause: String,
 }
 
 /// The explanation of a turn.
@@ -58,6 +71,8 @@ pub(crate) struct Explanation {
     pub(crate) turn: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,
+    /// The atom of the plan that was replaced in this turn.
+    pub(crate) replaced: Option<Replaced>,
     /// The transitions of the turn.
     pub(crate) ended: Vec<Ended>,
     /// The atom whose law was applied; `None` if the plan is over.
@@ -85,6 +100,8 @@ pub(crate) struct Explainer {
     courses: BTreeMap<u64, Course>,
     /// Number of the plan that drives; `None` before the first turn.
     number: Option<u64>,
+    /// Number of the plan that was replaced in the last turn.
+    replaced: Option<u64>,
 }
 
 /// The course of a plan so far.
@@ -94,6 +111,20 @@ struct Course {
     passes: Passes,
     /// Cause of the transition to its atom, or reason for which the plan replaced another one.
     began: String,
+    /// The atom that ran last.
+    latest: Option<Latest>,
+    /// Time for which other plans drove since that atom was entered.
+    paused: Nanos,
+}
+
+/// An atom that ran in a turn.
+#[derive(Debug, Clone, Copy)]
+struct Latest {
+    atom: u32,
+    /// Time for which it had run.
+    since: Nanos,
+    /// Time of the turn.
+    t: Nanos,
 }
 
 impl Explainer {
@@ -101,13 +132,46 @@ impl Explainer {
     pub(crate) fn begin(&mut self, turn: &ExaminedTurn) -> bool {
         let before = self.number.replace(turn.recorded.plan);
         let is_other = before.is_some_and(|before| before != turn.recorded.plan);
+        self.replaced = before.filter(|_| is_other);
         if is_other {
-            let safety =
-                || super::event(&turn.event, "safety").map_or_else(String::new, |rule| format!("safety {rule}"));
-            let began = if turn.reason.is_empty() { safety() } else { turn.reason.clone() };
-            self.course().began = began;
+            self.course().began.clone_from(&turn.reason);
         }
+        self.note(turn, is_other);
         is_other
+    }
+
+    /// Returns the number of the plan that was replaced in the last turn.
+    pub(crate) fn replaced(&self) -> Option<u64> {
+        self.replaced
+    }
+
+    /// Notes the atom in which a turn ended, and the time for which its plan did not drive before.
+    fn note(&mut self, turn: &ExaminedTurn, is_other: bool) {
+        let t = turn.recorded.t;
+        let Some(moment) = turn.moments.last().filter(|last| last.cause.is_none()) else { return };
+        let Some(since) = moment.scopes.last().map(|own| own.since) else { return };
+        let course = self.course();
+        match course.latest {
+            Some(latest) if latest.atom == moment.atom && since >= latest.since => {
+                if is_other {
+                    course.paused.0 += t.since(latest.t).0.saturating_sub(since.since(latest.since).0);
+                }
+            }
+            Some(_) | None => course.paused = Nanos::ZERO,
+        }
+        course.latest = Some(Latest { atom: moment.atom, since, t });
+    }
+
+    /// Returns the atom of the plan that was replaced in this turn.
+    fn replaced_atom(&mut self, turn: &ExaminedTurn, plan: &ExaminedPlan) -> Option<Replaced> {
+        let cause = self.began();
+        let now = self.number;
+        self.number = self.replaced;
+        let latest = self.course().latest;
+        let atom = latest.map(|latest| self.atom(&*plan.texts, latest.atom));
+        self.number = now;
+        let latest = latest?;
+        Some(Replaced { atom: atom?, since: Nanos(latest.since.0 + turn.recorded.t.since(latest.t).0), cause })
     }
 
     /// Goes back to the course of the plan of this number.
@@ -174,9 +238,11 @@ impl Explainer {
         &mut self,
         turn: &ExaminedTurn,
         plan: Option<&ExaminedPlan>,
+        replaced: Option<&ExaminedPlan>,
         with_laws: bool,
     ) -> Explanation {
         let cut = cut(turn, plan);
+        let replaced = replaced.and_then(|replaced| self.replaced_atom(turn, replaced));
         let (mut ended, mut runs) = (Vec::new(), None);
         // The moments of a turn that came too late are not those of its record.
         if let Some(plan) = plan.filter(|_| cut != Some(LATE)) {
@@ -189,6 +255,7 @@ impl Explainer {
                 runs = Some(Runs {
                     atom: self.atom(texts, moment.atom),
                     since: moment.scopes.last().map_or(Nanos::ZERO, |own| own.since),
+                    paused: self.course().paused,
                     began: self.began(),
                     completes: plan.machine.atom(moment.atom).law().completes,
                     scopes: scopes(plan, moment, &Self::facts(turn, moment)),
@@ -200,7 +267,7 @@ impl Explainer {
         let recorded = &turn.recorded;
         let output_age = recorded.t.since(recorded.y.at);
         let (turn, t, sent) = (recorded.number, recorded.t, recorded.sent);
-        Explanation { turn, t, ended, runs, cut, output_age, sent, computed }
+        Explanation { turn, t, replaced, ended, runs, cut, output_age, sent, computed }
     }
 
     /// Explains a transition.

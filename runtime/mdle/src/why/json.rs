@@ -3,7 +3,7 @@
 use mdle_runtime::{Measured, Nanos, Twist};
 use serde_json::{Value, json};
 
-use super::explanation::{AtomWords, Ended, Explanation, Runs};
+use super::explanation::{AtomWords, Ended, Explanation, Replaced, Runs};
 use super::never::{Beginnings, Chance, Never, Skips, Stay, Turned};
 use super::operands::Operand;
 use super::scopes::{Part, Scope};
@@ -12,11 +12,14 @@ use super::{Answer, Next};
 /// Returns an answer as a JSON object.
 pub(super) fn object(answer: &Answer) -> Value {
     let Answer { explanation, asked, next, safety } = answer;
-    let Explanation { turn, t, ended, runs, cut, output_age, sent, computed } = explanation;
+    let Explanation { turn, t, replaced, ended, runs, cut, output_age, sent, computed } = explanation;
     json!({
         "asked": asked.seconds(),
         "turn": turn,
         "t": t.seconds(),
+        "replaced": replaced.as_ref().map(|Replaced { atom, since, cause }| {
+            json!({ "atom": words(atom), "for": since.seconds(), "cause": cause })
+        }),
         "ended": ended.iter().map(end).collect::<Vec<_>>(),
         "runs": runs.as_ref().map(|runs| run(runs, *t)),
         "cut": cut.is_some(),
@@ -41,10 +44,11 @@ fn end(ended: &Ended) -> Value {
 }
 
 fn run(runs: &Runs, t: Nanos) -> Value {
-    let Runs { atom, since, began, completes, scopes } = runs;
+    let Runs { atom, since, paused, began, completes, scopes } = runs;
     json!({
         "atom": words(atom),
-        "since": t.since(*since).seconds(),
+        "since": t.since(*since).since(*paused).seconds(),
+        "paused": paused.seconds(),
         "began": began,
         "completes": completes,
         "scopes": scopes.iter().map(scope).collect::<Vec<_>>(),

@@ -114,8 +114,9 @@ fn at(asked: &Asked<'_>, time: &str, run: &mut ExaminedRun) -> Result<Result<Ans
         }
         last = Some((turn.recorded.number, t));
     };
-    let explanation = explainer.explained(&found, run.plan().map(|plan| &**plan), asked.with_laws);
-    let safety = event(&found.event, "safety").filter(|text| !text.is_empty());
+    let replaced = explainer.replaced().and_then(|number| run.plan_of(number)).map(|plan| &**plan);
+    let explanation = explainer.explained(&found, run.plan().map(|plan| &**plan), replaced, asked.with_laws);
+    let safety = Some(found.safety.clone()).filter(|text| !text.is_empty());
     let next = match next(&mut explainer, found, run) {
         Ok(next) => next,
         Err(stop) => return Ok(Err(stop)),
@@ -144,7 +145,7 @@ fn differing(run: &mut ExaminedRun) -> Option<Stop> {
 /// # Errors
 /// The plan is another one.
 fn next(explainer: &mut Explainer, found: ExaminedTurn, run: &mut ExaminedRun) -> Result<Next, Stop> {
-    let (mut t, mut last) = (found.recorded.t, found.event);
+    let (mut t, mut end) = (found.recorded.t, found.end);
     let mut had_plan = run.plan().is_some();
     loop {
         match run.turn() {
@@ -153,7 +154,7 @@ fn next(explainer: &mut Explainer, found: ExaminedTurn, run: &mut ExaminedRun) -
                 let begins = !std::mem::replace(&mut had_plan, run.plan().is_some()) && had_plan;
                 let plan = run.plan().filter(|_| is_other || begins || !turn.transitions.is_empty());
                 let Some(plan) = plan else {
-                    (t, last) = (turn.recorded.t, turn.event);
+                    (t, end) = (turn.recorded.t, turn.end);
                     continue;
                 };
                 let mut steps = Vec::new();
@@ -168,17 +169,11 @@ fn next(explainer: &mut Explainer, found: ExaminedTurn, run: &mut ExaminedRun) -
             Some(Err(stop @ (Stop::Differs(..) | Stop::Failed(_)))) => return Err(stop),
             Some(Err(stop @ Stop::Unread(_))) => return Ok(Next::End { t, why: format!(": {}", stop.sentence()) }),
             None => {
-                let why = event(&last, "end").map_or_else(String::new, |why| format!(": {why}"));
+                let why = end.map_or_else(String::new, |why| format!(": {why}"));
                 return Ok(Next::End { t, why });
             }
         }
     }
-}
-
-/// Returns the text of an event if it is of this kind.
-fn event(json: &str, kind: &str) -> Option<String> {
-    let event: serde_json::Value = serde_json::from_str(json).ok()?;
-    (event.get("kind")?.as_str()? == kind).then(|| event.get("text")?.as_str().map(str::to_owned))?
 }
 
 /// The message about a time after the end of the record.

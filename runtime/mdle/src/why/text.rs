@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use mdle_host::{Clocked, rounded};
 use mdle_runtime::{Nanos, Twist};
 
-use super::explanation::{AtomWords, Ended, Explanation, Runs};
+use super::explanation::{AtomWords, Ended, Explanation, Replaced, Runs};
 use super::operands::Operand;
 use super::scopes::{Part, Scope};
 use super::{Answer, Next};
@@ -13,7 +13,7 @@ use super::{Answer, Next};
 /// Returns the text of an answer.
 pub(super) fn text(answer: &Answer) -> String {
     let Answer { explanation, asked, next, safety } = answer;
-    let Explanation { turn, t, ended, runs, cut, output_age, .. } = explanation;
+    let Explanation { turn, t, replaced, ended, runs, cut, output_age, .. } = explanation;
     let mut text = format!("turn {turn} at {}", Clocked(*t));
     if asked != t {
         let _ = write!(text, ", the last one before {}", Clocked(*asked));
@@ -21,6 +21,10 @@ pub(super) fn text(answer: &Answer) -> String {
     text += "\n";
     if *output_age > Nanos::ZERO {
         let _ = writeln!(text, "the robot's output was {} old", Clocked(*output_age));
+    }
+    if let Some(Replaced { atom, since, cause }) = replaced {
+        let _ =
+            writeln!(text, "\n{} ran for {} until another plan took over  <- {cause}", named(atom), Clocked(*since));
     }
     ended.iter().for_each(|ended| end(&mut text, ended));
     match runs {
@@ -54,14 +58,18 @@ fn end(text: &mut String, ended: &Ended) {
 
 /// Writes the atom that ran and the conditions around it.
 fn run(text: &mut String, runs: &Runs, t: Nanos) {
-    let Runs { atom, since, began, completes, scopes } = runs;
+    let Runs { atom, since, paused, began, completes, scopes } = runs;
     let _ = write!(text, "\n{} ran", named(atom));
     let began = if began.is_empty() { "the start of the plan" } else { began };
-    let entered = Clocked(t.since(*since));
+    let entered = Clocked(t.since(*since).since(*paused));
     let _ = if *since == Nanos::ZERO {
         writeln!(text, " from this turn on  <- {began}")
     } else {
-        writeln!(text, " for {}, since {entered}  <- {began}", Clocked(*since))
+        let but = match *paused {
+            Nanos::ZERO => String::new(),
+            paused => format!(" but for {} in which another plan drove", Clocked(paused)),
+        };
+        writeln!(text, " for {}, since {entered}{but}  <- {began}", Clocked(*since))
     };
     scopes.iter().for_each(|around| scope(text, around));
     let _ = writeln!(text, "    law {}: {}", atom.law, if *completes { "not done yet" } else { "never done" });
