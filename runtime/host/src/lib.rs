@@ -38,6 +38,7 @@ mod pilot;
 mod position;
 mod program;
 mod progress;
+mod ready;
 mod record;
 mod refusal;
 mod replays;

@@ -1,0 +1,147 @@
+//! What a run needs before its first turn: the robot and the files, opened in an order in which a refused start changes
+//! no file.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use clap::ArgMatches;
+use mdle_record::Begin;
+use mdle_runtime::PathStore;
+
+use crate::arguments::Options;
+use crate::drive::Drive;
+use crate::executable::Executable;
+use crate::log::UnchangedFile;
+use crate::paths::{self, Recorder};
+use crate::record::Record;
+use crate::run_log::{Format, RunLog, is_record};
+use crate::safety::{Panicked, shielded};
+use crate::signals::Signals;
+use crate::target_options::TargetOptions;
+use crate::views::{self, ByOdometry};
+use crate::{NamedFile, Pace, Refusal, Time, named_file};
+
+/// Parts that a run needs before its first turn.
+pub(crate) struct Ready<'p> {
+    /// The open robot with the plan.
+    pub(crate) drive: Box<dyn Drive + 'p>,
+    /// Time of the turns.
+    pub(crate) time: Time,
+    /// A log that cannot begin is no refusal: the robot is there already, and has to be stopped.
+    pub(crate) log: io::Result<Option<RunLog>>,
+    /// The path that is recorded.
+    pub(crate) path: io::Result<Option<Recorder>>,
+    /// The views by odometry.
+    pub(crate) views: Option<ByOdometry>,
+}
+
+/// Opens the robot and the files of a run. A refused start leaves the files unchanged.
+pub(crate) fn ready<'p>(
+    executable: &'p dyn Executable,
+    matches: &ArgMatches,
+    options: &Options,
+    store: PathStore,
+    plan: KnownFiles<'_>,
+    signals: &Signals,
+    begin: Begin,
+) -> Result<Ready<'p>, Refusal> {
+    let target = executable.target();
+    let opened = shielded(|| {
+        let time = (target.time)(matches).map_err(Refusal::Usage)?;
+        named_file::check(named_files(&target, matches, options, plan))?;
+        check_record(&target, options)?;
+        let log = untouched("run log", options.log.as_deref())?;
+        let path = untouched("path", options.path.as_deref())?;
+        let views = views::by_odometry(&target, matches, signals.patience())?;
+        if options.path.is_some() {
+            paths::check_period(options.period)?;
+        }
+        // From here on a signal must not end the program before the robot was stopped.
+        signals.robot_runs(time);
+        let drive = executable.connect(matches, options.period, &signals.stop_request(), store)?;
+        let log = log.map(|file| begun(file, options, begin, is_watched(time), signals)).transpose();
+        let path = path.map(|file| file.emptied(signals.patience()).map(Recorder::new)).transpose();
+        Ok(Ready { drive, time, log, path, views })
+    });
+    opened.unwrap_or_else(bug_before)
+}
+
+/// The files of a plan.
+#[derive(Clone, Copy)]
+pub(crate) struct KnownFiles<'a> {
+    /// Files that the program has read for it.
+    pub(crate) read: &'a [PathBuf],
+    /// Names of the paths that it replays.
+    pub(crate) paths: &'a [&'static str],
+}
+
+/// The files that the options of a run name.
+fn named_files(
+    target: &TargetOptions,
+    matches: &ArgMatches,
+    options: &Options,
+    plan: KnownFiles<'_>,
+) -> Vec<NamedFile> {
+    let written = [("--log", &options.log), ("--record-path", &options.path)];
+    let written = written
+        .into_iter()
+        .filter_map(|(option, path)| path.clone().map(|path| NamedFile { option, path, is_written: true }));
+    let read = paths::files(matches, plan.paths).chain(plan.read.iter().cloned()).map(|path| NamedFile {
+        option: "the plan",
+        path,
+        is_written: false,
+    });
+    written.chain(views::files(matches)).chain(read).chain((target.files)(matches)).collect()
+}
+
+/// Refuses a log without the name of a file, and a record of a robot whose outputs or inputs a record cannot hold.
+fn check_record(target: &TargetOptions, options: &Options) -> Result<(), Refusal> {
+    if options.log.as_deref() == Some(Path::new("-")) {
+        let sentence = "--log -: expected the name of a file; `--log /dev/stdout` writes JSON lines to standard output";
+        return Err(Refusal::Usage(sentence.to_owned()));
+    }
+    let Some(path) = options.log.as_deref().filter(|path| !target.records && is_record(path)) else { return Ok(()) };
+    let (path, lines) = (path.display(), path.with_extension("jsonl"));
+    Err(Refusal::Usage(format!(
+        "--log {path}: the robot {} has outputs or inputs of a type of its own, which a record does not have; `--log {}` \
+         writes a log of JSON lines",
+        target.name,
+        lines.display()
+    )))
+}
+
+/// Begins the log, in the format of its name.
+fn begun(
+    file: UnchangedFile<'_>,
+    options: &Options,
+    begin: Begin,
+    prompt: bool,
+    signals: &Signals,
+) -> io::Result<RunLog> {
+    let format = if options.log.as_deref().is_some_and(is_record) {
+        Format::Record(Box::new(Record::new(file.recorded(signals.patience())?, begin, prompt)))
+    } else {
+        Format::Lines(file.begin(prompt, signals.patience())?)
+    };
+    Ok(RunLog::new(format, options.log_best_effort))
+}
+
+/// A file that the run is to write, open and as it was, if it was asked for.
+fn untouched<'p>(what: &str, path: Option<&'p Path>) -> Result<Option<UnchangedFile<'p>>, Refusal> {
+    let refused =
+        |path: &Path, error| Refusal::Usage(format!("the {what} {} cannot be written: {error}", path.display()));
+    path.map(|path| UnchangedFile::open(path).map_err(|error| refused(path, error))).transpose()
+}
+
+/// A panic before anything ran.
+pub(crate) fn bug_before<T>(Panicked(message): Panicked) -> Result<T, Refusal> {
+    Err(Refusal::Fault(format!("the robot's code panicked before it ran, which is a bug: {message}")))
+}
+
+/// Returns `true` if a person may be watching; at the fastest pace it matters more that writing is cheap.
+pub(crate) fn is_watched(time: Time) -> bool {
+    match time {
+        Time::Wall | Time::Stepped(Pace::Times(_)) => true,
+        Time::Stepped(Pace::Max) => false,
+    }
+}
