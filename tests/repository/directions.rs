@@ -30,6 +30,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
         ],
     ),
     ("runtime/serial", &["mdle-runtime", "mdle-host"]),
+    ("runtime/sound", &[]),
     ("runtime/template", &["mdle", "mdle-runtime"]),
     ("atoms", &["mdle-runtime"]),
     ("atoms/conformance", &["mdle-runtime"]),
@@ -112,6 +113,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
 const PURE: &[&str] = &[
     "runtime/core",
     "runtime/quantity",
+    "runtime/sound",
     "atoms",
     "atoms/conformance",
     "mdlec/compiler",

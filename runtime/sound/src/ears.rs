@@ -1,0 +1,127 @@
+//! The signals of two ears in a room, from where the robot is, one stretch after the other.
+
+use microfft::Complex32;
+use microfft::complex::cfft_16384;
+
+use crate::head::{Head, LATE, TAPS};
+use crate::room::Room;
+use crate::source::{Chance, Signal, Source};
+use crate::{RATE, SPEED, WINDOW};
+
+/// Length of the transform by which sources and responses are convolved.
+const LENGTH: usize = 16_384;
+/// Longest response of a room, in samples.
+const LONGEST: usize = LENGTH - WINDOW;
+/// Purposes of random numbers: that of the microphones, and the first of the sources.
+const MICROPHONES: u64 = 0;
+const SOURCES: u64 = 1;
+
+/// Place and heading of a head: the ears are at its left and right.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EarPose {
+    /// Place on the floor, in metres.
+    pub at: (f64, f64),
+    /// Heading, in radians.
+    pub heading: f64,
+}
+
+/// Two ears in a room with sources.
+#[derive(Debug, Clone)]
+pub struct Ears {
+    head: Head,
+    room: Room,
+    sources: Vec<(Source, Signal)>,
+    chance: Chance,
+    /// Loudness of the microphones' own noise.
+    noise: f64,
+    /// Sound that has left its source and is still under way: the left ear as the real part, the right as the
+    /// imaginary one.
+    under_way: Vec<Complex32>,
+}
+
+impl Ears {
+    /// Returns ears that have heard nothing yet. Noise and sources are drawn by `seed`.
+    #[must_use]
+    pub fn new(head: Head, room: Room, sources: &[Source], seed: u64) -> Self {
+        let signal = |(purpose, source): (u64, &Source)| (*source, Signal::new(source.kind, seed, purpose));
+        let sources = (SOURCES..).zip(sources).map(signal).collect();
+        let under_way = vec![Complex32::default(); LENGTH];
+        Self { head, room, sources, chance: Chance::new(seed, MICROPHONES), noise: 1.0, under_way }
+    }
+
+    /// Sets the loudness of the microphones' own noise, 1 by default, by which levels of sources count.
+    #[must_use]
+    pub fn with_noise(self, noise: f64) -> Self {
+        Self { noise, ..self }
+    }
+
+    /// Appends the next `count` samples of the left and the right ear, which are here meanwhile.
+    pub fn hear(&mut self, here: &EarPose, count: usize, samples: &mut Vec<[f32; 2]>) {
+        let mut left = count;
+        while left > 0 {
+            let stretch = left.min(WINDOW);
+            for number in 0..self.sources.len() {
+                self.emit(number, here, stretch);
+            }
+            let noise = &mut self.chance;
+            let loudness = self.noise;
+            samples.extend(
+                self.under_way
+                    .iter()
+                    .take(stretch)
+                    .map(|heard| [heard.re, heard.im].map(|ear| ear + (loudness * noise.noise()) as f32)),
+            );
+            self.under_way.drain(..stretch);
+            self.under_way.resize(LENGTH, Complex32::default());
+            left -= stretch;
+        }
+    }
+
+    /// Sends a stretch of the sound of a source on its way.
+    fn emit(&mut self, number: usize, here: &EarPose, stretch: usize) {
+        let Some((source, signal)) = self.sources.get_mut(number) else { return };
+        // At 2 m half of the pressure at 1 m.
+        let loudness = 2.0 * libm::pow(10.0, source.level / 20.0);
+        let mut emitted = vec![Complex32::default(); LENGTH];
+        for value in emitted.iter_mut().take(stretch) {
+            value.re = (loudness * signal.sample()) as f32;
+        }
+        let at = source.at;
+        let mut response = self.response(at, here);
+        transform(&mut emitted);
+        transform(&mut response);
+        let product = emitted.iter().zip(&response).map(|(emitted, response)| emitted * response);
+        // The inverse transform, by the transform of the conjugate.
+        let mut heard: Vec<_> = product.map(|bin| bin.conj()).collect();
+        transform(&mut heard);
+        for (under_way, heard) in self.under_way.iter_mut().zip(&heard) {
+            *under_way += heard.conj() / LENGTH as f32;
+        }
+    }
+
+    /// Returns the response of both ears to a source.
+    fn response(&self, source: (f64, f64), here: &EarPose) -> Vec<Complex32> {
+        let mut response = vec![Complex32::default(); LENGTH];
+        let (sin, cos) = libm::sincos(here.heading);
+        self.room.images(source, here.at, |image| {
+            // Both ears hear an image at the delay of the centre: what rounding does to it, it does to both.
+            let late = libm::round(image.distance / SPEED * f64::from(RATE)) as usize;
+            let Some(first) = late.checked_sub(LATE.min(late)).filter(|first| first + TAPS <= LONGEST) else { return };
+            let [x, y, _] = image.from;
+            let cosine = (y * cos - x * sin) / image.distance;
+            let pressure = image.pressure as f32;
+            let ears = self.head.response(cosine).iter().zip(self.head.response(-cosine));
+            for (sum, (left, right)) in response.iter_mut().skip(first).zip(ears) {
+                *sum += Complex32::new(pressure * left, pressure * right);
+            }
+        });
+        response
+    }
+}
+
+/// Transforms in place.
+fn transform(values: &mut [Complex32]) {
+    if let Ok(values) = values.try_into() {
+        let _: &mut [Complex32; LENGTH] = cfft_16384(values);
+    }
+}

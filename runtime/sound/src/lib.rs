@@ -1,0 +1,24 @@
+//! Sound for robots with two microphones on a hard spherical head (paper, section III-G): what they hear in a room.
+//!
+//! Nothing here does I/O or depends on the machine: no wall clock, no platform trigonometry, no instructions chosen at
+//! run time. The same calls return the same bits everywhere.
+#![forbid(unsafe_code)]
+
+mod ears;
+mod head;
+mod room;
+mod source;
+
+pub use ears::{EarPose, Ears};
+pub use head::Head;
+pub use room::Room;
+pub use source::{Kind, Source};
+
+/// Samples of each ear in a second.
+pub const RATE: u32 = 44_100;
+/// Samples of each ear from which a bearing is estimated: a turn of 100 ms.
+pub const WINDOW: usize = 4_410;
+/// Speed of sound, in m/s.
+pub const SPEED: f64 = 343.0;
+/// Radius of the head unless another is given, in metres.
+pub const RADIUS: f64 = 0.0875;
