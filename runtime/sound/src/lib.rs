@@ -1,16 +1,25 @@
-//! Sound for robots with two microphones on a hard spherical head (paper, section III-G): what they hear in a room.
+//! Sound for robots with two microphones on a hard spherical head (paper, section III-G): what they hear in a room, and
+//! the bearing of a source by the delay between them (paper, equation 7).
 //!
 //! Nothing here does I/O or depends on the machine: no wall clock, no platform trigonometry, no instructions chosen at
 //! run time. The same calls return the same bits everywhere.
 #![forbid(unsafe_code)]
 
 mod ears;
+mod estimator;
+mod gate;
 mod head;
+mod histogram;
+mod localizer;
 mod room;
 mod source;
 
 pub use ears::{EarPose, Ears};
+pub use estimator::{Estimate, Estimator};
+pub use gate::Gate;
 pub use head::Head;
+pub use histogram::Histogram;
+pub use localizer::Localizer;
 pub use room::Room;
 pub use source::{Kind, Source};
 

@@ -1,0 +1,195 @@
+//! The angle of a source off straight ahead, from the delay between two ears (paper, equation 7).
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use microfft::Complex32;
+use microfft::real::rfft_8192;
+use num_complex::Complex64;
+
+use crate::{RATE, SPEED, WINDOW};
+
+/// Length of the transform.
+const LENGTH: usize = 8192;
+/// Bins that count: from 500 to 4000 Hz.
+const BAND: std::ops::RangeInclusive<usize> = 93..=743;
+/// Steps of the correlation in a sample.
+const FINE: usize = 4;
+/// Exponent of the whitening: 0 is plain correlation, 1 the phase transform.
+const WHITENING: f64 = 0.7;
+/// Ratio of the radius of equation 7 to that of the head: the equation is a law of high frequencies.
+const WIDER: f64 = 1.05;
+/// Part of the greatest delay of a head up to which delays are tried.
+const MARGIN: f64 = 1.08;
+
+/// The estimator of a head.
+#[derive(Debug, Clone)]
+pub struct Estimator {
+    /// Hann window.
+    window: Vec<f32>,
+    /// Complex numbers of length 1, a full turn in `LENGTH * FINE` steps.
+    turns: Vec<Complex64>,
+    /// Number of fine steps of the greatest delay that is tried.
+    most: usize,
+    /// Angle of a delay of one fine step by equation 7 without its sine, in radians.
+    unit: f64,
+}
+
+/// An estimate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// Angle off straight ahead, to the left, in radians from -π/2 to π/2.
+    pub angle: f64,
+    /// Greatest value of the correlation over the root of its mean square.
+    pub ratio: f64,
+}
+
+impl Estimator {
+    /// Returns the estimator for a head of this radius, in metres.
+    #[must_use]
+    pub fn new(radius: f64) -> Self {
+        let steps = f64::from(RATE) * FINE as f64;
+        let most = MARGIN * WIDER * radius / SPEED * (1.0 + FRAC_PI_2) * steps;
+        let part = |place: usize, of: usize| TAU * place as f64 / of as f64;
+        let turn = |place| {
+            let (sin, cos) = libm::sincos(part(place, LENGTH * FINE));
+            Complex64::new(cos, sin)
+        };
+        Self {
+            window: (0..WINDOW).map(|place| (0.5 - 0.5 * libm::cos(part(place, WINDOW))) as f32).collect(),
+            turns: (0..LENGTH * FINE).map(turn).collect(),
+            most: (libm::ceil(most) as usize).clamp(1, LENGTH),
+            unit: SPEED / (WIDER * radius * steps),
+        }
+    }
+
+    /// Estimates the angle from the last [`WINDOW`] samples of the left and the right ear; `None` if there are less,
+    /// or one of the ears is silent.
+    #[must_use]
+    pub fn estimate(&self, samples: &[[f32; 2]]) -> Option<Estimate> {
+        let newest = samples.get(samples.len().checked_sub(WINDOW)?..)?;
+        let [left, right] = [0, 1].map(|ear| self.spectrum(newest, ear));
+        let weighted: Vec<Complex64> =
+            left.iter().zip(&right).map(|(left, right)| weight(left * right.conj())).collect();
+        let square: f64 = weighted.iter().map(Complex64::norm_sqr).sum();
+        if !square.is_finite() || square <= 0.0 {
+            return None;
+        }
+        let correlation = self.correlation(&weighted);
+        let greater = |best: usize, place: usize| {
+            if correlation.get(place) > correlation.get(best) { place } else { best }
+        };
+        let best = (0..correlation.len()).fold(0, greater);
+        let at = |place: Option<usize>| place.and_then(|place| correlation.get(place)).copied();
+        let peak = at(Some(best))?;
+        // A parabola through the greatest value and its neighbours.
+        let vertex = match (at(best.checked_sub(1)), at(best.checked_add(1))) {
+            (Some(before), Some(after)) if before + after < 2.0 * peak => {
+                0.5 * (before - after) / (before - 2.0 * peak + after)
+            }
+            _ => 0.0,
+        };
+        let delay = best as f64 + vertex - self.most as f64;
+        Some(Estimate { angle: angle(delay * self.unit), ratio: 2.0 * peak / libm::sqrt(2.0 * square) })
+    }
+
+    /// Returns the band of one ear's spectrum.
+    fn spectrum(&self, samples: &[[f32; 2]], ear: usize) -> Vec<Complex64> {
+        let mut windowed = Box::new([0.0; LENGTH]);
+        for ((value, sample), window) in windowed.iter_mut().zip(samples).zip(&self.window) {
+            *value = sample.get(ear).copied().unwrap_or_default() * window;
+        }
+        let spectrum: &[Complex32] = rfft_8192(&mut windowed);
+        let band = spectrum.get(BAND).unwrap_or_default();
+        band.iter().map(|bin| Complex64::new(f64::from(bin.re), f64::from(bin.im))).collect()
+    }
+
+    /// Returns the correlation at the delays of the left ear from `-most` to `most` fine steps: half of it, as the
+    /// negative frequencies are left out.
+    fn correlation(&self, weighted: &[Complex64]) -> Vec<f64> {
+        let mut both = vec![0.0; 2 * self.most + 1];
+        for step in 0..=self.most {
+            let (mut even, mut odd) = (0.0, 0.0);
+            for (bin, value) in BAND.zip(weighted) {
+                let turn = self.turns.get(bin * step % (LENGTH * FINE)).copied().unwrap_or_default();
+                even += value.re * turn.re;
+                odd += value.im * turn.im;
+            }
+            // A lead of the left ear turns the phase of the product up.
+            for (place, value) in [(self.most + step, even + odd), (self.most - step, even - odd)] {
+                if let Some(there) = both.get_mut(place) {
+                    *there = value;
+                }
+            }
+        }
+        both
+    }
+}
+
+/// Returns a bin of the cross spectrum, whitened.
+fn weight(cross: Complex64) -> Complex64 {
+    let square = cross.norm_sqr();
+    if square > 0.0 { cross * libm::pow(square, -WHITENING / 2.0) } else { cross }
+}
+
+/// Solves equation 7 for the angle: `delay` is the sum of angle and sine.
+fn angle(delay: f64) -> f64 {
+    if delay.abs() >= 1.0 + FRAC_PI_2 {
+        return FRAC_PI_2.copysign(delay);
+    }
+    let mut angle = delay / 2.0;
+    for _ in 0..8 {
+        let (sin, cos) = libm::sincos(angle);
+        angle -= (angle + sin - delay) / (1.0 + cos);
+    }
+    angle.clamp(-PI / 2.0, PI / 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Chance;
+
+    /// Noise in both ears, the right one `late` samples after the left.
+    fn delayed(late: usize) -> Vec<[f32; 2]> {
+        let mut chance = Chance::new(3, 0);
+        let noise: Vec<_> = (0..WINDOW + late).map(|_| chance.noise() as f32).collect();
+        noise.iter().zip(noise.iter().skip(late)).map(|(right, left)| [*left, *right]).collect()
+    }
+
+    #[test]
+    fn a_delay_becomes_the_angle_of_equation_7() {
+        let radius = 0.15;
+        for late in [0, 7, 20, 35] {
+            let Estimate { angle, ratio } = Estimator::new(radius).estimate(&delayed(late)).unwrap();
+            let delay = WIDER * radius * (angle + libm::sin(angle)) / SPEED * f64::from(RATE);
+            assert!((delay - late as f64).abs() < 0.05 && ratio > 20.0, "{late}: {delay} {ratio}");
+        }
+    }
+
+    #[test]
+    fn the_leading_ear_is_nearer() {
+        let left = delayed(20);
+        let right: Vec<_> = left.iter().map(|[left, right]| [*right, *left]).collect();
+        let [left, right] = [left, right].map(|ears| Estimator::new(0.15).estimate(&ears).unwrap().angle);
+        assert!(left > 0.4 && (left + right).abs() < 1e-3, "{left} {right}");
+    }
+
+    #[test]
+    fn silence_and_a_short_signal_have_no_angle() {
+        let estimator = Estimator::new(0.15);
+        assert_eq!(estimator.estimate(&vec![[0.0; 2]; WINDOW]), None);
+        assert_eq!(estimator.estimate(&delayed(0)[1..]), None);
+        let one_ear: Vec<_> = delayed(0).iter().map(|[left, _]| [*left, 0.0]).collect();
+        assert_eq!(estimator.estimate(&one_ear), None);
+    }
+
+    #[test]
+    fn every_delay_has_an_angle() {
+        for hundredth in -300..=300 {
+            let delay = f64::from(hundredth) / 100.0;
+            let angle = angle(delay);
+            let back = angle + libm::sin(angle);
+            assert!((back - delay.clamp(-1.0 - FRAC_PI_2, 1.0 + FRAC_PI_2)).abs() < 1e-6, "{delay} {angle}");
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! The gate of an estimator: estimates of little certainty are dropped, as long as there are better ones.
+
+/// Ratio that an estimate needs while others are kept.
+const HIGHEST: f64 = 7.0;
+/// Ratio that an estimate needs when none was kept for long.
+const LOWEST: f64 = 3.5;
+/// Fall of the ratio in a second in which no estimate is kept.
+const FALL: f64 = 1.4;
+
+/// A gate by the ratio of the greatest correlation to the root of its mean square.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gate {
+    limit: f64,
+}
+
+impl Default for Gate {
+    fn default() -> Self {
+        Self { limit: HIGHEST }
+    }
+}
+
+impl Gate {
+    /// Returns `true` if an estimate of this ratio is kept, the first one in this many seconds.
+    pub fn keeps(&mut self, ratio: f64, seconds: f64) -> bool {
+        let keeps = ratio > self.limit;
+        self.limit = if keeps { HIGHEST } else { (self.limit - FALL * seconds).max(LOWEST) };
+        keeps
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gate_falls_while_nothing_is_kept() {
+        let mut gate = Gate::default();
+        let dropped = (0..100).take_while(|_| !gate.keeps(4.2, 0.1)).count();
+        assert!((20..=22).contains(&dropped), "{dropped}");
+        assert!(!gate.keeps(6.9, 0.1), "closed again");
+        assert!((0..1000).all(|_| !gate.keeps(3.5, 0.1)), "never below its least");
+    }
+}
