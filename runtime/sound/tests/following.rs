@@ -1,4 +1,6 @@
 //! A robot that turns towards what it hears reaches the source, and what it hears is the same to the bit everywhere.
+//!
+//! `MDLE_LONG=17 cargo test --release -p mdle-sound --test following -- --nocapture` drives 51 seeds of each sound.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, reason = "a test fails by panicking")]
 
 use mdle_sound::{EarPose, Ears, Head, Kind, Localizer, RADIUS, Room, Source, WINDOW};
@@ -46,24 +48,23 @@ fn drive(kind: Kind, seed: u64) -> (Option<f64>, f64) {
     (None, f64::from(right) / f64::from(known.max(1)))
 }
 
-#[test]
-fn a_robot_reaches_what_it_hears() {
-    for (kind, seed) in [(Kind::White, FIRST), (Kind::Speech, FIRST + 13), (Kind::White, FIRST + 25)] {
-        let (arrived, right) = drive(kind, seed);
-        assert!(arrived.is_some() && right > 0.8, "{kind:?} {seed}: {arrived:?}, bearing right {right}");
-    }
+/// Returns the number of seeds: 3, times the variable `MDLE_LONG`.
+fn seeds() -> u64 {
+    let factor = std::env::var("MDLE_LONG").map_or(1, |factor| factor.parse().expect("MDLE_LONG is a whole number"));
+    3 * factor
 }
 
 #[test]
-#[ignore = "figures over fifty seeds, by hand"]
-fn table_of_arrivals() {
+fn a_robot_reaches_what_it_hears() {
     for kind in [Kind::White, Kind::Speech] {
-        let runs: Vec<_> = (FIRST..FIRST + 50).map(|seed| drive(kind, seed)).collect();
+        let runs: Vec<_> = (FIRST..FIRST + seeds()).map(|seed| drive(kind, seed)).collect();
         let mut times: Vec<_> = runs.iter().filter_map(|(arrived, _)| *arrived).collect();
         times.sort_by(f64::total_cmp);
-        let right: f64 = runs.iter().map(|(_, right)| right).sum();
-        let (median, slowest) = (times.get(times.len() / 2), times.last());
-        println!("{kind:?}: {} of 50, {median:?}, {slowest:?} s, right {:.0} %", times.len(), 2.0 * right);
+        let right = runs.iter().map(|(_, right)| right).sum::<f64>() / runs.len() as f64;
+        let (all, arrived, median, slowest) = (runs.len(), times.len(), times.get(times.len() / 2), times.last());
+        println!("{kind:?}: {arrived} of {all}, {median:?}, {slowest:?} s, right {:.0} %", 100.0 * right);
+        // 48 of 50.
+        assert!(arrived * 50 >= all * 48 && right > 0.8, "{kind:?}: {arrived} of {all}, bearing right {right}");
     }
 }
 
