@@ -3,7 +3,7 @@
 use crate::{
     Bumper, AtIsection, LowBattery, Charger, Sync, Rendezvous, Stuck, Go, Stop, Rotate,
     Turn, Advance, GoAvoid, GoAvoid2, Align, Follow, Path, R, Age, X, Y, Theta, V, Omega,
-    Battery, Bearing, Range, Age2,
+    Battery, Bearing, Range, Age2, Past, Lead, Slot,
 };
 use ::mdle_runtime as runtime;
 /// `bumper`: Fires on contact of any bumper.
@@ -205,4 +205,30 @@ pub const fn range(arguments: &[runtime::Argument<'_>]) -> Option<Range> {
 pub const fn age2(arguments: &[runtime::Argument<'_>]) -> Option<Age2> {
     let &[runtime::Argument::Name(of)] = arguments else { return None };
     Some(Age2::new(of))
+}
+
+/// `past <robot> <atom>`: Fires from when another robot runs this atom of its plan, counted from 1 in the order of the text, or a later one.
+#[must_use]
+pub const fn past(arguments: &[runtime::Argument<'_>]) -> Option<Past> {
+    let &[runtime::Argument::Name(robot), runtime::Argument::Count(atom)] = arguments
+    else { return None };
+    Some(Past::new(robot, atom))
+}
+
+/// `lead <width in m> <bearing in deg> <range in m> [speed in cm/s]`: Drives as goAvoid does, slowly round bends, with room to either side for the robots that keep slots beside it.
+#[must_use]
+pub const fn lead(arguments: &[runtime::Argument<'_>]) -> Option<Lead> {
+    let &[runtime::Argument::Length(width), runtime::Argument::Angle(bearing),
+    runtime::Argument::Length(range), runtime::Argument::Speed(speed)] = arguments else {
+        return None
+    };
+    Some(Lead::new(width, bearing, range, speed))
+}
+
+/// `slot <leader> <ahead in m> <left in m>`: Keeps a place beside another robot: so far ahead of it and to its left, along its way.
+#[must_use]
+pub const fn slot(arguments: &[runtime::Argument<'_>]) -> Option<Slot> {
+    let &[runtime::Argument::Name(leader), runtime::Argument::Length(ahead),
+    runtime::Argument::Length(left)] = arguments else { return None };
+    Some(Slot::new(leader, ahead, left))
 }

@@ -101,7 +101,7 @@ mod tests {
     fn see(y: &mut Sensed, (x, side): (f64, f64), v: f64, age: u64) {
         let pose = Pose { x: Meters(x), y: Meters(side), theta: Radians(0.0) };
         let velocity = Twist { v: MetersPerSecond(v), ..Twist::default() };
-        let state = PeerState { pose, velocity, age: Nanos(age), rounds: 0 };
+        let state = PeerState { pose, velocity, age: Nanos(age), rounds: 0, atom: 1 };
         y.link(Peer { name: "ada", rounds: 0, state: Some(state) });
     }
 

@@ -40,6 +40,29 @@ impl<Y: StateLink> Interrupt<Y> for Rendezvous {
     }
 }
 
+/// Fires while the robot's plan has come to an atom, the first of its text being number 1, or beyond: while the atom that
+/// it runs is this one or a later one, or its plan is over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Past {
+    robot: &'static str,
+    atom: u64,
+}
+
+impl Past {
+    /// The quark `past robot atom`.
+    #[must_use]
+    pub const fn new(robot: &'static str, atom: u64) -> Self {
+        Self { robot, atom }
+    }
+}
+
+impl<Y: StateLink> Interrupt<Y> for Past {
+    fn fired(&self, y: &Y) -> bool {
+        let state = y.peer(self.robot).and_then(|peer| peer.state);
+        state.is_some_and(|state| state.atom >= self.atom)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use mdle_runtime::{Nanos, Peer, PeerState, Pose, Twist};
@@ -49,7 +72,8 @@ mod tests {
 
     /// The output of a robot that has entered `own` rounds with `ada`, whose state has this age and the count `theirs`.
     fn linked(own: u64, age: u64, theirs: u64) -> Sensed {
-        let state = PeerState { pose: Pose::ORIGIN, velocity: Twist::default(), age: Nanos(age), rounds: theirs };
+        let state =
+            PeerState { pose: Pose::ORIGIN, velocity: Twist::default(), age: Nanos(age), rounds: theirs, atom: 1 };
         let mut y = Sensed::default();
         y.link(Peer { name: "ada", rounds: own, state: Some(state) });
         y
@@ -61,6 +85,24 @@ mod tests {
         assert!(fired("ada", &linked(0, 0, 0)) && fired("ada", &linked(0, 499_999_999, 0)));
         assert!(!fired("ada", &linked(0, 500_000_000, 0)) && !fired("bob", &linked(0, 0, 0)));
         assert!(!fired("ada", &Sensed::default()), "without a link there is no other robot");
+    }
+
+    #[test]
+    fn past_fires_from_an_atom_on_and_after_the_plan() {
+        let fired = |runs: u64, atom: u64| {
+            let mut y = linked(0, 9_000_000_000, 0);
+            let mut peer = *y.published.links().peer("ada").unwrap();
+            peer.state = peer.state.map(|state| PeerState { atom: runs, ..state });
+            y.published = y.published.with_links(mdle_runtime::Links::NONE);
+            y.link(peer);
+            Past::new("ada", atom).fired(&y)
+        };
+        assert_eq!([1, 2, 3, 4].map(|runs| fired(runs, 3)), [false, false, true, true]);
+        assert!(
+            fired(PeerState::OVER, 3) && !fired(0, 1),
+            "an old state counts, and a plan that has not begun does not"
+        );
+        assert!(!Past::new("bob", 1).fired(&linked(0, 0, 0)) && !Past::new("ada", 1).fired(&Sensed::default()));
     }
 
     #[test]

@@ -158,8 +158,8 @@ impl Modules for Sensed {
 }
 
 impl StateLink for Sensed {
-    fn peer(&self, robot: &str) -> Option<&Peer> {
-        self.published.links().peer(robot)
+    fn links(&self) -> &Links {
+        self.published.links()
     }
 }
 

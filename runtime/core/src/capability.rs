@@ -1,7 +1,9 @@
 //! Capabilities: one trait for each capability that an alphabet can name, implemented by the robot's output.
 //! See docs/src/reference/interfaces.md, 7.2.
 
-use crate::{Meters, Nanos, Output, Peer, Pings, Pose, PublishedNumber, Radians, Setpoint, SonarId, Twist, Volts};
+use crate::{
+    Links, Meters, Nanos, Output, Peer, Pings, Pose, PublishedNumber, Radians, Setpoint, SonarId, Twist, Volts,
+};
 
 /// `odometry`: the robot knows where it is and how fast it moves, in axes that stay put while it is switched on.
 pub trait Odometry: Output {
@@ -102,6 +104,11 @@ pub trait Modules: Output {
 
 /// `state_link`: an engine runs the plan, with a link by which robots tell each other their states.
 pub trait StateLink: Output {
+    /// Returns the other robots that the plan names.
+    fn links(&self) -> &Links;
+
     /// Returns another robot that the plan names; `None` if the link knows no robot of this name.
-    fn peer(&self, robot: &str) -> Option<&Peer>;
+    fn peer(&self, robot: &str) -> Option<&Peer> {
+        self.links().peer(robot)
+    }
 }

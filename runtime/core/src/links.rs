@@ -19,6 +19,14 @@ pub struct PeerState {
     pub age: Nanos,
     /// Number of scopes with a `rendezvous` with the receiver that the robot had entered.
     pub rounds: u64,
+    /// Number of the atom that the robot's plan ran, from 1 in the order of its text; [`PeerState::OVER`] once the plan
+    /// was over, and 0 before it began.
+    pub atom: u64,
+}
+
+impl PeerState {
+    /// Number in place of an atom's once a plan is over.
+    pub const OVER: u64 = u64::MAX;
 }
 
 /// Another robot that a plan names.
@@ -70,10 +78,15 @@ impl Links {
         true
     }
 
+    /// Returns all of the robots.
+    pub fn peers(&self) -> impl Iterator<Item = &Peer> {
+        self.0.iter().flatten()
+    }
+
     /// Returns the robot of this name.
     #[must_use]
     pub fn peer(&self, name: &str) -> Option<&Peer> {
-        self.0.iter().flatten().find(|peer| peer.name == name)
+        self.peers().find(|peer| peer.name == name)
     }
 }
 
@@ -97,7 +110,8 @@ mod tests {
 
     #[test]
     fn a_state_is_fresh_for_half_a_second_and_counts_for_ever() {
-        let state = PeerState { pose: Pose::ORIGIN, velocity: Twist::default(), age: Nanos(499_999_999), rounds: 2 };
+        let state =
+            PeerState { pose: Pose::ORIGIN, velocity: Twist::default(), age: Nanos(499_999_999), rounds: 2, atom: 1 };
         let peer = |age, rounds| Peer { name: "a", rounds, state: Some(PeerState { age: Nanos(age), ..state }) };
         assert!(peer(499_999_999, 1).fresh().is_some() && peer(500_000_000, 1).fresh().is_none());
         assert_eq!([1, 2, 3].map(|rounds| peer(9_000_000_000, rounds).meets()), [true, true, false]);

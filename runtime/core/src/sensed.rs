@@ -3,7 +3,7 @@
 
 use crate::capability::{Bumpers, DiffDrive, Modules, Odometry, Paths, Power, SonarRing, StateLink, Steering};
 use crate::{
-    Compass, Links, Meters, Nanos, Output, PathStore, Peer, Pings, Pose, Published, PublishedNumber, Radians, SONARS,
+    Compass, Links, Meters, Nanos, Output, PathStore, Pings, Pose, Published, PublishedNumber, Radians, SONARS,
     Setpoint, Shape, SonarId, Twist, Volts,
 };
 
@@ -155,7 +155,7 @@ impl Modules for Sensed {
 }
 
 impl StateLink for Sensed {
-    fn peer(&self, robot: &str) -> Option<&Peer> {
-        self.published.links().peer(robot)
+    fn links(&self) -> &Links {
+        self.published.links()
     }
 }

@@ -118,7 +118,14 @@ mod tests {
     const TURN: u64 = 100_000_000;
 
     fn state(number: u64) -> State {
-        State { name: "ada".to_owned(), number, pose: Pose::ORIGIN, velocity: Twist::default(), rounds: Vec::new() }
+        State {
+            name: "ada".to_owned(),
+            number,
+            pose: Pose::ORIGIN,
+            velocity: Twist::default(),
+            rounds: Vec::new(),
+            atom: 1,
+        }
     }
 
     /// The numbers of the states that arrive in each turn, of one that is sent in each.

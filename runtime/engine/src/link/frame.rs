@@ -8,7 +8,7 @@ use super::State;
 /// First bytes of every frame.
 const MAGIC: [u8; 4] = *b"MDLe";
 /// Version of frames.
-pub(super) const VERSION: u8 = 1;
+pub(super) const VERSION: u8 = 2;
 /// Maximum length of a frame, in bytes, without the four of the length.
 pub(super) const LONGEST: usize = 2048;
 /// Maximum length of a robot's name, in bytes.
@@ -50,6 +50,7 @@ pub(super) fn written(state: &State, key: &Key) -> Vec<u8> {
     let Pose { x, y, theta } = state.pose;
     let Twist { v, omega } = state.velocity;
     [x.0, y.0, theta.0, v.0, omega.0].iter().for_each(|number| body.extend(number.to_le_bytes()));
+    body.extend(state.atom.to_le_bytes());
     let rounds = state.rounds.get(..state.rounds.len().min(PEERS)).unwrap_or_default();
     body.push(rounds.len() as u8);
     for (robot, count) in rounds {
@@ -108,9 +109,10 @@ fn state(from: &mut Bytes<'_>) -> Option<State> {
     let mut real = || from.take().map(f64::from_le_bytes).filter(|number| number.is_finite());
     let pose = Pose { x: Meters(real()?), y: Meters(real()?), theta: Radians(real()?) };
     let velocity = Twist { v: MetersPerSecond(real()?), omega: RadiansPerSecond(real()?) };
+    let atom = from.number()?;
     let [count] = from.take()?;
     let rounds = (0..count).map(|_| Some((from.name()?, from.number()?))).collect::<Option<Vec<_>>>()?;
-    from.0.is_empty().then_some(State { name, number, pose, velocity, rounds })
+    from.0.is_empty().then_some(State { name, number, pose, velocity, rounds, atom })
 }
 
 /// Bytes that are read from the front.
@@ -146,6 +148,7 @@ mod tests {
             pose: Pose { x: Meters(1.5), y: Meters(-2.0), theta: Radians(0.25) },
             velocity: Twist { v: MetersPerSecond(0.5), omega: RadiansPerSecond(-0.1) },
             rounds: vec![("bob".to_owned(), 3), ("eve".to_owned(), u64::MAX)],
+            atom: 4,
         }
     }
 

@@ -85,6 +85,7 @@ impl StateLink {
             pose: outward(&self.start, &y.here()),
             velocity: y.velocities(),
             rounds: self.rounds.counts().map(|(robot, count)| (robot.to_owned(), count)).collect(),
+            atom: plan.map_or(0, |(_, machine)| machine.atom().map_or(PeerState::OVER, |atom| u64::from(atom) + 1)),
         };
         self.link.send(&state, now);
     }
@@ -102,6 +103,7 @@ impl StateLink {
             velocity: state.velocity,
             age: now.since(*at),
             rounds: state.rounds_with(&self.name),
+            atom: state.atom,
         });
         Peer { name: robot, rounds: self.rounds.with(robot), state }
     }
@@ -170,6 +172,7 @@ mod tests {
             pose: pose(x, 0.0, 0.0),
             velocity: Twist::default(),
             rounds: vec![("bob".to_owned(), number)],
+            atom: number,
         };
         let own = State { name: "bob".to_owned(), ..state(9, 9.0) };
         let script = Script(vec![own, state(2, 2.0), state(1, 1.0), state(3, 3.0)]);
@@ -179,9 +182,12 @@ mod tests {
             let mut y: Sensed = sensed();
             link.sense(&mut y, ["ada"].into_iter(), Nanos(turn));
             let peer = *y.published.links().peer("ada").unwrap();
-            seen.push(peer.state.map(|state| (state.pose.x.0, state.age.0, state.rounds)));
+            seen.push(peer.state.map(|state| (state.pose.x.0, state.age.0, state.rounds, state.atom)));
         }
-        assert_eq!(seen, [None, Some((1.0, 0, 2)), Some((1.0, 1, 2)), Some((2.0, 0, 3)), Some((2.0, 1, 3))]);
+        assert_eq!(
+            seen,
+            [None, Some((1.0, 0, 2, 2)), Some((1.0, 1, 2, 2)), Some((2.0, 0, 3, 3)), Some((2.0, 1, 3, 3))]
+        );
     }
 
     fn sensed() -> Sensed {

@@ -15,6 +15,8 @@ pub struct State {
     pub velocity: Twist,
     /// Number of scopes with a `rendezvous` with each other robot that the robot's plan has entered.
     pub rounds: Vec<(String, u64)>,
+    /// Number of the atom that the robot's plan runs, as in [`PeerState::atom`](mdle_runtime::PeerState::atom).
+    pub atom: u64,
 }
 
 impl State {

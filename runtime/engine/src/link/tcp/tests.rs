@@ -30,7 +30,14 @@ fn settings(name: &str, peers: &[(&str, SocketAddr)], key: &str) -> TcpSettings 
 
 fn state(name: &str, number: u64) -> State {
     let pose = Pose { x: Meters(number as f64), ..Pose::ORIGIN };
-    State { name: name.to_owned(), number, pose, velocity: Twist::default(), rounds: vec![("bob".to_owned(), number)] }
+    State {
+        name: name.to_owned(),
+        number,
+        pose,
+        velocity: Twist::default(),
+        rounds: vec![("bob".to_owned(), number)],
+        atom: 1,
+    }
 }
 
 /// The link of `bob`, whose peer is `ada`, and its address; nobody listens at ada's.
