@@ -3,9 +3,9 @@
 pub use crate::{Input, Output};
 pub use crate::quarks::{Go, Advance, GoAvoid};
 pub use ::mdle_atoms::{
-    Bumper, AtIsection, LowBattery, Charger, Sync, Rendezvous, Stuck, Stop, Rotate, Turn,
-    GoAvoid2, Align, Follow, Path, R, Age, X, Y, Theta, V, Omega, Battery, Bearing,
-    Range, Age2,
+    Bumper, AtIsection, LowBattery, Charger, Sync, Rendezvous, Past, Stuck, Stop, Rotate,
+    Turn, GoAvoid2, Align, Follow, Lead, Slot, Path, R, Age, X, Y, Theta, V, Omega,
+    Battery, Bearing, Range, Age2,
 };
 use ::mdle_atoms::alphabet as atoms;
 use ::mdle_runtime as runtime;
@@ -14,7 +14,7 @@ pub const NAME: &str = "scout";
 /// The default period of a turn.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Identifies this alphabet: a plan that was compiled for another alphabet does not compile.
-pub const HASH: u64 = 0x122b43285f9ef37a;
+pub const HASH: u64 = 0x94479d974ead2c4f;
 /// `go <v in cm/s> <omega in rad/s>`: Drives with a forward speed and a turn rate, counter-clockwise positive, for ever.
 const fn go(arguments: &[runtime::Argument<'_>]) -> Option<Go> {
     let &[runtime::Argument::Speed(v), runtime::Argument::AngularRate(omega)] = arguments
@@ -55,6 +55,9 @@ runtime::alphabet! {
         "advance" "speed" in 0.001..1.0,
         "goAvoid" "range" in 0.0..1000.0,
         "goAvoid" "speed" in 0.0..1.0,
+        "lead" "width" in 0.0..20.0,
+        "slot" "ahead" in -100.0..100.0,
+        "slot" "left" in -100.0..100.0,
     ];
     interrupts: [
         "bumper" => Bumper(atoms::bumper),
@@ -63,6 +66,7 @@ runtime::alphabet! {
         "charger" => Charger(atoms::charger),
         "sync" => Sync(atoms::sync),
         "rendezvous" => Rendezvous(atoms::rendezvous),
+        "past" => Past(atoms::past),
         "stuck" => Stuck(atoms::stuck),
     ];
     signals: [
@@ -88,6 +92,8 @@ runtime::alphabet! {
         "goAvoid" => GoAvoid2(atoms::go_avoid2),
         "align" => Align(atoms::align) completes,
         "Follow" => Follow(atoms::follow) completes,
+        "lead" => Lead(atoms::lead) completes,
+        "slot" => Slot(atoms::slot),
         "path" => Path(atoms::path) completes,
     ];
 }

@@ -10,7 +10,7 @@ pub const NAME: &str = "template";
 /// The default period of a turn.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Identifies this alphabet: a plan that was compiled for another alphabet does not compile.
-pub const HASH: u64 = 0x93cb9ecb3ab872bb;
+pub const HASH: u64 = 0xffdaebf0861394d8;
 /// `go <v in cm/s> <omega in rad/s>`: Drives with a forward speed and a turn rate, counter-clockwise positive, for ever.
 const fn go(arguments: &[runtime::Argument<'_>]) -> Option<Go> {
     let &[runtime::Argument::Speed(v), runtime::Argument::AngularRate(omega)] = arguments

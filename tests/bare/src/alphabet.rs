@@ -12,7 +12,7 @@ pub const NAME: &str = "bare";
 /// The default period of a turn.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Identifies this alphabet: a plan that was compiled for another alphabet does not compile.
-pub const HASH: u64 = 0x6f2d9b3505e92458;
+pub const HASH: u64 = 0xa47a0a56699b4221;
 
 runtime::alphabet! {
     capabilities: [

@@ -12,7 +12,7 @@ pub const NAME: &str = "board";
 /// The default period of a turn.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Identifies this alphabet: a plan that was compiled for another alphabet does not compile.
-pub const HASH: u64 = 0x7d3b6f0ac33da5cc;
+pub const HASH: u64 = 0x15864cbf2af34e10;
 
 runtime::alphabet! {
     capabilities: [
