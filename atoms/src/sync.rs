@@ -40,8 +40,8 @@ impl<Y: StateLink> Interrupt<Y> for Rendezvous {
     }
 }
 
-/// Fires while the robot's plan has come to an atom, the first of its text being number 1, or beyond: while the atom that
-/// it runs is this one or a later one, or its plan is over.
+/// Fires while the robot's plan has come to an atom, the first of its text being number 1, or beyond: while the atom
+/// that it runs is this one or a later one, or its plan is over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Past {
     robot: &'static str,

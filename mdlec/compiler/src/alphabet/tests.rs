@@ -32,7 +32,7 @@ fn defects(text: &str) -> String {
 #[test]
 fn our_own_alphabets_are_read() {
     let atoms = good(ATOMS);
-    assert_eq!((atoms.name.as_str(), atoms.declarations.len()), ("atoms", 31));
+    assert_eq!((atoms.name.as_str(), atoms.declarations.len()), ("atoms", 34));
     let sim = good(SIM);
     let head = sim.target.unwrap();
     assert_eq!((head.crate_name.as_str(), head.period), ("mdle_sim", Some(100_000_000)));
