@@ -45,6 +45,7 @@ mod source;
 mod table;
 #[cfg(test)]
 mod tests;
+mod text_list;
 mod time;
 pub mod trace;
 mod units;
@@ -78,6 +79,7 @@ pub use slots::Slots;
 pub use sonar::{Mount, PINGS_KEPT, Ping, Pings, SONARS, SonarId};
 pub use source::{BracketWords, OperandWords, Source, SourceLine, ValueWords, Words};
 pub use table::{Guard, LawRow, Rows, Table, Texts};
+pub use text_list::TextList;
 pub use time::Nanos;
 pub use units::{Bits, Meters, MetersPerSecond, Radians, RadiansPerSecond, Volts};
 pub use way::Nanometers;

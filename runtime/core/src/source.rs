@@ -1,5 +1,7 @@
 //! The source text of a plan: the words of conditions and operands, and their lines.
 
+use crate::TextList;
+
 /// The words and places of a plan, for reports: constants of an executable, or owned by a plan that was loaded.
 pub trait Words {
     /// Returns the words of a bracket; `None` for a plan without source text.
@@ -17,15 +19,24 @@ impl<'w> dyn Words + 'w {
     }
 }
 
-/// The words and places of a plan as constants.
+/// The words and places of a plan as constants: rows of numbers and long texts, as rustc takes long for many texts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source<'a> {
     /// The names of the files, without folders.
     pub files: &'a [&'a str],
-    /// The words of each bracket, in their order.
-    pub brackets: &'a [BracketWords<'a>],
-    /// The operands of the conditions of all brackets, in their order.
-    pub operands: &'a [OperandWords<'a>],
+    /// For each bracket its file, its line, the first of its operands, and the number of its operands.
+    pub brackets: &'a [[u32; 4]],
+    /// The condition of each bracket as it is written.
+    pub conditions: TextList<'a>,
+    /// For each operand of the conditions of all brackets its file, its line, the first of its values, and the number
+    /// of its values.
+    pub operands: &'a [[u32; 4]],
+    /// The condition text of each operand, as traces have it.
+    pub texts: TextList<'a>,
+    /// The words of each operand as they are written.
+    pub written: TextList<'a>,
+    /// The values of all operands.
+    pub values: &'a [ValueWords<'a>],
 }
 
 /// A line of a file.
@@ -77,20 +88,38 @@ pub struct ValueWords<'a> {
 
 impl Source<'_> {
     /// The source of a plan without source text, such as a plan that is written in Rust.
-    pub const NONE: Self = Self { files: &[], brackets: &[], operands: &[] };
+    pub const NONE: Self = Self {
+        files: &[],
+        brackets: &[],
+        conditions: TextList::NONE,
+        operands: &[],
+        texts: TextList::NONE,
+        written: TextList::NONE,
+        values: &[],
+    };
 }
 
 impl Words for Source<'_> {
     fn bracket(&self, bracket: u32) -> Option<BracketWords<'_>> {
-        self.brackets.get(bracket as usize).copied()
+        let [file, line, first, count] = *self.brackets.get(bracket as usize)?;
+        Some(BracketWords { at: place(file, line), condition: self.conditions.text(bracket), first, count })
     }
 
     fn operand(&self, bracket: u32, number: u32) -> Option<OperandWords<'_>> {
         let words = self.bracket(bracket).filter(|words| number < words.count)?;
-        self.operands.get(words.first.checked_add(number)? as usize).copied()
+        let operand = words.first.checked_add(number)?;
+        let [file, line, first, count] = *self.operands.get(operand as usize)?;
+        let values = self.values.get(first as usize..)?.get(..count as usize)?;
+        let (text, written) = (self.texts.text(operand), self.written.text(operand));
+        Some(OperandWords { text, written, at: place(file, line), values })
     }
 
     fn file(&self, at: SourceLine) -> &str {
         self.files.get(usize::from(at.file)).copied().unwrap_or("")
     }
+}
+
+/// Returns a line of the file of this number.
+fn place(file: u32, line: u32) -> SourceLine {
+    SourceLine { file: u16::try_from(file).unwrap_or(u16::MAX), line }
 }

@@ -4,7 +4,7 @@
 //! tables. A row costs rustc next to nothing, and a turn reads as many rows as there are scopes that enclose the
 //! current atom.
 
-use crate::{Alphabet, Condition, Fact, Follows, Fsm, MarkRow, Meeting, ModuleRead, Radians, Source, Words};
+use crate::{Alphabet, Condition, Fact, Follows, Fsm, MarkRow, Meeting, ModuleRead, Radians, Source, TextList, Words};
 
 /// The tables of a plan: [`Rows`] of constants, or tables that a loaded plan owns.
 pub trait Table {
@@ -102,15 +102,15 @@ impl<A: Alphabet> Table for &Rows<'_, A> {
     }
 
     fn law(&self, atom: u32) -> &str {
-        text(self.texts.laws, atom)
+        self.texts.laws.text(atom)
     }
 
     fn condition(&self, scope: u32) -> &str {
-        text(self.texts.conditions, scope)
+        self.texts.conditions.text(scope)
     }
 
     fn name(&self, scope: u32) -> &str {
-        text(self.texts.names, scope)
+        self.texts.names.text(scope)
     }
 
     fn source(&self) -> &dyn Words {
@@ -148,11 +148,11 @@ pub struct LawRow<C> {
 #[derive(Debug)]
 pub struct Texts<'a> {
     /// The quark text of each atom's law.
-    pub laws: &'a [&'a str],
+    pub laws: TextList<'a>,
     /// The condition text of each bracket.
-    pub conditions: &'a [&'a str],
+    pub conditions: TextList<'a>,
     /// The name of each bracket.
-    pub names: &'a [&'a str],
+    pub names: TextList<'a>,
     /// The words and places of the plan's text.
     pub source: Source<'a>,
     /// The names of the paths that its laws replay.
@@ -161,9 +161,11 @@ pub struct Texts<'a> {
 
 impl Texts<'_> {
     /// The texts of a plan without texts.
-    pub const NONE: Self = Self { laws: &[], conditions: &[], names: &[], source: Source::NONE, paths: &[] };
-}
-
-fn text<'a>(texts: &[&'a str], index: u32) -> &'a str {
-    texts.get(index as usize).copied().unwrap_or("")
+    pub const NONE: Self = Self {
+        laws: TextList::NONE,
+        conditions: TextList::NONE,
+        names: TextList::NONE,
+        source: Source::NONE,
+        paths: &[],
+    };
 }

@@ -312,249 +312,92 @@ mod machine {
         termination: 7,
     };
     /// The quark text of each atom's law.
-    const LAWS: &[&str] = &[
-        "go 20 0",
-        "turn 90",
-        "go 20 0",
-        "turn -90",
-        "turn 180",
-        "go 20 0",
-    ];
+    const LAWS: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["go 20 0", "turn 90", "go 20 0", "turn -90", "turn 180", "go 20 0"],
+        &[7, 14, 21, 29, 37, 44],
+    );
     /// The condition text of each bracket; empty for a loop.
-    const CONDITIONS: &[&str] = &[
-        "bumper OR wait 120",
-        "r0 < 0.8 OR wait 5",
-        "NOT after ahead (r0 < 0.8)",
-        "null",
-        "wait 4 OR r0 < 0.6",
-        "null",
-        "NOT after ahead wait 5",
-        "null",
-        "wait 5 OR r0 < 0.6",
-    ];
+    const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "bumper OR wait 120", "r0 < 0.8 OR wait 5", "NOT after ahead (r0 < 0.8)",
+            "null", "wait 4 OR r0 < 0.6", "null", "NOT after ahead wait 5", "null",
+            "wait 5 OR r0 < 0.6"
+        ],
+        &[18, 36, 62, 66, 84, 88, 110, 114, 132],
+    );
     /// The name of each bracket; empty for an atom and a loop.
-    const NAMES: &[&str] = &["Branching", "", "Sidestep", "", "", "", "Return", "", ""];
+    const NAMES: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["Branching", "Sidestep", "Return"],
+        &[9, 9, 17, 17, 17, 17, 23, 23, 23],
+    );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["branching.mdle"],
         brackets: &[
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                condition: "bumper OR wait 2min",
-                first: 0,
-                count: 2,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                condition: "r0 < 80cm OR wait 5s",
-                first: 2,
-                count: 2,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                condition: "NOT after ahead (r0 < 80cm)",
-                first: 4,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                condition: "null",
-                first: 5,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                condition: "wait 4s OR r0 < 60cm",
-                first: 6,
-                count: 2,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 11,
-                },
-                condition: "null",
-                first: 8,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 14,
-                },
-                condition: "NOT after ahead (wait 5s)",
-                first: 9,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 15,
-                },
-                condition: "null",
-                first: 10,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 16,
-                },
-                condition: "wait 5s OR r0 < 60cm",
-                first: 11,
-                count: 2,
-            },
+            [0, 4, 0, 2],
+            [0, 6, 2, 2],
+            [0, 8, 4, 1],
+            [0, 9, 5, 1],
+            [0, 10, 6, 2],
+            [0, 11, 8, 1],
+            [0, 14, 9, 1],
+            [0, 15, 10, 1],
+            [0, 16, 11, 2],
         ],
+        conditions: runtime::TextList::new(
+            concat![
+                "bumper OR wait 2min", "r0 < 80cm OR wait 5s",
+                "NOT after ahead (r0 < 80cm)", "null", "wait 4s OR r0 < 60cm", "null",
+                "NOT after ahead (wait 5s)", "null", "wait 5s OR r0 < 60cm"
+            ],
+            &[19, 39, 66, 70, 90, 94, 119, 123, 143],
+        ),
         operands: &[
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                values: &[],
+            [0, 4, 0, 0],
+            [0, 4, 0, 0],
+            [0, 6, 0, 1],
+            [0, 6, 1, 0],
+            [0, 8, 1, 0],
+            [0, 9, 1, 0],
+            [0, 10, 1, 0],
+            [0, 10, 1, 1],
+            [0, 11, 2, 0],
+            [0, 14, 2, 0],
+            [0, 15, 2, 0],
+            [0, 16, 2, 0],
+            [0, 16, 2, 1],
+        ],
+        texts: runtime::TextList::new(
+            concat![
+                "bumper", "wait 120", "r0 < 0.8", "wait 5", "NOT after ahead (r0 < 0.8)",
+                "null", "wait 4", "r0 < 0.6", "null", "NOT after ahead wait 5", "null",
+                "wait 5", "r0 < 0.6"
+            ],
+            &[6, 14, 22, 28, 54, 58, 64, 72, 76, 98, 102, 108, 116],
+        ),
+        written: runtime::TextList::new(
+            concat![
+                "bumper", "wait 2min", "r0 < 80cm", "wait 5s",
+                "NOT after ahead (r0 < 80cm)", "null", "wait 4s", "r0 < 60cm", "null",
+                "NOT after ahead (wait 5s)", "null", "wait 5s", "r0 < 60cm"
+            ],
+            &[6, 15, 24, 31, 58, 62, 69, 78, 82, 107, 111, 118, 127],
+        ),
+        values: &[
+            runtime::ValueWords {
+                after: 2,
+                unit: "m",
+                scale: 1.0,
             },
-            runtime::OperandWords {
-                text: "wait 120",
-                written: "wait 2min",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                values: &[],
+            runtime::ValueWords {
+                after: 2,
+                unit: "m",
+                scale: 1.0,
             },
-            runtime::OperandWords {
-                text: "r0 < 0.8",
-                written: "r0 < 80cm",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                values: &[
-                    runtime::ValueWords {
-                        after: 2,
-                        unit: "m",
-                        scale: 1.0,
-                    },
-                ],
-            },
-            runtime::OperandWords {
-                text: "wait 5",
-                written: "wait 5s",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "NOT after ahead (r0 < 0.8)",
-                written: "NOT after ahead (r0 < 80cm)",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "null",
-                written: "null",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 4",
-                written: "wait 4s",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "r0 < 0.6",
-                written: "r0 < 60cm",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                values: &[
-                    runtime::ValueWords {
-                        after: 2,
-                        unit: "m",
-                        scale: 1.0,
-                    },
-                ],
-            },
-            runtime::OperandWords {
-                text: "null",
-                written: "null",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 11,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "NOT after ahead wait 5",
-                written: "NOT after ahead (wait 5s)",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 14,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "null",
-                written: "null",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 15,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 5",
-                written: "wait 5s",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 16,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "r0 < 0.6",
-                written: "r0 < 60cm",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 16,
-                },
-                values: &[
-                    runtime::ValueWords {
-                        after: 2,
-                        unit: "m",
-                        scale: 1.0,
-                    },
-                ],
+            runtime::ValueWords {
+                after: 2,
+                unit: "m",
+                scale: 1.0,
             },
         ],
     };

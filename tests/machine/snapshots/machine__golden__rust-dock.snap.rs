@@ -160,22 +160,18 @@ mod machine {
             &SOURCE
         }
         fn law(&self, atom: u32) -> &str {
-            text(LAWS, atom)
+            LAWS.text(atom)
         }
         fn condition(&self, scope: u32) -> &str {
-            text(CONDITIONS, scope)
+            CONDITIONS.text(scope)
         }
         fn name(&self, scope: u32) -> &str {
-            text(NAMES, scope)
+            NAMES.text(scope)
         }
     }
 
     /// The plan's cursor, with a place for each level of scopes and for each level of loops.
     type At = Cursor<[Nanos; 3], [u64; 1]>;
-    fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-        texts.get(index as usize).copied().unwrap_or("")
-    }
-
     /// Dock (bumper).
     fn dock(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y) {
@@ -229,132 +225,57 @@ mod machine {
         termination: 8,
     };
     /// The quark text of each atom's law.
-    const LAWS: &[&str] = &["go 20 0", "go 5 0", "turn 90"];
+    const LAWS: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["go 20 0", "go 5 0", "turn 90"],
+        &[7, 13, 20],
+    );
     /// The condition text of each bracket; empty for a loop.
-    const CONDITIONS: &[&str] = &[
-        "bumper",
-        "atIsection 1000 OR wait 20",
-        "wait 15",
-        "",
-        "wait 0.5",
-        "null",
-    ];
+    const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["bumper", "atIsection 1000 OR wait 20", "wait 15", "wait 0.5", "null"],
+        &[6, 32, 39, 39, 47, 51],
+    );
     /// The name of each bracket; empty for an atom and a loop.
-    const NAMES: &[&str] = &["Dock", "", "Shake", "", "", ""];
+    const NAMES: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["Dock", "Shake"],
+        &[4, 4, 9, 9, 9, 9],
+    );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["dock.mdle"],
         brackets: &[
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                condition: "bumper",
-                first: 0,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                condition: "atIsection 1000 OR wait 20s",
-                first: 1,
-                count: 2,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                condition: "wait 15s",
-                first: 3,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 0,
-                },
-                condition: "",
-                first: 4,
-                count: 0,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                condition: "wait 500ms",
-                first: 4,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                condition: "null",
-                first: 5,
-                count: 1,
-            },
+            [0, 4, 0, 1],
+            [0, 5, 1, 2],
+            [0, 6, 3, 1],
+            [0, 0, 4, 0],
+            [0, 7, 4, 1],
+            [0, 7, 5, 1],
         ],
+        conditions: runtime::TextList::new(
+            concat![
+                "bumper", "atIsection 1000 OR wait 20s", "wait 15s", "wait 500ms", "null"
+            ],
+            &[6, 33, 41, 41, 51, 55],
+        ),
         operands: &[
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 1000",
-                written: "atIsection 1000",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 20",
-                written: "wait 20s",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 15",
-                written: "wait 15s",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 0.5",
-                written: "wait 500ms",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "null",
-                written: "null",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                values: &[],
-            },
+            [0, 4, 0, 0],
+            [0, 5, 0, 0],
+            [0, 5, 0, 0],
+            [0, 6, 0, 0],
+            [0, 7, 0, 0],
+            [0, 7, 0, 0],
         ],
+        texts: runtime::TextList::new(
+            concat![
+                "bumper", "atIsection 1000", "wait 20", "wait 15", "wait 0.5", "null"
+            ],
+            &[6, 21, 28, 35, 43, 47],
+        ),
+        written: runtime::TextList::new(
+            concat![
+                "bumper", "atIsection 1000", "wait 20s", "wait 15s", "wait 500ms", "null"
+            ],
+            &[6, 21, 29, 37, 47, 51],
+        ),
+        values: &[],
     };
 }

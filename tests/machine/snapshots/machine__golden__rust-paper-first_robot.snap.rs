@@ -245,13 +245,13 @@ mod machine {
             &SOURCE
         }
         fn law(&self, atom: u32) -> &str {
-            text(LAWS, atom)
+            LAWS.text(atom)
         }
         fn condition(&self, scope: u32) -> &str {
-            text(CONDITIONS, scope)
+            CONDITIONS.text(scope)
         }
         fn name(&self, scope: u32) -> &str {
-            text(NAMES, scope)
+            NAMES.text(scope)
         }
         fn paths(&self) -> &[&'static str] {
             &["lastPath"]
@@ -260,10 +260,6 @@ mod machine {
 
     /// The plan's cursor, with a place for each level of scopes and for each level of loops.
     type At = Cursor<[Nanos; 2], [u64; 1]>;
-    fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-        texts.get(index as usize).copied().unwrap_or("")
-    }
-
     /// FirstRobotPlan (bumper).
     fn first_robot_plan(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y) {
@@ -321,208 +317,73 @@ mod machine {
         termination: 33,
     };
     /// The quark text of each atom's law.
-    const LAWS: &[&str] = &[
-        "stop",
-        "path lastPath",
-        "go 0.5 0",
-        "rotate 180",
-        "stop",
-        "go 0.5 0",
-        "Follow robot2",
-        "rotate 180",
-    ];
+    const LAWS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "stop", "path lastPath", "go 0.5 0", "rotate 180", "stop", "go 0.5 0",
+            "Follow robot2", "rotate 180"
+        ],
+        &[4, 17, 25, 35, 39, 47, 60, 70],
+    );
     /// The condition text of each bracket; empty for a loop.
-    const CONDITIONS: &[&str] = &[
-        "bumper",
-        "",
-        "sync robot2",
-        "bumper",
-        "wait 2",
-        "wait 10",
-        "sync robot2",
-        "wait 2",
-        "bumper",
-        "wait 10",
-    ];
+    const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "bumper", "sync robot2", "bumper", "wait 2", "wait 10", "sync robot2",
+            "wait 2", "bumper", "wait 10"
+        ],
+        &[6, 6, 17, 23, 29, 36, 47, 53, 59, 66],
+    );
     /// The name of each bracket; empty for an atom and a loop.
-    const NAMES: &[&str] = &["FirstRobotPlan", "", "", "", "", "", "", "", "", ""];
+    const NAMES: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["FirstRobotPlan"],
+        &[14, 14, 14, 14, 14, 14, 14, 14, 14, 14],
+    );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["first_robot.mdle"],
         brackets: &[
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 1,
-                },
-                condition: "bumper",
-                first: 0,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 0,
-                },
-                condition: "",
-                first: 1,
-                count: 0,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 3,
-                },
-                condition: "sync robot2",
-                first: 1,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                condition: "bumper",
-                first: 2,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                condition: "wait 2",
-                first: 3,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                condition: "wait 10",
-                first: 4,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                condition: "sync robot2",
-                first: 5,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                condition: "wait 2",
-                first: 6,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                condition: "bumper",
-                first: 7,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                condition: "wait 10",
-                first: 8,
-                count: 1,
-            },
+            [0, 1, 0, 1],
+            [0, 0, 1, 0],
+            [0, 3, 1, 1],
+            [0, 4, 2, 1],
+            [0, 5, 3, 1],
+            [0, 6, 4, 1],
+            [0, 7, 5, 1],
+            [0, 8, 6, 1],
+            [0, 9, 7, 1],
+            [0, 10, 8, 1],
         ],
+        conditions: runtime::TextList::new(
+            concat![
+                "bumper", "sync robot2", "bumper", "wait 2", "wait 10", "sync robot2",
+                "wait 2", "bumper", "wait 10"
+            ],
+            &[6, 6, 17, 23, 29, 36, 47, 53, 59, 66],
+        ),
         operands: &[
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 1,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "sync robot2",
-                written: "sync robot2",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 3,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "null",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 2",
-                written: "wait 2",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 10",
-                written: "wait 10",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "sync robot2",
-                written: "sync robot2",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 2",
-                written: "wait 2",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "null",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 10",
-                written: "wait 10",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                values: &[],
-            },
+            [0, 1, 0, 0],
+            [0, 3, 0, 0],
+            [0, 4, 0, 0],
+            [0, 5, 0, 0],
+            [0, 6, 0, 0],
+            [0, 7, 0, 0],
+            [0, 8, 0, 0],
+            [0, 9, 0, 0],
+            [0, 10, 0, 0],
         ],
+        texts: runtime::TextList::new(
+            concat![
+                "bumper", "sync robot2", "null", "wait 2", "wait 10", "sync robot2",
+                "wait 2", "null", "wait 10"
+            ],
+            &[6, 17, 21, 27, 34, 45, 51, 55, 62],
+        ),
+        written: runtime::TextList::new(
+            concat![
+                "bumper", "sync robot2", "bumper", "wait 2", "wait 10", "sync robot2",
+                "wait 2", "bumper", "wait 10"
+            ],
+            &[6, 17, 23, 29, 36, 47, 53, 59, 66],
+        ),
+        values: &[],
     };
 }

@@ -230,22 +230,18 @@ mod machine {
             &SOURCE
         }
         fn law(&self, atom: u32) -> &str {
-            text(LAWS, atom)
+            LAWS.text(atom)
         }
         fn condition(&self, scope: u32) -> &str {
-            text(CONDITIONS, scope)
+            CONDITIONS.text(scope)
         }
         fn name(&self, scope: u32) -> &str {
-            text(NAMES, scope)
+            NAMES.text(scope)
         }
     }
 
     /// The plan's cursor, with a place for each level of scopes and for each level of loops.
     type At = Cursor<[Nanos; 2], [u64; 0]>;
-    fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-        texts.get(index as usize).copied().unwrap_or("")
-    }
-
     /// Lab1ToOfficePlan (bumper).
     fn lab1_to_office_plan(
         cursor: &At,
@@ -304,138 +300,66 @@ mod machine {
         termination: 6,
     };
     /// The quark text of each atom's law.
-    const LAWS: &[&str] = &[
-        "goAvoid 90 40 20",
-        "go 0 0.36",
-        "align 11 13",
-        "goAvoid 180 40 20",
-        "rotate 90",
-    ];
+    const LAWS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "goAvoid 90 40 20", "go 0 0.36", "align 11 13", "goAvoid 180 40 20",
+            "rotate 90"
+        ],
+        &[16, 25, 36, 53, 62],
+    );
     /// The condition text of each bracket; empty for a loop.
-    const CONDITIONS: &[&str] = &[
-        "bumper",
-        "atIsection 1001",
-        "atIsection 0011",
-        "wait inf",
-        "atIsection 0100",
-        "wait 10",
-    ];
+    const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "bumper", "atIsection 1001", "atIsection 0011", "wait inf",
+            "atIsection 0100", "wait 10"
+        ],
+        &[6, 21, 36, 44, 59, 66],
+    );
     /// The name of each bracket; empty for an atom and a loop.
-    const NAMES: &[&str] = &["Lab1ToOfficePlan", "", "", "", "", ""];
+    const NAMES: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["Lab1ToOfficePlan"],
+        &[16, 16, 16, 16, 16, 16],
+    );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["lab1_to_office.mdle"],
         brackets: &[
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 2,
-                },
-                condition: "bumper",
-                first: 0,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 3,
-                },
-                condition: "atIsection 1001",
-                first: 1,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                condition: "atIsection 0011",
-                first: 2,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                condition: "wait \\infty",
-                first: 3,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                condition: "atIsection 0100",
-                first: 4,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                condition: "wait 10",
-                first: 5,
-                count: 1,
-            },
+            [0, 2, 0, 1],
+            [0, 3, 1, 1],
+            [0, 4, 2, 1],
+            [0, 5, 3, 1],
+            [0, 6, 4, 1],
+            [0, 7, 5, 1],
         ],
+        conditions: runtime::TextList::new(
+            concat![
+                "bumper", "atIsection 1001", "atIsection 0011", "wait \\infty",
+                "atIsection 0100", "wait 10"
+            ],
+            &[6, 21, 36, 47, 62, 69],
+        ),
         operands: &[
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 2,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 1001",
-                written: "atIsection 1001",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 3,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 0011",
-                written: "atIsection 0011",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait inf",
-                written: "wait \\infty",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 0100",
-                written: "atIsection 0100",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 10",
-                written: "wait 10",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                values: &[],
-            },
+            [0, 2, 0, 0],
+            [0, 3, 0, 0],
+            [0, 4, 0, 0],
+            [0, 5, 0, 0],
+            [0, 6, 0, 0],
+            [0, 7, 0, 0],
         ],
+        texts: runtime::TextList::new(
+            concat![
+                "bumper", "atIsection 1001", "atIsection 0011", "wait inf",
+                "atIsection 0100", "wait 10"
+            ],
+            &[6, 21, 36, 44, 59, 66],
+        ),
+        written: runtime::TextList::new(
+            concat![
+                "bumper", "atIsection 1001", "atIsection 0011", "wait \\infty",
+                "atIsection 0100", "wait 10"
+            ],
+            &[6, 21, 36, 47, 62, 69],
+        ),
+        values: &[],
     };
 }

@@ -291,22 +291,18 @@ mod machine {
             &SOURCE
         }
         fn law(&self, atom: u32) -> &str {
-            text(LAWS, atom)
+            LAWS.text(atom)
         }
         fn condition(&self, scope: u32) -> &str {
-            text(CONDITIONS, scope)
+            CONDITIONS.text(scope)
         }
         fn name(&self, scope: u32) -> &str {
-            text(NAMES, scope)
+            NAMES.text(scope)
         }
     }
 
     /// The plan's cursor, with a place for each level of scopes and for each level of loops.
     type At = Cursor<[Nanos; 2], [u64; 0]>;
-    fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-        texts.get(index as usize).copied().unwrap_or("")
-    }
-
     /// Lab2ToLab1Plan (bumper).
     fn lab2_to_lab1_plan(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y) {
@@ -378,198 +374,75 @@ mod machine {
         termination: 9,
     };
     /// The quark text of each atom's law.
-    const LAWS: &[&str] = &[
-        "goAvoid 90 40 20",
-        "go 0 0.36",
-        "align 7 9",
-        "goAvoid 0 40 20",
-        "go 0 0.36",
-        "align 3 5",
-        "goAvoid 270 40 20",
-        "goAvoid 270 40 20",
-    ];
+    const LAWS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "goAvoid 90 40 20", "go 0 0.36", "align 7 9", "goAvoid 0 40 20", "go 0 0.36",
+            "align 3 5", "goAvoid 270 40 20", "goAvoid 270 40 20"
+        ],
+        &[16, 25, 34, 49, 58, 67, 84, 101],
+    );
     /// The condition text of each bracket; empty for a loop.
-    const CONDITIONS: &[&str] = &[
-        "bumper",
-        "atIsection 0100",
-        "atIsection 0010",
-        "wait inf",
-        "atIsection 1000",
-        "atIsection 0100",
-        "wait inf",
-        "wait 7",
-        "atIsection 1000",
-    ];
+    const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "bumper", "atIsection 0100", "atIsection 0010", "wait inf",
+            "atIsection 1000", "atIsection 0100", "wait inf", "wait 7", "atIsection 1000"
+        ],
+        &[6, 21, 36, 44, 59, 74, 82, 88, 103],
+    );
     /// The name of each bracket; empty for an atom and a loop.
-    const NAMES: &[&str] = &["Lab2ToLab1Plan", "", "", "", "", "", "", "", ""];
+    const NAMES: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["Lab2ToLab1Plan"],
+        &[14, 14, 14, 14, 14, 14, 14, 14, 14],
+    );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["lab2_to_lab1.mdle"],
         brackets: &[
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 2,
-                },
-                condition: "bumper",
-                first: 0,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 3,
-                },
-                condition: "atIsection 0100",
-                first: 1,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                condition: "atIsection 0010",
-                first: 2,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                condition: "wait \\infty",
-                first: 3,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                condition: "atIsection 1000",
-                first: 4,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                condition: "atIsection 0100",
-                first: 5,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                condition: "wait \\infty",
-                first: 6,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                condition: "wait 7",
-                first: 7,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                condition: "atIsection 1000",
-                first: 8,
-                count: 1,
-            },
+            [0, 2, 0, 1],
+            [0, 3, 1, 1],
+            [0, 4, 2, 1],
+            [0, 5, 3, 1],
+            [0, 6, 4, 1],
+            [0, 7, 5, 1],
+            [0, 8, 6, 1],
+            [0, 9, 7, 1],
+            [0, 10, 8, 1],
         ],
+        conditions: runtime::TextList::new(
+            concat![
+                "bumper", "atIsection 0100", "atIsection 0010", "wait \\infty",
+                "atIsection 1000", "atIsection 0100", "wait \\infty", "wait 7",
+                "atIsection 1000"
+            ],
+            &[6, 21, 36, 47, 62, 77, 88, 94, 109],
+        ),
         operands: &[
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 2,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 0100",
-                written: "atIsection 0100",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 3,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 0010",
-                written: "atIsection 0010",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait inf",
-                written: "wait \\infty",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 1000",
-                written: "atIsection 1000",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 0100",
-                written: "atIsection 0100",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait inf",
-                written: "wait \\infty",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 7",
-                written: "wait 7",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 1000",
-                written: "atIsection 1000",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                values: &[],
-            },
+            [0, 2, 0, 0],
+            [0, 3, 0, 0],
+            [0, 4, 0, 0],
+            [0, 5, 0, 0],
+            [0, 6, 0, 0],
+            [0, 7, 0, 0],
+            [0, 8, 0, 0],
+            [0, 9, 0, 0],
+            [0, 10, 0, 0],
         ],
+        texts: runtime::TextList::new(
+            concat![
+                "bumper", "atIsection 0100", "atIsection 0010", "wait inf",
+                "atIsection 1000", "atIsection 0100", "wait inf", "wait 7",
+                "atIsection 1000"
+            ],
+            &[6, 21, 36, 44, 59, 74, 82, 88, 103],
+        ),
+        written: runtime::TextList::new(
+            concat![
+                "bumper", "atIsection 0100", "atIsection 0010", "wait \\infty",
+                "atIsection 1000", "atIsection 0100", "wait \\infty", "wait 7",
+                "atIsection 1000"
+            ],
+            &[6, 21, 36, 47, 62, 77, 88, 94, 109],
+        ),
+        values: &[],
     };
 }

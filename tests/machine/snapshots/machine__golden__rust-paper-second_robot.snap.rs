@@ -283,22 +283,18 @@ mod machine {
             &SOURCE
         }
         fn law(&self, atom: u32) -> &str {
-            text(LAWS, atom)
+            LAWS.text(atom)
         }
         fn condition(&self, scope: u32) -> &str {
-            text(CONDITIONS, scope)
+            CONDITIONS.text(scope)
         }
         fn name(&self, scope: u32) -> &str {
-            text(NAMES, scope)
+            NAMES.text(scope)
         }
     }
 
     /// The plan's cursor, with a place for each level of scopes and for each level of loops.
     type At = Cursor<[Nanos; 2], [u64; 1]>;
-    fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-        texts.get(index as usize).copied().unwrap_or("")
-    }
-
     /// SecondRobotPlan (bumper).
     fn second_robot_plan(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y) {
@@ -371,279 +367,83 @@ mod machine {
         termination: 41,
     };
     /// The quark text of each atom's law.
-    const LAWS: &[&str] = &[
-        "stop",
-        "go 0.5 0",
-        "Follow robot1",
-        "go 0.5 0",
-        "rotate 180",
-        "stop",
-        "go 0.5 0",
-        "Follow robot3",
-        "go 0.5 0",
-        "rotate 180",
-    ];
+    const LAWS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "stop", "go 0.5 0", "Follow robot1", "go 0.5 0", "rotate 180", "stop",
+            "go 0.5 0", "Follow robot3", "go 0.5 0", "rotate 180"
+        ],
+        &[4, 12, 25, 33, 43, 47, 55, 68, 76, 86],
+    );
     /// The condition text of each bracket; empty for a loop.
-    const CONDITIONS: &[&str] = &[
-        "bumper",
-        "",
-        "sync robot1 AND sync robot3",
-        "wait 1",
-        "bumper",
-        "wait 1",
-        "wait 10",
-        "sync robot3 AND sync robot1",
-        "wait 1",
-        "bumper",
-        "wait 1",
-        "wait 10",
-    ];
+    const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "bumper", "sync robot1 AND sync robot3", "wait 1", "bumper", "wait 1",
+            "wait 10", "sync robot3 AND sync robot1", "wait 1", "bumper", "wait 1",
+            "wait 10"
+        ],
+        &[6, 6, 33, 39, 45, 51, 58, 85, 91, 97, 103, 110],
+    );
     /// The name of each bracket; empty for an atom and a loop.
-    const NAMES: &[&str] = &[
-        "SecondRobotPlan",
-        "",
-        "",
-        "",
-        "",
-        "",
-        "",
-        "",
-        "",
-        "",
-        "",
-        "",
-    ];
+    const NAMES: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["SecondRobotPlan"],
+        &[15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15],
+    );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["second_robot.mdle"],
         brackets: &[
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 1,
-                },
-                condition: "bumper",
-                first: 0,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 0,
-                },
-                condition: "",
-                first: 1,
-                count: 0,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 3,
-                },
-                condition: "(sync robot1) AND (sync robot3)",
-                first: 1,
-                count: 2,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                condition: "wait 1",
-                first: 3,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                condition: "bumper",
-                first: 4,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                condition: "wait 1",
-                first: 5,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                condition: "wait 10",
-                first: 6,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                condition: "(sync robot3) AND (sync robot1)",
-                first: 7,
-                count: 2,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                condition: "wait 1",
-                first: 9,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                condition: "bumper",
-                first: 10,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 11,
-                },
-                condition: "wait 1",
-                first: 11,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 12,
-                },
-                condition: "wait 10",
-                first: 12,
-                count: 1,
-            },
+            [0, 1, 0, 1],
+            [0, 0, 1, 0],
+            [0, 3, 1, 2],
+            [0, 4, 3, 1],
+            [0, 5, 4, 1],
+            [0, 6, 5, 1],
+            [0, 7, 6, 1],
+            [0, 8, 7, 2],
+            [0, 9, 9, 1],
+            [0, 10, 10, 1],
+            [0, 11, 11, 1],
+            [0, 12, 12, 1],
         ],
+        conditions: runtime::TextList::new(
+            concat![
+                "bumper", "(sync robot1) AND (sync robot3)", "wait 1", "bumper",
+                "wait 1", "wait 10", "(sync robot3) AND (sync robot1)", "wait 1",
+                "bumper", "wait 1", "wait 10"
+            ],
+            &[6, 6, 37, 43, 49, 55, 62, 93, 99, 105, 111, 118],
+        ),
         operands: &[
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 1,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "sync robot1",
-                written: "sync robot1",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 3,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "sync robot3",
-                written: "sync robot3",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 3,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 1",
-                written: "wait 1",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "null",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 1",
-                written: "wait 1",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 10",
-                written: "wait 10",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "sync robot3",
-                written: "sync robot3",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "sync robot1",
-                written: "sync robot1",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 1",
-                written: "wait 1",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "null",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 1",
-                written: "wait 1",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 11,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 10",
-                written: "wait 10",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 12,
-                },
-                values: &[],
-            },
+            [0, 1, 0, 0],
+            [0, 3, 0, 0],
+            [0, 3, 0, 0],
+            [0, 4, 0, 0],
+            [0, 5, 0, 0],
+            [0, 6, 0, 0],
+            [0, 7, 0, 0],
+            [0, 8, 0, 0],
+            [0, 8, 0, 0],
+            [0, 9, 0, 0],
+            [0, 10, 0, 0],
+            [0, 11, 0, 0],
+            [0, 12, 0, 0],
         ],
+        texts: runtime::TextList::new(
+            concat![
+                "bumper", "sync robot1", "sync robot3", "wait 1", "null", "wait 1",
+                "wait 10", "sync robot3", "sync robot1", "wait 1", "null", "wait 1",
+                "wait 10"
+            ],
+            &[6, 17, 28, 34, 38, 44, 51, 62, 73, 79, 83, 89, 96],
+        ),
+        written: runtime::TextList::new(
+            concat![
+                "bumper", "sync robot1", "sync robot3", "wait 1", "bumper", "wait 1",
+                "wait 10", "sync robot3", "sync robot1", "wait 1", "bumper", "wait 1",
+                "wait 10"
+            ],
+            &[6, 17, 28, 34, 40, 46, 53, 64, 75, 81, 87, 93, 100],
+        ),
+        values: &[],
     };
 }

@@ -105,22 +105,18 @@ mod machine {
             &SOURCE
         }
         fn law(&self, atom: u32) -> &str {
-            text(LAWS, atom)
+            LAWS.text(atom)
         }
         fn condition(&self, scope: u32) -> &str {
-            text(CONDITIONS, scope)
+            CONDITIONS.text(scope)
         }
         fn name(&self, scope: u32) -> &str {
-            text(NAMES, scope)
+            NAMES.text(scope)
         }
     }
 
     /// The plan's cursor, with a place for each level of scopes and for each level of loops.
     type At = Cursor<[Nanos; 0], [u64; 0]>;
-    fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-        texts.get(index as usize).copied().unwrap_or("")
-    }
-
     /// SoundFollowingRobot (bumper).
     fn sound_following_robot(
         cursor: &At,
@@ -150,53 +146,28 @@ mod machine {
         termination: 2,
     };
     /// The quark text of each atom's law.
-    const LAWS: &[&str] = &["goAvoid heading module"];
+    const LAWS: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["goAvoid heading module"],
+        &[22],
+    );
     /// The condition text of each bracket; empty for a loop.
-    const CONDITIONS: &[&str] = &["bumper", "wait inf"];
+    const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["bumper", "wait inf"],
+        &[6, 14],
+    );
     /// The name of each bracket; empty for an atom and a loop.
-    const NAMES: &[&str] = &["SoundFollowingRobot", ""];
+    const NAMES: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["SoundFollowingRobot"],
+        &[19, 19],
+    );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["sound_following.mdle"],
-        brackets: &[
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 1,
-                },
-                condition: "bumper",
-                first: 0,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 1,
-                },
-                condition: "wait \\infty",
-                first: 1,
-                count: 1,
-            },
-        ],
-        operands: &[
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 1,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait inf",
-                written: "wait \\infty",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 1,
-                },
-                values: &[],
-            },
-        ],
+        brackets: &[[0, 1, 0, 1], [0, 1, 1, 1]],
+        conditions: runtime::TextList::new(concat!["bumper", "wait \\infty"], &[6, 17]),
+        operands: &[[0, 1, 0, 0], [0, 1, 0, 0]],
+        texts: runtime::TextList::new(concat!["bumper", "wait inf"], &[6, 14]),
+        written: runtime::TextList::new(concat!["bumper", "wait \\infty"], &[6, 17]),
+        values: &[],
     };
 }

@@ -177,22 +177,18 @@ mod machine {
             &SOURCE
         }
         fn law(&self, atom: u32) -> &str {
-            text(LAWS, atom)
+            LAWS.text(atom)
         }
         fn condition(&self, scope: u32) -> &str {
-            text(CONDITIONS, scope)
+            CONDITIONS.text(scope)
         }
         fn name(&self, scope: u32) -> &str {
-            text(NAMES, scope)
+            NAMES.text(scope)
         }
     }
 
     /// The plan's cursor, with a place for each level of scopes and for each level of loops.
     type At = Cursor<[Nanos; 3], [u64; 2]>;
-    fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-        texts.get(index as usize).copied().unwrap_or("")
-    }
-
     /// Patrol (bumper OR wait 600).
     fn patrol(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y)
@@ -252,181 +248,67 @@ mod machine {
         termination: 31,
     };
     /// The quark text of each atom's law.
-    const LAWS: &[&str] = &["goAvoid 0 3 20", "turn 90", "stop", "goAvoid 180 3 40"];
+    const LAWS: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["goAvoid 0 3 20", "turn 90", "stop", "goAvoid 180 3 40"],
+        &[14, 21, 25, 41],
+    );
     /// The condition text of each bracket; empty for a loop.
-    const CONDITIONS: &[&str] = &[
-        "bumper OR wait 600",
-        "",
-        "null",
-        "wait 30",
-        "wait 20",
-        "",
-        "null",
-        "wait 0.5",
-        "null",
-        "wait 30",
-    ];
+    const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "bumper OR wait 600", "null", "wait 30", "wait 20", "null", "wait 0.5",
+            "null", "wait 30"
+        ],
+        &[18, 18, 22, 29, 36, 36, 40, 48, 52, 59],
+    );
     /// The name of each bracket; empty for an atom and a loop.
-    const NAMES: &[&str] = &["Patrol", "", "Leg", "", "Look", "", "", "", "Leg", ""];
+    const NAMES: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["Patrol", "Leg", "Look", "Leg"],
+        &[6, 6, 9, 9, 13, 13, 13, 13, 16, 16],
+    );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["patrol.mdle"],
         brackets: &[
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                condition: "bumper OR wait 10min",
-                first: 0,
-                count: 2,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 0,
-                },
-                condition: "",
-                first: 2,
-                count: 0,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 17,
-                },
-                condition: "",
-                first: 2,
-                count: 0,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 17,
-                },
-                condition: "wait 30s",
-                first: 2,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                condition: "wait 20s",
-                first: 3,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 0,
-                },
-                condition: "",
-                first: 4,
-                count: 0,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                condition: "null",
-                first: 4,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                condition: "wait 500ms",
-                first: 5,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 17,
-                },
-                condition: "",
-                first: 6,
-                count: 0,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 17,
-                },
-                condition: "wait 30s",
-                first: 6,
-                count: 1,
-            },
+            [0, 5, 0, 2],
+            [0, 0, 2, 0],
+            [0, 17, 2, 0],
+            [0, 17, 2, 1],
+            [0, 8, 3, 1],
+            [0, 0, 4, 0],
+            [0, 9, 4, 1],
+            [0, 9, 5, 1],
+            [0, 17, 6, 0],
+            [0, 17, 6, 1],
         ],
+        conditions: runtime::TextList::new(
+            concat![
+                "bumper OR wait 10min", "wait 30s", "wait 20s", "null", "wait 500ms",
+                "wait 30s"
+            ],
+            &[20, 20, 20, 28, 36, 36, 40, 50, 50, 58],
+        ),
         operands: &[
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 600",
-                written: "wait 10min",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 5,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 30",
-                written: "wait 30s",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 17,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 20",
-                written: "wait 20s",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "null",
-                written: "null",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 0.5",
-                written: "wait 500ms",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 30",
-                written: "wait 30s",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 17,
-                },
-                values: &[],
-            },
+            [0, 5, 0, 0],
+            [0, 5, 0, 0],
+            [0, 17, 0, 0],
+            [0, 8, 0, 0],
+            [0, 9, 0, 0],
+            [0, 9, 0, 0],
+            [0, 17, 0, 0],
         ],
+        texts: runtime::TextList::new(
+            concat![
+                "bumper", "wait 600", "wait 30", "wait 20", "null", "wait 0.5", "wait 30"
+            ],
+            &[6, 14, 21, 28, 32, 40, 47],
+        ),
+        written: runtime::TextList::new(
+            concat![
+                "bumper", "wait 10min", "wait 30s", "wait 20s", "null", "wait 500ms",
+                "wait 30s"
+            ],
+            &[6, 16, 24, 32, 36, 46, 54],
+        ),
+        values: &[],
     };
 }

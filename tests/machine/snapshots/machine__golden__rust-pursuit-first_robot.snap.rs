@@ -280,13 +280,13 @@ mod machine {
             &SOURCE
         }
         fn law(&self, atom: u32) -> &str {
-            text(LAWS, atom)
+            LAWS.text(atom)
         }
         fn condition(&self, scope: u32) -> &str {
-            text(CONDITIONS, scope)
+            CONDITIONS.text(scope)
         }
         fn name(&self, scope: u32) -> &str {
-            text(NAMES, scope)
+            NAMES.text(scope)
         }
         fn paths(&self) -> &[&'static str] {
             &["lastPath"]
@@ -295,10 +295,6 @@ mod machine {
 
     /// The plan's cursor, with a place for each level of scopes and for each level of loops.
     type At = Cursor<[Nanos; 2], [u64; 1]>;
-    fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-        texts.get(index as usize).copied().unwrap_or("")
-    }
-
     /// FirstRobotPlan (bumper OR wait 600).
     fn first_robot_plan(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y)
@@ -373,235 +369,80 @@ mod machine {
         termination: 33,
     };
     /// The quark text of each atom's law.
-    const LAWS: &[&str] = &[
-        "stop",
-        "path lastPath",
-        "go 50 0",
-        "turn 180",
-        "stop",
-        "go 50 0",
-        "Follow robot2",
-        "turn 180",
-    ];
+    const LAWS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "stop", "path lastPath", "go 50 0", "turn 180", "stop", "go 50 0",
+            "Follow robot2", "turn 180"
+        ],
+        &[4, 17, 24, 32, 36, 43, 56, 64],
+    );
     /// The condition text of each bracket; empty for a loop.
-    const CONDITIONS: &[&str] = &[
-        "bumper OR wait 600",
-        "",
-        "rendezvous robot2 AND rendezvous robot3",
-        "null",
-        "wait 2",
-        "wait 10",
-        "rendezvous robot2 AND rendezvous robot3",
-        "wait 2.5",
-        "null",
-        "wait 10",
-    ];
+    const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "bumper OR wait 600", "rendezvous robot2 AND rendezvous robot3", "null",
+            "wait 2", "wait 10", "rendezvous robot2 AND rendezvous robot3", "wait 2.5",
+            "null", "wait 10"
+        ],
+        &[18, 18, 57, 61, 67, 74, 113, 121, 125, 132],
+    );
     /// The name of each bracket; empty for an atom and a loop.
-    const NAMES: &[&str] = &["FirstRobotPlan", "", "", "", "", "", "", "", "", ""];
+    const NAMES: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["FirstRobotPlan"],
+        &[14, 14, 14, 14, 14, 14, 14, 14, 14, 14],
+    );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["first_robot.mdle"],
         brackets: &[
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                condition: "bumper OR wait 10min",
-                first: 0,
-                count: 2,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 0,
-                },
-                condition: "",
-                first: 2,
-                count: 0,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                condition: "rendezvous robot2 AND rendezvous robot3",
-                first: 2,
-                count: 2,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                condition: "null",
-                first: 4,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                condition: "wait 2",
-                first: 5,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                condition: "wait 10",
-                first: 6,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                condition: "rendezvous robot2 AND rendezvous robot3",
-                first: 7,
-                count: 2,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 11,
-                },
-                condition: "wait 2.5",
-                first: 9,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 12,
-                },
-                condition: "null",
-                first: 10,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 13,
-                },
-                condition: "wait 10",
-                first: 11,
-                count: 1,
-            },
+            [0, 4, 0, 2],
+            [0, 0, 2, 0],
+            [0, 6, 2, 2],
+            [0, 7, 4, 1],
+            [0, 8, 5, 1],
+            [0, 9, 6, 1],
+            [0, 10, 7, 2],
+            [0, 11, 9, 1],
+            [0, 12, 10, 1],
+            [0, 13, 11, 1],
         ],
+        conditions: runtime::TextList::new(
+            concat![
+                "bumper OR wait 10min", "rendezvous robot2 AND rendezvous robot3",
+                "null", "wait 2", "wait 10", "rendezvous robot2 AND rendezvous robot3",
+                "wait 2.5", "null", "wait 10"
+            ],
+            &[20, 20, 59, 63, 69, 76, 115, 123, 127, 134],
+        ),
         operands: &[
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 600",
-                written: "wait 10min",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "rendezvous robot2",
-                written: "rendezvous robot2",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "rendezvous robot3",
-                written: "rendezvous robot3",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "null",
-                written: "null",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 2",
-                written: "wait 2",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 10",
-                written: "wait 10",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "rendezvous robot2",
-                written: "rendezvous robot2",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "rendezvous robot3",
-                written: "rendezvous robot3",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 2.5",
-                written: "wait 2.5",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 11,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "null",
-                written: "null",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 12,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 10",
-                written: "wait 10",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 13,
-                },
-                values: &[],
-            },
+            [0, 4, 0, 0],
+            [0, 4, 0, 0],
+            [0, 6, 0, 0],
+            [0, 6, 0, 0],
+            [0, 7, 0, 0],
+            [0, 8, 0, 0],
+            [0, 9, 0, 0],
+            [0, 10, 0, 0],
+            [0, 10, 0, 0],
+            [0, 11, 0, 0],
+            [0, 12, 0, 0],
+            [0, 13, 0, 0],
         ],
+        texts: runtime::TextList::new(
+            concat![
+                "bumper", "wait 600", "rendezvous robot2", "rendezvous robot3", "null",
+                "wait 2", "wait 10", "rendezvous robot2", "rendezvous robot3",
+                "wait 2.5", "null", "wait 10"
+            ],
+            &[6, 14, 31, 48, 52, 58, 65, 82, 99, 107, 111, 118],
+        ),
+        written: runtime::TextList::new(
+            concat![
+                "bumper", "wait 10min", "rendezvous robot2", "rendezvous robot3", "null",
+                "wait 2", "wait 10", "rendezvous robot2", "rendezvous robot3",
+                "wait 2.5", "null", "wait 10"
+            ],
+            &[6, 16, 33, 50, 54, 60, 67, 84, 101, 109, 113, 120],
+        ),
+        values: &[],
     };
 }

@@ -159,22 +159,18 @@ mod machine {
             &SOURCE
         }
         fn law(&self, atom: u32) -> &str {
-            text(LAWS, atom)
+            LAWS.text(atom)
         }
         fn condition(&self, scope: u32) -> &str {
-            text(CONDITIONS, scope)
+            CONDITIONS.text(scope)
         }
         fn name(&self, scope: u32) -> &str {
-            text(NAMES, scope)
+            NAMES.text(scope)
         }
     }
 
     /// The plan's cursor, with a place for each level of scopes and for each level of loops.
     type At = Cursor<[Nanos; 3], [u64; 1]>;
-    fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-        texts.get(index as usize).copied().unwrap_or("")
-    }
-
     /// Explore (wait 120).
     fn explore(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if cursor.since(0u16, t) >= Nanos(120000000000) {
@@ -219,116 +215,50 @@ mod machine {
         termination: 4,
     };
     /// The quark text of each atom's law.
-    const LAWS: &[&str] = &["go 20 0", "go -15 0", "turn 110"];
+    const LAWS: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["go 20 0", "go -15 0", "turn 110"],
+        &[7, 15, 23],
+    );
     /// The condition text of each bracket; empty for a loop.
-    const CONDITIONS: &[&str] = &["wait 120", "", "bumper", "wait 8", "wait 2", "null"];
+    const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["wait 120", "bumper", "wait 8", "wait 2", "null"],
+        &[8, 8, 14, 20, 26, 30],
+    );
     /// The name of each bracket; empty for an atom and a loop.
-    const NAMES: &[&str] = &["Explore", "", "", "Retreat", "", ""];
+    const NAMES: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["Explore", "Retreat"],
+        &[7, 7, 7, 14, 14, 14],
+    );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["retreat.mdle"],
         brackets: &[
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                condition: "wait 2min",
-                first: 0,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 0,
-                },
-                condition: "",
-                first: 1,
-                count: 0,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                condition: "bumper",
-                first: 1,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                condition: "wait 8s",
-                first: 2,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                condition: "wait 2s",
-                first: 3,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                condition: "null",
-                first: 4,
-                count: 1,
-            },
+            [0, 4, 0, 1],
+            [0, 0, 1, 0],
+            [0, 6, 1, 1],
+            [0, 7, 2, 1],
+            [0, 9, 3, 1],
+            [0, 10, 4, 1],
         ],
+        conditions: runtime::TextList::new(
+            concat!["wait 2min", "bumper", "wait 8s", "wait 2s", "null"],
+            &[9, 9, 15, 22, 29, 33],
+        ),
         operands: &[
-            runtime::OperandWords {
-                text: "wait 120",
-                written: "wait 2min",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 6,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 8",
-                written: "wait 8s",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 2",
-                written: "wait 2s",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 9,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "null",
-                written: "null",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 10,
-                },
-                values: &[],
-            },
+            [0, 4, 0, 0],
+            [0, 6, 0, 0],
+            [0, 7, 0, 0],
+            [0, 9, 0, 0],
+            [0, 10, 0, 0],
         ],
+        texts: runtime::TextList::new(
+            concat!["wait 120", "bumper", "wait 8", "wait 2", "null"],
+            &[8, 14, 20, 26, 30],
+        ),
+        written: runtime::TextList::new(
+            concat!["wait 2min", "bumper", "wait 8s", "wait 2s", "null"],
+            &[9, 15, 22, 29, 33],
+        ),
+        values: &[],
     };
 }

@@ -407,344 +407,94 @@ mod machine {
         termination: 14,
     };
     /// The quark text of each atom's law.
-    const LAWS: &[&str] = &[
-        "goAvoid 90 40 20",
-        "go 0 0.36",
-        "align 7 9",
-        "goAvoid 0 40 20",
-        "go 0 0.36",
-        "align 3 5",
-        "goAvoid 270 40 20",
-        "goAvoid 270 40 20",
-        "goAvoid 90 40 20",
-        "go 0 0.36",
-        "align 11 13",
-        "goAvoid 180 40 20",
-        "rotate 90",
-    ];
+    const LAWS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "goAvoid 90 40 20", "go 0 0.36", "align 7 9", "goAvoid 0 40 20", "go 0 0.36",
+            "align 3 5", "goAvoid 270 40 20", "goAvoid 270 40 20", "goAvoid 90 40 20",
+            "go 0 0.36", "align 11 13", "goAvoid 180 40 20", "rotate 90"
+        ],
+        &[16, 25, 34, 49, 58, 67, 84, 101, 117, 126, 137, 154, 163],
+    );
     /// The condition text of each bracket; empty for a loop.
-    const CONDITIONS: &[&str] = &[
-        "null",
-        "bumper",
-        "atIsection 0100",
-        "atIsection 0010",
-        "wait inf",
-        "atIsection 1000",
-        "atIsection 0100",
-        "wait inf",
-        "wait 7",
-        "atIsection 1000",
-        "bumper",
-        "atIsection 1001",
-        "atIsection 0011",
-        "wait inf",
-        "atIsection 0100",
-        "wait 10",
-    ];
+    const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "null", "bumper", "atIsection 0100", "atIsection 0010", "wait inf",
+            "atIsection 1000", "atIsection 0100", "wait inf", "wait 7",
+            "atIsection 1000", "bumper", "atIsection 1001", "atIsection 0011",
+            "wait inf", "atIsection 0100", "wait 10"
+        ],
+        &[4, 10, 25, 40, 48, 63, 78, 86, 92, 107, 113, 128, 143, 151, 166, 173],
+    );
     /// The name of each bracket; empty for an atom and a loop.
-    const NAMES: &[&str] = &[
-        "LabTour",
-        "Lab2ToLab1Plan",
-        "",
-        "",
-        "",
-        "",
-        "",
-        "",
-        "",
-        "",
-        "Lab1ToOfficePlan",
-        "",
-        "",
-        "",
-        "",
-        "",
-    ];
+    const NAMES: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["LabTour", "Lab2ToLab1Plan", "Lab1ToOfficePlan"],
+        &[7, 21, 21, 21, 21, 21, 21, 21, 21, 21, 37, 37, 37, 37, 37, 37],
+    );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["lab_tour.mdle"],
         brackets: &[
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                condition: "",
-                first: 0,
-                count: 0,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 13,
-                },
-                condition: "bumper",
-                first: 0,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 14,
-                },
-                condition: "atIsection 0100",
-                first: 1,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 15,
-                },
-                condition: "atIsection 0010",
-                first: 2,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 16,
-                },
-                condition: "wait inf",
-                first: 3,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 17,
-                },
-                condition: "atIsection 1000",
-                first: 4,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 18,
-                },
-                condition: "atIsection 0100",
-                first: 5,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 19,
-                },
-                condition: "wait inf",
-                first: 6,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 20,
-                },
-                condition: "wait 7",
-                first: 7,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 21,
-                },
-                condition: "atIsection 1000",
-                first: 8,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 25,
-                },
-                condition: "bumper",
-                first: 9,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 26,
-                },
-                condition: "atIsection 1001",
-                first: 10,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 27,
-                },
-                condition: "atIsection 0011",
-                first: 11,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 28,
-                },
-                condition: "wait inf",
-                first: 12,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 29,
-                },
-                condition: "atIsection 0100",
-                first: 13,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 30,
-                },
-                condition: "wait 10",
-                first: 14,
-                count: 1,
-            },
+            [0, 7, 0, 0],
+            [0, 13, 0, 1],
+            [0, 14, 1, 1],
+            [0, 15, 2, 1],
+            [0, 16, 3, 1],
+            [0, 17, 4, 1],
+            [0, 18, 5, 1],
+            [0, 19, 6, 1],
+            [0, 20, 7, 1],
+            [0, 21, 8, 1],
+            [0, 25, 9, 1],
+            [0, 26, 10, 1],
+            [0, 27, 11, 1],
+            [0, 28, 12, 1],
+            [0, 29, 13, 1],
+            [0, 30, 14, 1],
         ],
+        conditions: runtime::TextList::new(
+            concat![
+                "bumper", "atIsection 0100", "atIsection 0010", "wait inf",
+                "atIsection 1000", "atIsection 0100", "wait inf", "wait 7",
+                "atIsection 1000", "bumper", "atIsection 1001", "atIsection 0011",
+                "wait inf", "atIsection 0100", "wait 10"
+            ],
+            &[0, 6, 21, 36, 44, 59, 74, 82, 88, 103, 109, 124, 139, 147, 162, 169],
+        ),
         operands: &[
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 13,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 0100",
-                written: "atIsection 0100",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 14,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 0010",
-                written: "atIsection 0010",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 15,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait inf",
-                written: "wait inf",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 16,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 1000",
-                written: "atIsection 1000",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 17,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 0100",
-                written: "atIsection 0100",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 18,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait inf",
-                written: "wait inf",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 19,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 7",
-                written: "wait 7",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 20,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 1000",
-                written: "atIsection 1000",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 21,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 25,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 1001",
-                written: "atIsection 1001",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 26,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 0011",
-                written: "atIsection 0011",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 27,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait inf",
-                written: "wait inf",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 28,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "atIsection 0100",
-                written: "atIsection 0100",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 29,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 10",
-                written: "wait 10",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 30,
-                },
-                values: &[],
-            },
+            [0, 13, 0, 0],
+            [0, 14, 0, 0],
+            [0, 15, 0, 0],
+            [0, 16, 0, 0],
+            [0, 17, 0, 0],
+            [0, 18, 0, 0],
+            [0, 19, 0, 0],
+            [0, 20, 0, 0],
+            [0, 21, 0, 0],
+            [0, 25, 0, 0],
+            [0, 26, 0, 0],
+            [0, 27, 0, 0],
+            [0, 28, 0, 0],
+            [0, 29, 0, 0],
+            [0, 30, 0, 0],
         ],
+        texts: runtime::TextList::new(
+            concat![
+                "bumper", "atIsection 0100", "atIsection 0010", "wait inf",
+                "atIsection 1000", "atIsection 0100", "wait inf", "wait 7",
+                "atIsection 1000", "bumper", "atIsection 1001", "atIsection 0011",
+                "wait inf", "atIsection 0100", "wait 10"
+            ],
+            &[6, 21, 36, 44, 59, 74, 82, 88, 103, 109, 124, 139, 147, 162, 169],
+        ),
+        written: runtime::TextList::new(
+            concat![
+                "bumper", "atIsection 0100", "atIsection 0010", "wait inf",
+                "atIsection 1000", "atIsection 0100", "wait inf", "wait 7",
+                "atIsection 1000", "bumper", "atIsection 1001", "atIsection 0011",
+                "wait inf", "atIsection 0100", "wait 10"
+            ],
+            &[6, 21, 36, 44, 59, 74, 82, 88, 103, 109, 124, 139, 147, 162, 169],
+        ),
+        values: &[],
     };
 }

@@ -127,22 +127,18 @@ mod machine {
             &SOURCE
         }
         fn law(&self, atom: u32) -> &str {
-            text(LAWS, atom)
+            LAWS.text(atom)
         }
         fn condition(&self, scope: u32) -> &str {
-            text(CONDITIONS, scope)
+            CONDITIONS.text(scope)
         }
         fn name(&self, scope: u32) -> &str {
-            text(NAMES, scope)
+            NAMES.text(scope)
         }
     }
 
     /// The plan's cursor, with a place for each level of scopes and for each level of loops.
     type At = Cursor<[Nanos; 2], [u64; 1]>;
-    fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-        texts.get(index as usize).copied().unwrap_or("")
-    }
-
     /// Sentry (bumper OR wait 3600).
     fn sentry(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y)
@@ -180,89 +176,37 @@ mod machine {
         termination: 3,
     };
     /// The quark text of each atom's law.
-    const LAWS: &[&str] = &["turn 45", "stop"];
+    const LAWS: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["turn 45", "stop"],
+        &[7, 11],
+    );
     /// The condition text of each bracket; empty for a loop.
-    const CONDITIONS: &[&str] = &["bumper OR wait 3600", "", "null", "wait 2"];
+    const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["bumper OR wait 3600", "null", "wait 2"],
+        &[19, 19, 23, 29],
+    );
     /// The name of each bracket; empty for an atom and a loop.
-    const NAMES: &[&str] = &["Sentry", "", "", ""];
+    const NAMES: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["Sentry"],
+        &[6, 6, 6, 6],
+    );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["sentry.mdle"],
-        brackets: &[
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                condition: "bumper OR wait 1h",
-                first: 0,
-                count: 2,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 0,
-                },
-                condition: "",
-                first: 2,
-                count: 0,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                condition: "null",
-                first: 2,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                condition: "wait 2s",
-                first: 3,
-                count: 1,
-            },
-        ],
-        operands: &[
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 3600",
-                written: "wait 1h",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 4,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "null",
-                written: "null",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                values: &[],
-            },
-            runtime::OperandWords {
-                text: "wait 2",
-                written: "wait 2s",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 8,
-                },
-                values: &[],
-            },
-        ],
+        brackets: &[[0, 4, 0, 2], [0, 0, 2, 0], [0, 7, 2, 1], [0, 8, 3, 1]],
+        conditions: runtime::TextList::new(
+            concat!["bumper OR wait 1h", "null", "wait 2s"],
+            &[17, 17, 21, 28],
+        ),
+        operands: &[[0, 4, 0, 0], [0, 4, 0, 0], [0, 7, 0, 0], [0, 8, 0, 0]],
+        texts: runtime::TextList::new(
+            concat!["bumper", "wait 3600", "null", "wait 2"],
+            &[6, 15, 19, 25],
+        ),
+        written: runtime::TextList::new(
+            concat!["bumper", "wait 1h", "null", "wait 2s"],
+            &[6, 13, 17, 24],
+        ),
+        values: &[],
     };
 }

@@ -174,22 +174,18 @@ mod machine {
             &SOURCE
         }
         fn law(&self, atom: u32) -> &str {
-            text(LAWS, atom)
+            LAWS.text(atom)
         }
         fn condition(&self, scope: u32) -> &str {
-            text(CONDITIONS, scope)
+            CONDITIONS.text(scope)
         }
         fn name(&self, scope: u32) -> &str {
-            text(NAMES, scope)
+            NAMES.text(scope)
         }
     }
 
     /// The plan's cursor, with a place for each level of scopes and for each level of loops.
     type At = Cursor<[Nanos; 1], [u64; 1]>;
-    fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-        texts.get(index as usize).copied().unwrap_or("")
-    }
-
     /// WallFollowing (bumper OR wait 60).
     fn wall_following(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y)
@@ -275,164 +271,91 @@ mod machine {
         termination: 4,
     };
     /// The quark text of each atom's law.
-    const LAWS: &[&str] = &[
-        "go 0 -0.5235987755982988",
-        "go 20 0.3490658503988659",
-        "go 20 -0.3490658503988659",
-    ];
+    const LAWS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "go 0 -0.5235987755982988", "go 20 0.3490658503988659",
+            "go 20 -0.3490658503988659"
+        ],
+        &[24, 48, 73],
+    );
     /// The condition text of each bracket; empty for a loop.
-    const CONDITIONS: &[&str] = &[
-        "bumper OR wait 60",
-        "",
-        "NOT r0 < 0.7",
-        "r2 < 1 OR r0 < 0.7",
-        "NOT r2 < 1 OR r0 < 0.7",
-    ];
+    const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
+        concat![
+            "bumper OR wait 60", "NOT r0 < 0.7", "r2 < 1 OR r0 < 0.7",
+            "NOT r2 < 1 OR r0 < 0.7"
+        ],
+        &[17, 17, 29, 47, 69],
+    );
     /// The name of each bracket; empty for an atom and a loop.
-    const NAMES: &[&str] = &["WallFollowing", "", "", "", ""];
+    const NAMES: runtime::TextList<'static> = runtime::TextList::new(
+        concat!["WallFollowing"],
+        &[13, 13, 13, 13, 13],
+    );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["wall_following.mdle"],
         brackets: &[
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                condition: "bumper OR wait 60s",
-                first: 0,
-                count: 2,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 0,
-                },
-                condition: "",
-                first: 2,
-                count: 0,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 11,
-                },
-                condition: "NOT r0 < 70cm",
-                first: 2,
-                count: 1,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 12,
-                },
-                condition: "r2 < 1m OR r0 < 70cm",
-                first: 3,
-                count: 2,
-            },
-            runtime::BracketWords {
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 13,
-                },
-                condition: "NOT r2 < 1m OR r0 < 70cm",
-                first: 5,
-                count: 2,
-            },
+            [0, 7, 0, 2],
+            [0, 0, 2, 0],
+            [0, 11, 2, 1],
+            [0, 12, 3, 2],
+            [0, 13, 5, 2],
         ],
+        conditions: runtime::TextList::new(
+            concat![
+                "bumper OR wait 60s", "NOT r0 < 70cm", "r2 < 1m OR r0 < 70cm",
+                "NOT r2 < 1m OR r0 < 70cm"
+            ],
+            &[18, 18, 31, 51, 75],
+        ),
         operands: &[
-            runtime::OperandWords {
-                text: "bumper",
-                written: "bumper",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                values: &[],
+            [0, 7, 0, 0],
+            [0, 7, 0, 0],
+            [0, 11, 0, 1],
+            [0, 12, 1, 1],
+            [0, 12, 2, 1],
+            [0, 13, 3, 1],
+            [0, 13, 4, 1],
+        ],
+        texts: runtime::TextList::new(
+            concat![
+                "bumper", "wait 60", "NOT r0 < 0.7", "r2 < 1", "r0 < 0.7", "NOT r2 < 1",
+                "r0 < 0.7"
+            ],
+            &[6, 13, 25, 31, 39, 49, 57],
+        ),
+        written: runtime::TextList::new(
+            concat![
+                "bumper", "wait 60s", "NOT r0 < 70cm", "r2 < 1m", "r0 < 70cm",
+                "NOT r2 < 1m", "r0 < 70cm"
+            ],
+            &[6, 14, 27, 34, 43, 54, 63],
+        ),
+        values: &[
+            runtime::ValueWords {
+                after: 6,
+                unit: "m",
+                scale: 1.0,
             },
-            runtime::OperandWords {
-                text: "wait 60",
-                written: "wait 60s",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 7,
-                },
-                values: &[],
+            runtime::ValueWords {
+                after: 2,
+                unit: "m",
+                scale: 1.0,
             },
-            runtime::OperandWords {
-                text: "NOT r0 < 0.7",
-                written: "NOT r0 < 70cm",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 11,
-                },
-                values: &[
-                    runtime::ValueWords {
-                        after: 6,
-                        unit: "m",
-                        scale: 1.0,
-                    },
-                ],
+            runtime::ValueWords {
+                after: 2,
+                unit: "m",
+                scale: 1.0,
             },
-            runtime::OperandWords {
-                text: "r2 < 1",
-                written: "r2 < 1m",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 12,
-                },
-                values: &[
-                    runtime::ValueWords {
-                        after: 2,
-                        unit: "m",
-                        scale: 1.0,
-                    },
-                ],
+            runtime::ValueWords {
+                after: 6,
+                unit: "m",
+                scale: 1.0,
             },
-            runtime::OperandWords {
-                text: "r0 < 0.7",
-                written: "r0 < 70cm",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 12,
-                },
-                values: &[
-                    runtime::ValueWords {
-                        after: 2,
-                        unit: "m",
-                        scale: 1.0,
-                    },
-                ],
-            },
-            runtime::OperandWords {
-                text: "NOT r2 < 1",
-                written: "NOT r2 < 1m",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 13,
-                },
-                values: &[
-                    runtime::ValueWords {
-                        after: 6,
-                        unit: "m",
-                        scale: 1.0,
-                    },
-                ],
-            },
-            runtime::OperandWords {
-                text: "r0 < 0.7",
-                written: "r0 < 70cm",
-                at: runtime::SourceLine {
-                    file: 0,
-                    line: 13,
-                },
-                values: &[
-                    runtime::ValueWords {
-                        after: 2,
-                        unit: "m",
-                        scale: 1.0,
-                    },
-                ],
+            runtime::ValueWords {
+                after: 2,
+                unit: "m",
+                scale: 1.0,
             },
         ],
     };

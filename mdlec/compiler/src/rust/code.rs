@@ -139,18 +139,14 @@ impl Meaning<'_> {
                     OPERANDS.fired(FSM, cursor, scope, y, t, tell);
                 }
                 fn source(&self) -> &dyn runtime::Words { &SOURCE }
-                fn law(&self, atom: u32) -> &str { text(LAWS, atom) }
-                fn condition(&self, scope: u32) -> &str { text(CONDITIONS, scope) }
-                fn name(&self, scope: u32) -> &str { text(NAMES, scope) }
+                fn law(&self, atom: u32) -> &str { LAWS.text(atom) }
+                fn condition(&self, scope: u32) -> &str { CONDITIONS.text(scope) }
+                fn name(&self, scope: u32) -> &str { NAMES.text(scope) }
                 #paths
             }
 
             #[doc = " The plan's cursor, with a place for each level of scopes and for each level of loops."]
             type At = Cursor<#entered, [u64; #slots]>;
-
-            fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-                texts.get(index as usize).copied().unwrap_or("")
-            }
         }
     }
 

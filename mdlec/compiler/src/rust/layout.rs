@@ -15,7 +15,7 @@ const STAND_IN: &str =
     "the_elements_of_a_long_list_which_are_laid_out_by_themselves_and_then_written_where_this_very_long_name_stands_";
 
 /// Returns the text of a file, with an empty line after each item of it and of its module. The elements of a long list
-/// are below each other; no such list is of numbers alone, which would fill lines.
+/// are below each other; numbers fill lines.
 pub(super) fn laid_out(file: TokenStream) -> String {
     let mut lists = Vec::new();
     let text = printed(shortened(file, &mut lists));
@@ -23,7 +23,7 @@ pub(super) fn laid_out(file: TokenStream) -> String {
     let mut lines = text.lines().peekable();
     while let Some(line) = lines.next() {
         match list(line).and_then(|number| lists.get_mut(number)) {
-            Some(pieces) => mem::take(pieces).into_iter().for_each(|piece| write_elements(piece, line, &mut spaced)),
+            Some(pieces) => write_list(mem::take(pieces), line, &mut spaced),
             None => write_line(line, &mut spaced),
         }
         let ends_item = matches!(line, "}" | "    }");
@@ -78,6 +78,37 @@ fn stand_in(number: usize) -> TokenStream {
 /// Returns the number of the list whose placeholder is on a line.
 fn list(line: &str) -> Option<usize> {
     line.trim_start().strip_prefix(STAND_IN)?.strip_suffix(',')?.parse().ok()
+}
+
+/// Writes the elements of a list in the place of a placeholder with this line.
+fn write_list(pieces: Vec<TokenStream>, line: &str, text: &mut String) {
+    let indent = &line[..line.len() - line.trim_start().len()];
+    match pieces.iter().map(numbers).collect::<Option<Vec<_>>>() {
+        Some(pieces) => write_numbers(&pieces.concat(), indent, text),
+        None => pieces.into_iter().for_each(|piece| write_elements(piece, line, text)),
+    }
+}
+
+/// The elements, if all are numbers.
+fn numbers(elements: &TokenStream) -> Option<Vec<String>> {
+    literals(elements.clone()).filter(|numbers| !numbers.iter().any(|number| number.starts_with('"')))
+}
+
+/// Writes as many numbers in each line as fit.
+fn write_numbers(numbers: &[String], indent: &str, text: &mut String) {
+    let mut line = indent.to_owned();
+    for number in numbers {
+        let is_first = line.len() == indent.len();
+        if !is_first && line.len() + " ,".len() + number.len() > WIDTH {
+            write_line(&line, text);
+            line.truncate(indent.len());
+        } else if !is_first {
+            line.push(' ');
+        }
+        line += number;
+        line.push(',');
+    }
+    write_line(&line, text);
 }
 
 /// Writes elements as they are laid out in the place of a placeholder with this line.
@@ -165,7 +196,15 @@ mod tests {
     fn long_lists_look_as_if_they_were_laid_out_at_once() {
         let number = |number: usize| Literal::usize_unsuffixed(number * number);
         let text = |number: usize| format!("number \"{number}\"\n");
-        let elements: [&dyn Fn(usize) -> TokenStream; 6] = [
+        let elements: [&dyn Fn(usize) -> TokenStream; 8] = [
+            &|i| {
+                let number = number(i);
+                quote!(#number)
+            },
+            &|i| {
+                let number = number(i);
+                quote!([0, #number, 7])
+            },
             &|i| {
                 let number = number(i);
                 quote!(Bracket::scope(#number, 1, 2))

@@ -16,6 +16,7 @@ mod scopes;
 mod signatures;
 mod source;
 mod tables;
+mod texts;
 
 use mdle_runtime::Printable;
 use proc_macro2::TokenStream;

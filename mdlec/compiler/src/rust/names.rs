@@ -30,8 +30,7 @@ const BOUND: &[&str] = &[
 const CONSTANTS: &[&str] = &["FSM", "LAWS", "CONDITIONS", "NAMES", "OPERANDS", "SOURCE"];
 /// Names of an emitted plan's functions, arguments and variables, which would hide another function, and the keyword
 /// that syn does not know yet.
-const FUNCTIONS: &[&str] =
-    &["text", "texts", "index", "gen", "cursor", "y", "t", "tell", "law", "atom", "begin", "scope"];
+const FUNCTIONS: &[&str] = &["gen", "cursor", "y", "t", "tell", "law", "atom", "begin", "scope"];
 
 /// The type of a plan: its name in camel case.
 #[must_use]

@@ -5,42 +5,45 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::arguments::number;
-use crate::fsm::{BracketText, OperandText, PlanWords};
+use super::texts::text_list;
+use crate::fsm::PlanWords;
 
 /// Emits `const SOURCE`: the texts of each bracket and of each operand, for reports.
 pub(super) fn source(words: &PlanWords) -> TokenStream {
     let PlanWords { files, elements, operands } = words;
-    let brackets = elements.iter().map(bracket);
-    let operands = operands.iter().map(operand);
+    let brackets = elements.iter().map(|bracket| row(bracket.at, bracket.first, bracket.count));
+    let conditions = text_list(elements.iter().map(|bracket| &*bracket.condition));
+    let rows = operands.iter().scan(0_u32, |first, operand| {
+        let count = u32::try_from(operand.values.len()).unwrap_or(u32::MAX);
+        let row = row(operand.at, *first, count);
+        *first = first.saturating_add(count);
+        Some(row)
+    });
+    let texts = text_list(operands.iter().map(|operand| &*operand.text));
+    let written = text_list(operands.iter().map(|operand| &*operand.written));
+    let values = operands.iter().flat_map(|operand| &operand.values).map(value);
     quote! {
         #[doc = " The words and lines of the plan's text."]
         const SOURCE: runtime::Source<'static> = runtime::Source {
             files: &[#(#files),*],
             brackets: &[#(#brackets),*],
-            operands: &[#(#operands),*],
+            conditions: #conditions,
+            operands: &[#(#rows),*],
+            texts: #texts,
+            written: #written,
+            values: &[#(#values),*],
         };
     }
 }
 
-/// Emits `runtime::BracketWords { at: …, condition: "bumper OR wait 10min", first: 0, count: 2 }`.
-fn bracket(BracketText { at, condition, first, count }: &BracketText) -> TokenStream {
-    let at = line(*at);
-    let [first, count] = [*first, *count].map(Literal::u32_unsuffixed);
-    quote!(runtime::BracketWords { at: #at, condition: #condition, first: #first, count: #count })
+/// Emits `[0, 7, 1, 2]`: file, line, and the first and the number of the operands or values.
+fn row(SourceLine { file, line }: SourceLine, first: u32, count: u32) -> TokenStream {
+    let numbers = [u32::from(file), line, first, count].map(Literal::u32_unsuffixed);
+    quote!([#(#numbers),*])
 }
 
-/// Emits `runtime::OperandWords { text: "r1 < 0.4", written: "r1 < 40cm", at: …, values: &[…] }`.
-fn operand(OperandText { text, written, at, values }: &OperandText) -> TokenStream {
-    let at = line(*at);
-    let values = values.iter().map(|ValueWords { after, unit, scale }| {
-        let (after, scale) = (Literal::u32_unsuffixed(*after), number(*scale));
-        quote!(runtime::ValueWords { after: #after, unit: #unit, scale: #scale })
-    });
-    quote!(runtime::OperandWords { text: #text, written: #written, at: #at, values: &[#(#values),*] })
-}
-
-/// Emits `runtime::SourceLine { file: 0, line: 7 }`.
-fn line(SourceLine { file, line }: SourceLine) -> TokenStream {
-    let (file, line) = (Literal::u16_unsuffixed(file), Literal::u32_unsuffixed(line));
-    quote!(runtime::SourceLine { file: #file, line: #line })
+/// Emits `runtime::ValueWords { after: 2, unit: "cm", scale: 0.01 }`.
+fn value(ValueWords { after, unit, scale }: &ValueWords<'_>) -> TokenStream {
+    let (after, scale) = (Literal::u32_unsuffixed(*after), number(*scale));
+    quote!(runtime::ValueWords { after: #after, unit: #unit, scale: #scale })
 }

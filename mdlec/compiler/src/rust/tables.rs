@@ -5,6 +5,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::arguments::angle;
+use super::texts::text_list;
 use crate::alphabet::Alphabet;
 use crate::fsm::{self, Element, ElementKind, Machine};
 
@@ -17,9 +18,9 @@ pub(super) fn tables(machine: &Machine) -> TokenStream {
         quote!(Atom::new(#scope, #state))
     });
     let termination = Literal::u64_unsuffixed(machine.states());
-    let laws = machine.atoms().map(|atom| &atom.law().text);
-    let conditions = machine.elements().map(Element::condition_text);
-    let names = machine.elements().map(Element::name);
+    let laws = text_list(machine.atoms().map(|atom| &*atom.law().text));
+    let conditions = text_list(machine.elements().map(Element::condition_text));
+    let names = text_list(machine.elements().map(Element::name));
     let frames = frames(machine);
     quote! {
         #[doc = " Scopes and loops in pre-order, the atoms as written, the termination state."]
@@ -30,13 +31,13 @@ pub(super) fn tables(machine: &Machine) -> TokenStream {
         };
 
         #[doc = " The quark text of each atom's law."]
-        const LAWS: &[&str] = &[#(#laws),*];
+        const LAWS: runtime::TextList<'static> = #laws;
 
         #[doc = " The condition text of each bracket; empty for a loop."]
-        const CONDITIONS: &[&str] = &[#(#conditions),*];
+        const CONDITIONS: runtime::TextList<'static> = #conditions;
 
         #[doc = " The name of each bracket; empty for an atom and a loop."]
-        const NAMES: &[&str] = &[#(#names),*];
+        const NAMES: runtime::TextList<'static> = #names;
 
         #frames
     }
