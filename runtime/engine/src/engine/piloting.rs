@@ -1,20 +1,21 @@
-//! The engine as the pilot of a run: in each turn the plan and the modules, then the turn break.
+//! The engine of a run: its plan and its modules, made, loaded and replaced.
 
-use std::time::{Duration, Instant};
+mod turn;
+
+use std::time::Duration;
 
 use mdle_compiler::load::LoadedPlan;
-use mdle_host::{Moment, Pilot, PilotFault, RunTerms, Time, Transitions, claim_for_worker};
+use mdle_host::{RunTerms, Time, claim_for_worker};
 use mdle_record::Change;
-use mdle_runtime::{Machine, ModuleRead, Nanos, Output as _, Plan as _, Turn};
+use mdle_runtime::ModuleRead;
 
-use super::event::Event;
 use super::loading::{Loading, NewModule};
 use super::modules::{Modules, Service};
 use crate::fork::Threads;
 use crate::library::Library;
 use crate::link::StateLink;
 use crate::module::{Candidate, Declare, PLAN, Refusal};
-use crate::plans::{EngineAlphabet, NoTrial, PlanTurn, Plans, reads};
+use crate::plans::{EngineAlphabet, NoTrial, Plans, reads};
 use crate::recorder::Recorder;
 use crate::replay::{History, Repeats};
 
@@ -243,166 +244,5 @@ impl<A: EngineAlphabet> Engine<A> {
         if let Err(refusal) = candidate.and_then(|candidate| self.modules.load(candidate)) {
             self.messages.push(format!("error: {refusal}"));
         }
-    }
-
-    /// Takes the plan's turn; a plan on trial that panicked or hangs is rolled back.
-    fn land(&mut self, t: Nanos, is_new: bool, transitions: &mut Transitions) -> Result<Turn<A::Input>, PilotFault> {
-        if self.repeats.as_ref().is_some_and(|repeats| !repeats.lands()) {
-            return Ok(Turn::Cut);
-        }
-        let was_away = !is_new && self.plans.is_late();
-        match self.plans.land(t, transitions) {
-            PlanTurn::Made(turn) => Ok(turn),
-            PlanTurn::Late => {
-                let progress = match (is_new, self.plans.is_late()) {
-                    (true, true) => Some(Change::Late),
-                    (true, false) => Some(Change::Skipped),
-                    (false, false) if was_away => Some(Change::Back),
-                    // It is not back yet, or waits for what it reads.
-                    (false, _) => None,
-                };
-                if let Some(history) = &mut self.history {
-                    progress.into_iter().for_each(|progress| history.note(progress));
-                }
-                Ok(Turn::Cut)
-            }
-            PlanTurn::Panicked(message) => {
-                let sentence = format!("its code panicked, which is a bug: {message}");
-                self.ends_trial(&sentence).map(|()| Turn::Cut).map_err(|_| PilotFault::Panicked(message))
-            }
-        }
-    }
-
-    /// Rolls back for a reason that the operator has to be told.
-    fn ends_trial(&mut self, why: &str) -> Result<(), NoTrial> {
-        let name = self.plans.name().to_owned();
-        self.go_back(why)?;
-        self.messages.push(format!("warning: the plan {name} on trial is ended: {why}"));
-        Ok(())
-    }
-
-    /// Makes the turn break, as far as it follows from the turn.
-    fn turn_break(&mut self) -> Result<(), PilotFault> {
-        let mut is_given_up = false;
-        for event in self.modules.events() {
-            match event {
-                Event::GivenUp(name) if &**name == PLAN => is_given_up = true,
-                Event::Loaded(_) | Event::Unloaded(_) | Event::Started(_) | Event::Stopped(_) => {}
-                Event::Failed(..) | Event::Late(_) | Event::GivenUp(_) | Event::Ended(_) | Event::NotANumber(_) => {
-                    self.messages.push(format!("warning: {event}"));
-                }
-            }
-        }
-        if is_given_up {
-            let why = "it has not ended its turn";
-            if self.ends_trial(why).is_err() {
-                return Err(PilotFault::Stopped("the plan has not ended its turn".to_owned()));
-            }
-            self.plans.note(Change::RolledBack(why.to_owned()));
-        }
-        Ok(())
-    }
-}
-
-impl<A: EngineAlphabet> Pilot for Engine<A> {
-    type Plan = LoadedPlan<A>;
-
-    fn complete(&mut self, y: &mut A::Output, now: Nanos) {
-        if let Some(history) = &mut self.history {
-            let reads = self.plans.reads().chain(self.rules_read.unwrap_or_default());
-            let reads: Vec<_> = reads.collect();
-            history.begin(self.plans.take_changes(), reads.into_iter(), self.modules.board());
-        }
-        let Some(rules_read) = self.rules_read else { return };
-        let board = self.modules.board();
-        let oldest = reads::oldest(rules_read.iter().chain(self.plans.driving_reads()), board, now);
-        y.take_published(reads::current(rules_read, board, now).as_old_as(oldest));
-    }
-
-    fn turn(
-        &mut self,
-        Moment { y, t, number }: Moment<'_, A::Output>,
-        transitions: &mut Transitions,
-    ) -> Result<Turn<A::Input>, PilotFault> {
-        let mut complete = y.clone();
-        if let Some(link) = &mut self.link {
-            link.sense(&mut complete, self.plans.robots(), t);
-        }
-        if let Some(recorder) = &self.recorder {
-            recorder.complete(&mut complete);
-        }
-        let published = self.plans.take_off(y, t, self.modules.board()).map_err(PilotFault::Stopped)?;
-        if let Some(published) = published {
-            complete.take_published(published);
-        }
-        let deadline = self.patience.map(|patience| Instant::now() + patience);
-        if self.repeats.as_ref().is_none_or(Repeats::makes_turn) {
-            self.modules.turn(complete, number, t, deadline);
-        }
-        let turn = self.land(t, published.is_some(), transitions)?;
-        if let Some(repeats) = &mut self.repeats {
-            repeats.end_turn();
-        }
-        if let Some(link) = &mut self.link {
-            let plan = self.plans.machine().map(|machine| (self.plans.number().into(), machine));
-            link.tell(y, plan, transitions, t);
-        }
-        if let Some(recorder) = &mut self.recorder {
-            let machine = self.plans.machine();
-            let law = machine.and_then(|machine| machine.atom().map(|atom| machine.plan().law(atom)));
-            self.messages.extend(recorder.turn(y, law, !transitions.is_empty()));
-        }
-        self.modules.settle();
-        self.turn_break()?;
-        self.plans.arm();
-        self.modules.drop_later(self.plans.take_spent());
-        self.modules.plan_reads(self.plans.reads().chain(self.rules_read.unwrap_or_default()));
-        self.modules.prepare();
-        Ok(turn)
-    }
-
-    fn divert(&mut self, plan: LoadedPlan<A>, _: Moment<'_, A::Output>) {
-        let was_late = self.plans.is_late();
-        self.plans.divert(plan);
-        if was_late {
-            self.load_plan_module();
-            self.modules.prepare();
-        }
-    }
-
-    fn plan_number(&self) -> u64 {
-        self.plans.number().into()
-    }
-
-    fn reason(&self) -> &str {
-        self.plans.reason()
-    }
-
-    fn ended_by(&mut self, rule: &str) -> bool {
-        self.ends_trial(&format!("the safety rule {rule} ends it")).is_ok()
-    }
-
-    fn machine(&self) -> Option<&Machine<LoadedPlan<A>>> {
-        self.plans.machine()
-    }
-
-    fn zero(&self) -> Nanos {
-        self.plans.zero()
-    }
-
-    fn messages(&mut self, say: &mut dyn FnMut(&str)) {
-        self.messages.drain(..).for_each(|message| say(&message));
-        if let Some(link) = &mut self.link {
-            link.messages(say);
-        }
-    }
-
-    fn record(&mut self) {
-        self.history = Some(History::default());
-        self.plans.record();
-    }
-
-    fn take_changes(&mut self) -> Vec<Change> {
-        self.history.as_mut().map(History::take).unwrap_or_default()
     }
 }
