@@ -1,0 +1,154 @@
+//! Requests of a front end: to compile, store, load, delete and begin plans, and to take back what is to follow.
+
+use std::io;
+use std::sync::Arc;
+
+use mdle_compiler::load::LoadedPlan;
+use mdle_record::Change;
+use mdle_runtime::Plan as _;
+
+use super::compiler::{Compile, Compiler, Next, Order, PlanSource, Task};
+use super::event::{PlanEvent, When};
+use super::running::{EngineAlphabet, Running};
+use super::stored::{MOST_STORED, StoredPlan};
+use super::{Plans, Spent};
+
+impl<A: EngineAlphabet> Plans<A> {
+    /// Lets plans be loaded and replaced, by texts of which `compile` makes plans on a thread of its own.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn compile_with(&mut self, compile: Box<Compile<A>>) -> io::Result<()> {
+        self.compiler = Some(Compiler::new(compile)?);
+        Ok(())
+    }
+
+    /// Stores a plan under its name; a plan that has the name is replaced, and goes on if it drives. At most
+    /// [`MOST_STORED`] plans are stored.
+    ///
+    /// # Errors
+    /// There are too many: a sentence.
+    pub fn store(&mut self, plan: StoredPlan<A>) -> Result<(), String> {
+        self.store_all(vec![plan])
+    }
+
+    /// Returns the stored plans in the order of their names.
+    pub fn stored(&self) -> impl Iterator<Item = &StoredPlan<A>> {
+        self.stored.iter()
+    }
+
+    /// Deletes a stored plan; if it drives, it goes on.
+    ///
+    /// # Errors
+    /// There is no plan of this name: a sentence.
+    pub fn delete(&mut self, name: &str) -> Result<(), String> {
+        let plan = self.stored.remove(name).ok_or_else(|| self.no_plan(name))?;
+        self.spent.push(Box::new(plan));
+        Ok(())
+    }
+
+    /// Asks for the plans of a text to be stored; returns the number of the request. The answer is
+    /// [`PlanEvent::Stored`] or [`PlanEvent::Refused`] at a later break.
+    pub fn load(&mut self, source: PlanSource) -> u32 {
+        self.order(Task::Compile(source, None))
+    }
+
+    /// Asks for the plan of a text to be stored and to take over; returns the number of the request. The answer is
+    /// [`PlanEvent::Refused`] or [`PlanEvent::Armed`] at a later break, and then [`PlanEvent::Began`]. A request that
+    /// is not compiled when the next one comes is superseded; a plan that is armed and has not begun is replaced.
+    pub fn swap(&mut self, source: PlanSource, when: When) -> u32 {
+        self.order(Task::Compile(source, Some(when)))
+    }
+
+    /// Asks for a stored plan to take over, as [`Plans::swap`] does; returns the number of the request.
+    ///
+    /// # Errors
+    /// There is no plan of this name: a sentence.
+    pub fn run(&mut self, name: &str, when: When) -> Result<u32, String> {
+        let plan = self.stored.get(name).cloned().ok_or_else(|| self.no_plan(name))?;
+        Ok(self.order(Task::Begin(plan, when)))
+    }
+
+    /// Asks for a plan that is loaded already to take over; returns its number. It is armed at once.
+    pub fn replace(&mut self, plan: LoadedPlan<A>, when: When) -> u32 {
+        self.last = self.last.saturating_add(1);
+        let number = self.last;
+        self.arm_plan(number, Next { plan, files: Arc::default(), when });
+        number
+    }
+
+    /// Cancels the request that waits for the compiler, and the plan that is armed. A text that is being compiled is
+    /// not cancelled.
+    pub fn cancel(&mut self) {
+        if self.armed.is_some() {
+            self.note(Change::Cancelled);
+        }
+        self.take_back();
+    }
+
+    /// Takes back what is to follow: see [`Plans::cancel`].
+    pub(super) fn take_back(&mut self) {
+        let waiting = self.compiler.as_ref().and_then(Compiler::take_back);
+        if let Some(order) = waiting {
+            self.events.push(PlanEvent::Cancelled(order.ticket));
+            self.spent.push(Box::new(order));
+        }
+        if let Some((plan, _)) = self.armed.take() {
+            self.events.push(PlanEvent::Cancelled(plan.ticket));
+            self.discard(plan);
+        }
+    }
+
+    fn no_plan(&self, name: &str) -> String {
+        let names = self.stored().map(|plan| &*plan.name);
+        let near = mdle_compiler::alphabet::nearest(name, names);
+        let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+        format!("no plan `{name}` is stored{near}")
+    }
+
+    /// Gives an order to the compiler; returns its number.
+    fn order(&mut self, task: Task<A>) -> u32 {
+        self.last = self.last.saturating_add(1);
+        let ticket = self.last;
+        let given = match &self.compiler {
+            Some(compiler) => compiler.order(Order { ticket, task }),
+            None => Err("this engine has no compiler".to_owned()),
+        };
+        match given {
+            Ok(Some(superseded)) => {
+                self.events.push(PlanEvent::Superseded(superseded.ticket));
+                self.spent.push(Box::new(superseded));
+            }
+            Ok(None) => {}
+            Err(sentence) => self.events.push(PlanEvent::Refused(ticket, sentence)),
+        }
+        ticket
+    }
+
+    pub(super) fn store_all(&mut self, plans: Vec<StoredPlan<A>>) -> Result<(), String> {
+        let (plans, result) = match self.stored.put(plans) {
+            Ok(replaced) => (replaced, Ok(())),
+            Err(refused) => (refused, Err(format!("{MOST_STORED} plans are stored, which is the most: delete one"))),
+        };
+        self.spent.extend(plans.into_iter().map(|plan| Box::new(plan) as Spent));
+        result
+    }
+
+    pub(super) fn arm_plan(&mut self, ticket: u32, next: Next<A>) {
+        let Next { plan, files, when } = next;
+        let missing = plan.paths().iter().find(|path| !self.paths.contains(path));
+        if let Some(path) = missing {
+            let sentence = format!("the plan replays the path `{path}`, which the first plan of the run does not");
+            self.events.push(PlanEvent::Refused(ticket, sentence));
+            return self.discard(Running::new(ticket, plan));
+        }
+        if let Some(changes) = &mut self.changes {
+            changes.armed(&files, plan.name(0), when);
+        }
+        if let Some((old, _)) = self.armed.replace((Running::new(ticket, plan), when)) {
+            self.events.push(PlanEvent::Superseded(old.ticket));
+            self.discard(old);
+        }
+        self.events.push(PlanEvent::Armed(ticket));
+    }
+}
