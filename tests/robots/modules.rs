@@ -10,8 +10,8 @@ use mdle_compiler::compile;
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::load::{self, Loaded, LoadedPlan};
 use mdle_engine::{
-    Background, Declare, Engine, EngineAlphabet, Exchange, Fault, In, Library, Module, Modules, Out, PlanEvent,
-    Relevance, Standing, Turn, When,
+    Background, Declare, Engine, EngineAlphabet, Exchange, Fault, In, Library, Module, ModuleState, Modules, Out,
+    PlanEvent, Relevance, Turn, When,
 };
 use mdle_host::{Moment, Pace, Pilot, PilotFault, Refusal, RunTerms, StopRequest, Time, Transitions};
 use mdle_runtime::{self as runtime, Meters, Nanos, Pose, Radians, Robot, Sensed, Turn as PlanTurn, Twist};
@@ -281,14 +281,14 @@ fn a_plan_that_reads_nothing_new_takes_over_at_once() {
     let mut run = Run::of("{ Stand (wait 60) (Atom (null) stop) }", &followers());
     (0..10).for_each(|_| _ = run.turn().unwrap());
     let standing = |modules: &Modules<Sensed>| modules.names().find(|(name, _)| *name == "heading").unwrap().1;
-    assert_eq!(standing(run.engine.modules()), Standing::Stopped, "nothing reads it");
+    assert_eq!(standing(run.engine.modules()), ModuleState::Stopped, "nothing reads it");
     run.engine.plans_mut().replace(loaded(FOLLOW).plan(), When::Now);
     // It is started for the plan that is to follow, which takes over once it has published.
     let taken = (0..10).position(|_| {
         run.turn().unwrap();
         run.engine.plans().number() == 2
     });
-    assert_eq!((taken, standing(run.engine.modules())), (Some(2), Standing::Active));
+    assert_eq!((taken, standing(run.engine.modules())), (Some(2), ModuleState::Active));
     run.drive();
     assert!(run.distance() < 0.6);
 }

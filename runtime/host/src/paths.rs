@@ -14,7 +14,7 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 use mdle_runtime::{PathStore, Setpoint, StoredPath, Twist};
 
 pub(crate) use record::Recorder;
-use text::{APART, Wrong};
+use text::{APART, TextFault};
 
 use crate::Refusal;
 use crate::files::read_file;
@@ -124,7 +124,7 @@ fn read(folder: Option<&Path>, name: &str, fastest: Twist) -> Result<Vec<Setpoin
 /// A sentence that names the defect of the path and its line.
 pub fn setpoints(file: &str, bytes: &[u8], fastest: Twist) -> Result<Vec<Setpoint>, String> {
     let read = text::utf8(bytes).and_then(|text| text::setpoints(text, fastest));
-    read.map_err(|Wrong { place, what }| match place {
+    read.map_err(|TextFault { place, what }| match place {
         Some((line, column)) => format!("{file}:{line}:{column}: {what}"),
         None => format!("{file}: {what}"),
     })

@@ -16,7 +16,7 @@ pub(crate) struct Loaded<Y> {
     pub(crate) first: usize,
     pub(crate) wires: Wires,
     pub(crate) runs: Runs<Y>,
-    pub(crate) standing: Standing,
+    pub(crate) standing: ModuleState,
     /// `true` while people have stopped it.
     pub(crate) is_held: bool,
 }
@@ -38,9 +38,9 @@ pub(crate) struct Visit {
     pub(crate) ports: Option<Ports>,
 }
 
-/// Standing of a loaded module.
+/// State of a loaded module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Standing {
+pub enum ModuleState {
     /// It makes turns, or exchanges values.
     Active,
     /// It makes no turns for now: people have stopped it, or nothing reads it.
@@ -55,7 +55,7 @@ pub enum Standing {
     Ended,
 }
 
-impl Standing {
+impl ModuleState {
     /// Returns `true` if the module will never make a turn again.
     #[must_use]
     pub fn is_final(self) -> bool {
@@ -71,13 +71,13 @@ impl<Y> Loaded<Y> {
     pub(crate) fn new(candidate: Candidate<Y>, now: Nanos, lives: bool) -> Self {
         let Candidate { name, declared, form } = candidate;
         let (runs, standing) = match form {
-            Form::Registered(module, ports) => (Runs::InTurns(Seat::new(module, ports)), Standing::Stopped),
+            Form::Registered(module, ports) => (Runs::InTurns(Seat::new(module, ports)), ModuleState::Stopped),
             Form::Background(gate) => {
                 if lives {
                     gate.begin();
                 }
                 let due = Nanos(now.0.saturating_add(declared.latency.0));
-                (Runs::InBackground(Visit { gate, due, ports: None }), Standing::Stopped)
+                (Runs::InBackground(Visit { gate, due, ports: None }), ModuleState::Stopped)
             }
         };
         Self { name, declared, first: 0, wires: Wires::new(), runs, standing, is_held: false }
@@ -95,9 +95,9 @@ impl<Y> Loaded<Y> {
     pub(crate) fn queued(&self) -> Option<&Arc<Seat<Y>>> {
         let seat = self.seat()?;
         let is_queued = match self.standing {
-            Standing::Active => true,
-            Standing::Stopped => seat.occupant().is_some_and(|occupant| occupant.task == Task::Stop),
-            Standing::Late(..) | Standing::GivenUp | Standing::Failed | Standing::Ended => false,
+            ModuleState::Active => true,
+            ModuleState::Stopped => seat.occupant().is_some_and(|occupant| occupant.task == Task::Stop),
+            ModuleState::Late(..) | ModuleState::GivenUp | ModuleState::Failed | ModuleState::Ended => false,
         };
         is_queued.then_some(seat)
     }

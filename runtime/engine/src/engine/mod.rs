@@ -10,6 +10,6 @@ mod relevance;
 mod turns;
 
 pub use event::{Arrivals, End, Event};
-pub use loaded::Standing;
+pub use loaded::ModuleState;
 pub use modules::{Modules, Service};
 pub use piloting::Engine;

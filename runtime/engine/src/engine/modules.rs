@@ -8,7 +8,7 @@ use mdle_runtime::{ModuleRead, Nanos};
 
 use super::event::{Arrivals, Event};
 use super::janitor::Janitor;
-use super::loaded::{Loaded, Runs, Standing};
+use super::loaded::{Loaded, ModuleState, Runs};
 use crate::attribute::{AttributeName, Reading, Value};
 use crate::board::Board;
 use crate::fork::{Fork, Threads};
@@ -105,7 +105,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     }
 
     /// Returns the loaded modules, with their standing.
-    pub fn names(&self) -> impl Iterator<Item = (&str, Standing)> {
+    pub fn names(&self) -> impl Iterator<Item = (&str, ModuleState)> {
         self.loaded.iter().map(|module| (&*module.name, module.standing))
     }
 

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use mdle_runtime::{ModuleRead, Nanos};
 
 use super::event::{Arrivals, End, Event};
-use super::loaded::{Loaded, Runs, Standing};
+use super::loaded::{Loaded, ModuleState, Runs};
 use super::modules::{Modules, Service};
 use super::relevance::relevant;
 use crate::fork::{Progress, Task};
@@ -67,7 +67,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         for module in &mut self.loaded {
             let (declared, wires) = (&module.declared, &module.wires);
             match &mut module.runs {
-                Runs::InTurns(seat) if module.standing == Standing::Active => {
+                Runs::InTurns(seat) if module.standing == ModuleState::Active => {
                     if let Some(mut occupant) = seat.occupant() {
                         self.board.hand(declared, wires, &mut occupant.ports);
                     }
@@ -140,18 +140,18 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
             return;
         }
         let Some(mut occupant) = seat.occupant() else { return };
-        if let Standing::Late(..) = standing {
-            *standing = Standing::Active;
+        if let ModuleState::Late(..) = standing {
+            *standing = ModuleState::Active;
             // It may have become irrelevant meanwhile.
             self.has_changed = true;
         }
         if let Some(Fault(sentence)) = occupant.fault.take() {
-            *standing = Standing::Failed;
+            *standing = ModuleState::Failed;
             events.push(Event::Failed(Arc::clone(name), sentence));
             return;
         }
         occupant.task = match (occupant.task, *standing) {
-            (Task::Start, Standing::Active) | (Task::Turn, _) => Task::Turn,
+            (Task::Start, ModuleState::Active) | (Task::Turn, _) => Task::Turn,
             (Task::Start | Task::Stop, _) => Task::Start,
         };
         board.publish(module.first, &mut occupant.ports, turn.1, |_, _| ());
@@ -162,7 +162,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         let Self { board, loaded, events, arrivals, service, turn, .. } = self;
         let Some(module) = loaded.get_mut(number) else { return };
         let Runs::InBackground(visit) = &mut module.runs else { return };
-        if module.standing != Standing::Active || *service == Service::WhenDue && turn.1 < visit.due {
+        if module.standing != ModuleState::Active || *service == Service::WhenDue && turn.1 < visit.due {
             return;
         }
         let is_there = *service == Service::WhenReady || visit.gate.wait_for_offer(PATIENCE);
@@ -208,7 +208,7 @@ impl Arrivals {
     }
 }
 
-impl Standing {
+impl ModuleState {
     /// Notes that a module is late at the break of this turn.
     fn is_late(&mut self, name: &Arc<str>, (number, now): (u64, Nanos)) -> Option<Event> {
         let Self::Late(since, at) = *self else {
@@ -229,18 +229,18 @@ impl<Y> Loaded<Y> {
         let mut occupant = self.seat().and_then(|seat| seat.occupant());
         let task = occupant.as_mut().map(|occupant| &mut occupant.task);
         let (standing, event) = match (self.standing, is_wanted) {
-            (Standing::Stopped, true) => {
+            (ModuleState::Stopped, true) => {
                 if let Some(task) = task {
                     // A module that was not stopped yet goes on.
                     *task = if *task == Task::Stop { Task::Turn } else { Task::Start };
                 }
-                (Standing::Active, Event::Started(Arc::clone(&self.name)))
+                (ModuleState::Active, Event::Started(Arc::clone(&self.name)))
             }
-            (Standing::Active, false) => {
+            (ModuleState::Active, false) => {
                 if let Some(task) = task.filter(|task| **task == Task::Turn) {
                     *task = Task::Stop;
                 }
-                (Standing::Stopped, Event::Stopped(Arc::clone(&self.name)))
+                (ModuleState::Stopped, Event::Stopped(Arc::clone(&self.name)))
             }
             (_, true | false) => return None,
         };
@@ -253,14 +253,14 @@ impl<Y> Loaded<Y> {
     fn ends(&mut self, end: End) -> Event {
         let name = Arc::clone(&self.name);
         let (standing, event) = match end {
-            End::Returned => (Standing::Ended, Event::Ended(name)),
-            End::Failed(sentence) => (Standing::Failed, Event::Failed(name, sentence)),
+            End::Returned => (ModuleState::Ended, Event::Ended(name)),
+            End::Failed(sentence) => (ModuleState::Failed, Event::Failed(name, sentence)),
             End::Panicked(message) => {
-                (Standing::Failed, Event::Failed(name, format!("its code panicked, which is a bug: {message}")))
+                (ModuleState::Failed, Event::Failed(name, format!("its code panicked, which is a bug: {message}")))
             }
             End::GivenUp => {
                 let sentence = format!("it has exchanged no values within {} s", PATIENCE.as_secs());
-                (Standing::GivenUp, Event::Failed(name, sentence))
+                (ModuleState::GivenUp, Event::Failed(name, sentence))
             }
         };
         self.standing = standing;

@@ -8,7 +8,7 @@ use mdle_quantity::Quantity;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Volts};
 
 use crate::attribute::{self, AttributeKind};
-use crate::engine::{Engine, Standing};
+use crate::engine::{Engine, ModuleState};
 use crate::module::{About, PLAN, Refusal};
 use crate::plans::EngineAlphabet;
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
@@ -138,14 +138,14 @@ fn done(result: Result<(), Refusal>) -> Answer {
     }
 }
 
-fn state(standing: Standing) -> &'static str {
+fn state(standing: ModuleState) -> &'static str {
     match standing {
-        Standing::Active => "active",
-        Standing::Stopped => "stopped",
-        Standing::Late(..) => "late",
-        Standing::GivenUp => "given up",
-        Standing::Failed => "failed",
-        Standing::Ended => "ended",
+        ModuleState::Active => "active",
+        ModuleState::Stopped => "stopped",
+        ModuleState::Late(..) => "late",
+        ModuleState::GivenUp => "given up",
+        ModuleState::Failed => "failed",
+        ModuleState::Ended => "ended",
     }
 }
 

@@ -209,14 +209,14 @@ impl Drop for RecorderPart {
 
 /// Carries out orders until there are no more.
 fn write_all(orders: &Receiver<Order>, opened: &Sender<Result<(), String>>, progress: &Arc<Progress>) {
-    let mut record: Option<RecordFile<Counted>> = None;
+    let mut record: Option<RecordFile<CountingFile>> = None;
     for order in orders {
         let written = match order {
             Order::Open(path) => {
                 progress.bytes.store(0, Ordering::Relaxed);
                 let file = created(&path);
                 let _ = opened.send(file.as_ref().map(|_| ()).map_err(Clone::clone));
-                record = file.ok().map(|file| RecordFile::new(Counted { file, progress: Arc::clone(progress) }));
+                record = file.ok().map(|file| RecordFile::new(CountingFile { file, progress: Arc::clone(progress) }));
                 Ok(())
             }
             Order::Write(bytes) => record.as_mut().map_or(Ok(()), |record| record.write_all(&bytes)),
@@ -244,12 +244,12 @@ fn created(path: &Path) -> Result<File, String> {
 }
 
 /// A file whose bytes are counted.
-struct Counted {
+struct CountingFile {
     file: File,
     progress: Arc<Progress>,
 }
 
-impl Write for Counted {
+impl Write for CountingFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let written = self.file.write(bytes)?;
         self.progress.bytes.fetch_add(u64::try_from(written).unwrap_or(u64::MAX), Ordering::Relaxed);

@@ -6,7 +6,7 @@ use mdle_runtime::Nanos;
 
 use super::graph::{Chance, change, hash, load};
 use super::{PERIOD, workers};
-use crate::{Arrivals, Candidate, Fault, Module, Modules, Out, Service, Standing, Threads, Turn};
+use crate::{Arrivals, Candidate, Fault, Module, ModuleState, Modules, Out, Service, Threads, Turn};
 
 /// Number of turns of a run.
 const TURNS: u64 = 10_000;
@@ -106,5 +106,5 @@ fn late_modules_are_late_in_a_replay() {
     let mut replay = make(Modules::replaying(Threads::Sequential, arrivals).unwrap());
     let replayed: Vec<_> = (0..300).map(|number| turn(&mut replay, number, None).0).collect();
     assert_same(&boards, &replayed, "replayed");
-    assert!(replay.names().all(|(_, standing)| standing != Standing::Failed));
+    assert!(replay.names().all(|(_, standing)| standing != ModuleState::Failed));
 }

@@ -8,7 +8,8 @@ use mdle_runtime::Nanos;
 
 use super::{PERIOD, number, turn, workers};
 use crate::{
-    Background, Candidate, Declare, Event, Exchange, Fault, In, Module, Modules, Out, Service, Standing, Threads, Turn,
+    Background, Candidate, Declare, Event, Exchange, Fault, In, Module, ModuleState, Modules, Out, Service, Threads,
+    Turn,
 };
 
 /// A module that counts its turns, and does something else in one of them.
@@ -70,7 +71,7 @@ fn a_module_that_fails_or_panics_makes_no_further_turn() {
         // The turn of the fault publishes nothing.
         let counts = ["fails", "panics", "well"].map(|name| number(&modules, name, "turns"));
         assert_eq!(counts, [Some((3.0, 2)), Some((5.0, 4)), Some((10.0, 9))]);
-        assert_eq!(modules.names().nth(1), Some(("panics", Standing::Failed)));
+        assert_eq!(modules.names().nth(1), Some(("panics", ModuleState::Failed)));
     }
 }
 
@@ -91,7 +92,10 @@ fn a_panic_in_start_or_stop_is_a_fault() {
     let bad = |place| Candidate::registered(place, |_| Bad(place)).unwrap();
     let mut modules = modules(workers(1), [bad("start"), bad("stop")]);
     turn(&mut modules, 0);
-    assert_eq!(modules.names().map(|(_, standing)| standing).collect::<Vec<_>>(), [Standing::Failed, Standing::Active]);
+    assert_eq!(
+        modules.names().map(|(_, standing)| standing).collect::<Vec<_>>(),
+        [ModuleState::Failed, ModuleState::Active]
+    );
     modules.hold("stop", true).unwrap();
     modules.prepare();
     turn(&mut modules, 1);
@@ -191,7 +195,7 @@ fn a_module_that_never_returns_costs_one_turn() {
     modules.load(healthy("first")).unwrap();
     modules.prepare();
     turn(&mut modules, 41);
-    assert_eq!(modules.names().filter(|(_, standing)| *standing == Standing::Active).count(), 3);
+    assert_eq!(modules.names().filter(|(_, standing)| *standing == ModuleState::Active).count(), 3);
     door.open();
 }
 
@@ -207,7 +211,7 @@ fn a_late_module_publishes_when_it_is_done() {
     assert_eq!(published(&modules), Some((3.0, 2)));
     door.open();
     let mut number = 5;
-    while matches!(modules.names().next(), Some(("slow", Standing::Late(3, _)))) {
+    while matches!(modules.names().next(), Some(("slow", ModuleState::Late(3, _)))) {
         turn_until(&mut modules, number);
         std::thread::sleep(Duration::from_millis(1));
         number += 1;

@@ -6,7 +6,7 @@ use mdle_runtime::ModuleRead;
 
 use super::{number, sequential, turn};
 use crate::{
-    Candidate, Event, Fault, In, Module, Modules, Out, Refusal, Relevance, Service, Standing, Threads, Turn, Value,
+    Candidate, Event, Fault, In, Module, ModuleState, Modules, Out, Refusal, Relevance, Service, Threads, Turn, Value,
 };
 
 /// A module that adds one to what it reads.
@@ -202,7 +202,7 @@ fn a_module_stops_and_starts_between_turns() {
     }
     turn(&mut modules, 6);
     assert_eq!(*of_held.lock().unwrap(), "(tt)(t)");
-    assert_eq!(modules.names().collect::<Vec<_>>(), [("held", Standing::Stopped)]);
+    assert_eq!(modules.names().collect::<Vec<_>>(), [("held", ModuleState::Stopped)]);
 }
 
 #[test]

@@ -5,12 +5,12 @@ use std::fmt::Write as _;
 use mdle_runtime::{MetersPerSecond, Nanos, Radians, RadiansPerSecond, Setpoint, Twist};
 
 use super::record::Recorder;
-use super::text::{Wrong, setpoints, utf8};
+use super::text::{TextFault, setpoints, utf8};
 
 const FASTEST: Twist = Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) };
 const HEADER: &str = "time s, heading deg, speed cm/s";
 
-fn read(text: &str) -> Result<Vec<Setpoint>, Wrong> {
+fn read(text: &str) -> Result<Vec<Setpoint>, TextFault> {
     setpoints(text, FASTEST)
 }
 
@@ -34,7 +34,7 @@ fn errors_have_their_line_and_column() {
     let report = |texts: &[String]| {
         let mut report = String::new();
         for text in texts {
-            let Wrong { place, what } = read(text).unwrap_err();
+            let TextFault { place, what } = read(text).unwrap_err();
             let wrong = text.lines().nth(place.map_or(0, |(line, _)| line - 1)).unwrap_or_default();
             writeln!(report, "{wrong}\n  {place:?} {what}").unwrap();
         }
@@ -171,7 +171,7 @@ fn a_damaged_file_is_read_or_has_an_error_in_a_line() {
                 let within = |it: &Setpoint| it.speed.0.abs() <= 1.05 && it.heading.degrees().abs() <= 180.0;
                 assert!(path.iter().all(within), "{path:?}");
             }
-            Err(Wrong { place, what }) => {
+            Err(TextFault { place, what }) => {
                 wrong += 1;
                 let lines = bytes.split(|byte| *byte == b'\n').count();
                 let whole = what.starts_with("there is nothing in it") || what.starts_with("a path needs two rows");

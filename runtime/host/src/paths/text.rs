@@ -30,7 +30,7 @@ const COLUMNS: [Column; 3] = [
 
 /// Error in a path: the place, by line and column from 1, and the message.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Wrong {
+pub(super) struct TextFault {
     pub(super) place: Option<(usize, usize)>,
     pub(super) what: String,
 }
@@ -43,12 +43,12 @@ struct Cell<'t> {
 }
 
 impl Cell<'_> {
-    fn wrong(&self, what: String) -> Wrong {
-        Wrong { place: Some(self.place), what }
+    fn wrong(&self, what: String) -> TextFault {
+        TextFault { place: Some(self.place), what }
     }
 
     /// Returns the number in the cell; `what` names it in messages.
-    fn number(&self, what: &str) -> Result<f64, Wrong> {
+    fn number(&self, what: &str) -> Result<f64, TextFault> {
         match self.text.parse::<f64>() {
             _ if self.text.is_empty() => Err(self.wrong(format!("the {what} is missing"))),
             Ok(number) if number.is_finite() => Ok(number),
@@ -58,31 +58,31 @@ impl Cell<'_> {
 }
 
 /// Returns the bytes of a file as text.
-pub(super) fn utf8(bytes: &[u8]) -> Result<&str, Wrong> {
+pub(super) fn utf8(bytes: &[u8]) -> Result<&str, TextFault> {
     from_utf8(bytes).map_err(|error| {
         let before = String::from_utf8_lossy(bytes.get(..error.valid_up_to()).unwrap_or_default());
         let line = before.matches('\n').count() + 1;
         let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
-        Wrong { place: Some((line, column)), what: "this is not UTF-8; save the file as text in UTF-8".to_owned() }
+        TextFault { place: Some((line, column)), what: "this is not UTF-8; save the file as text in UTF-8".to_owned() }
     })
 }
 
 /// Returns the setpoints in `text`, for a robot that is no faster than `fastest`: the first at time 0, each later than
 /// its predecessor.
-pub(super) fn setpoints(text: &str, fastest: Twist) -> Result<Vec<Setpoint>, Wrong> {
+pub(super) fn setpoints(text: &str, fastest: Twist) -> Result<Vec<Setpoint>, TextFault> {
     // Spreadsheets like to put it in front.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let rows = text.lines().map(|line| line.split_once('#').map_or(line, |(row, _)| row));
     let mut lines = (1..).zip(rows).filter(|(_, row)| !row.trim().is_empty());
     let Some((line, header)) = lines.next() else {
-        return Err(Wrong { place: None, what: format!("there is nothing in it; a path begins with {HEADER}") });
+        return Err(TextFault { place: None, what: format!("there is nothing in it; a path begins with {HEADER}") });
     };
     let units = units(&cells(line, header))?;
     let mut rows = Rows { units, fastest, setpoints: Vec::new() };
     lines.try_for_each(|(line, row)| rows.push(&cells(line, row)))?;
     if rows.setpoints.len() < 2 {
         let what = "a path needs two rows at least: where it begins, and where it ends".to_owned();
-        return Err(Wrong { place: None, what });
+        return Err(TextFault { place: None, what });
     }
     Ok(rows.setpoints)
 }
@@ -101,7 +101,7 @@ fn cells(line: usize, text: &str) -> Vec<Cell<'_>> {
 }
 
 /// The unit of each column.
-fn units(header: &[Cell<'_>]) -> Result<[(&'static str, f64); 3], Wrong> {
+fn units(header: &[Cell<'_>]) -> Result<[(&'static str, f64); 3], TextFault> {
     if let [cell] = header
         && cell.text.contains([';', '\t'])
     {
@@ -127,7 +127,7 @@ fn units(header: &[Cell<'_>]) -> Result<[(&'static str, f64); 3], Wrong> {
 
 impl Column {
     /// Returns the unit that a cell of the header gives for this column.
-    fn unit(&self, cell: &Cell<'_>) -> Result<(&'static str, f64), Wrong> {
+    fn unit(&self, cell: &Cell<'_>) -> Result<(&'static str, f64), TextFault> {
         let Self { name, units: [(one, _), (other, _)] } = self;
         let mut words = cell.text.split_whitespace();
         if words.next() != Some(name) {
@@ -153,7 +153,7 @@ struct Rows {
 }
 
 impl Rows {
-    fn push(&mut self, row: &[Cell<'_>]) -> Result<(), Wrong> {
+    fn push(&mut self, row: &[Cell<'_>]) -> Result<(), TextFault> {
         let [(_, nanos), (_, radians), (_, metres)] = self.units;
         let (time, heading, speed) = match row {
             [time, heading, speed] => (time, heading, speed),
@@ -176,7 +176,7 @@ impl Rows {
     }
 
     /// Returns the time of the next row, `nanos` nanoseconds after the first.
-    fn time(&self, cell: &Cell<'_>, nanos: f64) -> Result<Nanos, Wrong> {
+    fn time(&self, cell: &Cell<'_>, nanos: f64) -> Result<Nanos, TextFault> {
         if nanos > LATEST {
             return Err(cell.wrong(format!("no path is as long as {}", self.shown(cell))));
         }
@@ -208,7 +208,7 @@ impl Rows {
         format!("{} {unit}", cell.text)
     }
 
-    fn check_speed(&self, cell: &Cell<'_>, speed: MetersPerSecond) -> Result<(), Wrong> {
+    fn check_speed(&self, cell: &Cell<'_>, speed: MetersPerSecond) -> Result<(), TextFault> {
         let ([.., (unit, metres)], fastest) = (self.units, self.fastest.v.0);
         if speed.0.abs() <= fastest * MARGIN {
             return Ok(());
@@ -218,7 +218,7 @@ impl Rows {
     }
 
     /// Checks that the robot can turn in time to this heading from the previous one.
-    fn check_turn(&self, cell: &Cell<'_>, to: &Setpoint) -> Result<(), Wrong> {
+    fn check_turn(&self, cell: &Cell<'_>, to: &Setpoint) -> Result<(), TextFault> {
         let Some(from) = self.setpoints.last() else { return Ok(()) };
         let (turn, seconds) = (Radians(to.heading.0 - from.heading.0).wrapped(), to.at.since(from.at).seconds());
         let fastest = self.fastest.omega.0;
