@@ -4,6 +4,7 @@
 
 mod log;
 mod manual;
+mod new_module;
 mod plot;
 mod replay;
 mod why;
@@ -199,7 +200,7 @@ pub(crate) fn command() -> Command {
         .arg_required_else_help(true)
         .subcommand(run())
         .subcommand(shell())
-        .subcommand(new_module())
+        .subcommand(new_module::new_module())
         .subcommand(replay::replay())
         .subcommand(why::why())
         .subcommand(log::log())
@@ -207,25 +208,6 @@ pub(crate) fn command() -> Command {
         .subcommand(test::command())
         .subcommand(manual::completions())
         .subcommand(manual::man())
-}
-
-fn new_module() -> Command {
-    Command::new("new-module")
-        .about("Create a crate with a module of your own, and a program `mdle` that has it")
-        .arg(
-            Arg::new("name")
-                .value_name("NAME")
-                .help("Name of the module and of its folder, which is created in the current folder")
-                .required(true),
-        )
-        .arg(
-            Arg::new("checkout")
-                .long("checkout")
-                .value_name("FOLDER")
-                .help("Checkout of mdle, whose packages the crate uses [default: ../mdle from the new folder]")
-                .value_parser(value_parser!(PathBuf)),
-        )
-        .after_help("Exit status: 0, or 2 if the folder cannot be created")
 }
 
 fn shell() -> Command {
