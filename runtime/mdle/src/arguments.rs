@@ -2,8 +2,10 @@
 //!
 //! The words after the plan are the options of the run, which depend on the target: the host parses them.
 
+mod locate;
 mod log;
 mod manual;
+mod map;
 mod new_module;
 mod plot;
 mod replay;
@@ -21,7 +23,9 @@ use mdle_quantity::Quantity;
 use crate::Failure;
 use crate::new_module::NewModule;
 use crate::test::arguments::{self as test, Test};
+pub(crate) use locate::Locate;
 pub(crate) use log::Log;
+pub(crate) use map::Map;
 pub(crate) use plot::Plot;
 pub(crate) use replay::Replay;
 pub(crate) use why::{Question, Why};
@@ -41,6 +45,10 @@ pub(crate) enum Asked {
     Log(Log),
     /// `mdle plot`.
     Plot(Plot),
+    /// `mdle locate`.
+    Locate(Locate),
+    /// `mdle map`.
+    Map(Map),
     /// `mdle test`.
     Test(Test),
     /// `mdle completions`.
@@ -119,6 +127,8 @@ pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
         Some(("replay", matches)) => Ok(Asked::Replay(Replay::of(matches))),
         Some(("why", matches)) => Ok(Asked::Why(Why::of(matches))),
         Some(("log", matches)) => Ok(Asked::Log(Log::of(matches))),
+        Some(("locate", matches)) => Ok(Asked::Locate(Locate::of(matches))),
+        Some(("map", matches)) => Ok(Asked::Map(Map::of(matches))),
         Some(("plot", matches)) => Ok(Asked::Plot(Plot::of(matches))),
         Some(("test", matches)) => Ok(Asked::Test(test::read(matches))),
         Some(("completions", matches)) => Ok(Asked::Completions(manual::shell(matches))),
@@ -205,6 +215,8 @@ pub(crate) fn command() -> Command {
         .subcommand(why::why())
         .subcommand(log::log())
         .subcommand(plot::plot())
+        .subcommand(map::map())
+        .subcommand(locate::locate())
         .subcommand(test::command())
         .subcommand(manual::completions())
         .subcommand(manual::man())
@@ -351,6 +363,8 @@ mod tests {
             Asked::Replay(replay) => panic!("{replay:?}"),
             Asked::Why(why) => panic!("{why:?}"),
             Asked::Log(log) => panic!("{log:?}"),
+            Asked::Locate(locate) => panic!("{locate:?}"),
+            Asked::Map(map) => panic!("{map:?}"),
             Asked::Plot(plot) => panic!("{plot:?}"),
             Asked::Test(test) => panic!("{test:?}"),
             Asked::Completions(shell) => panic!("{shell:?}"),

@@ -98,6 +98,14 @@ pub(crate) fn unprinted(error: &io::Error) -> Failure {
     Failure::Usage(format!("standard output cannot be written: {error}"))
 }
 
+/// Prints a line to standard output.
+///
+/// # Errors
+/// Standard output cannot be written.
+pub(crate) fn print_line(line: &str) -> Result<(), Failure> {
+    writeln!(io::stdout().lock(), "{line}").map_err(|error| unprinted(&error))
+}
+
 /// Prints an error.
 pub(crate) fn error(message: &str) {
     let _ = writeln!(io::stderr().lock(), "error: {}", PrintableLines(message));

@@ -11,6 +11,7 @@ mod failure;
 mod link;
 mod log;
 mod manual;
+mod map;
 mod messages;
 mod modules;
 mod new_module;
@@ -63,6 +64,8 @@ pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
         Asked::Replay(arguments) => replay::replay(&arguments),
         Asked::Why(arguments) => why::why(&arguments),
         Asked::Log(arguments) => log::log(&arguments),
+        Asked::Locate(arguments) => map::locate(&arguments),
+        Asked::Map(arguments) => map::map(&arguments),
         Asked::Plot(arguments) => plot::plot(&arguments),
         Asked::Test(arguments) => test::test(&arguments, &library),
         Asked::Completions(shell) => manual::completions(shell),

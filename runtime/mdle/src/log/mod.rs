@@ -50,7 +50,7 @@ pub(crate) fn unwritten(name: &dyn std::fmt::Display, error: &io::Error) -> Fail
 }
 
 /// The outcome of a record whose rest cannot be read.
-fn damaged(log: &Path, error: &ReadError) -> Result<ExitCode, Failure> {
+pub(crate) fn damaged(log: &Path, error: &ReadError) -> Result<ExitCode, Failure> {
     let sentence = format!("the record {} cannot be read: {error}", log.display());
     if matches!(error, ReadError::System(_)) {
         return Err(Failure::Usage(sentence));

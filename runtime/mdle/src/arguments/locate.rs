@@ -1,0 +1,50 @@
+//! The arguments of `mdle locate`.
+
+use std::path::PathBuf;
+
+use clap::{Arg, ArgMatches, Command, value_parser};
+
+/// The arguments of `mdle locate`.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Locate {
+    /// The record; `-` is standard input.
+    pub(crate) log: PathBuf,
+    /// The YAML files of the maps.
+    pub(crate) maps: Vec<PathBuf>,
+    /// Pose near which the record began, in the axes of each map.
+    pub(crate) at: String,
+}
+
+impl Locate {
+    /// Takes the arguments that were parsed.
+    pub(super) fn of(matches: &ArgMatches) -> Self {
+        Self {
+            log: matches.get_one("log").cloned().unwrap_or_default(),
+            maps: matches.get_many("maps").into_iter().flatten().cloned().collect(),
+            at: matches.get_one("at").cloned().unwrap_or_default(),
+        }
+    }
+}
+
+/// Returns the command line of `mdle locate`.
+pub(super) fn locate() -> Command {
+    let path = |name: &'static str| Arg::new(name).value_parser(value_parser!(PathBuf)).required(true);
+    Command::new("locate")
+        .about("Name the landmark at which a robot turned, by the maps of landmarks")
+        .long_about(
+            "Name the landmark at which a robot turned, by the maps of landmarks\n\nPrints a line for each map, the best \
+             first: its name, the mean evidence for an echo, and the pose at which the record began in the axes of the map, \
+             which is looked for up to 40 cm and 24 degrees off --at.",
+        )
+        .arg(path("log").value_name("RECORD").help("Record of a full turn on the spot; `-` reads standard input"))
+        .arg(path("maps").value_name("MAP.yaml").help("Maps that `mdle map` has made").num_args(1..))
+        .arg(
+            Arg::new("at")
+                .long("at")
+                .value_name("X,Y,DEG")
+                .help("Pose near which the record began, in the axes of each map, in metres and degrees")
+                .allow_hyphen_values(true)
+                .default_value("-0.75,0,0"),
+        )
+        .after_help("Exit status: 0; 1 if the record is damaged, 2 for wrong usage or a file that cannot be read")
+}

@@ -1,0 +1,172 @@
+//! An evidence grid: for each cell the log-odds of being occupied, from pings of sonars (Martin and Moravec, the
+//! paper's reference 26; docs/src/navigation.md has the model).
+
+/// Number of cells along each axis, as in the paper's Fig. 9.
+pub(super) const CELLS: usize = 150;
+/// Edge of a cell, in metres: an inch.
+pub(super) const CELL: f64 = 0.0254;
+/// Distance from the middle of the grid to its edges, in metres.
+pub(super) const HALF: f64 = CELL * CELLS as f64 / 2.0;
+/// Maximum log-odds to either side.
+const MOST: f64 = 5.0;
+/// Half the angle of a sonar's cone, in radians.
+const CONE: f64 = 12.5 * std::f64::consts::PI / 180.0;
+/// Half the depth of an echo's arc, in metres.
+const DEPTH: f64 = 0.05;
+/// Range beyond which an echo marks nothing as occupied, in metres.
+const FARTHEST: f64 = 3.0;
+/// Distance up to which a ping without an echo marks cells as free, in metres: further off a smooth wall may be silent.
+const SILENT: f64 = 0.5;
+/// Distance at which nothing is marked as free any more, in metres.
+const FADES: f64 = 2.5;
+
+/// A ping, in the axes of the grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct GridPing {
+    /// Position of the transducer, in metres.
+    pub(super) x: f64,
+    pub(super) y: f64,
+    /// Direction of the transducer, in radians.
+    pub(super) theta: f64,
+    /// Range in metres; `None` without an echo.
+    pub(super) range: Option<f64>,
+}
+
+/// A square grid around the origin of its axes.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct EvidenceGrid {
+    /// Log-odds, by rows along the second axis.
+    odds: Vec<f64>,
+}
+
+impl EvidenceGrid {
+    /// Returns a grid that knows nothing.
+    pub(super) fn new() -> Self {
+        Self { odds: vec![0.0; CELLS * CELLS] }
+    }
+
+    /// Takes a ping.
+    pub(super) fn take(&mut self, ping: &GridPing) {
+        let reach = ping.range.map_or(SILENT, |range| range.min(FARTHEST) + DEPTH);
+        let (columns, rows) = (near(ping.x, reach), near(ping.y, reach));
+        for row in rows {
+            let cells = self.odds.iter_mut().enumerate().skip(row * CELLS + columns.start).take(columns.len());
+            for (number, odds) in cells {
+                let (x, y) = (middle(number % CELLS) - ping.x, middle(row) - ping.y);
+                *odds = (*odds + evidence(x, y, ping)).clamp(-MOST, MOST);
+            }
+        }
+    }
+
+    /// Returns the grid of these probabilities, by rows along the second axis.
+    pub(super) fn of(probabilities: impl Iterator<Item = f64>) -> Self {
+        let odds = |p: f64| libm::log(p / (1.0 - p)).clamp(-MOST, MOST);
+        Self { odds: probabilities.map(odds).collect() }
+    }
+
+    /// Returns the log-odds at a place; 0 outside the grid.
+    pub(super) fn odds_at(&self, x: f64, y: f64) -> f64 {
+        let cell = |at: f64| libm::floor((at + HALF) / CELL);
+        let (column, row) = (cell(x), cell(y));
+        let inside = 0.0..CELLS as f64;
+        if !inside.contains(&column) || !inside.contains(&row) {
+            return 0.0;
+        }
+        self.odds.get(row as usize * CELLS + column as usize).copied().unwrap_or_default()
+    }
+
+    /// Returns the probability that a cell is occupied, by its column along the first axis and its row along the
+    /// second.
+    pub(super) fn probability(&self, column: usize, row: usize) -> f64 {
+        let odds = self.odds.get(row * CELLS + column).copied().unwrap_or_default();
+        1.0 / (1.0 + libm::exp(-odds))
+    }
+}
+
+/// Returns the position of the middle of a cell along an axis.
+pub(super) fn middle(cell: usize) -> f64 {
+    (cell as f64 + 0.5) * CELL - HALF
+}
+
+/// Returns the cells along an axis whose middles may lie within `reach` of a position.
+fn near(position: f64, reach: f64) -> std::ops::Range<usize> {
+    // A conversion takes what lies outside to the nearest number.
+    let cell = |at: f64| (libm::floor((at + HALF) / CELL).max(0.0) as usize).min(CELLS);
+    cell(position - reach)..cell(position + reach + CELL)
+}
+
+/// Returns the change of the log-odds of a cell at this distance from the transducer along both axes.
+fn evidence(x: f64, y: f64, ping: &GridPing) -> f64 {
+    let distance = libm::hypot(x, y);
+    let (sin, cos) = libm::sincos(ping.theta);
+    let angle = libm::atan2(y * cos - x * sin, x * cos + y * sin);
+    if angle.abs() >= CONE || distance > ping.range.map_or(SILENT, |range| range + DEPTH) {
+        return 0.0;
+    }
+    let weight = 1.0 - (angle / CONE) * (angle / CONE);
+    let free = -0.35 * weight * (1.0 - (distance / FADES) * (distance / FADES)).max(0.0);
+    match ping.range {
+        Some(range) if distance >= range - DEPTH => {
+            let off = (distance - range) / DEPTH;
+            if range <= FARTHEST { 0.9 * (0.6 / range).min(1.0) * weight * (1.0 - off * off) } else { 0.0 }
+        }
+        Some(_) | None => free,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The probability at a place, after these pings along the first axis from the origin.
+    fn after(ranges: &[Option<f64>], x: f64, y: f64) -> f64 {
+        let mut grid = EvidenceGrid::new();
+        for range in ranges {
+            grid.take(&GridPing { x: 0.0, y: 0.0, theta: 0.0, range: *range });
+        }
+        let cell = |at: f64| ((at + HALF) / CELL) as usize;
+        grid.probability(cell(x), cell(y))
+    }
+
+    #[test]
+    fn an_echo_is_free_before_and_occupied_there() {
+        let echoes = [Some(1.0); 4];
+        assert!(after(&echoes, 0.5, 0.0) < 0.3 && after(&echoes, 1.0, 0.0) > 0.8);
+        for (x, y) in [(1.1, 0.0), (0.5, 0.3), (-0.5, 0.0), (1.0, 0.4)] {
+            assert_eq!(after(&echoes, x, y).to_bits(), 0.5_f64.to_bits(), "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn silence_frees_the_nearest_half_metre() {
+        assert!(after(&[None; 4], 0.4, 0.0) < 0.3);
+        assert_eq!(after(&[None; 4], 0.6, 0.0).to_bits(), 0.5_f64.to_bits());
+    }
+
+    #[test]
+    fn a_far_echo_marks_no_wall() {
+        let mut grid = EvidenceGrid::new();
+        grid.take(&GridPing { x: -1.8, y: 0.0, theta: 0.0, range: Some(3.2) });
+        let cells = (0..CELLS).flat_map(|row| (0..CELLS).map(move |column| (column, row)));
+        assert!(cells.into_iter().all(|(column, row)| grid.probability(column, row) <= 0.5));
+    }
+
+    #[test]
+    fn evidence_has_a_limit() {
+        let most = 1.0 / (1.0 + libm::exp(-MOST));
+        assert_eq!(after(&[Some(0.5); 100], 0.5, 0.0).to_bits(), most.to_bits());
+        let (first, later) = (after(&[Some(0.5); 100], 0.3, 0.0), after(&[Some(0.5); 200], 0.3, 0.0));
+        assert_eq!(first.to_bits(), later.to_bits());
+    }
+
+    #[test]
+    fn a_ping_from_outside_the_grid_is_taken() {
+        let mut grid = EvidenceGrid::new();
+        for (x, y) in [(1e9, 0.0), (-1e9, -1e9), (f64::NAN, 0.0)] {
+            grid.take(&GridPing { x, y, theta: 0.0, range: Some(1.0) });
+        }
+        assert_eq!(grid, EvidenceGrid::new());
+        grid.take(&GridPing { x: -2.5, y: 0.0, theta: 0.0, range: Some(2.0) });
+        assert!(grid.probability(((-0.5 + HALF) / CELL) as usize, CELLS / 2) > 0.5);
+    }
+}

@@ -1,0 +1,35 @@
+//! `mdle locate`: names the landmark at which a robot turned, and its pose there (docs/src/navigation.md).
+
+use std::process::ExitCode;
+
+use mdle_runtime::Printable;
+
+use super::matching::{Fit, fit};
+use super::{pings, pose, ros_map};
+use crate::arguments::Locate;
+use crate::failure::{self, Failure};
+
+/// Prints how well a record fits each map, the best first.
+///
+/// # Errors
+/// The record or a map cannot be read, or the record has no echo.
+pub(crate) fn locate(arguments: &Locate) -> Result<ExitCode, Failure> {
+    let near = pose(&arguments.at)?;
+    let mut heard = Vec::new();
+    let outcome = pings(&arguments.log, mdle_runtime::Pose::ORIGIN, &mut |ping| heard.push(*ping))?;
+    let mut fits = Vec::new();
+    for map in &arguments.maps {
+        let name = map.file_stem().unwrap_or_default().display().to_string();
+        let fit = fit(&ros_map::read(map)?, &heard, near);
+        fits.push((name, fit.ok_or_else(|| Failure::Usage("the record has no echo of a sonar".to_owned()))?));
+    }
+    fits.sort_by(|(_, one), (_, other)| other.score.total_cmp(&one.score));
+    for (name, Fit { origin, score }) in &fits {
+        let (x, y, heading) = (origin.x.0, origin.y.0, origin.theta.wrapped().degrees());
+        // Minus zero is zero.
+        let [x, y] = [x, y].map(|metres| libm::round(metres * 100.0) / 100.0 + 0.0);
+        let (heading, score) = (libm::round(heading * 10.0) / 10.0 + 0.0, libm::round(score * 100.0) / 100.0 + 0.0);
+        failure::print_line(&format!("{}: score {score:.2}, began at {x:.2},{y:.2},{heading:.1}", Printable(name)))?;
+    }
+    Ok(outcome)
+}

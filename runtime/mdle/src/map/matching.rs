@@ -1,0 +1,121 @@
+//! Where a robot was in an evidence grid: the pose from which the echoes of one turn fit it best
+//! (docs/src/navigation.md).
+
+use mdle_runtime::{Meters, Pose, Radians};
+
+use super::evidence::{EvidenceGrid, GridPing};
+
+/// Part of a range at which nothing should be.
+const BEFORE: f64 = 0.6;
+/// Weight of the evidence there.
+const BEFORE_WEIGHT: f64 = 0.3;
+/// Steps of the first search, in metres and radians, and its numbers of steps to either side.
+const COARSE: (f64, f64) = (0.10, 3.0 * DEGREE);
+const COARSE_STEPS: (i16, i16) = (4, 8);
+/// Steps of the searches around the best pose so far.
+const FINE: [(f64, f64); 3] = [(0.05, 1.5 * DEGREE), (0.025, 0.75 * DEGREE), (0.0125, 0.5 * DEGREE)];
+/// A degree, in radians.
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// A pose in a grid, and how well echoes fit there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Fit {
+    /// Where the robot's odometry was zero, in the axes of the grid.
+    pub(super) origin: Pose,
+    /// Mean evidence for each echo.
+    pub(super) score: f64,
+}
+
+/// Returns the best pose near `origin`: up to 40 cm along each axis and 24° off it. The pings are in the axes of
+/// odometry; `None` if none has an echo.
+pub(super) fn fit(grid: &EvidenceGrid, pings: &[GridPing], origin: Pose) -> Option<Fit> {
+    let echoes: Vec<(&GridPing, f64)> = pings.iter().filter_map(|ping| Some((ping, ping.range?))).collect();
+    if echoes.is_empty() {
+        return None;
+    }
+    let scored = |origin: Pose| Fit { origin, score: score(grid, &echoes, &origin) };
+    let mut best = better(scored(origin), origin, COARSE, COARSE_STEPS, &scored);
+    for steps in FINE {
+        best = better(best, best.origin, steps, (1, 1), &scored);
+    }
+    Some(best)
+}
+
+/// Returns the best fit on a lattice around a pose, or `best` if none is better.
+fn better(
+    mut best: Fit,
+    around: Pose,
+    (way, angle): (f64, f64),
+    (ways, angles): (i16, i16),
+    scored: &dyn Fn(Pose) -> Fit,
+) -> Fit {
+    for turned in -angles..=angles {
+        for column in -ways..=ways {
+            for row in -ways..=ways {
+                let here = scored(Pose {
+                    x: Meters(around.x.0 + f64::from(column) * way),
+                    y: Meters(around.y.0 + f64::from(row) * way),
+                    theta: Radians(around.theta.0 + f64::from(turned) * angle),
+                });
+                if here.score > best.score {
+                    best = here;
+                }
+            }
+        }
+    }
+    best
+}
+
+/// Returns the mean evidence for echoes of a robot whose odometry was zero at `origin`.
+fn score(grid: &EvidenceGrid, echoes: &[(&GridPing, f64)], origin: &Pose) -> f64 {
+    let (sin, cos) = libm::sincos(origin.theta.0);
+    let odds = |x: f64, y: f64| grid.odds_at(origin.x.0 + x * cos - y * sin, origin.y.0 + x * sin + y * cos);
+    let evidence = echoes.iter().map(|(ping, range)| {
+        let (ahead, left) = (range * libm::cos(ping.theta), range * libm::sin(ping.theta));
+        let before = odds(ping.x + BEFORE * ahead, ping.y + BEFORE * left);
+        odds(ping.x + ahead, ping.y + left) - BEFORE_WEIGHT * before
+    });
+    evidence.sum::<f64>() / echoes.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pings of a robot that turns on the spot at a pose in a room of 3 m by 2 m around the origin; its odometry counts
+    /// from there.
+    fn turn(at: Pose) -> Vec<GridPing> {
+        let theta = |number: i32| f64::from(number) * 5.0 * DEGREE;
+        let pings = (0..72).map(|number| {
+            let (sin, cos) = libm::sincos(at.theta.0 + theta(number));
+            let along =
+                |way: f64, half: f64, from: f64| if way == 0.0 { 1e9 } else { (half.copysign(way) - from) / way };
+            let range = along(cos, 1.5, at.x.0).min(along(sin, 1.0, at.y.0));
+            GridPing { x: 0.0, y: 0.0, theta: theta(number), range: Some(range) }
+        });
+        pings.collect()
+    }
+
+    fn pose(x: f64, y: f64, degrees: f64) -> Pose {
+        Pose { x: Meters(x), y: Meters(y), theta: Radians(degrees * DEGREE) }
+    }
+
+    #[test]
+    fn a_turn_is_found_where_it_was_made() {
+        let mut grid = EvidenceGrid::new();
+        turn(Pose::ORIGIN).iter().for_each(|ping| grid.take(ping));
+        for (x, y, degrees) in [(0.0, 0.0, 0.0), (0.2, -0.15, 10.0), (-0.3, 0.1, -14.0)] {
+            let there = pose(x, y, degrees);
+            let Fit { origin, .. } = fit(&grid, &turn(there), Pose::ORIGIN).unwrap();
+            let off = libm::hypot(origin.x.0 - x, origin.y.0 - y);
+            let turned = (origin.theta.0 - there.theta.0).abs() / DEGREE;
+            assert!(off < 0.05 && turned < 2.0, "({x}, {y}, {degrees}): {off} m and {turned} degrees off");
+        }
+    }
+
+    #[test]
+    fn silence_is_nowhere() {
+        let silent = GridPing { x: 0.0, y: 0.0, theta: 0.0, range: None };
+        assert_eq!(fit(&EvidenceGrid::new(), &[silent], Pose::ORIGIN), None);
+    }
+}

@@ -1,0 +1,56 @@
+//! `mdle map`: the evidence grid of a recorded run, as a map of ROS (docs/src/navigation.md). `mdle locate` finds in
+//! which of several maps a robot was.
+
+mod evidence;
+mod locate;
+mod matching;
+mod pings;
+mod ros_map;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use mdle_runtime::Pose;
+use mdle_sim::Start;
+
+use crate::arguments::Map;
+use crate::failure::Failure;
+use crate::log::damaged;
+use crate::replay;
+use evidence::{EvidenceGrid, GridPing};
+pub(crate) use locate::locate;
+use pings::PingOrder;
+
+/// Makes the map of a record.
+///
+/// # Errors
+/// The record cannot be read, or the map cannot be written.
+pub(crate) fn map(arguments: &Map) -> Result<ExitCode, Failure> {
+    let origin = pose(&arguments.at)?;
+    let mut grid = EvidenceGrid::new();
+    let outcome = pings(&arguments.log, origin, &mut |ping| grid.take(ping))?;
+    ros_map::save(&grid, &arguments.file)?;
+    Ok(outcome)
+}
+
+/// Reads the value of `--at`.
+fn pose(text: &str) -> Result<Pose, Failure> {
+    let read: Result<Start, _> = text.parse();
+    read.map(|Start(pose)| pose).map_err(|error| Failure::Usage(format!("--at {text}: {error}")))
+}
+
+/// Calls `take` with each ping of a record, of a robot whose odometry was zero at this pose. Returns the exit status.
+///
+/// # Errors
+/// The record cannot be read.
+fn pings(log: &Path, origin: Pose, take: &mut dyn FnMut(&GridPing)) -> Result<ExitCode, Failure> {
+    let (_, records) = replay::record(log)?;
+    let mut order = PingOrder::new(origin);
+    for turn in records.with_messages() {
+        match turn {
+            Ok((turn, _)) => order.take(&turn.y).iter().for_each(&mut *take),
+            Err(error) => return damaged(log, &error),
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,54 @@
+//! The pings of a run, each once, in the order in which the sonars fired.
+
+use mdle_runtime::{Nanos, Pings, Pose, SONARS, Sensed, SonarId};
+
+use super::evidence::GridPing;
+
+/// The pings that were taken.
+#[derive(Debug)]
+pub(super) struct PingOrder {
+    /// Pose of the robot in the axes of the grid where its odometry was zero.
+    origin: Pose,
+    /// Time of the last ping of each sonar that was taken.
+    last: [Option<Nanos>; SONARS],
+}
+
+impl PingOrder {
+    /// Returns the order of a run that began at this pose.
+    pub(super) fn new(origin: Pose) -> Self {
+        Self { origin, last: [None; SONARS] }
+    }
+
+    /// Returns the pings of an output that no output before it had.
+    pub(super) fn take(&mut self, y: &Sensed) -> Vec<GridPing> {
+        let radius = y.shape.ring_radius;
+        let mut new = Vec::new();
+        for ((number, pings), last) in (0..).zip(&y.pings).zip(&mut self.last) {
+            let (sonar, before) = (SonarId::new(number), *last);
+            for ping in fresh(pings, before) {
+                let axis = ping.axis(sonar);
+                new.push((ping.at, number, axis.towards(axis.theta, radius), ping.range));
+                *last = (*last).max(Some(ping.at));
+            }
+        }
+        new.sort_by_key(|(at, number, ..)| (*at, *number));
+        new.into_iter().map(|(.., from, range)| self.placed(&from, range.map(|range| range.0))).collect()
+    }
+
+    /// Returns a ping of a transducer at this pose by odometry, in the axes of the grid.
+    fn placed(&self, from: &Pose, range: Option<f64>) -> GridPing {
+        let (sin, cos) = libm::sincos(self.origin.theta.0);
+        let (x, y) = (from.x.0, from.y.0);
+        GridPing {
+            x: self.origin.x.0 + x * cos - y * sin,
+            y: self.origin.y.0 + x * sin + y * cos,
+            theta: self.origin.theta.0 + from.theta.0,
+            range,
+        }
+    }
+}
+
+/// Returns the pings after a time.
+fn fresh(pings: &Pings, before: Option<Nanos>) -> impl Iterator<Item = &mdle_runtime::Ping> {
+    pings.newest_first().take_while(move |ping| before.is_none_or(|before| ping.at > before))
+}

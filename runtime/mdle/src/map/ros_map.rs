@@ -1,0 +1,63 @@
+//! An evidence grid as a map of ROS: a YAML file, and a grey image beside it in which black is occupied.
+
+use std::io::Write as _;
+use std::path::Path;
+
+use super::evidence::{CELL, CELLS, EvidenceGrid, HALF};
+use crate::failure::Failure;
+use crate::log::{created, unwritten};
+
+/// Maximum size of an image, in bytes.
+const LARGEST: u64 = 1_000_000;
+/// Grey of what is free.
+const WHITE: f64 = 255.0;
+
+/// Saves a grid as the YAML file at a path, with its image beside it.
+///
+/// # Errors
+/// A file exists already, or cannot be written.
+pub(super) fn save(grid: &EvidenceGrid, file: &Path) -> Result<(), Failure> {
+    let image = file.with_extension("pgm");
+    let name = image.file_name().unwrap_or_default().display();
+    let text = format!(
+        "image: {name}\nresolution: {CELL}\norigin: [{}, {}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.35\n",
+        -HALF, -HALF
+    );
+    write(file, text.as_bytes())?;
+    write(&image, &pixels(grid))
+}
+
+fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    created(file)?.write_all(bytes).map_err(|error| unwritten(&file.display(), &error))
+}
+
+fn head() -> String {
+    format!("P5\n{CELLS} {CELLS}\n{WHITE}\n")
+}
+
+/// Returns the image: its first row has the greatest second coordinate.
+fn pixels(grid: &EvidenceGrid) -> Vec<u8> {
+    let mut bytes = head().into_bytes();
+    for row in (0..CELLS).rev() {
+        let greys = (0..CELLS).map(|column| libm::round(WHITE * (1.0 - grid.probability(column, row))) as u8);
+        bytes.extend(greys);
+    }
+    bytes
+}
+
+/// Reads the grid of a map that [`save`] has written.
+///
+/// # Errors
+/// The image beside the file cannot be read, or is none of such a map.
+pub(super) fn read(file: &Path) -> Result<EvidenceGrid, Failure> {
+    let image = file.with_extension("pgm");
+    let bytes = mdle_host::read_file(&image, LARGEST)
+        .map_err(|error| Failure::Usage(format!("the map {} cannot be read: {error}", image.display())))?;
+    let greys = bytes.strip_prefix(head().as_bytes()).filter(|greys| greys.len() == CELLS * CELLS);
+    let greys = greys.ok_or_else(|| {
+        let help = "`mdle map RECORD MAP.yaml` makes one";
+        Failure::Usage(format!("{} is no map of a landmark\nhelp: {help}", image.display()))
+    })?;
+    let rows = greys.chunks_exact(CELLS).rev().flatten();
+    Ok(EvidenceGrid::of(rows.map(|grey| 1.0 - f64::from(*grey) / WHITE)))
+}
