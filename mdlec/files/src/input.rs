@@ -85,6 +85,15 @@ impl Input {
         files.plans.iter().map(|plan| plan.name.node.to_owned()).collect()
     }
 
+    /// Labels of the plans in the file and in the files that it uses, as `Γ_from^to`, with the names of the plans.
+    pub fn labels(&mut self) -> Vec<(String, String)> {
+        let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
+        let (files, _) = syntax::parse_with(self.source, &text, &arena, self);
+        let named =
+            |plan: &syntax::tree::Plan<'_>| Some((plan.label.as_ref()?.node.to_owned(), plan.name.node.to_owned()));
+        files.plans.iter().filter_map(named).collect()
+    }
+
     /// Checks that the file, or one that it uses, has a plan of this name.
     ///
     /// # Errors

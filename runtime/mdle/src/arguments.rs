@@ -6,6 +6,7 @@ mod locate;
 mod log;
 mod manual;
 mod map;
+mod navigate;
 mod new_module;
 mod plot;
 mod replay;
@@ -26,6 +27,7 @@ use crate::test::arguments::{self as test, Test};
 pub(crate) use locate::Locate;
 pub(crate) use log::Log;
 pub(crate) use map::Map;
+pub(crate) use navigate::Navigate;
 pub(crate) use plot::Plot;
 pub(crate) use replay::Replay;
 pub(crate) use why::{Question, Why};
@@ -35,6 +37,8 @@ pub(crate) use why::{Question, Why};
 pub(crate) enum Asked {
     /// `mdle run` or `mdle shell`.
     Run(Box<Run>),
+    /// `mdle navigate`.
+    Navigate(Navigate),
     /// `mdle new-module`.
     NewModule(NewModule),
     /// `mdle replay`.
@@ -102,8 +106,19 @@ pub(crate) struct SessionOptions {
 }
 
 /// Options of `mdle` itself that have a value.
-const WITH_VALUE: [&str; 10] =
-    ["--target", "--plan", "--safety", "--link", "--records", "--module", "--point", "-c", "--commands", "--role"];
+const WITH_VALUE: [&str; 11] = [
+    "--landmarks",
+    "--target",
+    "--plan",
+    "--safety",
+    "--link",
+    "--records",
+    "--module",
+    "--point",
+    "-c",
+    "--commands",
+    "--role",
+];
 /// Options that ask for help.
 const HELP: [&str; 2] = ["-h", "--help"];
 /// Options of `mdle` itself without a value.
@@ -114,12 +129,17 @@ const FLAGS: [&str; 4] = ["--deny-warnings", "-e", "-x", "--paused"];
 /// # Errors
 /// The arguments are wrong, or ask for help.
 pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
-    let is_run = arguments.get(1).is_some_and(|command| command == "run" || command == "shell");
-    let (own, options) = if is_run { apart(arguments)? } else { (arguments, Vec::new()) };
+    let words = match arguments.get(1).and_then(|command| command.to_str()) {
+        Some("run" | "shell") => 1,
+        Some("navigate") => 3,
+        Some(_) | None => 0,
+    };
+    let (own, options) = if words > 0 { apart(arguments, words)? } else { (arguments, Vec::new()) };
     let matches = command().try_get_matches_from(&own).map_err(Failure::Unparsed)?;
     match matches.subcommand() {
         Some(("run", run)) => Ok(of(run, own, options, None)),
         Some(("shell", shell)) => Ok(of(shell, own, options, Some(session(shell)))),
+        Some(("navigate", matches)) => Ok(Asked::Navigate(Navigate::of(matches, own, options))),
         Some(("new-module", new)) => {
             let name = new.get_one("name").cloned().unwrap_or_default();
             Ok(Asked::NewModule(NewModule { name, checkout: new.get_one("checkout").cloned() }))
@@ -165,13 +185,13 @@ fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: O
     }))
 }
 
-/// Takes the options of the run, which come after the plan, away from the arguments that `mdle` parses itself.
+/// Takes the options of the run, which come after the plan, away from the arguments that `mdle` parses itself: the plan
+/// is the last of this number of words.
 ///
 /// # Errors
 /// An option of the run comes before the plan.
-fn apart(arguments: Vec<OsString>) -> Result<(Vec<OsString>, Vec<OsString>), Failure> {
+fn apart(arguments: Vec<OsString>, mut missing: usize) -> Result<(Vec<OsString>, Vec<OsString>), Failure> {
     let (mut own, mut options) = (Vec::new(), Vec::new());
-    let mut has_plan = false;
     // The program's own name and that of the command.
     let (head, mut rest) = arguments.split_at_checked(2).unwrap_or((&arguments, &[]));
     own.extend_from_slice(head);
@@ -186,15 +206,21 @@ fn apart(arguments: Vec<OsString>) -> Result<(Vec<OsString>, Vec<OsString>), Fai
                 own.extend_from_slice(value);
                 rest = others;
             }
-        } else if has_plan {
+        } else if missing == 0 {
             options.push(first.clone());
         } else {
-            has_plan = !text.starts_with('-') || text == "-";
-            if !has_plan && !HELP.contains(&text) {
+            let is_word = !text.starts_with('-') || text == "-";
+            if !is_word && !HELP.contains(&text) {
+                let navigates = own.get(1).is_some_and(|command| command == "navigate");
+                let (before, form) = match navigates {
+                    true => ("the landmarks", "navigate GRAPH FROM TO"),
+                    false => ("the plan", "run PLAN"),
+                };
                 return Err(Failure::Usage(format!(
-                    "`{text}` comes before the plan\nhelp: the options of a run follow the plan, as in `mdle run PLAN {text} …`"
+                    "`{text}` comes before {before}\nhelp: the options of a run follow {before}, as in `mdle {form} {text} …`"
                 )));
             }
+            missing -= usize::from(is_word);
             own.push(first.clone());
         }
     }
@@ -210,6 +236,7 @@ pub(crate) fn command() -> Command {
         .arg_required_else_help(true)
         .subcommand(run())
         .subcommand(shell())
+        .subcommand(navigate::navigate())
         .subcommand(new_module::new_module())
         .subcommand(replay::replay())
         .subcommand(why::why())
@@ -359,6 +386,7 @@ mod tests {
     fn parsed(line: &str) -> Run {
         match parse(line.split(' ').map(OsString::from).collect()).unwrap() {
             Asked::Run(run) => *run,
+            Asked::Navigate(navigate) => panic!("{navigate:?}"),
             Asked::NewModule(new) => panic!("{new:?}"),
             Asked::Replay(replay) => panic!("{replay:?}"),
             Asked::Why(why) => panic!("{why:?}"),

@@ -14,6 +14,7 @@ mod manual;
 mod map;
 mod messages;
 mod modules;
+mod navigate;
 mod new_module;
 mod plans;
 mod plot;
@@ -22,6 +23,7 @@ mod recorded_files;
 mod replay;
 mod replayed;
 mod replayer;
+mod route;
 mod run;
 mod run_time;
 mod safety;
@@ -60,6 +62,7 @@ pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
     let arguments = std::env::args_os().collect();
     let run = |asked| match asked {
         Asked::Run(arguments) => run::run(*arguments, &mut library),
+        Asked::Navigate(arguments) => navigate::navigate(arguments, &mut library),
         Asked::NewModule(arguments) => new_module::new_module(&arguments),
         Asked::Replay(arguments) => replay::replay(&arguments),
         Asked::Why(arguments) => why::why(&arguments),

@@ -22,6 +22,7 @@ use crate::link::{self, LinkFile};
 use crate::plans::{self, texts};
 use crate::record::Record;
 use crate::replayer::{RecordedRun, replay};
+use crate::route::{Leg, drive};
 use crate::safety::{Guarded, SafetyFile};
 use crate::session::Seat;
 use crate::way_recorder::WayRecorder;
@@ -35,6 +36,8 @@ pub(crate) struct LinkedTarget {
     pub(crate) load: Load,
     /// Runs a plan on the outputs of a record.
     pub(crate) replay: ReplayRecord,
+    /// Drives a route.
+    pub(crate) navigate: Navigate,
     /// Returns the message if a run has no such options.
     pub(crate) check: fn(Program<'_>, &Call) -> Result<(), String>,
 }
@@ -44,6 +47,9 @@ type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Bo
 
 /// Runs the plan of a machine on the outputs of a record; the last argument tells whether plans are looked at.
 type ReplayRecord = fn(Machine, &Sources, &Arc<Target>, &Begin, Record, bool) -> Result<Box<dyn RecordedRun>, Failure>;
+
+/// Drives the legs of a route, with these modules.
+type Navigate = fn(&[Leg], &Arc<Target>, Call, &Library<Sensed>) -> Result<ExitCode, Failure>;
 
 /// A plan that is ready to run.
 pub(crate) trait Ready {
@@ -116,7 +122,13 @@ impl LinkedTarget {
         T: mdle_host::Target<Robot: Robot<Output = Sensed, Input = Twist>> + 'static,
         A: EngineAlphabet<Output = Sensed, Input = Twist>,
     {
-        Self { name: T::NAME, load: load::<T, A>, replay: replay::<A>, check: mdle_host::check_options::<T> }
+        Self {
+            name: T::NAME,
+            load: load::<T, A>,
+            replay: replay::<A>,
+            navigate: drive::<T, A>,
+            check: mdle_host::check_options::<T>,
+        }
     }
 }
 

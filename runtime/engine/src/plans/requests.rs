@@ -77,6 +77,22 @@ impl<A: EngineAlphabet> Plans<A> {
         number
     }
 
+    /// Asks for a plan that is compiled already to take over in the next turn; returns its number. It is armed at once,
+    /// and a record of the run has its files.
+    ///
+    /// # Errors
+    /// The plan replays a path that the first plan does not: a sentence.
+    pub fn follow(&mut self, plan: &StoredPlan<A>) -> Result<u32, String> {
+        self.last = self.last.saturating_add(1);
+        let number = self.last;
+        let next = Next { plan: plan.loaded.plan(), files: Arc::clone(&plan.files), when: When::Now };
+        self.arm_plan(number, next);
+        match self.events.pop_if(|event| matches!(event, PlanEvent::Refused(ticket, _) if *ticket == number)) {
+            Some(PlanEvent::Refused(_, sentence)) => Err(sentence),
+            _ => Ok(number),
+        }
+    }
+
     /// Cancels the request that waits for the compiler, and the plan that is armed. A text that is being compiled is
     /// not cancelled.
     pub fn cancel(&mut self) {

@@ -1,0 +1,112 @@
+//! The file of landmarks beside a graph: the direction of each landmark's axes on the floor (docs/src/navigation.md).
+
+use std::io;
+use std::path::Path;
+
+use mdle_host::Quantity;
+use serde::Deserialize;
+use toml::Spanned;
+
+/// Maximum size of the file, in bytes.
+const LARGEST: u64 = 1_000_000;
+
+/// The file as written.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct Landmarks {
+    #[serde(default)]
+    landmark: Vec<Landmark>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Landmark {
+    name: Spanned<String>,
+    /// Direction of the landmark's first axis on the floor.
+    axis: Spanned<String>,
+}
+
+impl Landmarks {
+    /// Reads the file; a file that nobody has named may be missing.
+    ///
+    /// # Errors
+    /// It cannot be read or has errors, or names a landmark that the graph does not know: a sentence.
+    pub(super) fn read(file: &Path, is_named: bool, known: &[&str]) -> Result<Self, String> {
+        let shown = file.display();
+        let bytes = match mdle_host::read_file(file, LARGEST) {
+            Ok(bytes) => bytes,
+            Err(error) if !is_named && error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
+            Err(error) => return Err(format!("the landmarks in {shown} cannot be read: {error}")),
+        };
+        let text = String::from_utf8(bytes).map_err(|_| format!("{shown} is not UTF-8 text"))?;
+        Self::parse(&text, known).map_err(|(line, sentence)| format!("{shown}:{line}: {sentence}"))
+    }
+
+    /// Reads the text of the file; an error has its line.
+    fn parse(text: &str, known: &[&str]) -> Result<Self, (usize, String)> {
+        let line = |place: usize| text.get(..place).unwrap_or_default().matches('\n').count() + 1;
+        let read: Result<Self, _> = toml::from_str(text);
+        let landmarks = read.map_err(|error| {
+            let place = error.span().map_or(0, |span| span.start);
+            (line(place), error.message().to_owned())
+        })?;
+        for (number, Landmark { name, axis }) in landmarks.landmark.iter().enumerate() {
+            let wrong = |place: &Spanned<String>, sentence| Err((line(place.span().start), sentence));
+            if !known.contains(&name.get_ref().as_str()) {
+                let near = mdle_compiler::alphabet::did_you_mean(name.get_ref(), known);
+                return wrong(name, format!("the graph has no landmark `{}`{near}", name.get_ref()));
+            }
+            if landmarks.landmark.iter().take(number).any(|other| other.name.get_ref() == name.get_ref()) {
+                return wrong(name, format!("the landmark `{}` is described twice", name.get_ref()));
+            }
+            match Quantity::Angle.read(axis.get_ref(), "deg") {
+                Ok(angle) if angle.abs() <= 360.0 => {}
+                Ok(_) => return wrong(axis, "an axis is turned by at most 360 degrees to either side".to_owned()),
+                Err(sentence) => return wrong(axis, sentence),
+            }
+        }
+        Ok(landmarks)
+    }
+
+    /// Returns the direction of a landmark's first axis on the floor, in degrees; 0 if the file does not give it.
+    pub(super) fn axis(&self, name: &str) -> f64 {
+        let landmark = self.landmark.iter().find(|landmark| landmark.name.get_ref() == name);
+        landmark.and_then(|landmark| Quantity::Angle.read(landmark.axis.get_ref(), "deg").ok()).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_landmark_has_an_axis() {
+        let text = "[[landmark]]\nname = \"a\"\naxis = \"90deg\"\n[[landmark]]\nname = \"b\"\naxis = \"-45\"\n";
+        let landmarks = Landmarks::parse(text, &["a", "b", "c"]).unwrap();
+        assert_eq!(["a", "b", "c"].map(|name| landmarks.axis(name)), [90.0, -45.0, 0.0]);
+    }
+
+    #[test]
+    fn faulty_landmarks_are_refused() {
+        let refused = |name: &str, axis: &str| {
+            let text =
+                format!("[[landmark]]\nname = \"lab1\"\naxis = \"0\"\n\n[[landmark]]\nname = {name}\naxis = {axis}\n");
+            let (line, sentence) = Landmarks::parse(&text, &["lab1", "lab2"]).unwrap_err();
+            format!("{line}: {sentence}")
+        };
+        let messages = [
+            refused("\"lab\"", "\"0\""),
+            refused("\"lab1\"", "\"0\""),
+            refused("\"lab2\"", "\"400\""),
+            refused("\"lab2\"", "\"3m\""),
+            refused("\"lab2\"", "3"),
+        ];
+        insta::assert_snapshot!(messages.join("\n"), @"
+        6: the graph has no landmark `lab`; did you mean `lab1`?
+        6: the landmark `lab1` is described twice
+        7: an axis is turned by at most 360 degrees to either side
+        7: `3m` is a length: expected an angle in deg, rad, or a number in deg
+        7: invalid type: integer `3`, expected a string
+        ");
+    }
+}

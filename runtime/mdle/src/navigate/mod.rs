@@ -1,0 +1,101 @@
+//! `mdle navigate`: drives from one landmark to another by the plans of a graph (docs/src/navigation.md).
+
+mod landmarks;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use mdle_compiler::alphabet::did_you_mean;
+use mdle_engine::Library;
+use mdle_files::{InputError, Known, Settings, Target, read_plan};
+use mdle_host::{Call, Program, RecordedPlan};
+use mdle_runtime::{Printable, Sensed};
+
+use crate::arguments::Navigate;
+use crate::failure::{self, Failure};
+use crate::plans::texts;
+use crate::route::{Edge, Graph, Leg, leg};
+use crate::targets;
+use landmarks::Landmarks;
+
+/// Name of the file of landmarks beside a graph.
+const LANDMARKS: &str = "landmarks.toml";
+
+/// Drives from one landmark to another with these modules; returns the exit status of the run.
+///
+/// # Errors
+/// There is no route, or a plan on it cannot be run.
+pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Result<ExitCode, Failure> {
+    let settings = Settings::beside(&arguments.graph)?;
+    let name = settings.name_of_target(arguments.target.as_deref()).ok_or(InputError::NoTarget)?;
+    let linked = targets::linked(&name).map_err(Failure::Usage)?;
+    let target = Arc::new(settings.target(arguments.target.as_deref())?);
+    let mut input = read_plan(&arguments.graph, &target)?;
+    let graph = Graph::of(input.labels());
+    let route = route(&graph, &arguments)?;
+    let (beside, known) = (arguments.graph.with_file_name(LANDMARKS), graph.landmarks());
+    let file = arguments.landmarks.as_deref();
+    let landmarks = Landmarks::read(file.unwrap_or(&beside), file.is_some(), &known).map_err(Failure::Usage)?;
+    let legs = legs(&route, &landmarks, &arguments, &target)?;
+    let Some(first) = legs.first() else {
+        let sentence = format!("the robot is at {} already", Printable(&arguments.to));
+        failure::print_line(&sentence)?;
+        return Ok(ExitCode::SUCCESS);
+    };
+    failure::print_line(&format!("route: {}", words(&route)))?;
+    let program = Program { plan: &first.name, version: "" };
+    let given: Vec<_> = arguments.options.iter().map(|option| option.to_string_lossy().into_owned()).collect();
+    let mut options: Vec<OsString> = Vec::new();
+    for option in settings.run_options(arguments.target.as_deref(), &given, |_| Known::default())? {
+        (linked.check)(program, &call(&arguments, option.arguments.clone())).map_err(|text| option.refused(&text))?;
+        options.extend(option.arguments);
+    }
+    options.extend(arguments.options.iter().cloned());
+    let recorded = RecordedPlan { files: texts(&first.input), beside: String::new(), safety: None };
+    let read = input.inputs(&target);
+    (linked.navigate)(&legs, &target, Call { recorded, read, ..call(&arguments, options) }, library)
+}
+
+fn call(arguments: &Navigate, options: Vec<OsString>) -> Call {
+    let recorded = RecordedPlan::default();
+    Call { words: arguments.words.clone(), options, read: Vec::new(), recorded, later_path: None }
+}
+
+/// Finds the route.
+fn route<'g>(graph: &'g Graph, Navigate { graph: file, from, to, .. }: &Navigate) -> Result<Vec<&'g Edge>, Failure> {
+    let (known, file) = (graph.landmarks(), file.display());
+    if known.is_empty() {
+        let help = "write the landmarks before the plan, as in `Γ_a^b = { Name … }`";
+        return Err(Failure::Usage(format!("no plan of {file} leads from one landmark to another\nhelp: {help}")));
+    }
+    if let Some(name) = [from, to].into_iter().find(|name| !known.contains(&name.as_str())) {
+        let (name, near) = (Printable(name), did_you_mean(name, &known));
+        let help = format!("its landmarks are {}", known.join(", "));
+        return Err(Failure::Usage(format!("{file} has no landmark `{name}`{near}\nhelp: {help}")));
+    }
+    graph.route(from, to).ok_or_else(|| {
+        let reachable = graph.reachable(from);
+        let help = match reachable.is_empty() {
+            true => format!("no plan begins at {from}"),
+            false => format!("routes lead from {from} to {}", reachable.join(", ")),
+        };
+        Failure::OtherPlan(format!("{file} has no route from {from} to {to}\nhelp: {help}"))
+    })
+}
+
+fn words(route: &[&Edge]) -> String {
+    let first = route.first().map_or("", |edge| &edge.from);
+    let rest = route.iter().map(|edge| format!(" -> {} ({})", edge.to, edge.plan));
+    first.to_owned() + &rest.collect::<String>()
+}
+
+/// Compiles the plans of a route, and checks that each can end. Odometry begins in the frame of the first landmark.
+fn legs(route: &[&Edge], landmarks: &Landmarks, arguments: &Navigate, target: &Target) -> Result<Vec<Leg>, Failure> {
+    let begins = landmarks.axis(&arguments.from);
+    let legs = route.iter().enumerate().map(|(number, edge)| {
+        let turned = (landmarks.axis(&edge.from) - begins).rem_euclid(360.0);
+        leg(edge, number, turned, &arguments.graph, target)
+    });
+    legs.collect()
+}

@@ -1,0 +1,55 @@
+//! Routes between landmarks: the graph of plans, the legs of a route, and the pilot that drives them.
+
+mod graph;
+mod navigator;
+
+use std::path::{Path, PathBuf};
+
+use mdle_compiler::analysis::analyze;
+use mdle_compiler::diagnostic::judged;
+use mdle_compiler::fsm::Machine;
+use mdle_files::{Input, Target, plan};
+
+use crate::failure::{self, Failure};
+
+pub(crate) use graph::{Edge, Graph};
+pub(crate) use navigator::drive;
+
+/// A leg of a route: the plan of an edge in the frame of the landmark where it begins, compiled.
+pub(crate) struct Leg {
+    pub(crate) edge: Edge,
+    /// Number of the leg, from 0.
+    pub(crate) number: usize,
+    /// Direction of the frame from the heading with which the run begins, in degrees.
+    pub(crate) turned: f64,
+    /// File of the graph.
+    pub(crate) graph: PathBuf,
+    /// Name of the plan of the leg.
+    pub(crate) name: String,
+    pub(crate) machine: Machine,
+    pub(crate) input: Input,
+}
+
+/// Compiles the plan of an edge in a frame that is turned by this angle, in degrees. Messages go to standard error.
+pub(crate) fn leg(edge: &Edge, number: usize, turned: f64, graph: &Path, target: &Target) -> Result<Leg, Failure> {
+    let (name, file) = (format!("Leg{}", number + 1), graph.file_name().unwrap_or_default().display());
+    let text = format!("use \"{file}\"\n\n{{ {name}\n  FRAME {turned}deg {}\n}}\n", edge.plan);
+    let mut input = plan(&graph.with_file_name(format!("{name}.mdle")), text, target)?;
+    let (mut plans, diagnostics) = input.compile(&target.alphabet, Some(&name));
+    let judged = judged(&diagnostics, false);
+    if judged.is_err() {
+        failure::print(&input.sources, &diagnostics);
+    }
+    if let Err(sentence) = judged {
+        return Err(Failure::OtherPlan(format!("{sentence} in the plans of {}", graph.display())));
+    }
+    let named = plans.drain(..).map(|compiled| (compiled.plan.root.name, compiled.machine)).collect();
+    let machine: Machine = input.only(named)?;
+    if analyze(&machine).shortest.is_none() {
+        let Edge { from, to, plan } = edge;
+        let help = format!("`mdlec analyze {} --plan {plan}` says why", graph.display());
+        return Err(Failure::OtherPlan(format!("the plan `{plan}` from {from} to {to} never ends\nhelp: {help}")));
+    }
+    let graph = graph.to_owned();
+    Ok(Leg { edge: edge.clone(), number, turned, graph, name, machine, input })
+}
