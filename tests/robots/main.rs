@@ -14,6 +14,7 @@ mod meetings;
 mod module_faults;
 mod modules;
 mod movement;
+mod navigation;
 mod odd_plans;
 mod operands;
 mod paths;

@@ -1,0 +1,201 @@
+//! `mdle navigate` and `mdle map` on the floor of the paper (docs/src/navigation.md).
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use mdle_tests::executable::{folder, mdle};
+use mdle_tests::repository::root;
+
+/// Runs `mdle` in a folder.
+fn run(folder: &Path, words: &[&str]) -> Output {
+    Command::new(mdle()).args(words).current_dir(folder).output().unwrap()
+}
+
+/// Standard output, standard error and the exit status, as a text.
+fn text(output: &Output) -> String {
+    let [out, err] = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8(bytes.clone()).unwrap());
+    format!("{out}{err}[{}]\n", output.status.code().unwrap())
+}
+
+/// Navigates by the graph of the repository in the simulator, at maximum speed.
+fn navigate(folder: &Path, words: &[&str]) -> Output {
+    let graph = root().join("plans/navigation/office.mdle");
+    let usual = ["--target", "sim", "--speed", "max"];
+    run(folder, &[&["navigate", graph.to_str().unwrap()], words, &usual].concat())
+}
+
+/// The lines about the route and the landmarks.
+fn landmarks(output: &Output) -> String {
+    let text = text(output);
+    let is_about = |line: &&str| line.contains("route: ") || line.contains(" at ") || line.starts_with("at ");
+    text.lines().filter(is_about).collect::<Vec<_>>().join("\n")
+}
+
+/// Graph of four landmarks in a folder of its own: a plan that ends, one that never ends, and one that is cut short.
+fn small_graph(test: &str) -> std::path::PathBuf {
+    let folder = folder(test);
+    let graph = "Γ_a^b = { AToB (bumper) (Atom (wait 1s) (go 20 0)) }\n\
+                 Γ_b^c = { BToC (Atom (null) (go 0 0)) (Atom (wait 1s) (go 20 0)) }\n\
+                 Γ_b^d = { BToD (bumper OR wait 2s) (Atom (wait 1min) (go 0 0.1)) }\n";
+    fs::write(folder.join("graph.mdle"), graph).unwrap();
+    folder
+}
+
+#[test]
+fn a_route_of_one_plan_is_driven() {
+    let folder = folder("navigation_one");
+    let words = ["office", "lab1", "--start", "11.5,0,270", "--goal", "7.45,0.3,0.8,270,15"];
+    let output = navigate(&folder, &words);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    insta::assert_snapshot!(landmarks(&output), @r#"
+    route: office -> lab1 (OfficeToLab1Plan)
+    at office
+    at lab1
+    "#);
+}
+
+#[test]
+fn a_route_of_two_plans_is_driven() {
+    let folder = folder("navigation_two");
+    let graph = fs::read_to_string(root().join("plans/navigation/office.mdle")).unwrap();
+    let without = graph.replace("Γ_lab2^office = ", "");
+    fs::write(folder.join("office.mdle"), without).unwrap();
+    fs::copy(root().join("plans/navigation/landmarks.toml"), folder.join("landmarks.toml")).unwrap();
+    let goal = ["--goal", "world"];
+    let words = ["navigate", "office.mdle", "lab2", "office", "--target", "sim", "--body", "scout", "--seed", "1"];
+    let output = run(&folder, &[&words[..], &["--speed", "max"], &goal].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    insta::assert_snapshot!(landmarks(&output), @r#"
+    route: lab2 -> lab1 (Lab2ToLab1Plan) -> office (Lab1ToOfficePlan)
+    at lab2
+    at lab1
+    at office
+    "#);
+}
+
+#[test]
+fn a_graph_without_the_way_is_refused() {
+    let folder = small_graph("navigation_refused");
+    let answers = [["c", "a"], ["d", "b"], ["b", "a"], ["a", "lab"], ["A", "b"], ["a", "a"], ["a", "c"], ["b", "d"]]
+        .map(|[from, to]| {
+            let output = run(&folder, &["navigate", "graph.mdle", from, to, "--target", "sim", "--speed", "max"]);
+            format!("$ {from} {to}\n{}", text(&output))
+        });
+    insta::assert_snapshot!(answers.join("\n"), @r#"
+    $ c a
+    error: graph.mdle has no route from c to a
+    help: no plan begins at c
+    [1]
+
+    $ d b
+    error: graph.mdle has no route from d to b
+    help: no plan begins at d
+    [1]
+
+    $ b a
+    error: graph.mdle has no route from b to a
+    help: routes lead from b to c, d
+    [1]
+
+    $ a lab
+    error: graph.mdle has no landmark `lab`
+    help: its landmarks are a, b, c, d
+    [2]
+
+    $ A b
+    error: graph.mdle has no landmark `A`; did you mean `a`?
+    help: its landmarks are a, b, c, d
+    [2]
+
+    $ a a
+    the robot is at a already
+    [0]
+
+    $ a c
+    error: the plan `BToC` from b to c never ends
+    help: `mdlec analyze graph.mdle --plan BToC` says why
+    [1]
+
+    $ b d
+    route: b -> d (BToD)
+    at b
+    error: a fault stopped the robot: the way from b to d is not done: `BToD` was ended by `bumper OR wait 2`
+    [3]
+
+    "#);
+}
+
+#[test]
+fn faulty_landmarks_are_refused() {
+    let folder = small_graph("navigation_landmarks");
+    fs::write(folder.join("own.toml"), "[[landmark]]\nname = \"e\"\naxis = \"0\"\n").unwrap();
+    fs::write(folder.join("none.mdle"), "{ P (Atom (wait 1s) stop) }\n").unwrap();
+    let answers = [
+        &["graph.mdle", "a", "b", "--landmarks", "own.toml"][..],
+        &["graph.mdle", "a", "b", "--landmarks", "missing.toml"],
+        &["none.mdle", "a", "b"],
+        &["missing.mdle", "a", "b"],
+        &["graph.mdle", "a", "--seed", "1"],
+    ]
+    .map(|words| text(&run(&folder, &[&["navigate"], words, &["--target", "sim"]].concat())));
+    insta::assert_snapshot!(answers.join("\n"), @r#"
+    error: own.toml:2: the graph has no landmark `e`
+    [2]
+
+    error: the landmarks in missing.toml cannot be read: No such file or directory (os error 2)
+    [2]
+
+    error: no plan of none.mdle leads from one landmark to another
+    help: write the landmarks before the plan, as in `Γ_a^b = { Name … }`
+    [2]
+
+    error: there is no file `missing.mdle`
+    [2]
+
+    error: `--seed` comes before the landmarks
+    help: the options of a run follow the landmarks, as in `mdle navigate GRAPH FROM TO --seed …`
+    [2]
+
+    "#);
+}
+
+#[test]
+fn a_map_shows_the_walls_at_lab_2() {
+    let folder = folder("navigation_map");
+    let drive = root().join("plans/navigation/map.mdle");
+    let words = ["run", drive.to_str().unwrap(), "--target", "sim", "--speed", "max", "--start", "0,0,0"];
+    let output = run(&folder, &[&words[..], &["--log", "drive.mcap"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    let output = run(&folder, &["map", "drive.mcap", "lab2.yaml", "--at", "-0.75,0,0"]);
+    assert_eq!(text(&output), "[0]\n");
+    insta::assert_snapshot!(fs::read_to_string(folder.join("lab2.yaml")).unwrap(), @r#"
+    image: lab2.pgm
+    resolution: 0.0254
+    origin: [-1.905, -1.905, 0.0]
+    negate: 0
+    occupied_thresh: 0.65
+    free_thresh: 0.35
+
+    "#);
+    let map = fs::read(folder.join("lab2.pgm")).unwrap();
+    let grey = |x: f64, y: f64| {
+        let cell = |at: f64| ((at + 1.905) / 0.0254) as usize;
+        map[map.len() - 150 * 150 + (149 - cell(y)) * 150 + cell(x)]
+    };
+    // The doorway, the hallway in front of it, and the room behind it are free; the wall across is not.
+    for (x, y) in [(0.0, 0.0), (-0.75, 0.0), (-0.75, 0.3), (0.6, 0.0)] {
+        assert!(grey(x, y) > 166, "({x}, {y}) is {}", grey(x, y));
+    }
+    let darkest = |x: f64, y: f64| [-0.04, 0.0, 0.04].map(|by| grey(x + by, y)).into_iter().min().unwrap();
+    for y in [-0.4, 0.0, 0.4] {
+        assert!(darkest(-1.5, y) < 89, "the wall at {y} is {}", darkest(-1.5, y));
+    }
+    let output = run(&folder, &["map", "drive.mcap", "lab2.yaml"]);
+    insta::assert_snapshot!(text(&output), @r#"
+    error: lab2.yaml exists already
+    [2]
+
+    "#);
+}
