@@ -10,9 +10,10 @@ use std::{env, fs};
 use crate::targets::{checkout, manifest, targets};
 
 /// The packages that targets share; the targets come on top.
-const SHARED: [&str; 8] = [
+const SHARED: [&str; 9] = [
     "runtime/core",
     "runtime/quantity",
+    "runtime/sound",
     "runtime/record",
     "runtime/host",
     "runtime/serial",

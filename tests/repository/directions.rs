@@ -42,7 +42,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("editors/server", &["mdle-runtime", "mdle-compiler", "mdle-files", "mdle-language-service"]),
     ("editors/debugger", &["mdle-runtime", "mdle-compiler", "mdle-files", "mdle-language-service"]),
     ("mdlec", &["mdle-runtime", "mdle-compiler", "mdle-theory", "mdle-files", "mdle-language-server", "mdle-debugger"]),
-    ("targets/sim/simulator", &["mdle-runtime", "mdle-quantity", "mdle-atoms"]),
+    ("targets/sim/simulator", &["mdle-runtime", "mdle-quantity", "mdle-sound", "mdle-atoms"]),
     // The conformance of robots is there for their tests alone.
     ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-simulator", "mdle-conformance"]),
     ("targets/scout", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),

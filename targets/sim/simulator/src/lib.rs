@@ -16,6 +16,7 @@ mod footprint;
 mod frames;
 mod goal;
 mod grid;
+mod hearing;
 mod model;
 mod moving;
 mod noise;
@@ -42,6 +43,7 @@ pub use drawing::Drawing;
 pub use fleet_drawing::FleetDrawing;
 pub use footprint::{Footprint, Form};
 pub use goal::{Goal, Zone, edge};
+pub use hearing::Hearing;
 pub use mdle_runtime::Sensed;
 /// The robot's output.
 pub use mdle_runtime::Sensed as Output;

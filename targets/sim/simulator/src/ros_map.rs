@@ -53,6 +53,8 @@ impl Header {
             start: Pose::ORIGIN,
             goal: None,
             charger: None,
+            sounds: Vec::new(),
+            t60: 0.0,
             rough: 0.0,
         };
         world.check_size().map_err(|what| WorldError::new(file, None, what))?;

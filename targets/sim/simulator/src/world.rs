@@ -1,6 +1,7 @@
 //! A world: the outlines of walls and boxes on a flat floor, and the default start pose of a robot.
 
 use mdle_runtime::Pose;
+use mdle_sound::Source;
 
 use crate::charger::Charger;
 use crate::goal::Goal;
@@ -24,6 +25,10 @@ pub struct World {
     pub goal: Option<Goal>,
     /// The charger, if the world has one.
     pub charger: Option<Charger>,
+    /// Sources of sound.
+    pub sounds: Vec<Source>,
+    /// Time in seconds in which sound falls by 60 dB; 0 if nothing reflects it.
+    pub t60: f64,
     /// Roughness of other robots, and of the outlines and things of a file that give none of their own: from 0 (as
     /// smooth as the body's model) to 1 (heard by sonars at any angle).
     pub rough: f64,
@@ -41,6 +46,8 @@ impl World {
             start: Pose::ORIGIN,
             goal: None,
             charger: None,
+            sounds: Vec::new(),
+            t60: 0.0,
             rough: 0.0,
             contours: 0,
         }

@@ -4,6 +4,7 @@
 //! Obstacles may overlap: together they are one. Moving things go through fixed ones, but never into the robot.
 
 mod outlines;
+mod sounds;
 mod text;
 
 use std::ops::Range;
@@ -68,7 +69,8 @@ fn read(text: &str) -> Result<World, Wrong> {
         things.push(unit.door(number, door, rough)?);
     }
     let charger = written.charger.as_ref().map(|charger| unit.charger(charger)).transpose()?;
-    let world = World { outlines, things, start, goal, charger, rough, contours: 0 };
+    let (sounds, t60) = (unit.sounds(&written.sounds)?, sounds::t60(written.t60.as_ref())?);
+    let world = World { outlines, things, start, goal, charger, sounds, t60, rough, contours: 0 };
     world.check_size().map_err(|what| Wrong(None, what))?;
     let blocked = charger.and_then(|charger| world.obstacle_at(&charger, RADIUS));
     if let (Some(name), Some(text)) = (blocked, &written.charger) {

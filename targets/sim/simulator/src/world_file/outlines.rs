@@ -203,7 +203,7 @@ impl Unit {
         Ok(stops)
     }
 
-    fn pair(self, written: &Numbers, what: &str) -> Result<Place, Wrong> {
+    pub(super) fn pair(self, written: &Numbers, what: &str) -> Result<Place, Wrong> {
         match written.get_ref().as_slice() {
             [x, y] => Ok(Place { x: self.length(x)?, y: self.length(y)? }),
             other => Err(Wrong::at(written, format!("{what} is two numbers, x and y in metres, not {}", other.len()))),

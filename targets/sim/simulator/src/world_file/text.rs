@@ -21,6 +21,9 @@ pub(super) struct WorldText {
     pub(super) start: Table<StartText>,
     pub(super) goal: Option<Spanned<Table<GoalText>>>,
     pub(super) charger: Option<Spanned<Table<ChargerText>>>,
+    pub(super) t60: Option<Spanned<f64>>,
+    #[serde(default, rename = "sound")]
+    pub(super) sounds: Vec<Spanned<Table<SoundText>>>,
     #[serde(default, rename = "wall")]
     pub(super) walls: Vec<Table<WallText>>,
     #[serde(default, rename = "box")]
@@ -54,6 +57,14 @@ pub(super) struct ChargerText {
     pub(super) at: Numbers,
     pub(super) heading: Spanned<f64>,
     pub(super) reach: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SoundText {
+    pub(super) at: Numbers,
+    pub(super) kind: Option<Spanned<String>>,
+    pub(super) level: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]

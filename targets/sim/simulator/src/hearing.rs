@@ -1,0 +1,53 @@
+//! Two ears of a simulated robot, in the middle of it: they hear the sources of its world.
+
+use mdle_runtime::{Nanos, Pose, Radians};
+use mdle_sound::{EarPose, Ears, Head, RATE, Room};
+
+use crate::world::World;
+
+/// The ears of a robot.
+pub struct Hearing {
+    ears: Ears,
+    /// Pose at the exchange before, and the number of samples until then.
+    before: Option<(Pose, u64)>,
+}
+
+impl Hearing {
+    /// Returns the ears of a robot with a head of this radius, in metres; `None` in a world without a source of sound.
+    #[must_use]
+    pub fn new(world: &World, radius: f64, seed: u64) -> Option<Self> {
+        if world.sounds.is_empty() {
+            return None;
+        }
+        let ears = Ears::new(Head::new(radius), room(world), &world.sounds, seed);
+        Some(Self { ears, before: None })
+    }
+
+    /// Returns what the left and the right ear have heard from the exchange before until this one, at which the robot
+    /// has this pose.
+    pub fn heard(&mut self, here: &Pose, now: Nanos) -> Vec<[f32; 2]> {
+        let until = (u128::from(now.0) * u128::from(RATE) / 1_000_000_000).try_into().unwrap_or(u64::MAX);
+        let (before, since) = self.before.replace((*here, until)).unwrap_or((*here, until));
+        let middle = |from: f64, to: f64| (from + to) / 2.0;
+        let turned = Radians(here.theta.0 - before.theta.0).wrapped().0;
+        let at = (middle(before.x.0, here.x.0), middle(before.y.0, here.y.0));
+        let ears = EarPose { at, heading: before.theta.0 + turned / 2.0 };
+        let mut samples = Vec::new();
+        // A period is a second at most.
+        let count = usize::try_from(until.saturating_sub(since).min(u64::from(RATE))).unwrap_or_default();
+        self.ears.hear(&ears, count, &mut samples);
+        samples
+    }
+}
+
+/// Returns the room of a world: the rectangle around its walls.
+pub(crate) fn room(world: &World) -> Room {
+    let mut places = world.segments().flat_map(|(_, from, to)| [from, to]);
+    let Some(first) = places.next() else { return Room::open() };
+    let (min, max) = places.fold((first, first), |(mut min, mut max), place| {
+        (min.x, min.y) = (min.x.min(place.x), min.y.min(place.y));
+        (max.x, max.y) = (max.x.max(place.x), max.y.max(place.y));
+        (min, max)
+    });
+    Room::new((min.x, min.y), (max.x, max.y), world.t60)
+}
