@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::{CompiledPlans, Engine, Library, NoTrial, PlanEvent, PlanSource, Plans, StoredPlan, When};
-use mdle_host::{Moment, Pace, Pilot, RunTerms, StopRequest, Time, Transitions};
+use mdle_host::{Microphones, Moment, Pace, Pilot, RunTerms, StopRequest, Time, Transitions};
 use mdle_runtime::{Nanometers, Nanos, Turn};
 use mdle_scripted::alphabet::Alphabet;
 use mdle_scripted::{INTERRUPTS, LAWS, Output};
@@ -37,6 +37,7 @@ impl Run {
             time: Time::Stepped(Pace::Max),
             period: Duration::from_millis(100),
             request: StopRequest::default(),
+            microphones: Microphones::default(),
         };
         let engine = Engine::new(loaded(text).unwrap().plan(), &Library::new(), &terms).unwrap();
         Self { engine, turns: 0, way: Nanometers::ZERO, journal: Vec::new() }

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 use std::thread;
 
 use mdle_engine::{Engine, Library, When};
-use mdle_host::{Moment, Pace, Pilot as _, RunTerms, StopRequest, Time, Transitions};
+use mdle_host::{Microphones, Moment, Pace, Pilot as _, RunTerms, StopRequest, Time, Transitions};
 use mdle_record::{Change, Step};
 use mdle_runtime::{Nanos, Robot as _, Sensed, Turn, Twist};
 use mdle_sim::{Simulated, World};
@@ -34,7 +34,7 @@ struct Made {
 struct Outcome(Turn<Twist>, Vec<Step>, Option<u64>, u64);
 
 fn engine(time: Time) -> Engine<Odd> {
-    let terms = RunTerms { time, period: PERIOD, request: StopRequest::default() };
+    let terms = RunTerms { time, period: PERIOD, request: StopRequest::default(), microphones: Microphones::default() };
     Engine::new(loaded(FIRST).plan(), &Library::new(), &terms).unwrap()
 }
 

@@ -13,7 +13,7 @@ use mdle_engine::{
     Background, Declare, Engine, EngineAlphabet, Exchange, Fault, In, Library, Module, ModuleState, Modules, Out,
     PlanEvent, Relevance, Turn, When,
 };
-use mdle_host::{Moment, Pace, Pilot, PilotFault, Refusal, RunTerms, StopRequest, Time, Transitions};
+use mdle_host::{Microphones, Moment, Pace, Pilot, PilotFault, Refusal, RunTerms, StopRequest, Time, Transitions};
 use mdle_runtime::{self as runtime, Meters, Nanos, Pose, Radians, Robot, Sensed, Turn as PlanTurn, Twist};
 use mdle_sim::alphabet::Alphabet;
 use mdle_sim::{Simulated, World};
@@ -130,7 +130,8 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> Run<A> {
     pub(super) fn begin(text: &str, library: &Library<Sensed>, time: Time) -> Result<Self, Refusal> {
         let world = World::named("hall").unwrap().unwrap();
         let robot = Simulated::new(&world, world.start, Some(3), PERIOD).unwrap();
-        let terms = RunTerms { time, period: PERIOD, request: StopRequest::default() };
+        let terms =
+            RunTerms { time, period: PERIOD, request: StopRequest::default(), microphones: Microphones::default() };
         let engine = Engine::new(loaded::<A>(text).plan(), library, &terms)?;
         Ok(Self { robot, engine, input: Twist::default(), place: Pose::ORIGIN, turns: 0 })
     }

@@ -13,7 +13,10 @@ use crate::pilot::{MakePilot, Pilot, RunTerms};
 use crate::position::Texts;
 use crate::runs::Runs;
 use crate::target_options::TargetOptions;
-use crate::{Pace, Refusal, Replays, StopRequest, Supervision, Target, Time};
+use crate::{Microphones, Pace, Refusal, Replays, StopRequest, Supervision, Target, Time};
+
+/// Text to type where a robot has no microphones.
+const NO_EARS: &str = "give `--ears FILE.wav`, or `--ears -` for the pipe of a recorder";
 
 /// The target and the plan of an executable.
 pub(crate) trait Executable: Sync {
@@ -65,7 +68,21 @@ where
     }
 
     /// Returns the robot with the pilot that drives it, its supervisor, and the paths that the plan replays.
-    fn drive(&self, mut robot: T::Robot, pilot: B, store: PathStore, terms: &RunTerms) -> Box<dyn Drive + '_> {
+    ///
+    /// # Errors
+    /// A module listens, and there is nothing to be heard.
+    fn drive(
+        &self,
+        mut robot: T::Robot,
+        pilot: B,
+        store: PathStore,
+        terms: &RunTerms,
+    ) -> Result<Box<dyn Drive + '_>, Refusal> {
+        if let Some(radius) = terms.microphones.head() {
+            let name = T::NAME;
+            let none = || Refusal::Usage(format!("the robot `{name}` has no microphones of its own: {NO_EARS}"));
+            T::EARS.ok_or_else(none)?(&mut robot, terms.microphones.clone(), radius).map_err(Refusal::Usage)?;
+        }
         let speed = T::PATHS.map(|Replays { take, speed, .. }| {
             take(&mut robot, store);
             speed
@@ -76,7 +93,7 @@ where
             diversions: Box::new(diversions),
         });
         let helm = Helm::new(pilot, supervised);
-        Box::new(PilotOnRobot::new(robot, observer, speed, helm).with_settings(T::SETTINGS))
+        Ok(Box::new(PilotOnRobot::new(robot, observer, speed, helm).with_settings(T::SETTINGS)))
     }
 }
 
@@ -105,10 +122,10 @@ where
     ) -> Result<Box<dyn Drive + '_>, Refusal> {
         // Without a pilot the robot need not be opened.
         let time = T::time(matches).map_err(Refusal::Usage)?;
-        let terms = RunTerms { time, period, request: request.clone() };
+        let terms = RunTerms { time, period, request: request.clone(), microphones: Microphones::default() };
         let pilot = (self.pilot)(&terms)?;
         let robot = T::connect(matches, period, request)?;
-        Ok(self.drive(robot, pilot, store, &terms))
+        self.drive(robot, pilot, store, &terms)
     }
 
     fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore) -> Result<Option<Runs<'_>>, Refusal> {
@@ -117,11 +134,16 @@ where
         if batch.is_some() && self.session().is_some() {
             return Err(Refusal::Usage("a session is one run: leave --runs out".to_owned()));
         }
-        let terms = RunTerms { time: Time::Stepped(Pace::Max), period, request: StopRequest::default() };
-        let drive = move |robot| match (self.pilot)(&terms) {
-            Ok(pilot) => Ok(self.drive(robot, pilot, store, &terms)),
-            Err(Refusal::Usage(sentence) | Refusal::Fault(sentence) | Refusal::Ended(Err(sentence))) => Err(sentence),
-            Err(Refusal::Ended(Ok(()))) => Err("the run was asked to end before it began".to_owned()),
+        let drive = move |robot| {
+            let (time, request) = (Time::Stepped(Pace::Max), StopRequest::default());
+            let terms = RunTerms { time, period, request, microphones: Microphones::default() };
+            match (self.pilot)(&terms).and_then(|pilot| self.drive(robot, pilot, store, &terms)) {
+                Ok(drive) => Ok(drive),
+                Err(Refusal::Usage(sentence) | Refusal::Fault(sentence) | Refusal::Ended(Err(sentence))) => {
+                    Err(sentence)
+                }
+                Err(Refusal::Ended(Ok(()))) => Err("the run was asked to end before it began".to_owned()),
+            }
         };
         Ok(batch.map(|batch| Runs::of(batch, drive)))
     }

@@ -7,7 +7,7 @@ use mdle_record::Change;
 use mdle_runtime::{Machine, Nanos, Plan, Turn};
 
 use crate::transitions::Transitions;
-use crate::{Refusal, StopRequest, Time};
+use crate::{Microphones, Refusal, StopRequest, Time};
 
 /// Computes the input of each turn.
 pub trait Pilot {
@@ -95,6 +95,8 @@ pub struct RunTerms {
     pub period: Duration,
     /// The request to end the run, which a signal makes.
     pub request: StopRequest,
+    /// Microphones of the robot, for a module that listens.
+    pub microphones: Microphones,
 }
 
 /// Makes the pilot of a run.

@@ -5,7 +5,7 @@ use std::time::Duration;
 use clap::{ArgMatches, Command};
 use mdle_runtime::Robot;
 
-use crate::{NamedFile, Observation, Refusal, Replays, SettingsOf, StopRequest, Time};
+use crate::{EarsOf, NamedFile, Observation, Refusal, Replays, SettingsOf, StopRequest, Time};
 
 /// A robot that executables are built for; implemented once in each target crate. A driver needs no more than a
 /// [`Robot`] and [`Target::connect`].
@@ -24,6 +24,9 @@ pub trait Target {
 
     /// The settings that people change while it drives, if there are any.
     const SETTINGS: Option<SettingsOf<Self::Robot>> = None;
+
+    /// Gives its robot microphones, if it can have some.
+    const EARS: Option<EarsOf<Self::Robot>> = None;
 
     /// Adds the target's own options to the executable's.
     fn arguments(command: Command) -> Command {

@@ -8,7 +8,9 @@ use mdle_compiler::fsm;
 use mdle_compiler::load::{self, Loaded, LoadedPlan, Moment};
 use mdle_engine::{Engine, EngineAlphabet, Library, When};
 use mdle_files::Target;
-use mdle_host::{Helm, Intervention, Pace, Pilot as _, Refusal, RunTerms, StopRequest, Supervised, Texts, Time};
+use mdle_host::{
+    Helm, Intervention, Microphones, Pace, Pilot as _, Refusal, RunTerms, StopRequest, Supervised, Texts, Time,
+};
 use mdle_host::{PilotFault, Transitions, Verdict};
 use mdle_record::{Applied, Begin, Change, Message, MessageKind, ReadError, RecordedTurn, Step, TurnsWithMessages};
 use mdle_runtime::{Alphabet, Nanos, Plan, Sensed, Turn, Twist};
@@ -86,7 +88,12 @@ where
     let safety = begin.safety.as_ref().map(|texts| SafetyFile::recorded(texts)?.compile::<A>(target, looks));
     let safety = safety.transpose()?.map(Arc::new);
     let period = Duration::from_nanos(begin.period.0);
-    let terms = RunTerms { time: Time::Stepped(Pace::Max), period, request: StopRequest::default() };
+    let terms = RunTerms {
+        time: Time::Stepped(Pace::Max),
+        period,
+        request: StopRequest::default(),
+        microphones: Microphones::default(),
+    };
     let engine = Engine::new(plan, &Library::new(), &terms).map_err(refused)?;
     let engine = engine.repeating(safety.as_ref().map(|safety| safety.reads()));
     let helm = Helm::new(engine, safety.map(|safety| supervised(safety, period)));

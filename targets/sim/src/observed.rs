@@ -1,9 +1,13 @@
 //! The simulated robot with its observers: pictures, the live view, and the table of its poses.
 
-use mdle_host::{Ended, Judgement, Observer, PlanPosition, RobotSettings, Unfinished, Watch, WholeFile, sonar_order};
+use std::sync::Arc;
+
+use mdle_host::{
+    Ended, Judgement, Microphones, Observer, PlanPosition, RobotSettings, Unfinished, Watch, WholeFile, sonar_order,
+};
 use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, PathStore, Pose, Robot, Sensed, Twist};
-use mdle_simulator::{Charger, Drawing, Fault, Goal, Simulated, World};
+use mdle_simulator::{Charger, Drawing, Fault, Goal, Hearing, Simulated, World};
 
 /// A simulated robot and the observers of its run; it drives as it would unobserved.
 pub struct Observed {
@@ -14,6 +18,15 @@ pub struct Observed {
     pictures: Option<Pictures>,
     table: Option<Table>,
     watch: Option<Watch>,
+    /// World whose sound can be heard, its name, and the seed of the sound.
+    sounds: Option<Sounds>,
+    ears: Option<(Hearing, Microphones)>,
+}
+
+/// Sound that the robot hears once it has ears.
+pub(crate) struct Sounds {
+    pub(crate) world: Arc<World>,
+    pub(crate) seed: u64,
 }
 
 /// The pictures to be drawn at the end, and their data.
@@ -45,7 +58,17 @@ impl Table {
 impl From<Simulated> for Observed {
     /// A robot whose run is neither drawn nor recorded.
     fn from(robot: Simulated) -> Self {
-        Self { robot, goal: None, touches: false, contacts: 0, pictures: None, table: None, watch: None }
+        Self {
+            robot,
+            goal: None,
+            touches: false,
+            contacts: 0,
+            pictures: None,
+            table: None,
+            watch: None,
+            sounds: None,
+            ears: None,
+        }
     }
 }
 
@@ -77,6 +100,23 @@ impl Observed {
     /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its world.
     pub fn supply(&mut self, charge: f64, charger: Option<Charger>) {
         self.robot.supply(charge, charger);
+    }
+
+    /// Lets the robot hear these sounds, once it has ears.
+    pub(crate) fn among(self, sounds: Sounds) -> Self {
+        Self { sounds: Some(sounds), ..self }
+    }
+
+    /// Gives the robot ears on a head of this radius, in metres.
+    ///
+    /// # Errors
+    /// The world has no source of sound: a sentence.
+    pub(crate) fn take_ears(&mut self, microphones: Microphones, radius: f64) -> Result<(), String> {
+        let hearing = self.sounds.as_ref().and_then(|Sounds { world, seed }| Hearing::new(world, radius, *seed));
+        let silent = "--ears robot: the world has no source of sound\n\
+                      help: add one to a world file, as `[[sound]]` and `at = [5, 3]`";
+        self.ears = Some((hearing.ok_or(silent)?, microphones));
+        Ok(())
     }
 
     /// Takes the paths that the plan replays.
@@ -128,6 +168,9 @@ impl Robot for Observed {
         self.contacts += u64::from(comes_into_contact);
         self.touches = sensed.pressed();
         let pose = self.robot.pose();
+        if let Some((hearing, microphones)) = &mut self.ears {
+            microphones.put(now, hearing.heard(&pose, now));
+        }
         if let Some(table) = &mut self.table {
             table.went(now, &pose);
         }

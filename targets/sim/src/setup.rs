@@ -2,6 +2,7 @@
 //! a seed.
 
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 use std::thread::available_parallelism;
 use std::time::Duration;
 
@@ -10,12 +11,12 @@ use mdle_host::{Batch, Watch, WholeFile};
 use mdle_runtime::Pose;
 use mdle_simulator::{Goal, Make, PARTS, Simulated, Start, StartError, StartNoise, Walls, World};
 
-use crate::observed::Observed;
+use crate::observed::{Observed, Sounds};
 use crate::options;
 
 /// A world, the robot to be simulated in it, and where it starts.
 struct Setup {
-    world: World,
+    world: Arc<World>,
     walls: Walls,
     make: Make,
     start: Pose,
@@ -77,6 +78,7 @@ impl Setup {
         mdle_simulator::check(&start, make.form(), &world, &walls).map_err(with_option)?;
         let noise = options::start_noise(matches)?;
         let charge = options::battery(matches);
+        let world = Arc::new(world);
         Ok(Self { world, walls, make, start, noise, goal, charge, period })
     }
 
@@ -101,7 +103,8 @@ impl Setup {
         };
         let robot = start.and_then(|start| Simulated::with(&make, &self.world, start, self.period));
         let robot = robot.map_err(|error| format!("no start could be found by chance: {error}"))?;
-        Ok(Observed::from(robot.charged(self.charge)).judged_by(self.goal))
+        let sounds = Sounds { world: Arc::clone(&self.world), seed: seed.unwrap_or_default() };
+        Ok(Observed::from(robot.charged(self.charge)).judged_by(self.goal).among(sounds))
     }
 }
 

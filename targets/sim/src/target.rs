@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{NamedFile, Observation, Refusal, Replays, SettingsOf, StopRequest, Target, Time};
+use mdle_host::{EarsOf, NamedFile, Observation, Refusal, Replays, SettingsOf, StopRequest, Target, Time};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
 use mdle_simulator::alphabet;
 
@@ -25,6 +25,7 @@ impl Target for Sim {
         speed: |sensed| sensed.velocity.v,
     });
     const SETTINGS: Option<SettingsOf<Observed>> = Some(|robot| robot);
+    const EARS: Option<EarsOf<Observed>> = Some(Observed::take_ears);
     const OBSERVATION: Option<Observation<Observed>> = Some(Observation {
         observer: |robot| robot,
         draws: true,

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::{CompiledPlans, Engine, Library, PlanEvent, PlanSource, StoredPlan, When};
-use mdle_host::{Moment, Pilot as _, RunTerms, StopRequest, Time, Transitions, claim_for_worker};
+use mdle_host::{Microphones, Moment, Pilot as _, RunTerms, StopRequest, Time, Transitions, claim_for_worker};
 use mdle_runtime::{Nanos, Robot as _, Twist};
 use mdle_sim::alphabet::Alphabet;
 use mdle_sim::{Simulated, World};
@@ -28,7 +28,12 @@ const SWAPS: u64 = 80;
 
 fn main() {
     let first = loaded("{ First (bumper) (Atom (null) stop) }").expect("a plan").plan();
-    let terms = RunTerms { time: Time::Wall, period: PERIOD, request: StopRequest::default() };
+    let terms = RunTerms {
+        time: Time::Wall,
+        period: PERIOD,
+        request: StopRequest::default(),
+        microphones: Microphones::default(),
+    };
     let mut engine = Engine::<Alphabet>::new(first, &Library::new(), &terms).expect("an engine");
     engine.plans_mut().compile_with(Box::new(compiled)).expect("a thread");
     engine.plans_mut().set_trial(Nanos(50_000_000));

@@ -6,8 +6,8 @@ use mdle_compiler::load::{Loaded, LoadedPlan};
 use mdle_engine::link::{Air, StateLink};
 use mdle_engine::{Engine, Library};
 use mdle_host::{
-    Moment, Pace, Passes, Pilot as _, PilotFault, RunTerms, StopRequest, Target as _, Time, Transitions, cause_words,
-    place,
+    Microphones, Moment, Pace, Passes, Pilot as _, PilotFault, RunTerms, StopRequest, Target as _, Time, Transitions,
+    cause_words, place,
 };
 use mdle_runtime::{Machine, Nanos, PathStore, Plan as _, Robot as _, Sensed, Setpoint, StoredPath, Turn, Twist};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
@@ -64,8 +64,12 @@ impl Runner {
         library: &Library<Sensed>,
     ) -> Result<Self, String> {
         let Member { name, mut robot, start, loaded, paths, records, killed, .. } = member;
-        let terms =
-            RunTerms { time: Time::Stepped(Pace::Max), period: scenario.period, request: StopRequest::default() };
+        let terms = RunTerms {
+            time: Time::Stepped(Pace::Max),
+            period: scenario.period,
+            request: StopRequest::default(),
+            microphones: Microphones::default(),
+        };
         let plan = Loaded::plan(&loaded);
         let engine = Engine::new(plan, library, &terms).map_err(|refusal| format!("{refusal:?}"))?;
         let engine = engine.linked(StateLink::new(Box::new(air), &name, start));

@@ -8,8 +8,8 @@ use std::time::Duration;
 use mdle_compiler::load::{Loaded, LoadedPlan};
 use mdle_engine::{Engine, Library};
 use mdle_host::{
-    Call, Moment, Pace, Pilot, PilotFault, Program, RecordedPlan, RunTerms, StopRequest, Time, Transitions, Trials,
-    cause_words, trials,
+    Call, Microphones, Moment, Pace, Pilot, PilotFault, Program, RecordedPlan, RunTerms, StopRequest, Time,
+    Transitions, Trials, cause_words, trials,
 };
 use mdle_runtime::{Cause, Machine, Nanos, Plan as _, Robot as _, Sensed, Turn, Twist};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
@@ -92,8 +92,12 @@ impl Simulation {
         library: &Library<Sensed>,
         coverage: &mut Coverage,
     ) -> Result<Course, String> {
-        let terms =
-            RunTerms { time: Time::Stepped(Pace::Max), period: self.trials.period, request: StopRequest::default() };
+        let terms = RunTerms {
+            time: Time::Stepped(Pace::Max),
+            period: self.trials.period,
+            request: StopRequest::default(),
+            microphones: Microphones::default(),
+        };
         let engine = Engine::new(self.loaded.plan(), library, &terms).map_err(|refusal| format!("{refusal:?}"))?;
         let mut drive = Driven {
             simulation: self,
