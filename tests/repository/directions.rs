@@ -25,6 +25,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
             "mdle-quantity",
             "mdle-record",
             "mdle-sim",
+            "mdle-sound",
             "mdle-scout",
             "mdle-atrv",
         ],

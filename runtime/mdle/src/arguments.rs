@@ -2,6 +2,7 @@
 //!
 //! The words after the plan are the options of the run, which depend on the target: the host parses them.
 
+mod ears;
 mod locate;
 mod log;
 mod manual;
@@ -24,6 +25,7 @@ use mdle_quantity::Quantity;
 use crate::Failure;
 use crate::new_module::NewModule;
 use crate::test::arguments::{self as test, Test};
+pub(crate) use ears::EarsOption;
 pub(crate) use locate::Locate;
 pub(crate) use log::Log;
 pub(crate) use map::Map;
@@ -80,6 +82,10 @@ pub(crate) struct Run {
     pub(crate) modules: Vec<(String, String)>,
     /// Point of the module `heading`, in metres, if it is to be loaded.
     pub(crate) point: Option<(f64, f64)>,
+    /// Sound that the module `heading` listens to, if it is to be loaded.
+    pub(crate) ears: Option<EarsOption>,
+    /// Radius of the head with the ears, in metres.
+    pub(crate) head: f64,
     /// `true` if warnings count as errors.
     pub(crate) deny_warnings: bool,
     /// Program and arguments of this call, without the options of the run.
@@ -106,7 +112,7 @@ pub(crate) struct SessionOptions {
 }
 
 /// Options of `mdle` itself that have a value.
-const WITH_VALUE: [&str; 11] = [
+const WITH_VALUE: [&str; 13] = [
     "--landmarks",
     "--target",
     "--plan",
@@ -115,6 +121,8 @@ const WITH_VALUE: [&str; 11] = [
     "--records",
     "--module",
     "--point",
+    "--ears",
+    "--head",
     "-c",
     "--commands",
     "--role",
@@ -169,6 +177,7 @@ fn session(shell: &ArgMatches) -> SessionOptions {
 }
 
 fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: Option<SessionOptions>) -> Asked {
+    let (ears, head) = ears::ears(run);
     Asked::Run(Box::new(Run {
         file: run.get_one("file").cloned().unwrap_or_default(),
         target: run.get_one("target").cloned(),
@@ -178,6 +187,8 @@ fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: O
         records: run.get_one("records").cloned(),
         modules: run.get_many("module").into_iter().flatten().cloned().collect(),
         point: run.get_one("point").copied(),
+        ears,
+        head,
         deny_warnings: run.get_flag("deny-warnings"),
         words,
         options,
@@ -259,7 +270,7 @@ fn shell() -> Command {
         )
         .override_usage("mdle shell [OPTIONS] <PLAN> [OPTIONS OF THE RUN]");
     let flag = |name: &'static str| Arg::new(name).action(ArgAction::SetTrue);
-    with_plan(command)
+    ears::with_ears(with_plan(command))
         .arg(
             Arg::new("commands")
                 .short('c')
@@ -289,7 +300,7 @@ const AFTER: &str = "Exit status: that of the executable; 1 if the plan has erro
                      be read, 6 if a safety rule ended the plan";
 
 fn run() -> Command {
-    with_plan(run_alone())
+    ears::with_ears(with_plan(run_alone()))
 }
 
 fn run_alone() -> Command {

@@ -13,7 +13,7 @@ use mdle_runtime::Sensed;
 use crate::arguments::Run;
 use crate::failure::{self, Failure};
 use crate::link::LinkFile;
-use crate::modules;
+use crate::modules::{self, AudioSource, Hearing};
 use crate::plans::texts;
 use crate::safety::SafetyFile;
 use crate::scenario;
@@ -37,6 +37,7 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
     let link = arguments.link.as_deref().map(LinkFile::read).transpose()?;
     let mut input = read_plan(&arguments.file, &target)?;
     let (plan, mut ready) = compiled(&arguments, &linked, &target, &mut input, safety.as_ref())?;
+    ready.hears(arguments.hearing()?);
     let linked_by = link.as_ref().map(|link| link.path().to_owned());
     ready.link(link)?;
     ready.records(arguments.records.as_deref())?;
@@ -66,6 +67,15 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
 fn no_call() -> Call {
     let recorded = RecordedPlan::default();
     Call { words: Vec::new(), options: Vec::new(), read: Vec::new(), recorded, later_path: None }
+}
+
+impl Run {
+    /// Opens the sound of `--ears`.
+    fn hearing(&self) -> Result<Option<Hearing>, Failure> {
+        let Some(ears) = &self.ears else { return Ok(None) };
+        let source = AudioSource::open(ears).map_err(Failure::Usage)?;
+        Ok(Some(Hearing { source, radius: self.head }))
+    }
 }
 
 /// Names the causes of inputs besides the plan and the robot's outputs; empty if there are none.

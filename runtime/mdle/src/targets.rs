@@ -19,6 +19,7 @@ use mdle_runtime::{Alphabet, Plan as _, Printable, Robot, Sensed, Twist};
 
 use crate::failure::Failure;
 use crate::link::{self, LinkFile};
+use crate::modules::Hearing;
 use crate::plans::{self, texts};
 use crate::record::Record;
 use crate::replayer::{RecordedRun, replay};
@@ -70,6 +71,9 @@ pub(crate) trait Ready {
     /// # Errors
     /// The plan replays no such path.
     fn records(&mut self, path: Option<&str>) -> Result<(), Failure>;
+
+    /// Lets the module `heading` of runs of the plan listen to this sound.
+    fn hears(&mut self, hearing: Option<Hearing>);
 
     /// Runs the plan of this name, with these modules.
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode;
@@ -141,6 +145,8 @@ struct PlanFor<T, A: Alphabet> {
     known: Arc<Target>,
     safety: Option<Guarded<A>>,
     link: Option<LinkFile>,
+    /// Sound that the module `heading` listens to.
+    hearing: Option<Hearing>,
     /// Name of the path that the way back of `path` and `Follow` replaces, with the greatest speeds of a path.
     records: Option<(&'static str, Twist)>,
     target: std::marker::PhantomData<fn() -> T>,
@@ -149,7 +155,10 @@ struct PlanFor<T, A: Alphabet> {
 impl<T, A: EngineAlphabet<Output = Sensed>> PlanFor<T, A> {
     /// Makes the engine of a run.
     fn engine(&self, library: &Library<Sensed>, terms: &RunTerms) -> Result<Engine<A>, Refusal> {
-        let engine = Engine::new(self.loaded.plan(), library, terms)?;
+        let engine = match &self.hearing {
+            Some(hearing) => Engine::new(self.loaded.plan(), &hearing.added(library, &terms.microphones), terms)?,
+            None => Engine::new(self.loaded.plan(), library, terms)?,
+        };
         let engine = match &self.link {
             Some(link) => engine.linked(link.open()?),
             None => engine,
@@ -201,6 +210,10 @@ where
         Ok(())
     }
 
+    fn hears(&mut self, hearing: Option<Hearing>) {
+        self.hearing = hearing;
+    }
+
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode {
         let plan = || self.loaded.plan();
         let engine = |terms: &RunTerms| self.engine(library, terms);
@@ -247,5 +260,5 @@ where
     let safety = safety.map(|safety| safety.compile(target, false)).transpose()?;
     let files = texts(input).into();
     let (known, target) = (Arc::clone(target), std::marker::PhantomData);
-    Ok(Box::new(PlanFor::<T, A> { loaded, files, known, safety, link: None, records: None, target }))
+    Ok(Box::new(PlanFor::<T, A> { loaded, files, known, safety, link: None, hearing: None, records: None, target }))
 }

@@ -1,14 +1,19 @@
 //! The modules that come with `mdle`.
 
+mod audio;
+mod ears;
 mod heading;
 mod sensors;
 
 use mdle_engine::Library;
 use mdle_files::{NamedProcess, Settings};
+use mdle_host::Microphones;
 use mdle_runtime::Sensed;
 
 use crate::arguments::Run;
 use crate::failure::Failure;
+pub(crate) use audio::AudioSource;
+use ears::EarsModule;
 use heading::Heading;
 use sensors::Sensors;
 
@@ -26,10 +31,12 @@ pub(crate) fn shipped(library: &mut Library<Sensed>) {
 /// A name in the `mdle.toml` is none of a module, or another module has it.
 pub(crate) fn of_settings(
     settings: &Settings,
-    Run { modules, point, .. }: &Run,
+    Run { modules, point, ears, .. }: &Run,
     library: &mut Library<Sensed>,
 ) -> Result<(), Failure> {
-    let is_replaced = |name: &str| modules.iter().any(|(other, _)| other == name) || point.is_some() && name == HEADING;
+    let is_replaced = |name: &str| {
+        modules.iter().any(|(other, _)| other == name) || (point.is_some() || ears.is_some()) && name == HEADING
+    };
     for NamedProcess { place, name, command } in settings.modules().filter(|module| !is_replaced(module.name)) {
         library.admits(name).map_err(|refusal| Failure::Usage(format!("{place}: {refusal}")))?;
         library.process(name, command);
@@ -41,4 +48,25 @@ pub(crate) fn of_settings(
         library.process(name, command);
     }
     Ok(())
+}
+
+/// The sound of a run, and the radius of the head that hears it, in metres.
+#[derive(Debug, Clone)]
+pub(crate) struct Hearing {
+    pub(crate) source: AudioSource,
+    pub(crate) radius: f64,
+}
+
+impl Hearing {
+    /// Returns the modules of a run with the module `heading`, which listens to the run's sound.
+    pub(crate) fn added(&self, library: &Library<Sensed>, microphones: &Microphones) -> Library<Sensed> {
+        let mut library = library.clone();
+        let Self { source, radius } = self.clone();
+        if let AudioSource::Robot = source {
+            microphones.listen(radius);
+        }
+        let microphones = microphones.clone();
+        library.background(HEADING, move |declare| EarsModule::declare(declare, source.begin(&microphones), radius));
+        library
+    }
 }
