@@ -35,6 +35,8 @@ const ALONG: Radians = Radians::from_degrees(40.0);
 const GAINED: Meters = Meters(0.1);
 /// ... and has lasted this long.
 const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
+/// Time for which a detour to a goal that is renewed lasts: its distance need not be known, so nothing is gained by it.
+const DETOUR_RENEWED: Nanos = Nanos(4_000_000_000);
 /// Angle from the goal's direction in which the robot gives way to a person who approaches.
 const ASIDE: Radians = Radians::from_degrees(60.0);
 /// Time without progress for which the robot follows ways on its map, which is too small to show a way out of a large
@@ -69,6 +71,8 @@ impl GoAvoid {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoingRound {
     goal: Pose,
+    /// `true` if another goal has replaced the first one.
+    is_renewed: bool,
     progress: Progress,
     /// The direction of the frame's first axis.
     axis: Radians,
@@ -100,9 +104,11 @@ struct Detour {
 }
 
 impl GoingRound {
-    /// Returns this law on its way to the goal of another.
-    pub(crate) fn with_goal_of(self, other: &Self) -> Self {
-        Self { goal: other.goal, axis: other.axis, drift: other.drift, ..self }
+    /// Returns this law on its way to the goal of another, which is made at this place.
+    pub(crate) fn with_goal_of(self, other: &Self, here: Pose) -> Self {
+        // A goal that moves off with the robot takes away nothing of the progress towards it.
+        let progress = self.progress.moved(Meters(here.distance(&other.goal).0 - here.distance(&self.goal).0));
+        Self { goal: other.goal, is_renewed: true, progress, axis: other.axis, drift: other.drift, ..self }
     }
 
     /// Turns the goal by what the drift has changed since it was last measured, around the place where that was.
@@ -154,9 +160,12 @@ impl GoingRound {
         let goal = self.direction(here);
         let look_ahead = Meters(self.look_ahead.0.min(distance).max(ARRIVED.0));
         let over = |detour: Detour| {
-            distance < detour.from.0 - GAINED.0
-                && obstacles.free(goal) >= look_ahead
-                && t.since(detour.since) > DETOUR_LEAST
+            let has_helped = if self.is_renewed {
+                t.since(detour.since) > DETOUR_RENEWED
+            } else {
+                distance < detour.from.0 - GAINED.0 && t.since(detour.since) > DETOUR_LEAST
+            };
+            has_helped && obstacles.free(goal) >= look_ahead
         };
         self.detour = self.detour.filter(|detour| !over(*detour));
         if let Some(side) = self.passers.gives_way() {
@@ -251,6 +260,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
         let goal = here.towards(bearing, self.range);
         GoingRound {
             goal,
+            is_renewed: false,
             progress: Progress::begin(here, &goal, begin.now),
             axis: begin.frame.outward(Radians(0.0)),
             drift: (Radians(0.0), here),

@@ -94,7 +94,7 @@ impl<Y: DiffDrive + Odometry + SonarRing + Modules> Law<Y> for Following {
             let heading = Radians(y.pose().theta.0 + bearing.value - self.begin.frame.0.0);
             let goal = Control::<Y>::begin(&GoAvoid::new(heading, range, SPEED), y, Begin { now: t, ..self.begin });
             // Where obstacles are, it remembers.
-            let law = self.towards.map_or(goal, |(_, before)| before.with_goal_of(&goal));
+            let law = self.towards.map_or(goal, |(_, before)| before.with_goal_of(&goal, y.pose()));
             self.towards = Some((bearing.at, law));
         }
         self.towards.as_mut().map_or_else(Twist::default, |(_, law)| Law::<Y>::input(law, y, t))

@@ -47,6 +47,11 @@ impl Progress {
         Self { from: here.distance(goal), at: now }
     }
 
+    /// Returns the progress towards another goal, which is further away by this distance.
+    pub(crate) fn moved(self, further: Meters) -> Self {
+        Self { from: Meters(self.from.0 + further.0), ..self }
+    }
+
     /// Takes the place of a turn.
     pub(crate) fn take(&mut self, here: Pose, goal: &Pose, now: Nanos) {
         let distance = here.distance(goal);
@@ -84,6 +89,19 @@ mod tests {
             progress.take(at(x), &GOAL, Nanos(now));
         }
         assert_eq!(progress.stalled(at(0.22), &GOAL, Nanos(60)), Nanos(0));
+    }
+
+    #[test]
+    fn a_goal_that_moves_off_leaves_the_progress() {
+        let mut progress = Progress::begin(at(0.0), &GOAL, Nanos(0));
+        for step in 1..=12_i32 {
+            // The goal stays 5 m ahead of a robot that drives at it by 1/64 m, without rounding, in each step.
+            let here = at(f64::from(step) / 64.0);
+            progress = progress.moved(Meters(1.0 / 64.0));
+            progress.take(here, &at(here.x.0 + 5.0), Nanos(u64::from(step.unsigned_abs())));
+        }
+        // Seven steps are the first 10 cm; five more are less than that.
+        assert_eq!(progress.at, Nanos(7));
     }
 
     #[test]
