@@ -28,6 +28,7 @@ mod safety;
 mod scout;
 mod sessions;
 mod several;
+mod sound;
 mod steps;
 mod views;
 mod ways_back;

@@ -1,0 +1,135 @@
+//! Plans that follow what a robot hears: by the microphones of the simulated robot, a WAV file and the pipe of a
+//! recorder (docs/src/sound.md).
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use mdle_tests::chance::sized;
+use mdle_tests::executable::{folder, mdle};
+use mdle_tests::repository::root;
+
+/// Place of the source of the plan's world, and the distance at which a robot has arrived, in metres.
+const SOURCE: (f64, f64) = (5.5, 4.2);
+const ARRIVED: f64 = 0.8;
+/// First seed, one by which nothing was chosen.
+const FIRST: u64 = 9_820_000;
+
+/// Copies the plan and its world into a folder.
+fn copy_plan(folder: &Path) {
+    for file in ["sound_following.mdle", "studio.toml"] {
+        fs::copy(root().join("plans/sound").join(file), folder.join(file)).unwrap();
+    }
+}
+
+/// `mdle run` of the plan with these arguments.
+fn run(folder: &Path, arguments: &str) -> Output {
+    let mut command = Command::new(mdle());
+    command.args(["run", "sound_following.mdle", "--target", "sim", "--speed", "max"]).args(arguments.split(' '));
+    command.current_dir(folder).stdin(Stdio::null()).output().unwrap()
+}
+
+/// Exit status and standard error.
+fn refusal(output: &Output) -> String {
+    format!("[{}] {}", output.status.code().unwrap(), String::from_utf8_lossy(&output.stderr))
+}
+
+/// Writes a WAV file of 16-bit samples, each of this value.
+fn write_wav(path: &Path, rate: u32, channels: u16, value: i16) {
+    let data: Vec<u8> = (0..rate * u32::from(channels)).flat_map(|_| value.to_le_bytes()).collect();
+    let length = u32::try_from(data.len()).unwrap();
+    let mut file = Vec::new();
+    file.extend(b"RIFF");
+    file.extend((36 + length).to_le_bytes());
+    file.extend(b"WAVEfmt ");
+    file.extend(16_u32.to_le_bytes());
+    file.extend(1_u16.to_le_bytes());
+    file.extend(channels.to_le_bytes());
+    file.extend(rate.to_le_bytes());
+    file.extend((rate * u32::from(channels) * 2).to_le_bytes());
+    file.extend((channels * 2).to_le_bytes());
+    file.extend(16_u16.to_le_bytes());
+    file.extend(b"data");
+    file.extend(length.to_le_bytes());
+    file.extend(data);
+    fs::write(path, file).unwrap();
+}
+
+/// Returns the least distance from the source in a trail.
+fn nearest(trail: &str) -> f64 {
+    let distances = trail.lines().skip(1).map(|line| {
+        let numbers: Vec<f64> = line.split(',').filter_map(|text| text.parse().ok()).collect();
+        (numbers[1] - SOURCE.0).hypot(numbers[2] - SOURCE.1)
+    });
+    distances.fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn a_robot_follows_what_it_hears_around_a_box() {
+    let folder = folder("follows");
+    copy_plan(&folder);
+    let (all, mut arrived) = (sized(3, 50), 0);
+    for seed in FIRST..FIRST + all {
+        let heading = seed * 77 % 360;
+        let start = format!("--start 1.2,1.5,{heading} --seed {seed}");
+        let output = run(&folder, &format!("--world studio.toml --ears robot --trail trail.csv {start}"));
+        let report = String::from_utf8_lossy(&output.stdout).into_owned() + &refusal(&output);
+        let distance = nearest(&fs::read_to_string(folder.join("trail.csv")).unwrap());
+        let is_there = output.status.success() && distance < ARRIVED && report.contains("plan over: wait 60s");
+        println!("{seed}: {distance:.2} m, {report}");
+        arrived += u64::from(is_there);
+    }
+    println!("{arrived} of {all}");
+    assert!(50 * arrived >= 48 * all, "{arrived} of {all}");
+}
+
+#[test]
+fn sound_is_the_same_every_time() {
+    let folder = folder("same");
+    copy_plan(&folder);
+    let course = |trail: &str| {
+        let output = run(&folder, &format!("--world studio.toml --ears robot --seed 7 --trail {trail}"));
+        assert!(output.status.success(), "{}", refusal(&output));
+        fs::read(folder.join(trail)).unwrap()
+    };
+    assert_eq!(course("first.csv"), course("second.csv"));
+}
+
+#[test]
+fn sound_that_cannot_be_used_is_refused() {
+    let folder = folder("refused");
+    copy_plan(&folder);
+    write_wav(&folder.join("slow.wav"), 22_050, 2, 5);
+    write_wav(&folder.join("one.wav"), 44_100, 1, 5);
+    write_wav(&folder.join("silent.wav"), 44_100, 2, 0);
+    let expected = [
+        (
+            "slow.wav",
+            "[2] error: --ears slow.wav: 22050 samples a second; expected 44100\n\
+             help: `sox slow.wav -r 44100 out.wav` converts it\n",
+        ),
+        (
+            "one.wav",
+            "[2] error: --ears one.wav: one channel; expected two\n\
+             help: a bearing is the delay between two ears, the left one first\n",
+        ),
+        ("silent.wav", "[2] error: --ears silent.wav: the left channel is silent: each of its samples is 0\n"),
+        (
+            "robot",
+            "[2] error: --ears robot: the world has no source of sound\n\
+             help: add one to a world file, as `[[sound]]` and `at = [5, 3]`\n",
+        ),
+    ];
+    for (ears, message) in expected {
+        assert_eq!(refusal(&run(&folder, &format!("--world hall --ears {ears}"))), message);
+    }
+}
+
+#[test]
+fn a_recorder_that_ends_stops_the_robot() {
+    let folder = folder("recorder");
+    copy_plan(&folder);
+    let message = refusal(&run(&folder, "--world hall --ears -"));
+    assert!(message.starts_with("[3] ") && message.contains("the recorder has ended"), "{message}");
+}
