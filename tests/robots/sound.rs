@@ -60,7 +60,7 @@ fn write_wav(path: &Path, rate: u32, channels: u16, value: i16) {
 fn nearest(trail: &str) -> f64 {
     let distances = trail.lines().skip(1).map(|line| {
         let numbers: Vec<f64> = line.split(',').filter_map(|text| text.parse().ok()).collect();
-        (numbers[1] - SOURCE.0).hypot(numbers[2] - SOURCE.1)
+        libm::hypot(numbers[1] - SOURCE.0, numbers[2] - SOURCE.1)
     });
     distances.fold(f64::INFINITY, f64::min)
 }
