@@ -7,6 +7,7 @@ mod contacts;
 mod crowds;
 mod driven;
 mod emulators;
+mod formation;
 mod lab_tour;
 mod late_plans;
 mod loaded;
