@@ -32,6 +32,36 @@ fn a_box_is_given_by_corners_or_by_centre_and_size() {
 }
 
 #[test]
+fn faults_of_sounds_have_their_place() {
+    let many = "[[sound]]\nat = [1, 1]\n".repeat(9);
+    let faults = [
+        "t60 = 3",
+        "t60 = -0.1",
+        "t60 = nan",
+        "[[sound]]\nkind = \"white\"",
+        "[[sound]]\nat = [1]",
+        "[[sound]]\nat = [1, inf]",
+        "[[sound]]\nat = [1, 1]\nkind = \"music\"",
+        "[[sound]]\nat = [1, 1]\nlevel = 81",
+        "[[sound]]\nat = [1, 1]\nlevel = nan",
+        &many,
+    ];
+    let messages = faults.map(|text| World::parse("room.toml", text).expect_err(text).to_string());
+    insta::assert_snapshot!(messages.join("\n"), @r#"
+    room.toml:1:7: a reverberation time is from 0 (nothing reflects sound) to 0.5 s
+    room.toml:1:7: a reverberation time is from 0 (nothing reflects sound) to 0.5 s
+    room.toml:1:7: a reverberation time is from 0 (nothing reflects sound) to 0.5 s
+    room.toml:1:1: missing field `at`
+    room.toml:2:6: `at` is two numbers, x and y in metres, not 1
+    room.toml:2:10: inf is no coordinate: expected a number, at most 1000 km
+    room.toml:3:8: "music" is no kind of sound; expected `white` or `speech`
+    room.toml:3:9: a level is from -40 to 80 dB over the noise of a microphone
+    room.toml:3:9: a level is from -40 to 80 dB over the noise of a microphone
+    room.toml:17:1: more than 8 sources of sound
+    "#);
+}
+
+#[test]
 fn faults_have_their_place() {
     let faults = [
         "[[wall]]\npoints = [[0, 0], [1, 0]\nname = \"north\"",
@@ -91,7 +121,7 @@ fn faults_have_their_place() {
     .map(fault);
     insta::assert_snapshot!(faults.join("\n"), @r#"
     room.toml:3:1: missing comma between array elements, expected `,`
-    room.toml:1:3: unknown field `wal`, expected one of `units`, `rough`, `start`, `goal`, `charger`, `wall`, `box`, `disc`, `door`
+    room.toml:1:3: unknown field `wal`, expected one of `units`, `rough`, `start`, `goal`, `charger`, `t60`, `sound`, `wall`, `box`, `disc`, `door`
     room.toml:2:1: unknown field `nmae`, expected one of `name`, `points`, `rough`
     room.toml:1:1: missing field `points`
     room.toml:2:10: a wall needs at least two points, as in `points = [[0, 0], [2.5, 0]]`

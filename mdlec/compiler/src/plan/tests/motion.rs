@@ -38,9 +38,9 @@ fn a_way_needs_odometry() {
          1 │ { P (way > 20m)
            │      ^^^ needs `odometry`
            │
-           ┌─ atoms/alphabet.mdle:68:8
+           ┌─ atoms/alphabet.mdle:74:8
            │
-        68 │ signal way unit m tolerance 0.01 needs odometry;
+        74 │ signal way unit m tolerance 0.01 needs odometry;
            │        --- `way` is declared here
            │
            = help: `mdlec targets` lists the robots and what each has
@@ -51,9 +51,9 @@ fn a_way_needs_odometry() {
          2 │   (Atom (wait 1 OR NOT way < 3m) (go 20 0))
            │                        ^^^ needs `odometry`
            │
-           ┌─ atoms/alphabet.mdle:68:8
+           ┌─ atoms/alphabet.mdle:74:8
            │
-        68 │ signal way unit m tolerance 0.01 needs odometry;
+        74 │ signal way unit m tolerance 0.01 needs odometry;
            │        --- `way` is declared here
            │
            = help: `mdlec targets` lists the robots and what each has
