@@ -1,4 +1,4 @@
-//! A loaded module, and its standing.
+//! A loaded module, and its state.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ pub(crate) struct Loaded<Y> {
     pub(crate) first: usize,
     pub(crate) wires: Wires,
     pub(crate) runs: Runs<Y>,
-    pub(crate) standing: ModuleState,
+    pub(crate) state: ModuleState,
     /// `true` while people have stopped it.
     pub(crate) is_held: bool,
 }
@@ -70,7 +70,7 @@ impl<Y> Loaded<Y> {
     /// Returns a module that begins at `now`; its thread may run if `lives`, and may not in a replay.
     pub(crate) fn new(candidate: Candidate<Y>, now: Nanos, lives: bool) -> Self {
         let Candidate { name, declared, form } = candidate;
-        let (runs, standing) = match form {
+        let (runs, state) = match form {
             Form::Registered(module, ports) => (Runs::InTurns(Seat::new(module, ports)), ModuleState::Stopped),
             Form::Background(gate) => {
                 if lives {
@@ -80,7 +80,7 @@ impl<Y> Loaded<Y> {
                 (Runs::InBackground(Visit { gate, due, ports: None }), ModuleState::Stopped)
             }
         };
-        Self { name, declared, first: 0, wires: Wires::new(), runs, standing, is_held: false }
+        Self { name, declared, first: 0, wires: Wires::new(), runs, state, is_held: false }
     }
 
     /// Returns the seat of a module that makes turns.
@@ -94,7 +94,7 @@ impl<Y> Loaded<Y> {
     /// Returns the seat if the module is to be queued for the next turn.
     pub(crate) fn queued(&self) -> Option<&Arc<Seat<Y>>> {
         let seat = self.seat()?;
-        let is_queued = match self.standing {
+        let is_queued = match self.state {
             ModuleState::Active => true,
             ModuleState::Stopped => seat.occupant().is_some_and(|occupant| occupant.task == Task::Stop),
             ModuleState::Late(..) | ModuleState::GivenUp | ModuleState::Failed | ModuleState::Ended => false,

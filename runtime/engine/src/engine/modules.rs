@@ -104,9 +104,9 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         &self.arrivals
     }
 
-    /// Returns the loaded modules, with their standing.
+    /// Returns the loaded modules, with their state.
     pub fn names(&self) -> impl Iterator<Item = (&str, ModuleState)> {
-        self.loaded.iter().map(|module| (&*module.name, module.standing))
+        self.loaded.iter().map(|module| (&*module.name, module.state))
     }
 
     /// Loads a module, after those that are loaded; registered modules make their first turn after the next

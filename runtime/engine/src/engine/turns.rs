@@ -67,7 +67,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         for module in &mut self.loaded {
             let (declared, wires) = (&module.declared, &module.wires);
             match &mut module.runs {
-                Runs::InTurns(seat) if module.standing == ModuleState::Active => {
+                Runs::InTurns(seat) if module.state == ModuleState::Active => {
                     if let Some(mut occupant) = seat.occupant() {
                         self.board.hand(declared, wires, &mut occupant.ports);
                     }
@@ -118,21 +118,21 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         let Self { board, loaded, events, arrivals, replayed, turn, .. } = self;
         let Some(module) = loaded.get_mut(number) else { return };
         let Runs::InTurns(seat) = &module.runs else { return };
-        if module.standing.is_final() {
+        if module.state.is_final() {
             return;
         }
         let progress = match replayed {
             Some(_) => arrivals.progress(&module.name),
             None => seat.progress(),
         };
-        let (name, standing) = (&module.name, &mut module.standing);
+        let (name, state) = (&module.name, &mut module.state);
         match progress {
             Progress::Skipped if replayed.is_none() => arrivals.skipped.push(Arc::clone(name)),
             Progress::Late => {
                 if replayed.is_none() {
                     arrivals.late.push(Arc::clone(name));
                 }
-                events.extend(standing.is_late(name, *turn));
+                events.extend(state.is_late(name, *turn));
             }
             Progress::Done | Progress::Queued | Progress::Running | Progress::Skipped => {}
         }
@@ -140,17 +140,17 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
             return;
         }
         let Some(mut occupant) = seat.occupant() else { return };
-        if let ModuleState::Late(..) = standing {
-            *standing = ModuleState::Active;
+        if let ModuleState::Late(..) = state {
+            *state = ModuleState::Active;
             // It may have become irrelevant meanwhile.
             self.has_changed = true;
         }
         if let Some(Fault(sentence)) = occupant.fault.take() {
-            *standing = ModuleState::Failed;
+            *state = ModuleState::Failed;
             events.push(Event::Failed(Arc::clone(name), sentence));
             return;
         }
-        occupant.task = match (occupant.task, *standing) {
+        occupant.task = match (occupant.task, *state) {
             (Task::Start, ModuleState::Active) | (Task::Turn, _) => Task::Turn,
             (Task::Start | Task::Stop, _) => Task::Start,
         };
@@ -162,7 +162,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         let Self { board, loaded, events, arrivals, service, turn, .. } = self;
         let Some(module) = loaded.get_mut(number) else { return };
         let Runs::InBackground(visit) = &mut module.runs else { return };
-        if module.standing != ModuleState::Active || *service == Service::WhenDue && turn.1 < visit.due {
+        if module.state != ModuleState::Active || *service == Service::WhenDue && turn.1 < visit.due {
             return;
         }
         let is_there = *service == Service::WhenReady || visit.gate.wait_for_offer(PATIENCE);
@@ -228,7 +228,7 @@ impl<Y> Loaded<Y> {
     fn becomes(&mut self, is_wanted: bool) -> Option<Event> {
         let mut occupant = self.seat().and_then(|seat| seat.occupant());
         let task = occupant.as_mut().map(|occupant| &mut occupant.task);
-        let (standing, event) = match (self.standing, is_wanted) {
+        let (state, event) = match (self.state, is_wanted) {
             (ModuleState::Stopped, true) => {
                 if let Some(task) = task {
                     // A module that was not stopped yet goes on.
@@ -245,14 +245,14 @@ impl<Y> Loaded<Y> {
             (_, true | false) => return None,
         };
         drop(occupant);
-        self.standing = standing;
+        self.state = state;
         Some(event)
     }
 
     /// Notes the end of a background module.
     fn ends(&mut self, end: End) -> Event {
         let name = Arc::clone(&self.name);
-        let (standing, event) = match end {
+        let (state, event) = match end {
             End::Returned => (ModuleState::Ended, Event::Ended(name)),
             End::Failed(sentence) => (ModuleState::Failed, Event::Failed(name, sentence)),
             End::Panicked(message) => {
@@ -263,7 +263,7 @@ impl<Y> Loaded<Y> {
                 (ModuleState::GivenUp, Event::Failed(name, sentence))
             }
         };
-        self.standing = standing;
+        self.state = state;
         event
     }
 }

@@ -72,11 +72,11 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for ModulesPart {
 
     fn values(&self, moment: &Break<'_, Engine<A>>, to: &mut Vec<Option<Value>>) {
         let modules = moment.pilot.modules();
-        for (name, standing) in modules.names().filter(|(name, _)| *name != PLAN) {
+        for (name, state) in modules.names().filter(|(name, _)| *name != PLAN) {
             let posts = modules.board().of(name);
             to.extend(posts.map(|post| post.reading.as_ref().map(|reading| shown(&post.about, &reading.value))));
             to.extend(modules.settings(name).map(|(about, reading)| Some(shown(about, &reading.value))));
-            to.extend([Some(Value::text(state(standing))), None, None, None]);
+            to.extend([Some(Value::text(state_text(state))), None, None, None]);
         }
         to.extend(moment.pilot.library().map(|_| None));
         to.extend((!moment.pilot.library().any(|name| name == PROCESS)).then_some(None));
@@ -138,8 +138,8 @@ fn done(result: Result<(), Refusal>) -> Answer {
     }
 }
 
-fn state(standing: ModuleState) -> &'static str {
-    match standing {
+fn state_text(state: ModuleState) -> &'static str {
+    match state {
         ModuleState::Active => "active",
         ModuleState::Stopped => "stopped",
         ModuleState::Late(..) => "late",
