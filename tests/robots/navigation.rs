@@ -2,8 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
+use std::io::{BufRead as _, BufReader, Read as _};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
@@ -125,6 +126,26 @@ fn a_graph_without_the_way_is_refused() {
     [3]
 
     "#);
+}
+
+#[test]
+fn a_graph_that_vanishes_is_not_read_again() {
+    let folder = folder("navigation_vanishes");
+    let graph = "Γ_a^b = { AToB (Atom (wait 2s) (go 20 0)) }\nΓ_b^c = { BToC (Atom (wait 1s) (go 20 0)) }\n";
+    fs::write(folder.join("graph.mdle"), graph).unwrap();
+    let mut command = Command::new(mdle());
+    command.args(["navigate", "graph.mdle", "a", "c", "--target", "sim"]).current_dir(&folder);
+    let mut running = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut out = BufReader::new(running.stdout.take().unwrap());
+    let (mut first, mut rest) = (String::new(), String::new());
+    // The route is printed when all files have been read, two seconds before the second plan begins.
+    out.read_line(&mut first).unwrap();
+    fs::remove_file(folder.join("graph.mdle")).unwrap();
+    out.read_to_string(&mut rest).unwrap();
+    let output = running.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    assert!(first.starts_with("route: a -> b (AToB) -> c (BToC)"), "{first}");
+    assert!(String::from_utf8(output.stderr).unwrap().contains("at c"), "{rest}");
 }
 
 #[test]

@@ -18,8 +18,6 @@ pub(crate) use navigator::drive;
 /// A leg of a route: the plan of an edge in the frame of the landmark where it begins, compiled.
 pub(crate) struct Leg {
     pub(crate) edge: Edge,
-    /// Number of the leg, from 0.
-    pub(crate) number: usize,
     /// Direction of the frame from the heading with which the run begins, in degrees.
     pub(crate) turned: f64,
     /// File of the graph.
@@ -30,10 +28,16 @@ pub(crate) struct Leg {
     pub(crate) input: Input,
 }
 
+/// Returns the text of the plan of a leg, in a frame that is turned by this angle, in degrees.
+fn leg_text(name: &str, plan: &str, turned: f64, graph: &Path) -> String {
+    let file = graph.file_name().unwrap_or_default().display();
+    format!("use \"{file}\"\n\n{{ {name}\n  FRAME {turned}deg {plan}\n}}\n")
+}
+
 /// Compiles the plan of an edge in a frame that is turned by this angle, in degrees. Messages go to standard error.
 pub(crate) fn leg(edge: &Edge, number: usize, turned: f64, graph: &Path, target: &Target) -> Result<Leg, Failure> {
-    let (name, file) = (format!("Leg{}", number + 1), graph.file_name().unwrap_or_default().display());
-    let text = format!("use \"{file}\"\n\n{{ {name}\n  FRAME {turned}deg {}\n}}\n", edge.plan);
+    let name = format!("Leg{}", number + 1);
+    let text = leg_text(&name, &edge.plan, turned, graph);
     let mut input = plan(&graph.with_file_name(format!("{name}.mdle")), text, target)?;
     let (mut plans, diagnostics) = input.compile(&target.alphabet, Some(&name));
     let judged = judged(&diagnostics, false);
@@ -51,5 +55,5 @@ pub(crate) fn leg(edge: &Edge, number: usize, turned: f64, graph: &Path, target:
         return Err(Failure::OtherPlan(format!("the plan `{plan}` from {from} to {to} never ends\nhelp: {help}")));
     }
     let graph = graph.to_owned();
-    Ok(Leg { edge: edge.clone(), number, turned, graph, name, machine, input })
+    Ok(Leg { edge: edge.clone(), turned, graph, name, machine, input })
 }

@@ -12,14 +12,14 @@ use mdle_host::{Call, Moment, Pilot, PilotFault, RunTerms, Transitions};
 use mdle_record::Change;
 use mdle_runtime::{Cause, Machine, Nanos, Plan as _, Printable, Radians, Robot, Sensed, Turn, Twist};
 
-use super::{Edge, Leg};
+use super::{Edge, Leg, leg_text};
 use crate::failure::Failure;
 use crate::plans::texts;
+use crate::recorded_files;
 
 /// A leg that is ready to run.
 struct ReadyLeg<A: EngineAlphabet> {
     edge: Edge,
-    number: usize,
     /// Direction of the frame from the heading with which the run begins, in degrees.
     turned: f64,
     graph: PathBuf,
@@ -60,17 +60,23 @@ fn ready<A: EngineAlphabet>(leg: &Leg, target: &Arc<Target>) -> Result<ReadyLeg<
     let loaded = Arc::new(load::load::<A>(&leg.machine, &leg.input.sources, &target.alphabet)?);
     let plan = StoredPlan { name: leg.name.as_str().into(), files: texts(&leg.input).into(), loaded };
     let (graph, target) = (leg.graph.clone(), Arc::clone(target));
-    Ok(ReadyLeg { edge: leg.edge.clone(), number: leg.number, turned: leg.turned, graph, target, plan })
+    Ok(ReadyLeg { edge: leg.edge.clone(), turned: leg.turned, graph, target, plan })
 }
 
 impl<A: EngineAlphabet> ReadyLeg<A> {
     /// Returns the plan of the leg for a robot with this heading by odometry: direction 0 of a plan that begins during
-    /// a run is the heading with which it begins.
+    /// a run is the heading with which it begins. The texts are those that were read before the run.
     fn plan_at(&self, heading: Radians) -> Result<StoredPlan<A>, PilotFault> {
         let turned = libm::round((self.turned - heading.degrees()) * 100.0) / 100.0;
-        let leg = super::leg(&self.edge, self.number, turned, &self.graph, &self.target);
-        let again = leg.and_then(|leg| ready::<A>(&leg, &self.target));
-        again.map(|leg| leg.plan).map_err(|_| PilotFault::Stopped("the plan of the next leg was changed".to_owned()))
+        let name = &self.plan.name;
+        let mut files = self.plan.files.to_vec();
+        if let Some((_, text)) = files.first_mut() {
+            *text = leg_text(name, &self.edge.plan, turned, &self.graph);
+        }
+        let loaded = recorded_files::compiled(&files, Some(name), &self.target)
+            .and_then(|(machine, sources)| Ok(load::load::<A>(&machine, &sources, &self.target.alphabet)?));
+        let loaded = loaded.map_err(|_| PilotFault::Stopped(format!("{name} cannot be turned by {turned} degrees")))?;
+        Ok(StoredPlan { name: Arc::clone(name), files: files.into(), loaded: Arc::new(loaded) })
     }
 }
 
