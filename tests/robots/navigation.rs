@@ -219,4 +219,18 @@ fn a_map_shows_the_walls_at_lab_2() {
     [2]
 
     "#);
+    fs::write(folder.join("other.pgm"), "").unwrap();
+    let words = |name| ["map", "drive.mcap", name];
+    let answers = ["other.yaml", "other.png", "other"].map(|name| text(&run(&folder, &words(name)))).concat();
+    insta::assert_snapshot!(answers, @r#"
+    error: other.pgm exists already
+    [2]
+    error: other.png is no name of a map: it has to end in .yaml
+    help: name it other.yaml
+    [2]
+    error: other is no name of a map: it has to end in .yaml
+    help: name it other.yaml
+    [2]
+    "#);
+    assert!(!folder.join("other.yaml").exists(), "half a map is none");
 }

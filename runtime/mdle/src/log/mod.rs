@@ -39,10 +39,15 @@ pub(crate) fn log(arguments: &Log) -> Result<ExitCode, Failure> {
 pub(crate) fn created(path: &Path) -> Result<File, Failure> {
     File::create_new(path).map_err(|error| {
         if error.kind() == io::ErrorKind::AlreadyExists {
-            return Failure::Usage(format!("{} exists already", path.display()));
+            return exists(path);
         }
         unwritten(&path.display(), &error)
     })
+}
+
+/// Returns the failure to create a file that exists.
+pub(crate) fn exists(path: &Path) -> Failure {
+    Failure::Usage(format!("{} exists already", path.display()))
 }
 
 pub(crate) fn unwritten(name: &dyn std::fmt::Display, error: &io::Error) -> Failure {

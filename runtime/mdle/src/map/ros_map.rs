@@ -1,11 +1,11 @@
 //! An evidence grid as a map of ROS: a YAML file, and a grey image beside it in which black is occupied.
 
 use std::io::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::evidence::{CELL, CELLS, EvidenceGrid, HALF};
 use crate::failure::Failure;
-use crate::log::{created, unwritten};
+use crate::log::{created, exists, unwritten};
 
 /// Maximum size of an image, in bytes.
 const LARGEST: u64 = 1_000_000;
@@ -15,9 +15,13 @@ const WHITE: f64 = 255.0;
 /// Saves a grid as the YAML file at a path, with its image beside it.
 ///
 /// # Errors
-/// A file exists already, or cannot be written.
+/// The name does not end in `.yaml` or `.yml`, or a file exists already or cannot be written.
 pub(super) fn save(grid: &EvidenceGrid, file: &Path) -> Result<(), Failure> {
-    let image = file.with_extension("pgm");
+    let image = image(file)?;
+    // Neither is written if the other is in the way.
+    if let Some(other) = [file, &image].into_iter().find(|path| path.exists()) {
+        return Err(exists(other));
+    }
     let name = image.file_name().unwrap_or_default().display();
     let text = format!(
         "image: {name}\nresolution: {CELL}\norigin: [{}, {}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.35\n",
@@ -45,12 +49,24 @@ fn pixels(grid: &EvidenceGrid) -> Vec<u8> {
     bytes
 }
 
+/// Returns the image of the map in a YAML file.
+///
+/// # Errors
+/// The name does not end in `.yaml` or `.yml`.
+fn image(file: &Path) -> Result<PathBuf, Failure> {
+    if file.extension().is_some_and(|extension| extension == "yaml" || extension == "yml") {
+        return Ok(file.with_extension("pgm"));
+    }
+    let help = format!("name it {}", file.with_extension("yaml").display());
+    Err(Failure::Usage(format!("{} is no name of a map: it has to end in .yaml\nhelp: {help}", file.display())))
+}
+
 /// Reads the grid of a map that [`save`] has written.
 ///
 /// # Errors
-/// The image beside the file cannot be read, or is none of such a map.
+/// The name does not end in `.yaml` or `.yml`; the image beside the file cannot be read, or is none of such a map.
 pub(super) fn read(file: &Path) -> Result<EvidenceGrid, Failure> {
-    let image = file.with_extension("pgm");
+    let image = image(file)?;
     let bytes = mdle_host::read_file(&image, LARGEST)
         .map_err(|error| Failure::Usage(format!("the map {} cannot be read: {error}", image.display())))?;
     let greys = bytes.strip_prefix(head().as_bytes()).filter(|greys| greys.len() == CELLS * CELLS);
