@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use hound::{SampleFormat, WavSpec, WavWriter};
 use mdle_tests::chance::sized;
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
@@ -35,25 +36,12 @@ fn refusal(output: &Output) -> String {
     format!("[{}] {}", output.status.code().unwrap(), String::from_utf8_lossy(&output.stderr))
 }
 
-/// Writes a WAV file of 16-bit samples, each of this value.
-fn write_wav(path: &Path, rate: u32, channels: u16, value: i16) {
-    let data: Vec<u8> = (0..rate * u32::from(channels)).flat_map(|_| value.to_le_bytes()).collect();
-    let length = u32::try_from(data.len()).unwrap();
-    let mut file = Vec::new();
-    file.extend(b"RIFF");
-    file.extend((36 + length).to_le_bytes());
-    file.extend(b"WAVEfmt ");
-    file.extend(16_u32.to_le_bytes());
-    file.extend(1_u16.to_le_bytes());
-    file.extend(channels.to_le_bytes());
-    file.extend(rate.to_le_bytes());
-    file.extend((rate * u32::from(channels) * 2).to_le_bytes());
-    file.extend((channels * 2).to_le_bytes());
-    file.extend(16_u16.to_le_bytes());
-    file.extend(b"data");
-    file.extend(length.to_le_bytes());
-    file.extend(data);
-    fs::write(path, file).unwrap();
+/// Writes a WAV file of a second of 16-bit samples, each of this value.
+fn write_wav(path: &Path, sample_rate: u32, channels: u16, value: i16) {
+    let spec = WavSpec { channels, sample_rate, bits_per_sample: 16, sample_format: SampleFormat::Int };
+    let mut writer = WavWriter::create(path, spec).unwrap();
+    (0..sample_rate * u32::from(channels)).for_each(|_| writer.write_sample(value).unwrap());
+    writer.finalize().unwrap();
 }
 
 /// Returns the least distance from the source in a trail.
@@ -124,6 +112,14 @@ fn sound_that_cannot_be_used_is_refused() {
     for (ears, message) in expected {
         assert_eq!(refusal(&run(&folder, &format!("--world hall --ears {ears}"))), message);
     }
+}
+
+#[test]
+fn ears_are_for_one_robot() {
+    let scenario = root().join("plans/formation/formation.toml");
+    let output = Command::new(mdle()).arg("run").arg(&scenario).args(["--ears", "robot"]).output().unwrap();
+    let message = "[2] error: --ears is for one robot, and a scenario names the plan of each\nhelp: leave it out\n";
+    assert_eq!(refusal(&output), message);
 }
 
 #[test]

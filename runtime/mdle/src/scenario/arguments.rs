@@ -43,6 +43,7 @@ impl Options {
             (run.session.is_some(), "shell"),
             (!run.modules.is_empty(), "--module"),
             (run.point.is_some(), "--point"),
+            (run.ears.is_some(), "--ears"),
         ];
         if let Some((_, name)) = of_a_plan.into_iter().find(|(is_given, _)| *is_given) {
             let sentence = "is for one robot, and a scenario names the plan of each";
