@@ -40,7 +40,7 @@ impl Microphones {
         self.lock().head
     }
 
-    /// Adds what the left and the right ear have heard since the turn before.
+    /// Adds the samples of the left and the right ear since the turn before.
     pub fn put(&self, at: Nanos, samples: Vec<[f32; 2]>) {
         let mut sound = self.lock();
         if sound.turns.len() >= KEPT {

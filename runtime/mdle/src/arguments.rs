@@ -28,7 +28,7 @@ use crate::test::arguments::{self as test, Test};
 pub(crate) use ears::EarsOption;
 pub(crate) use locate::Locate;
 pub(crate) use log::Log;
-pub(crate) use map::Map;
+pub(crate) use map::MakeMap;
 pub(crate) use navigate::Navigate;
 pub(crate) use plot::Plot;
 pub(crate) use replay::Replay;
@@ -54,7 +54,7 @@ pub(crate) enum Asked {
     /// `mdle locate`.
     Locate(Locate),
     /// `mdle map`.
-    Map(Map),
+    Map(MakeMap),
     /// `mdle test`.
     Test(Test),
     /// `mdle completions`.
@@ -156,7 +156,7 @@ pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
         Some(("why", matches)) => Ok(Asked::Why(Why::of(matches))),
         Some(("log", matches)) => Ok(Asked::Log(Log::of(matches))),
         Some(("locate", matches)) => Ok(Asked::Locate(Locate::of(matches))),
-        Some(("map", matches)) => Ok(Asked::Map(Map::of(matches))),
+        Some(("map", matches)) => Ok(Asked::Map(MakeMap::of(matches))),
         Some(("plot", matches)) => Ok(Asked::Plot(Plot::of(matches))),
         Some(("test", matches)) => Ok(Asked::Test(test::read(matches))),
         Some(("completions", matches)) => Ok(Asked::Completions(manual::shell(matches))),

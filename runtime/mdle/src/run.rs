@@ -13,7 +13,7 @@ use mdle_runtime::Sensed;
 use crate::arguments::Run;
 use crate::failure::{self, Failure};
 use crate::link::LinkFile;
-use crate::modules::{self, AudioSource, Hearing};
+use crate::modules::{self, AudioSource, SoundInput};
 use crate::plans::texts;
 use crate::safety::SafetyFile;
 use crate::scenario;
@@ -71,10 +71,10 @@ fn no_call() -> Call {
 
 impl Run {
     /// Opens the sound of `--ears`.
-    fn hearing(&self) -> Result<Option<Hearing>, Failure> {
+    fn hearing(&self) -> Result<Option<SoundInput>, Failure> {
         let Some(ears) = &self.ears else { return Ok(None) };
         let source = AudioSource::open(ears).map_err(Failure::Usage)?;
-        Ok(Some(Hearing { source, radius: self.head }))
+        Ok(Some(SoundInput { source, radius: self.head }))
     }
 }
 

@@ -19,7 +19,7 @@ use mdle_runtime::{Alphabet, Plan as _, Printable, Robot, Sensed, Twist};
 
 use crate::failure::Failure;
 use crate::link::{self, LinkFile};
-use crate::modules::Hearing;
+use crate::modules::SoundInput;
 use crate::plans::{self, texts};
 use crate::record::Record;
 use crate::replayer::{RecordedRun, replay};
@@ -38,7 +38,7 @@ pub(crate) struct LinkedTarget {
     /// Runs a plan on the outputs of a record.
     pub(crate) replay: ReplayRecord,
     /// Drives a route.
-    pub(crate) navigate: Navigate,
+    pub(crate) navigate: DriveRoute,
     /// Returns the message if a run has no such options.
     pub(crate) check: fn(Program<'_>, &Call) -> Result<(), String>,
 }
@@ -50,7 +50,7 @@ type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Bo
 type ReplayRecord = fn(Machine, &Sources, &Arc<Target>, &Begin, Record, bool) -> Result<Box<dyn RecordedRun>, Failure>;
 
 /// Drives the legs of a route, with these modules.
-type Navigate = fn(&[Leg], &Arc<Target>, Call, &Library<Sensed>) -> Result<ExitCode, Failure>;
+type DriveRoute = fn(&[Leg], &Arc<Target>, Call, &Library<Sensed>) -> Result<ExitCode, Failure>;
 
 /// A plan that is ready to run.
 pub(crate) trait Ready {
@@ -73,7 +73,7 @@ pub(crate) trait Ready {
     fn records(&mut self, path: Option<&str>) -> Result<(), Failure>;
 
     /// Lets the module `heading` of runs of the plan listen to this sound.
-    fn hears(&mut self, hearing: Option<Hearing>);
+    fn hears(&mut self, hearing: Option<SoundInput>);
 
     /// Runs the plan of this name, with these modules.
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode;
@@ -146,7 +146,7 @@ struct PlanFor<T, A: Alphabet> {
     safety: Option<Guarded<A>>,
     link: Option<LinkFile>,
     /// Sound that the module `heading` listens to.
-    hearing: Option<Hearing>,
+    hearing: Option<SoundInput>,
     /// Name of the path that the way back of `path` and `Follow` replaces, with the greatest speeds of a path.
     records: Option<(&'static str, Twist)>,
     target: std::marker::PhantomData<fn() -> T>,
@@ -210,7 +210,7 @@ where
         Ok(())
     }
 
-    fn hears(&mut self, hearing: Option<Hearing>) {
+    fn hears(&mut self, hearing: Option<SoundInput>) {
         self.hearing = hearing;
     }
 

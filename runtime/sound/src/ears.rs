@@ -3,9 +3,9 @@
 use microfft::Complex32;
 use microfft::complex::cfft_16384;
 
-use crate::head::{Head, LATE, TAPS};
-use crate::room::Room;
-use crate::source::{Chance, Signal, Source};
+use crate::head::{LATE, SphericalHead, TAPS};
+use crate::room::SoundRoom;
+use crate::source::{RandomStream, SoundSource, SourceSignal};
 use crate::{RATE, SPEED, WINDOW};
 
 /// Length of the transform by which sources and responses are convolved.
@@ -28,10 +28,10 @@ pub struct EarPose {
 /// Two ears in a room with sources.
 #[derive(Debug, Clone)]
 pub struct Ears {
-    head: Head,
-    room: Room,
-    sources: Vec<(Source, Signal)>,
-    chance: Chance,
+    head: SphericalHead,
+    room: SoundRoom,
+    sources: Vec<(SoundSource, SourceSignal)>,
+    chance: RandomStream,
     /// Loudness of the microphones' own noise.
     noise: f64,
     /// Sound that has left its source and is still under way: the left ear as the real part, the right as the
@@ -42,11 +42,11 @@ pub struct Ears {
 impl Ears {
     /// Returns ears that have heard nothing yet. Noise and sources are drawn by `seed`.
     #[must_use]
-    pub fn new(head: Head, room: Room, sources: &[Source], seed: u64) -> Self {
-        let signal = |(purpose, source): (u64, &Source)| (*source, Signal::new(source.kind, seed, purpose));
+    pub fn new(head: SphericalHead, room: SoundRoom, sources: &[SoundSource], seed: u64) -> Self {
+        let signal = |(purpose, source): (u64, &SoundSource)| (*source, SourceSignal::new(source.kind, seed, purpose));
         let sources = (SOURCES..).zip(sources).map(signal).collect();
         let under_way = vec![Complex32::default(); LENGTH];
-        Self { head, room, sources, chance: Chance::new(seed, MICROPHONES), noise: 1.0, under_way }
+        Self { head, room, sources, chance: RandomStream::new(seed, MICROPHONES), noise: 1.0, under_way }
     }
 
     /// Sets the loudness of the microphones' own noise, 1 by default, by which levels of sources count.

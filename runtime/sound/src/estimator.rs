@@ -147,11 +147,11 @@ fn angle(delay: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::Chance;
+    use crate::source::RandomStream;
 
     /// Noise in both ears, the right one `late` samples after the left.
     fn delayed(late: usize) -> Vec<[f32; 2]> {
-        let mut chance = Chance::new(3, 0);
+        let mut chance = RandomStream::new(3, 0);
         let noise: Vec<_> = (0..WINDOW + late).map(|_| chance.noise() as f32).collect();
         noise.iter().zip(noise.iter().skip(late)).map(|(right, left)| [*left, *right]).collect()
     }

@@ -9,17 +9,17 @@ const FALL: f64 = 1.4;
 
 /// A gate by the ratio of the greatest correlation to the root of its mean square.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gate {
+pub struct RatioGate {
     limit: f64,
 }
 
-impl Default for Gate {
+impl Default for RatioGate {
     fn default() -> Self {
         Self { limit: HIGHEST }
     }
 }
 
-impl Gate {
+impl RatioGate {
     /// Returns `true` if an estimate of this ratio is kept, the first one in this many seconds.
     pub fn keeps(&mut self, ratio: f64, seconds: f64) -> bool {
         let keeps = ratio > self.limit;
@@ -34,7 +34,7 @@ mod tests {
 
     #[test]
     fn the_gate_falls_while_nothing_is_kept() {
-        let mut gate = Gate::default();
+        let mut gate = RatioGate::default();
         let dropped = (0..100).take_while(|_| !gate.keeps(4.2, 0.1)).count();
         assert!((20..=22).contains(&dropped), "{dropped}");
         assert!(!gate.keeps(6.9, 0.1), "closed again");

@@ -22,12 +22,12 @@ const ANGLES: usize = 181;
 
 /// A hard spherical head with a microphone at each end of a diameter.
 #[derive(Debug, Clone)]
-pub struct Head {
+pub struct SphericalHead {
     /// Response at each degree between the direction of the sound and that of the microphone.
     responses: Vec<[f32; TAPS]>,
 }
 
-impl Head {
+impl SphericalHead {
     /// Returns the head of this radius, in metres.
     #[must_use]
     pub fn new(radius: f64) -> Self {
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn the_near_ear_leads() {
-        let head = Head::new(0.15);
+        let head = SphericalHead::new(0.15);
         let first = |cosine: f64| {
             let response = head.response(cosine);
             let most = response.iter().fold(0.0, |most: f32, value| most.max(value.abs()));

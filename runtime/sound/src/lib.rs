@@ -16,12 +16,12 @@ mod source;
 
 pub use ears::{EarPose, Ears};
 pub use estimator::{Estimate, Estimator};
-pub use gate::Gate;
-pub use head::Head;
+pub use gate::RatioGate;
+pub use head::SphericalHead;
 pub use histogram::Histogram;
 pub use localizer::Localizer;
-pub use room::Room;
-pub use source::{Kind, Source};
+pub use room::SoundRoom;
+pub use source::{SoundKind, SoundSource};
 
 /// Samples of each ear in a second.
 pub const RATE: u32 = 44_100;

@@ -1,12 +1,12 @@
 //! The bearing of a source from the signals of two microphones that turn with a robot.
 
-use crate::{Estimator, Gate, Histogram};
+use crate::{Estimator, Histogram, RatioGate};
 
 /// Estimates of the bearing of a source over time, in the axes of odometry.
 #[derive(Debug, Clone)]
 pub struct Localizer {
     estimator: Estimator,
-    gate: Gate,
+    gate: RatioGate,
     histogram: Histogram,
     /// Seconds since an estimate was kept; `None` before the first.
     silent: Option<f64>,
@@ -16,7 +16,7 @@ impl Localizer {
     /// Returns a localizer for a head of this radius, in metres.
     #[must_use]
     pub fn new(radius: f64) -> Self {
-        let (estimator, gate, histogram) = (Estimator::new(radius), Gate::default(), Histogram::default());
+        let (estimator, gate, histogram) = (Estimator::new(radius), RatioGate::default(), Histogram::default());
         Self { estimator, gate, histogram, silent: None }
     }
 

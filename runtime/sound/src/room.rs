@@ -14,7 +14,7 @@ const ORDER: i32 = 5;
 
 /// A room, or open air.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Room {
+pub struct SoundRoom {
     /// Two opposite corners of the floor, in metres.
     corners: [(f64, f64); 2],
     /// Part of the pressure that a wall reflects.
@@ -25,7 +25,7 @@ pub struct Room {
 
 /// A source as it is heard directly or in walls.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Image {
+pub(crate) struct ImageSource {
     /// Vector from the listener, in metres.
     pub(crate) from: [f64; 3],
     pub(crate) distance: f64,
@@ -36,7 +36,7 @@ pub(crate) struct Image {
 /// An image along one axis: its place from the listener, and the number of reflections.
 type Along = (f64, i32);
 
-impl Room {
+impl SoundRoom {
     /// Greatest reverberation time, in seconds.
     pub const T60_MOST: f64 = 0.5;
 
@@ -47,7 +47,8 @@ impl Room {
     }
 
     /// Returns the room over a rectangle, in metres, whose sound falls by 60 dB in `t60` seconds by Eyring's formula,
-    /// at most [`Room::T60_MOST`]. Sound that was reflected more than five times is left out, so its end is missing.
+    /// at most [`SoundRoom::T60_MOST`]. Sound that was reflected more than five times is left out, so its end is
+    /// missing.
     #[must_use]
     pub fn new(min: (f64, f64), max: (f64, f64), t60: f64) -> Self {
         let (width, depth) = (max.0 - min.0, max.1 - min.1);
@@ -63,7 +64,7 @@ impl Room {
     }
 
     /// Calls `visit` with each image of a source at `source` that is heard at `here`, the source itself first.
-    pub(crate) fn images(&self, source: (f64, f64), here: (f64, f64), mut visit: impl FnMut(Image)) {
+    pub(crate) fn images(&self, source: (f64, f64), here: (f64, f64), mut visit: impl FnMut(ImageSource)) {
         let direct = [source.0 - here.0, source.1 - here.1, 0.0];
         visit(self.image(direct, length(direct), 0));
         if self.longest <= 0.0 {
@@ -89,9 +90,9 @@ impl Room {
         }
     }
 
-    fn image(&self, from: [f64; 3], distance: f64, walls: i32) -> Image {
+    fn image(&self, from: [f64; 3], distance: f64, walls: i32) -> ImageSource {
         let distance = distance.max(NEAREST);
-        Image { from, distance, pressure: libm::pow(self.reflects, f64::from(walls)) / distance }
+        ImageSource { from, distance, pressure: libm::pow(self.reflects, f64::from(walls)) / distance }
     }
 
     /// Returns the images along an axis with a wall at 0 and one at `width`.
@@ -114,7 +115,7 @@ fn length([x, y, z]: [f64; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    fn images(room: &Room) -> Vec<Image> {
+    fn images(room: &SoundRoom) -> Vec<ImageSource> {
         let mut images = Vec::new();
         room.images((5.0, 3.0), (2.0, 3.0), |image| images.push(image));
         images
@@ -122,16 +123,17 @@ mod tests {
 
     #[test]
     fn open_air_reflects_nothing() {
-        let direct = Image { from: [3.0, 0.0, 0.0], distance: 3.0, pressure: 1.0 / 3.0 };
-        assert_eq!(images(&Room::open()), [direct]);
+        let direct = ImageSource { from: [3.0, 0.0, 0.0], distance: 3.0, pressure: 1.0 / 3.0 };
+        assert_eq!(images(&SoundRoom::open()), [direct]);
     }
 
     #[test]
     fn walls_are_mirrors() {
-        let images = images(&Room::new((0.0, 0.0), (7.0, 6.0), 0.34));
+        let images = images(&SoundRoom::new((0.0, 0.0), (7.0, 6.0), 0.34));
         let has = |x: f64, y: f64, z: f64| {
-            let near =
-                |image: &&Image| libm::hypot(image.from[0] - x, image.from[1] - y) + (image.from[2] - z).abs() < 1e-9;
+            let near = |image: &&ImageSource| {
+                libm::hypot(image.from[0] - x, image.from[1] - y) + (image.from[2] - z).abs() < 1e-9
+            };
             images.iter().filter(near).count()
         };
         // The wall at x = 7 shows the source at 9, that at x = 0 at -5, the floor 2.4 m below.
@@ -141,7 +143,7 @@ mod tests {
     #[test]
     fn reflections_of_the_reverberation_time_take_60_db() {
         let t60 = 0.34;
-        let room = Room::new((0.0, 0.0), (7.0, 6.0), t60);
+        let room = SoundRoom::new((0.0, 0.0), (7.0, 6.0), t60);
         // A mean free path is four times the volume over the surface.
         let surface = 2.0 * (42.0 + (7.0 + 6.0) * HEIGHT);
         let reflections = SPEED * t60 * surface / (4.0 * 42.0 * HEIGHT);
@@ -152,7 +154,7 @@ mod tests {
     #[test]
     fn a_room_without_an_inside_is_open_air() {
         for (max, t60) in [((0.0, 6.0), 0.3), ((7.0, 6.0), 0.0), ((7.0, 6.0), f64::NAN)] {
-            assert_eq!(Room::new((0.0, 0.0), max, t60), Room::open());
+            assert_eq!(SoundRoom::new((0.0, 0.0), max, t60), SoundRoom::open());
         }
     }
 }

@@ -10,7 +10,7 @@ const SPEECH_GAIN: f64 = 13.66;
 
 /// Kind of the sound of a source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum SoundKind {
     /// All frequencies alike, without a pause.
     White,
     /// A pitch with overtones that fall by 6 dB an octave, in syllables with pauses.
@@ -19,20 +19,20 @@ pub enum Kind {
 
 /// A source of sound at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Source {
+pub struct SoundSource {
     /// Place on the floor, in metres.
     pub at: (f64, f64),
     /// Kind of its sound.
-    pub kind: Kind,
+    pub kind: SoundKind,
     /// Level at a distance of 2 m over that of the noise of a microphone, in dB.
     pub level: f64,
 }
 
 /// Random numbers of a purpose.
 #[derive(Debug, Clone)]
-pub(crate) struct Chance(ChaCha8Rng);
+pub(crate) struct RandomStream(ChaCha8Rng);
 
-impl Chance {
+impl RandomStream {
     pub(crate) fn new(seed: u64, purpose: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(purpose);
@@ -54,9 +54,9 @@ impl Chance {
 
 /// The signal of a source, sample by sample; it has a mean square of 1.
 #[derive(Debug, Clone)]
-pub(crate) struct Signal {
-    kind: Kind,
-    chance: Chance,
+pub(crate) struct SourceSignal {
+    kind: SoundKind,
+    chance: RandomStream,
     speech: Speech,
 }
 
@@ -73,22 +73,22 @@ struct Speech {
     low: f64,
 }
 
-impl Signal {
-    pub(crate) fn new(kind: Kind, seed: u64, purpose: u64) -> Self {
-        Self { kind, chance: Chance::new(seed, purpose), speech: Speech::default() }
+impl SourceSignal {
+    pub(crate) fn new(kind: SoundKind, seed: u64, purpose: u64) -> Self {
+        Self { kind, chance: RandomStream::new(seed, purpose), speech: Speech::default() }
     }
 
     /// Returns the next sample.
     pub(crate) fn sample(&mut self) -> f64 {
         match self.kind {
-            Kind::White => self.chance.noise(),
-            Kind::Speech => self.speech.sample(&mut self.chance) * SPEECH_GAIN,
+            SoundKind::White => self.chance.noise(),
+            SoundKind::Speech => self.speech.sample(&mut self.chance) * SPEECH_GAIN,
         }
     }
 }
 
 impl Speech {
-    fn sample(&mut self, chance: &mut Chance) -> f64 {
+    fn sample(&mut self, chance: &mut RandomStream) -> f64 {
         let rate = f64::from(RATE);
         let (mut since, mut length) = self.syllable;
         if since >= length + self.pause {
@@ -119,8 +119,8 @@ mod tests {
 
     #[test]
     fn sources_are_equally_loud() {
-        for kind in [Kind::White, Kind::Speech] {
-            let mut signal = Signal::new(kind, 1, 0);
+        for kind in [SoundKind::White, SoundKind::Speech] {
+            let mut signal = SourceSignal::new(kind, 1, 0);
             let square: f64 = (0..30 * RATE).map(|_| signal.sample()).map(|sample| sample * sample).sum();
             let rms = (square / f64::from(30 * RATE)).sqrt();
             assert!((0.9..1.1).contains(&rms), "{kind:?} {rms}");
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn speech_has_pauses() {
-        let mut signal = Signal::new(Kind::Speech, 1, 0);
+        let mut signal = SourceSignal::new(SoundKind::Speech, 1, 0);
         let loudness = |_| {
             let block = (0..RATE / 20).map(|_| signal.sample().abs()).fold(0.0, f64::max);
             usize::from(block < 0.01)

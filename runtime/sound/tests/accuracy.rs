@@ -1,7 +1,9 @@
 //! Errors of the bearing of a source, over bearings, places and sounds, as the book promises them.
 #![allow(clippy::print_stdout, clippy::expect_used, reason = "a test prints its table, and fails by panicking")]
 
-use mdle_sound::{EarPose, Ears, Estimator, Gate, Head, Kind, RADIUS, Room, Source, WINDOW};
+use mdle_sound::{
+    EarPose, Ears, Estimator, RADIUS, RatioGate, SoundKind, SoundRoom, SoundSource, SphericalHead, WINDOW,
+};
 
 /// Floor of the room, in metres.
 const FLOOR: (f64, f64) = (7.0, 6.0);
@@ -15,14 +17,14 @@ const WINDOWS: usize = 20;
 struct Case {
     t60: f64,
     distance: f64,
-    kind: Kind,
+    kind: SoundKind,
     level: f64,
 }
 
 /// Root mean square of the errors that are kept, in degrees, and the part of the windows that is kept.
 fn judged(case: Case, places: &[(f64, f64)]) -> (f64, f64) {
-    let (head, estimator) = (Head::new(RADIUS), Estimator::new(RADIUS));
-    let room = if case.t60 > 0.0 { Room::new((0.0, 0.0), FLOOR, case.t60) } else { Room::open() };
+    let (head, estimator) = (SphericalHead::new(RADIUS), Estimator::new(RADIUS));
+    let room = if case.t60 > 0.0 { SoundRoom::new((0.0, 0.0), FLOOR, case.t60) } else { SoundRoom::open() };
     let (mut squares, mut kept, mut all) = (0.0, 0, 0);
     for (seed, place) in (1_u32..).zip(places) {
         for bearing in (-80_i32..=80).step_by(20) {
@@ -31,10 +33,10 @@ fn judged(case: Case, places: &[(f64, f64)]) -> (f64, f64) {
             let (sin, cos) = libm::sincos(heading + angle);
             let at = (place.0 + case.distance * cos, place.1 + case.distance * sin);
             assert!((0.0..FLOOR.0).contains(&at.0) && (0.0..FLOOR.1).contains(&at.1), "{at:?}");
-            let source = Source { at, kind: case.kind, level: 0.0 };
+            let source = SoundSource { at, kind: case.kind, level: 0.0 };
             let ears = Ears::new(head.clone(), room, &[source], u64::from(seed * 1000 + bearing.unsigned_abs()));
             let here = EarPose { at: *place, heading };
-            let mut gate = Gate::default();
+            let mut gate = RatioGate::default();
             for window in noisy(ears, &head, &here, case.level).chunks(WINDOW).skip(1) {
                 all += 1;
                 let estimate = estimator.estimate(window).expect("a sound");
@@ -49,11 +51,11 @@ fn judged(case: Case, places: &[(f64, f64)]) -> (f64, f64) {
     ((squares / f64::from(kept)).sqrt(), f64::from(kept) / f64::from(all))
 }
 
-/// What the ears hear here, with noise below all of it.
-fn noisy(ears: Ears, head: &Head, here: &EarPose, level: f64) -> Vec<[f32; 2]> {
+/// Returns the signals of both ears at this pose, with noise that is quieter than their sound by `level` dB.
+fn noisy(ears: Ears, head: &SphericalHead, here: &EarPose, level: f64) -> Vec<[f32; 2]> {
     let (mut samples, mut noise) = (Vec::new(), Vec::new());
     ears.with_noise(0.0).hear(here, (WINDOWS + 1) * WINDOW, &mut samples);
-    Ears::new(head.clone(), Room::open(), &[], 7).hear(here, samples.len(), &mut noise);
+    Ears::new(head.clone(), SoundRoom::open(), &[], 7).hear(here, samples.len(), &mut noise);
     let square: f32 = samples.iter().map(|[left, right]| left * left + right * right).sum();
     let loudness = (square / (2 * samples.len()) as f32).sqrt() * libm::powf(10.0, -level as f32 / 20.0);
     samples.iter().zip(&noise).map(|(one, noise)| [0, 1].map(|ear| one[ear] + loudness * noise[ear])).collect()
@@ -68,19 +70,21 @@ fn errs_at_most(case: Case, degrees: f64, part: f64) {
 
 #[test]
 fn bearings_err_by_five_degrees_at_most() {
-    for (t60, kind) in [(0.0, Kind::Speech), (0.24, Kind::White), (0.24, Kind::Speech), (0.34, Kind::White)] {
+    for (t60, kind) in
+        [(0.0, SoundKind::Speech), (0.24, SoundKind::White), (0.24, SoundKind::Speech), (0.34, SoundKind::White)]
+    {
         errs_at_most(Case { t60, distance: 2.0, kind, level: 10.0 }, 5.0, 0.3);
     }
 }
 
 #[test]
 fn speech_in_the_most_reverberant_room_errs_more() {
-    errs_at_most(Case { t60: 0.34, distance: 2.0, kind: Kind::Speech, level: 10.0 }, 10.0, 0.3);
+    errs_at_most(Case { t60: 0.34, distance: 2.0, kind: SoundKind::Speech, level: 10.0 }, 10.0, 0.3);
 }
 
 #[test]
 fn noise_as_loud_as_speech_costs_estimates_in_a_room() {
     for (t60, degrees, part) in [(0.0, 5.0, 0.5), (0.24, 7.0, 0.1)] {
-        errs_at_most(Case { t60, distance: 2.0, kind: Kind::Speech, level: 0.0 }, degrees, part);
+        errs_at_most(Case { t60, distance: 2.0, kind: SoundKind::Speech, level: 0.0 }, degrees, part);
     }
 }

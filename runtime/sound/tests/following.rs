@@ -3,7 +3,7 @@
 //! `MDLE_LONG=17 cargo test --release -p mdle-sound --test following -- --nocapture` drives 51 seeds of each sound.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, reason = "a test fails by panicking")]
 
-use mdle_sound::{EarPose, Ears, Head, Kind, Localizer, RADIUS, Room, Source, WINDOW};
+use mdle_sound::{EarPose, Ears, Localizer, RADIUS, SoundKind, SoundRoom, SoundSource, SphericalHead, WINDOW};
 
 /// Seconds of a turn, and the number of turns after which a robot has not arrived: a minute.
 const TURN: f64 = 0.1;
@@ -17,10 +17,10 @@ const FIRST: u64 = 9_800_000;
 
 /// Drives at 20 cm/s in a room without obstacles; returns the seconds until arrival, and the part of the time in which
 /// the bearing was within 15°. Each seed has a heading of its own at the start.
-fn drive(kind: Kind, seed: u64) -> (Option<f64>, f64) {
-    let source = Source { at: SOURCE, kind, level: 10.0 };
-    let room = Room::new((0.0, 0.0), (7.0, 6.0), 0.24);
-    let mut ears = Ears::new(Head::new(RADIUS), room, &[source], seed);
+fn drive(kind: SoundKind, seed: u64) -> (Option<f64>, f64) {
+    let source = SoundSource { at: SOURCE, kind, level: 10.0 };
+    let room = SoundRoom::new((0.0, 0.0), (7.0, 6.0), 0.24);
+    let mut ears = Ears::new(SphericalHead::new(RADIUS), room, &[source], seed);
     let mut localizer = Localizer::new(RADIUS);
     let mut here = EarPose { at: (1.2, 1.5), heading: (seed % 36) as f64 * 10.0_f64.to_radians() };
     let (mut v, mut omega, mut right, mut known) = (0.0, 0.0, 0, 0);
@@ -56,7 +56,7 @@ fn seeds() -> u64 {
 
 #[test]
 fn a_robot_reaches_what_it_hears() {
-    for kind in [Kind::White, Kind::Speech] {
+    for kind in [SoundKind::White, SoundKind::Speech] {
         let runs: Vec<_> = (FIRST..FIRST + seeds()).map(|seed| drive(kind, seed)).collect();
         let mut times: Vec<_> = runs.iter().filter_map(|(arrived, _)| *arrived).collect();
         times.sort_by(f64::total_cmp);
@@ -70,8 +70,8 @@ fn a_robot_reaches_what_it_hears() {
 
 #[test]
 fn ears_hear_the_same_bits_everywhere() {
-    let sources = [Kind::White, Kind::Speech].map(|kind| Source { at: SOURCE, kind, level: 10.0 });
-    let mut ears = Ears::new(Head::new(RADIUS), Room::new((0.0, 0.0), (7.0, 6.0), 0.34), &sources, 5);
+    let sources = [SoundKind::White, SoundKind::Speech].map(|kind| SoundSource { at: SOURCE, kind, level: 10.0 });
+    let mut ears = Ears::new(SphericalHead::new(RADIUS), SoundRoom::new((0.0, 0.0), (7.0, 6.0), 0.34), &sources, 5);
     let mut heard = Vec::new();
     for turn in 0..5 {
         ears.hear(&EarPose { at: (2.0, 2.0 + 0.02 * f64::from(turn)), heading: 0.1 }, WINDOW, &mut heard);

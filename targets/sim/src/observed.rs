@@ -7,7 +7,7 @@ use mdle_host::{
 };
 use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, PathStore, Pose, Robot, Sensed, Twist};
-use mdle_simulator::{Charger, Drawing, Fault, Goal, Hearing, Simulated, World};
+use mdle_simulator::{Charger, Drawing, Fault, Goal, RobotEars, Simulated, World};
 
 /// A simulated robot and the observers of its run; it drives as it would unobserved.
 pub struct Observed {
@@ -18,9 +18,9 @@ pub struct Observed {
     pictures: Option<Pictures>,
     table: Option<Table>,
     watch: Option<Watch>,
-    /// World whose sound can be heard, its name, and the seed of the sound.
+    /// World whose sound can be heard, and the seed of the sound.
     sounds: Option<Sounds>,
-    ears: Option<(Hearing, Microphones)>,
+    ears: Option<(RobotEars, Microphones)>,
 }
 
 /// Sound that the robot hears once it has ears.
@@ -112,10 +112,10 @@ impl Observed {
     /// # Errors
     /// The world has no source of sound: a sentence.
     pub(crate) fn take_ears(&mut self, microphones: Microphones, radius: f64) -> Result<(), String> {
-        let hearing = self.sounds.as_ref().and_then(|Sounds { world, seed }| Hearing::new(world, radius, *seed));
+        let ears = self.sounds.as_ref().and_then(|Sounds { world, seed }| RobotEars::new(world, radius, *seed));
         let silent = "--ears robot: the world has no source of sound\n\
                       help: add one to a world file, as `[[sound]]` and `at = [5, 3]`";
-        self.ears = Some((hearing.ok_or(silent)?, microphones));
+        self.ears = Some((ears.ok_or(silent)?, microphones));
         Ok(())
     }
 
@@ -168,8 +168,8 @@ impl Robot for Observed {
         self.contacts += u64::from(comes_into_contact);
         self.touches = sensed.pressed();
         let pose = self.robot.pose();
-        if let Some((hearing, microphones)) = &mut self.ears {
-            microphones.put(now, hearing.heard(&pose, now));
+        if let Some((ears, microphones)) = &mut self.ears {
+            microphones.put(now, ears.heard(&pose, now));
         }
         if let Some(table) = &mut self.table {
             table.went(now, &pose);

@@ -30,7 +30,7 @@ impl EarsOption {
     }
 }
 
-/// Adds the options to a command.
+/// Returns a command with these options.
 pub(super) fn with_ears(command: Command) -> Command {
     let ears = Arg::new("ears")
         .long("ears")

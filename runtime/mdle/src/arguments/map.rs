@@ -6,7 +6,7 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 
 /// The arguments of `mdle map`.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Map {
+pub(crate) struct MakeMap {
     /// The record; `-` is standard input.
     pub(crate) log: PathBuf,
     /// The YAML file to write; the image goes beside it.
@@ -15,7 +15,7 @@ pub(crate) struct Map {
     pub(crate) at: String,
 }
 
-impl Map {
+impl MakeMap {
     /// Takes the arguments that were parsed.
     pub(super) fn of(matches: &ArgMatches) -> Self {
         let path = |name: &str| matches.get_one::<PathBuf>(name).cloned().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Where a robot was in an evidence grid: the pose from which the echoes of one turn fit it best
+//! Finds the pose of a robot in an evidence grid from which the echoes of one turn fit it best
 //! (docs/src/navigation.md).
 
 use mdle_runtime::{Meters, Pose, Radians};
@@ -20,7 +20,7 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// A pose in a grid, and how well echoes fit there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Fit {
-    /// Where the robot's odometry was zero, in the axes of the grid.
+    /// Pose at which the robot's odometry was zero, in the axes of the grid.
     pub(super) origin: Pose,
     /// Mean evidence for each echo.
     pub(super) score: f64,

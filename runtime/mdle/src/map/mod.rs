@@ -13,7 +13,7 @@ use std::process::ExitCode;
 use mdle_runtime::Pose;
 use mdle_sim::Start;
 
-use crate::arguments::Map;
+use crate::arguments::MakeMap;
 use crate::failure::Failure;
 use crate::log::damaged;
 use crate::replay;
@@ -25,7 +25,7 @@ use pings::PingOrder;
 ///
 /// # Errors
 /// The record cannot be read, or the map cannot be written.
-pub(crate) fn map(arguments: &Map) -> Result<ExitCode, Failure> {
+pub(crate) fn map(arguments: &MakeMap) -> Result<ExitCode, Failure> {
     let origin = pose(&arguments.at)?;
     let mut grid = EvidenceGrid::new();
     let outcome = pings(&arguments.log, origin, &mut |ping| grid.take(ping))?;

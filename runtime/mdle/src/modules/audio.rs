@@ -21,7 +21,7 @@ const LONGEST: u32 = 1800;
 pub(crate) enum AudioSource {
     Robot,
     Wav(Arc<[[f32; 2]]>),
-    Raw(Recorder),
+    Raw(RawAudio),
 }
 
 /// Sound as it is heard in a run.
@@ -29,15 +29,15 @@ pub(super) enum Audio {
     Robot(Microphones),
     /// A file, and the number of its samples that were taken.
     Wav(Arc<[[f32; 2]]>, usize),
-    Raw(Recorder),
+    Raw(RawAudio),
 }
 
-/// What a recorder has written and nobody has taken yet.
+/// Samples that a recorder has written and nobody has taken yet.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Recorder(Arc<Mutex<Recorded>>);
+pub(crate) struct RawAudio(Arc<Mutex<RawSamples>>);
 
 #[derive(Debug, Default)]
-struct Recorded {
+struct RawSamples {
     samples: Vec<[f32; 2]>,
     /// Reason why nothing more will come.
     end: Option<String>,
@@ -52,7 +52,7 @@ impl AudioSource {
         match option {
             EarsOption::Robot => Ok(Self::Robot),
             EarsOption::Wav(path) => wav(path).map(|samples| Self::Wav(samples.into())),
-            EarsOption::Raw(path) => Recorder::open(path.as_deref()).map(Self::Raw),
+            EarsOption::Raw(path) => RawAudio::open(path.as_deref()).map(Self::Raw),
         }
     }
 
@@ -129,7 +129,7 @@ fn pairs(values: &[f32]) -> Vec<[f32; 2]> {
     values.as_chunks::<2>().0.to_vec()
 }
 
-impl Recorder {
+impl RawAudio {
     /// Begins to read raw samples.
     fn open(path: Option<&Path>) -> Result<Self, String> {
         let recorder = Self::default();
@@ -253,7 +253,7 @@ mod tests {
 
     #[test]
     fn a_recorder_is_read_across_pieces_until_it_ends() {
-        let recorder = Recorder::default();
+        let recorder = RawAudio::default();
         // A frame and a half, then its rest.
         let pieces = [1_u8, 0, 255, 255, 2, 0].as_slice().chain([0, 1].as_slice());
         let end = recorder.read(pieces);

@@ -52,12 +52,12 @@ pub(crate) fn of_settings(
 
 /// The sound of a run, and the radius of the head that hears it, in metres.
 #[derive(Debug, Clone)]
-pub(crate) struct Hearing {
+pub(crate) struct SoundInput {
     pub(crate) source: AudioSource,
     pub(crate) radius: f64,
 }
 
-impl Hearing {
+impl SoundInput {
     /// Returns the modules of a run with the module `heading`, which listens to the run's sound.
     pub(crate) fn added(&self, library: &Library<Sensed>, microphones: &Microphones) -> Library<Sensed> {
         let mut library = library.clone();

@@ -15,7 +15,7 @@ use mdle_runtime::{Printable, Sensed};
 use crate::arguments::Navigate;
 use crate::failure::{self, Failure};
 use crate::plans::texts;
-use crate::route::{Edge, Graph, Leg, leg};
+use crate::route::{Edge, LandmarkGraph, Leg, leg};
 use crate::targets;
 use landmarks::Landmarks;
 
@@ -32,7 +32,7 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
     let linked = targets::linked(&name).map_err(Failure::Usage)?;
     let target = Arc::new(settings.target(arguments.target.as_deref())?);
     let mut input = read_plan(&arguments.graph, &target)?;
-    let graph = Graph::of(input.labels());
+    let graph = LandmarkGraph::of(input.labels());
     let route = route(&graph, &arguments)?;
     let (beside, known) = (arguments.graph.with_file_name(LANDMARKS), graph.landmarks());
     let file = arguments.landmarks.as_deref();
@@ -63,7 +63,10 @@ fn call(arguments: &Navigate, options: Vec<OsString>) -> Call {
 }
 
 /// Finds the route.
-fn route<'g>(graph: &'g Graph, Navigate { graph: file, from, to, .. }: &Navigate) -> Result<Vec<&'g Edge>, Failure> {
+fn route<'g>(
+    graph: &'g LandmarkGraph,
+    Navigate { graph: file, from, to, .. }: &Navigate,
+) -> Result<Vec<&'g Edge>, Failure> {
     let (known, file) = (graph.landmarks(), file.display());
     if known.is_empty() {
         let help = "write the landmarks before the plan, as in `Γ_a^b = { Name … }`";

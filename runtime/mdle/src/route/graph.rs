@@ -13,9 +13,9 @@ pub(crate) struct Edge {
 
 /// The edges of a graph, in the order of its file.
 #[derive(Debug)]
-pub(crate) struct Graph(Vec<Edge>);
+pub(crate) struct LandmarkGraph(Vec<Edge>);
 
-impl Graph {
+impl LandmarkGraph {
     /// Returns the graph of labelled plans: pairs of a label, as `Γ_from^to`, and the name of its plan. A label without
     /// two landmarks is no edge.
     pub(crate) fn of(labels: Vec<(String, String)>) -> Self {
@@ -78,11 +78,11 @@ mod tests {
         all.filter(|(from, to)| from != to).collect()
     }
 
-    fn graph<'e>(edges: impl Iterator<Item = &'e (&'static str, &'static str)>) -> Graph {
-        Graph::of(edges.map(|(from, to)| (format!("Γ_{from}^{to}"), format!("{from}_{to}"))).collect())
+    fn graph<'e>(edges: impl Iterator<Item = &'e (&'static str, &'static str)>) -> LandmarkGraph {
+        LandmarkGraph::of(edges.map(|(from, to)| (format!("Γ_{from}^{to}"), format!("{from}_{to}"))).collect())
     }
 
-    fn words(graph: &Graph, (from, to): (&str, &str)) -> Option<Vec<String>> {
+    fn words(graph: &LandmarkGraph, (from, to): (&str, &str)) -> Option<Vec<String>> {
         graph.route(from, to).map(|route| route.into_iter().map(|edge| edge.plan.clone()).collect())
     }
 
@@ -120,6 +120,6 @@ mod tests {
     #[test]
     fn a_label_without_two_landmarks_is_no_edge() {
         let labels = ["Γ_robot1", "Γ_a^b", "Γ_"].map(|label| (label.to_owned(), "P".to_owned()));
-        assert_eq!(Graph::of(labels.to_vec()).landmarks(), ["a", "b"]);
+        assert_eq!(LandmarkGraph::of(labels.to_vec()).landmarks(), ["a", "b"]);
     }
 }

@@ -12,7 +12,7 @@ use mdle_files::{Input, Target, plan};
 
 use crate::failure::{self, Failure};
 
-pub(crate) use graph::{Edge, Graph};
+pub(crate) use graph::{Edge, LandmarkGraph};
 pub(crate) use navigator::drive;
 
 /// A leg of a route: the plan of an edge in the frame of the landmark where it begins, compiled.

@@ -1,7 +1,7 @@
 //! A world: the outlines of walls and boxes on a flat floor, and the default start pose of a robot.
 
 use mdle_runtime::Pose;
-use mdle_sound::Source;
+use mdle_sound::SoundSource;
 
 use crate::charger::Charger;
 use crate::goal::Goal;
@@ -26,7 +26,7 @@ pub struct World {
     /// The charger, if the world has one.
     pub charger: Option<Charger>,
     /// Sources of sound.
-    pub sounds: Vec<Source>,
+    pub sounds: Vec<SoundSource>,
     /// Time in seconds in which sound falls by 60 dB; 0 if nothing reflects it.
     pub t60: f64,
     /// Roughness of other robots, and of the outlines and things of a file that give none of their own: from 0 (as

@@ -1,6 +1,6 @@
 //! The sources of sound of a world file, and the reverberation of its room.
 
-use mdle_sound::{Kind, Room, Source};
+use mdle_sound::{SoundKind, SoundRoom, SoundSource};
 use toml::Spanned;
 
 use super::Wrong;
@@ -15,25 +15,25 @@ const LEVELS: (f64, f64) = (-40.0, 80.0);
 /// Greatest number of sources: each costs a convolution in each turn.
 const MOST: usize = 8;
 /// Kinds of sound.
-const KINDS: [(&str, Kind); 2] = [("white", Kind::White), ("speech", Kind::Speech)];
+const KINDS: [(&str, SoundKind); 2] = [("white", SoundKind::White), ("speech", SoundKind::Speech)];
 
 impl Unit {
     /// Reads the sources of sound.
-    pub(super) fn sounds(self, written: &[Spanned<Table<SoundText>>]) -> Result<Vec<Source>, Wrong> {
+    pub(super) fn sounds(self, written: &[Spanned<Table<SoundText>>]) -> Result<Vec<SoundSource>, Wrong> {
         if let Some(text) = written.get(MOST) {
             return Err(Wrong::at(text, format!("more than {MOST} sources of sound")));
         }
         written.iter().map(|text| self.sound(&text.get_ref().0)).collect()
     }
 
-    fn sound(self, SoundText { at, kind, level }: &SoundText) -> Result<Source, Wrong> {
+    fn sound(self, SoundText { at, kind, level }: &SoundText) -> Result<SoundSource, Wrong> {
         let Place { x, y } = self.pair(at, "`at`")?;
-        let found = kind.as_ref().map_or(Some(Kind::White), |kind| {
+        let found = kind.as_ref().map_or(Some(SoundKind::White), |kind| {
             KINDS.iter().find(|(name, _)| name == kind.get_ref()).map(|(_, kind)| *kind)
         });
         let kind = match (found, kind) {
             (Some(found), _) => found,
-            (None, None) => Kind::White,
+            (None, None) => SoundKind::White,
             (None, Some(kind)) => {
                 let what = format!("{:?} is no kind of sound; expected `white` or `speech`", kind.get_ref());
                 return Err(Wrong::at(kind, what));
@@ -47,15 +47,15 @@ impl Unit {
             Some(level) => *level.get_ref(),
             None => LEVEL,
         };
-        Ok(Source { at: (x, y), kind, level })
+        Ok(SoundSource { at: (x, y), kind, level })
     }
 }
 
 /// Reads the reverberation time of the room, in seconds.
 pub(super) fn t60(written: Option<&Spanned<f64>>) -> Result<f64, Wrong> {
     match written {
-        Some(t60) if !(0.0..=Room::T60_MOST).contains(t60.get_ref()) => {
-            let most = Room::T60_MOST;
+        Some(t60) if !(0.0..=SoundRoom::T60_MOST).contains(t60.get_ref()) => {
+            let most = SoundRoom::T60_MOST;
             Err(Wrong::at(t60, format!("a reverberation time is from 0 (nothing reflects sound) to {most} s")))
         }
         Some(t60) => Ok(*t60.get_ref()),

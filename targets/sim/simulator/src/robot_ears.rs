@@ -1,25 +1,25 @@
 //! Two ears of a simulated robot, in the middle of it: they hear the sources of its world.
 
 use mdle_runtime::{Nanos, Pose, Radians};
-use mdle_sound::{EarPose, Ears, Head, RATE, Room};
+use mdle_sound::{EarPose, Ears, RATE, SoundRoom, SphericalHead};
 
 use crate::world::World;
 
 /// The ears of a robot.
-pub struct Hearing {
+pub struct RobotEars {
     ears: Ears,
     /// Pose at the exchange before, and the number of samples until then.
     before: Option<(Pose, u64)>,
 }
 
-impl Hearing {
+impl RobotEars {
     /// Returns the ears of a robot with a head of this radius, in metres; `None` in a world without a source of sound.
     #[must_use]
     pub fn new(world: &World, radius: f64, seed: u64) -> Option<Self> {
         if world.sounds.is_empty() {
             return None;
         }
-        let ears = Ears::new(Head::new(radius), room(world), &world.sounds, seed);
+        let ears = Ears::new(SphericalHead::new(radius), room(world), &world.sounds, seed);
         Some(Self { ears, before: None })
     }
 
@@ -41,13 +41,13 @@ impl Hearing {
 }
 
 /// Returns the room of a world: the rectangle around its walls.
-pub(crate) fn room(world: &World) -> Room {
+pub(crate) fn room(world: &World) -> SoundRoom {
     let mut places = world.segments().flat_map(|(_, from, to)| [from, to]);
-    let Some(first) = places.next() else { return Room::open() };
+    let Some(first) = places.next() else { return SoundRoom::open() };
     let (min, max) = places.fold((first, first), |(mut min, mut max), place| {
         (min.x, min.y) = (min.x.min(place.x), min.y.min(place.y));
         (max.x, max.y) = (max.x.max(place.x), max.y.max(place.y));
         (min, max)
     });
-    Room::new((min.x, min.y), (max.x, max.y), world.t60)
+    SoundRoom::new((min.x, min.y), (max.x, max.y), world.t60)
 }
