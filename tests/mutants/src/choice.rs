@@ -11,6 +11,7 @@ use crate::mutant::{Mutant, mutants};
 /// Areas that are mutated: files and folders. A few mutants are taken from each area in turn, however large it is.
 const AREAS: &[&[&str]] = &[
     &[
+        "runtime/core/src/condition.rs",
         "runtime/core/src/cursor.rs",
         "runtime/core/src/follows.rs",
         "runtime/core/src/fsm.rs",

@@ -48,3 +48,18 @@ impl Equivalent {
         (&self.file, &self.function, &self.change) == (&mutant.file, &mutant.function, &mutant.change)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::choice;
+
+    #[test]
+    fn every_entry_names_a_mutant() {
+        let (sources, equivalents) = (choice::sources(), Equivalents::read());
+        let mutants = choice::all(&sources);
+        assert!(mutants.len() > equivalents.equivalent.len(), "no mutants are found");
+        let stale: Vec<_> = equivalents.stale(&mutants).collect();
+        assert!(stale.is_empty(), "equivalent.toml has entries without a mutant or a reason: {stale:#?}");
+    }
+}
