@@ -120,6 +120,8 @@ impl Ears {
 }
 
 /// Transforms in place.
+// Inlined three times into `emit`, its nested loops take LLVM minutes to optimize.
+#[inline(never)]
 fn transform(values: &mut [Complex32]) {
     if let Ok(values) = values.try_into() {
         let _: &mut [Complex32; LENGTH] = cfft_16384(values);
