@@ -86,7 +86,7 @@ pub struct GoingRound {
     /// Time at which the robot first headed in the direction that it had chosen, after the turn with which it begins.
     headed: Option<Nanos>,
     detour: Option<Detour>,
-    /// Time since when something has kept the robot, which is near the goal, from coming nearer.
+    /// Time at which something in the way began to keep the robot, already near the goal, from coming nearer.
     kept_off: Option<Nanos>,
     passers: Passers,
     memory: Memory,

@@ -12,7 +12,7 @@ const POINTS: usize = 64;
 const WITHIN: f64 = 0.18;
 /// Turn rates that are tried, in rad/s.
 const RATES: [f64; 7] = [0.0, 0.15, -0.15, 0.35, -0.35, 0.7, -0.7];
-/// Speeds that are tried, as parts of the one given.
+/// Factors by which the given speed is multiplied for the trials.
 const SPEEDS: [f64; 4] = [1.0, 0.5, 0.0, -0.5];
 /// Times, in seconds, at which the body is tried.
 const TIMES: [f64; 3] = [0.3, 0.6, 1.0];

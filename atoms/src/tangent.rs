@@ -28,8 +28,9 @@ const MARGIN: f64 = 0.06;
 const AT_LEAST_RANGE: f64 = 0.08;
 /// Cost of a way that lacks free length, in radians of detour for the whole look-ahead.
 const BLOCKED_COSTS: f64 = 6.0;
-/// Cost of a way along `MARGIN`, in radians of detour. With 0.6 the robot may drift off the middle of a hallway
-/// so far that at the next junction `atIsection` sees, half turned, the pattern it is to see at the end.
+/// Cost of a way at the distance `MARGIN` from obstacles, in radians of detour. With 0.6 the robot may leave the middle
+/// of a hallway so far that at the next junction, half-way through a turn, `atIsection` sees the pattern that is to end
+/// the turn.
 const CLOSE_COSTS: f64 = 0.9;
 /// Cost of a change of direction from turn to turn, in radians of detour for each radian.
 const CHANGE_COSTS: f64 = 0.15;

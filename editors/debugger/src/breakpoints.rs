@@ -30,7 +30,7 @@ pub(crate) struct Breakpoints {
 enum Name {
     /// A scope of this name, or an atom with this law, is entered.
     Entered(String),
-    /// The first turn at this time of the plan or after it.
+    /// The first turn whose plan time is at least this time.
     Time(Nanos),
 }
 

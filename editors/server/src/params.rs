@@ -19,7 +19,7 @@ impl Refusal {
         Self { code: ErrorCode::InvalidParams, message: message.to_owned() }
     }
 
-    /// A document that the client has not opened.
+    /// Returns the refusal of a request about a document that the client has not opened.
     pub(crate) fn unknown(uri: &str) -> Self {
         Self::params(&format!("`{uri}` is not open"))
     }

@@ -21,7 +21,7 @@ pub struct OpenCall<'t> {
     pub name: &'t str,
     /// Number of arguments before the cursor.
     pub args: usize,
-    /// `true` in a condition, `false` for a law or a plan.
+    /// `true` if the call is in a condition, `false` if it is a law or a plan.
     pub is_condition: bool,
 }
 

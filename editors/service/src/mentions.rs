@@ -36,7 +36,7 @@ pub struct Mention<'s> {
     pub span: Span,
     /// The name, or the number with its unit.
     pub text: &'s str,
-    /// Meaning.
+    /// Meaning of the name or number.
     pub role: Role,
     /// Place of the name where it is defined; its own place if this is the definition. `None` for what no plan defines.
     pub defined: Option<Span>,

@@ -107,10 +107,10 @@ impl Input {
         Err(InputError::UnknownPlan { file, name: name.to_owned(), plans })
     }
 
-    /// Returns the only one of `plans`: those that [`compile`](Self::compile) found, by their names.
+    /// Returns the only plan of `plans`, the names and plans that [`compile`](Self::compile) found.
     ///
     /// # Errors
-    /// There is none, or there are several.
+    /// `plans` is empty, or has several plans.
     pub fn only<T>(&self, mut plans: Vec<(String, T)>) -> Result<T, InputError> {
         match (plans.pop(), plans.len()) {
             (Some((_, only)), 0) => Ok(only),

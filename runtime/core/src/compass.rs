@@ -200,10 +200,11 @@ impl Compass {
         }
     }
 
-    /// Measures the drift by a straight wall that three sonars hear square to it, while it is not known better. Three
-    /// pings are too few to tell first whether the room lies askew.
+    /// Measures the drift by a straight wall that three adjacent sonars hear, the middle one about at a right angle,
+    /// while the drift is not known more precisely. Three pings are too few to tell first whether the room is askew to
+    /// the axes of odometry.
     ///
-    /// A wall to which the robot is square is as far before that direction as behind it.
+    /// The sonars to both sides of the middle one hear equal ranges if the robot is square to the wall.
     fn faces(&mut self, pings: &[Pings; SONARS], odometry: Pose, apart: Meters) {
         let newest = pings.iter().filter_map(|pings| pings.newest_first().next()).map(|ping| ping.at).max();
         let Some(newest) =

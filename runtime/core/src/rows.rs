@@ -70,7 +70,7 @@ impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
         found
     }
 
-    /// Returns `true` if a condition that consists of others has fired.
+    /// Returns `true` if a compound condition has fired.
     #[cold]
     #[inline(never)]
     fn compound(&self, guard: &Guard<InterruptOf<T>>, cursor: &Cursor<E, P>, y: &OutputOf<T>, t: Nanos) -> bool {

@@ -13,7 +13,7 @@ pub trait Table {
 
     /// Returns the machine's tables.
     fn fsm(&self) -> Fsm<'_>;
-    /// Returns the condition by which each bracket ends, in the order of the brackets.
+    /// Returns the condition that ends each bracket, in the order of the brackets.
     fn guards(&self) -> &[Guard<<Self::Alphabet as Alphabet>::Interrupt>];
     /// Returns the operands of conditions. The operands of an operand come after it, so there can be no cycle.
     fn operands(&self) -> &[Condition<<Self::Alphabet as Alphabet>::Interrupt>];

@@ -55,7 +55,7 @@ impl Board {
         self.posts.iter().position(|post| &*post.name.module == module && &*post.name.attribute == attribute)
     }
 
-    /// Returns the place of an attribute that a plan reads; for the age of a module, that of one of its attributes.
+    /// Returns the place of an attribute that a plan reads; for `age`, the place of the module's first attribute.
     pub(crate) fn place_of(&self, read: &ModuleRead) -> Option<usize> {
         if read.attribute == AGE {
             return self.posts.iter().position(|post| &*post.name.module == read.module);

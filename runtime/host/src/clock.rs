@@ -19,7 +19,7 @@ const SLICE: Duration = Duration::from_millis(20);
 /// goes on from now.
 const CATCH_UP: u64 = 250_000_000;
 
-/// The maximum delay of a turn on a robot without a limit of its own on the time without a command.
+/// Maximum delay of a turn, if the robot does not limit the time without a command.
 const GAP: Duration = Duration::from_secs(2);
 
 /// Source of real time; a test drives it by hand.
@@ -66,7 +66,7 @@ pub(crate) struct Clock<I> {
     /// Start of turn 0, or of the turn in which the pace was changed, in real nanoseconds; in stepped time later by the
     /// lateness that is not caught up.
     origin: u64,
-    /// Time of the first output, in real nanoseconds: the plan's time 0.
+    /// Real time of the first output, in nanoseconds: time 0 of the plan.
     zero: u64,
     /// Number of periods from the start of turn 0 to the start of the current turn.
     place: u64,

@@ -16,7 +16,7 @@ use crate::timing::Timing;
 /// Limits at which a run ends that is not over.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
-    /// Time of the run at which it ends. The turn at that time is still made: the run may be over in it.
+    /// Time of the run at which the run ends. The turn at that time is still made, since the plan may be over in it.
     pub(crate) timeout: Option<Duration>,
     /// Number of turns after which the run ends.
     pub(crate) turns: Option<u64>,

@@ -54,7 +54,7 @@ pub(crate) trait Position {
     fn atom(&self) -> Option<u32>;
     /// Frame of the current atom if a `FRAME here` encloses it.
     fn frame(&self) -> Option<Frame>;
-    /// The bracket of the enclosing scope of this level.
+    /// The bracket of the enclosing scope at this level.
     fn scope(&self, level: u16) -> u32;
     /// Time since the enclosing scope of this level was entered, at time `t`.
     fn since(&self, level: u16, t: Nanos) -> Nanos;

@@ -45,7 +45,7 @@ pub(crate) enum RunEnd {
     Unstarted(String),
     /// An exchange failed: the robot's sentence.
     Robot(String),
-    /// An exchange failed, the robot's sentence, and so did the stop.
+    /// An exchange failed, and then the stop failed too: the robot's sentence about the exchange.
     Unstopped(String),
     /// The run log could not be written: why.
     Log(String),

@@ -1,4 +1,4 @@
-//! Lateness and durations of a robot's turns, counted in classes: nothing is allocated for a turn.
+//! Histograms of the lateness and the duration of a robot's turns; recording a turn allocates no memory.
 
 use std::fmt;
 use std::time::Duration;

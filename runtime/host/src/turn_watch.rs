@@ -1,5 +1,5 @@
-//! Limit of the time that a turn takes: code of a plan or of a module that never returns keeps the thread that drives
-//! the robot, so another thread ends the program.
+//! Limits the time of a turn: a plan or a module whose code never returns blocks the thread that drives the robot, so
+//! another thread ends the program.
 
 use std::io::{self, IsTerminal as _};
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -125,7 +125,7 @@ mod tests {
 
     use super::*;
 
-    /// A way along these places, with rests in between.
+    /// Returns a way along these places, with a rest at each place.
     fn way(places: impl Iterator<Item = Place>) -> Way {
         let mut way = Way::default();
         for [x, y] in places {

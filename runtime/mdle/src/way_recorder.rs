@@ -11,7 +11,7 @@ const SETPOINTS: usize = 2_000_000;
 
 /// The recorder of a robot.
 pub(crate) struct WayRecorder {
-    /// Name of the path that it replaces.
+    /// Name of the path that the recorder replaces.
     path: &'static str,
     /// Greatest speeds of a path.
     fastest: Twist,

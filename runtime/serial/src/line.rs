@@ -30,7 +30,7 @@ pub enum LineFault {
     Open(String, String),
     /// Another program has this device.
     Busy(String),
-    /// This device is no serial port.
+    /// This device is not a serial port.
     NotSerial(String),
     /// Nothing arrived, or could be sent, in time.
     Silent,

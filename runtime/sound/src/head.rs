@@ -37,7 +37,8 @@ impl SphericalHead {
         Self { responses: responses.collect() }
     }
 
-    /// Returns the response of a microphone to sound from a direction, by the cosine of the angle between the two.
+    /// Returns the response of a microphone to a sound; `cosine` is that of the angle between the directions of the
+    /// microphone and of the sound.
     pub(crate) fn response(&self, cosine: f64) -> &[f32; TAPS] {
         const SILENT: [f32; TAPS] = [0.0; TAPS];
         let degrees = libm::round(libm::acos(cosine.clamp(-1.0, 1.0)) * 180.0 / PI);

@@ -100,7 +100,7 @@ impl Effect {
         Self { may_stop: true, ..self }
     }
 
-    /// The output reports a contact.
+    /// Expects that the output reports a contact.
     #[must_use]
     pub const fn feels_contact(self) -> Self {
         Self { output: Ok(Feels::Contact), ..self }

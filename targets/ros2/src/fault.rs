@@ -15,7 +15,7 @@ pub enum Fault {
     Ended,
     /// A law has asked for a speed that is no number.
     NoNumber,
-    /// Odometry is no pose.
+    /// The odometry has no valid pose.
     NoPose,
     /// Odometry went back in time by this many seconds.
     Backwards(f64),

@@ -4,7 +4,7 @@ use crate::config::Config;
 use crate::names::{dds_topic, dds_type, ros_topic, ros_type};
 use crate::source::Input;
 
-/// Types of velocity commands.
+/// Type of a velocity command without a time stamp.
 pub(crate) const TWIST: &str = "geometry_msgs/msg/Twist";
 pub(crate) const TWIST_STAMPED: &str = "geometry_msgs/msg/TwistStamped";
 /// Maximum number of topics that a sentence lists.

@@ -15,7 +15,7 @@ pub enum Direction {
     Free,
     /// The nearest obstacle.
     Echo {
-        /// Range from the ring, in metres.
+        /// Range from the ring of virtual sonars, in metres.
         range: Meters,
         /// Bearing of the obstacle, as the mount of a sonar that looks at it.
         mount: Mount,

@@ -13,7 +13,8 @@ use crate::state::State;
 
 /// Range that a sonar without an echo reports.
 const NOTHING: u8 = 255;
-/// A turn after which one of the sonars has something else before it: each of them looks where the fourth one did.
+/// Turn of the robot, in radians, after which at least one range must have changed: each sonar then looks where the
+/// sonar four places further looked before.
 const TURN: f64 = std::f64::consts::FRAC_PI_2;
 
 /// Last data of the robot that differed from those before.

@@ -119,8 +119,8 @@ impl Robot for Hardware {
         })
     }
 
-    /// Stops the robot; called on every way out, also after a fault. Yours sends the robot's own stop command, even if
-    /// the last command was not answered.
+    /// Stops the robot. Every run ends with this call, also after a fault. Yours sends the robot's own stop command,
+    /// even if the last command was not answered.
     fn stop(&mut self) -> Result<(), Fault> {
         self.velocity = Input::default();
         Ok(())

@@ -21,7 +21,7 @@ const TRANSITIONS_MOST: usize = 20_000;
 struct Limits {
     /// Maximum size of all moments in bytes; a turn whose moments are not kept is explained by making the run again.
     moments: usize,
-    /// Maximum size of all turns in bytes, as a page receives them: it keeps them all. The run then ends.
+    /// Maximum size of all turns in bytes, as a page receives and keeps them; the run ends when it is reached.
     turns: usize,
 }
 

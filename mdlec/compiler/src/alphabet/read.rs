@@ -251,7 +251,7 @@ impl<'t> Reader<'t> {
         Ok(with)
     }
 
-    /// Returns `true` if a comma follows, and then a name that begins no parameter.
+    /// Returns `true` if a comma and another attribute follow; a name before a colon is the next parameter.
     fn names_attribute(&self) -> bool {
         let token = |ahead: usize| self.tokens.get(self.at + ahead).map(|(token, _)| *token);
         token(0) == Some(Token::Comma) && token(1) == Some(Token::Word) && token(2) != Some(Token::Colon)

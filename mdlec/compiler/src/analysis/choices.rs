@@ -147,7 +147,7 @@ pub(super) fn variables(read: Read<'_>, machine: &Machine, found: &mut BTreeSet<
     found.len() <= MOST
 }
 
-/// Returns the variable of the fact that `after` asks for, which changes when an element ends.
+/// Returns the variable of the fact that `after` asks for: the fact itself, or the fact before an element ended.
 fn fact(after: &After, when: When) -> Variable {
     match when {
         When::Entered | When::Later => Variable::Fact(after.record, after.fact),

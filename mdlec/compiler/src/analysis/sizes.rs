@@ -21,7 +21,7 @@ pub struct Bytes {
     pub state: u64,
     /// Memories of RISING and `after`.
     pub memories: u64,
-    /// The tables of brackets and atoms.
+    /// Tables of the brackets and the atoms.
     pub machine: u64,
     /// The texts that it shows: each place that has one, and each different text once.
     pub texts: u64,

@@ -17,7 +17,7 @@ pub(super) enum Variable {
     Way(u32, u64),
     /// This length has been driven since a scope was entered that has ended.
     PastWay(u32, u64),
-    /// A memory of the interrupt of this bracket.
+    /// A memory of the interrupt of a bracket: number of the bracket, then number of the memory.
     Memory(u32, u32),
     /// A fact that `after` asks for.
     Fact(RecordId, u32),

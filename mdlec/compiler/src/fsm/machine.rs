@@ -207,7 +207,7 @@ impl<'m> Element<'m> {
         matches!(self.kind(), ElementKind::Scope)
     }
 
-    /// Returns the enclosing element; the plan has none.
+    /// Returns the enclosing element; `None` for the plan.
     #[must_use]
     pub fn parent(self) -> Option<Self> {
         (self.number > 0).then(|| self.machine.element(self.bracket().parent))

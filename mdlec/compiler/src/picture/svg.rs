@@ -17,7 +17,7 @@ const STYLE: &str = include_str!("style.css");
 const TITLE: i64 = 46;
 /// Height below the plan's box, with a line for the meaning of the signs.
 const FOOT: i64 = 40;
-/// Maximum number of lines for the meaning of the signs.
+/// Maximum number of lines of the legend that explains the signs.
 const MEANINGS: usize = 4;
 /// Radius of the rounded corners of a line.
 const ROUND: i64 = 8;

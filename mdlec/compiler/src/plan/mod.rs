@@ -241,7 +241,7 @@ pub struct Record {
 pub struct Mark {
     /// Use of the definition that contains the label.
     pub record: RecordId,
-    /// The label.
+    /// Text of the label.
     pub label: String,
     /// Facts about the label that `after` conditions read.
     pub facts: Vec<Fact>,

@@ -70,7 +70,7 @@ fn joined(written: &tree::Condition, places: &mut Vec<OperandPlace>) {
     }
 }
 
-/// Ends of the signals that an operand compares.
+/// Returns the offsets in the text at which the compared signals of an operand end.
 fn signals(operand: &tree::Condition) -> [Option<NonZeroU32>; 2] {
     match operand.node {
         ConditionNode::Comparison(Compared { left, right: Operand::Signal(right), .. }) => {

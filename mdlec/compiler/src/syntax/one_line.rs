@@ -4,9 +4,9 @@ use super::lexer::lex;
 use super::source::Source;
 use crate::diagnostic::SourceId;
 
-/// Returns the tokens of `text` in one line, without comments, typesetting and the parentheses around the whole; one
-/// space separates two tokens if anything separated them. Also returns for each offset in `ends`, which are ends of
-/// tokens, its offset in that line.
+/// Returns the tokens of `text` on one line, without comments, typesetting and enclosing parentheses; one space
+/// separates tokens that anything separated in `text`. Also returns the offset in that line for each offset in `ends`,
+/// which are ends of tokens.
 #[must_use]
 pub fn one_line<const N: usize>(text: &str, ends: [Option<usize>; N]) -> (String, [Option<usize>; N]) {
     let tokens = lex(Source { id: SourceId(0), text }).tokens;

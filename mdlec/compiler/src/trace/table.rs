@@ -289,7 +289,7 @@ impl<'p> Filling<'p> {
         self.lead_to(&Next { state, afresh: from..own + 1 });
     }
 
-    /// Adds the row of a scope or an atom.
+    /// Appends the row of a scope or an atom, and returns the number of the row.
     fn row(&mut self, interrupt: &'p Interrupt, around: Option<usize>, marks: &'p [Mark]) -> usize {
         let row = self.rows.len();
         let level = around.map_or(0, |around| self.rows[around].level + 1);

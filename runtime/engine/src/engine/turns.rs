@@ -33,8 +33,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         fork.turn(y, number, now, seats, deadline);
     }
 
-    /// First part of the turn break: finds who is late or has failed, then publishes the values of registered modules,
-    /// then those of background modules that wait.
+    /// First part of the turn break: finds the modules that are late or have failed, then publishes the values of
+    /// registered modules, then those of background modules that wait.
     pub fn settle(&mut self) {
         self.arrivals.clear();
         if let Some(replayed) = &mut self.replayed {

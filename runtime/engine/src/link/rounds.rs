@@ -24,7 +24,7 @@ impl Rounds {
         self.counts.iter().find(|(name, _)| *name == robot).map_or(0, |(_, count)| *count)
     }
 
-    /// Counts the scopes that were entered in a turn of the plan of this number.
+    /// Increments the rounds for the scopes that the plan with this number has entered in a turn.
     pub(super) fn turn<P: Plan>(&mut self, number: u64, plan: &P, transitions: &Transitions) {
         if plan.meetings().is_empty() {
             return;

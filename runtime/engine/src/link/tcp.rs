@@ -38,7 +38,7 @@ pub struct TcpSettings {
     pub key: String,
 }
 
-/// The end of one robot of a link over TCP.
+/// The endpoint of one robot on a state link over TCP.
 pub struct Tcp {
     shared: Arc<Shared>,
     /// The newest state for each peer.

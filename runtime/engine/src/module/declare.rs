@@ -48,7 +48,7 @@ pub struct About {
     pub name: Arc<str>,
     /// Kind of its values.
     pub kind: AttributeKind,
-    /// Unit in which people read and write it; `None` for a kind without units.
+    /// Unit in which users read and write the value; `None` for a kind without units.
     pub unit: Option<Unit>,
     /// A sentence about it.
     pub doc: &'static str,
@@ -90,8 +90,8 @@ impl Ports {
 }
 
 impl Declare {
-    /// Declares an attribute that the module publishes. Its name is a name of MDLe, unlike those of the module's other
-    /// attributes and settings.
+    /// Declares an attribute that the module publishes. The name must be a valid name of MDLe, and no other attribute
+    /// or setting of the module may have it.
     pub fn publishes<T: Attribute>(&mut self, name: &str) -> Out<T> {
         Out::new(self.publishes_as(name, T::KIND, None))
     }

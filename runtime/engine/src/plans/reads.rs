@@ -126,7 +126,8 @@ fn check_kind(read: &ModuleRead, post: &Post) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the number of an attribute at time `now`, which is one of `reads`; `None` if it has not been published.
+/// Returns the number that `read` asks for at time `now`; `None` if it has not been published. `reads` are all reads of
+/// the plan, `read` among them.
 fn number(read: &ModuleRead, reads: &[ModuleRead], board: &Board, now: Nanos) -> Option<PublishedNumber> {
     if read.attribute == AGE {
         let at = oldest_of(read.module, reads, board)?;

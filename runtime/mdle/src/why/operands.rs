@@ -42,7 +42,7 @@ pub(crate) struct Operand {
 pub(crate) struct Facts {
     /// Time since each sonar has pinged; `None` before the first ping.
     pub(crate) ages: [Option<Nanos>; SONARS],
-    /// Time for which the law of the turn before has made no progress; `None` if it has no goal.
+    /// Time for which the law of the previous turn has made no progress; `None` if that law has no goal.
     pub(crate) stalled: Option<Nanos>,
     /// `true` if the atom was entered in this turn, so that the law of the turn before is that of another atom.
     pub(crate) is_new: bool,

@@ -5,7 +5,7 @@ use mdle_runtime::{Pose, Radians};
 
 use crate::place::Place;
 
-/// The furthest coordinate and the greatest radius, in metres, as in a world's file.
+/// Maximum coordinate and maximum radius, in metres, as in the file of a world.
 const FURTHEST: f64 = 1e6;
 /// Dots of the edge of a circle on a map.
 const DOTS: u16 = 72;

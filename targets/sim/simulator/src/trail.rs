@@ -12,8 +12,7 @@ use crate::frames::{Frame, Frames};
 use crate::place::Place;
 pub(crate) use ways::{Atom, Mark, Ways};
 
-/// Side of a square in which one echo is kept, in metres: however long a run, the number of squares of a floor is
-/// limited.
+/// Side of a square, in metres, in which at most one echo is kept: so even a long run keeps a limited number of echoes.
 const SQUARE: f64 = 0.04;
 
 /// The way of a robot.

@@ -19,10 +19,10 @@ const FRAMES: u32 = 2000;
 /// Maximum number of connections for each peer: the old one may still be open when it connects anew.
 const CONNECTIONS: usize = 4;
 
-/// Begins to listen.
+/// Starts the thread that accepts connections.
 ///
 /// # Errors
-/// The system gives no thread.
+/// The system cannot set up the listener or create the thread.
 pub(super) fn listen(listener: TcpListener, shared: &Arc<Shared>) -> io::Result<()> {
     listener.set_nonblocking(true)?;
     let shared = Arc::clone(shared);

@@ -13,7 +13,7 @@ use crate::wire::report;
 const A_RANGE: f64 = 1550.0;
 /// The boards with the body's sonars, six on each: front left, rear left, front right, rear right.
 const BOARDS: [u8; 4] = [0, 1, 3, 2];
-/// Counts that a sonar without an echo reports.
+/// Range that a sonar without an echo reports, in the sonar's counts.
 const NOTHING: u16 = 32_766;
 /// The distance of each position from the one before when they leap, in metres.
 const LEAP: f64 = 3.0;

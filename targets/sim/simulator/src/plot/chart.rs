@@ -89,7 +89,7 @@ impl TimeChart {
         })
     }
 
-    /// Draws the name of each atom, and a band for each stay in it.
+    /// Draws the name of each atom, and a band for each period in which the atom ran.
     fn bands(&self, top: f64) -> Group {
         let row = |atom: usize| top + atom.min(ROWS_MOST - 1) as f64 * ROW;
         let mut group = Group::new();

@@ -5,7 +5,7 @@ use crate::world::World;
 
 /// Margin around walls, in metres.
 const AROUND: f64 = 0.4;
-/// Part of the floor that is shown around the way, in metres, as far as there is anything.
+/// Margin of floor that is shown around the way, in metres; smaller where the world ends.
 const ROOM: f64 = 2.0;
 /// The share of the world from which on all of it is shown.
 const MOST: f64 = 0.5;

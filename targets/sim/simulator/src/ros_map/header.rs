@@ -103,7 +103,7 @@ fn numbers<'t>(text: &'t str, key: &str) -> Vec<Value<'t>> {
     values.collect()
 }
 
-/// The line of a key, and its number from 1.
+/// Returns the line that begins with a key, and the number of the line, from 1.
 fn line<'t>(text: &'t str, key: &str) -> Option<(usize, &'t str)> {
     (1..).zip(text.lines()).find(|(_, line)| line.strip_prefix(key).is_some_and(|rest| rest.starts_with(':')))
 }
