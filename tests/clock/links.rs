@@ -31,7 +31,7 @@ fn with_links(folder: &Path, key_of_eve: &str) -> [SocketAddr; 3] {
 
 fn begin(folder: &Path, name: &str, plan: &str) -> Child {
     fs::write(folder.join(format!("{name}.mdle")), plan).unwrap();
-    let line = format!("run {name}.mdle --target sim --link {name}.toml --world room --log {name}.jsonl");
+    let line = format!("run {name}.mdle --target sim --link {name}.toml --world room --log {name}.mcap");
     let mut command = Command::new(mdle());
     let command = command.args(line.split(' ')).current_dir(folder);
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
@@ -67,6 +67,12 @@ fn three_processes_meet_and_go_on_when_one_is_killed() {
     assert!(ada.contains("<- NOT sync eve") && ada.contains("plan over: sync bob"), "{ada}");
     assert!(ada.contains("is refused: it sends no states"), "{ada}");
     assert!(bob.contains("<- rendezvous ada and rendezvous eve") && bob.contains("plan over: wait 4"), "{bob}");
+    for (record, end) in [("ada", " turns\n"), ("bob", " turns\n"), ("eve", " turns; the record has no end\n")] {
+        let arguments = ["replay".to_owned(), format!("{record}.mcap")];
+        let replayed = Command::new(mdle()).args(arguments).current_dir(&folder).output().unwrap();
+        let text = String::from_utf8(replayed.stdout).unwrap();
+        assert!(text.starts_with("the same to the bit, ") && text.ends_with(end), "{record}: {text}");
+    }
 }
 
 #[test]

@@ -90,6 +90,9 @@ impl Course {
         let Output { status, stdout, stderr } = child.wait_with_output().unwrap();
         let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
         let log = format!("{}.mcap", ROBOTS[number].0);
+        let replayed = Command::new(mdle()).args(["replay", &log]).current_dir(folder).output().unwrap();
+        let replayed = String::from_utf8(replayed.stdout).unwrap();
+        assert!(replayed.starts_with("the same to the bit, "), "{log}: {replayed}");
         let table = Command::new(mdle()).args(["log", "export", "--csv", &log]).current_dir(folder).output().unwrap();
         let table = String::from_utf8(table.stdout).unwrap();
         let places = table.lines().skip(1).map(|line| {

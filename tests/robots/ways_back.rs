@@ -31,7 +31,7 @@ fn prepared(test: &str) -> std::path::PathBuf {
 #[test]
 fn a_recorded_way_leads_back() {
     let folder = prepared("back");
-    let output = run(&folder, " --records way --trail trail.csv");
+    let output = run(&folder, " --records way --trail trail.csv --log run.mcap");
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let trail = fs::read_to_string(folder.join("trail.csv")).unwrap();
     let places = trail.lines().skip(1).map(|line| {
@@ -41,6 +41,9 @@ fn a_recorded_way_leads_back() {
     let (far, end) = places.fold((0.0, 0.0), |(far, _): (f64, f64), off| (far.max(off), off));
     assert!(far > 1.7 && end < 0.2, "{far} m away, and {end} m off at the end");
     assert_eq!(fs::read_to_string(folder.join("way.csv")).unwrap(), WAY, "the file stays");
+    let replayed = Command::new(mdle()).args(["replay", "run.mcap"]).current_dir(&folder).output().unwrap();
+    let text = String::from_utf8(replayed.stdout).unwrap();
+    assert!(text.starts_with("the same to the bit, ") && replayed.status.success(), "{text}");
 }
 
 #[test]

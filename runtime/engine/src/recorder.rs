@@ -1,9 +1,14 @@
 //! The recorder of ways: what a robot drives while some laws run becomes a path that the plan replays.
 
+use mdle_runtime::StoredPath;
+
 /// Records the way of some laws, and replaces a path of the robot by it.
 pub trait Recorder<Y>: Send {
     /// Gives the output of a turn the recorded path.
     fn complete(&self, y: &mut Y);
+
+    /// Returns the path that was replaced since the last call, if one was.
+    fn take_replaced(&mut self) -> Option<StoredPath>;
 
     /// Takes a turn with output `y`: the text of the law that runs after it, and whether the plan made transitions.
     /// Returns a message for the operator if there is one.

@@ -20,6 +20,7 @@ mod plans;
 mod plot;
 mod record;
 mod recorded_files;
+mod recorded_paths;
 mod replay;
 mod replayed;
 mod replayer;

@@ -18,6 +18,7 @@ use mdle_runtime::{Alphabet, Nanos, Plan, Sensed, Turn, Twist};
 use crate::failure::Failure;
 use crate::record::{OVER, Part, Record, RecordSource};
 use crate::recorded_files;
+use crate::recorded_paths::RecordedPaths;
 use crate::safety::{Guarded, SafetyFile};
 
 /// A run that is made again, on any robot.
@@ -98,7 +99,7 @@ where
     let engine = engine.repeating(safety.as_ref().map(|safety| safety.reads()));
     let helm = Helm::new(engine, safety.map(|safety| supervised(safety, period)));
     let (target, record) = (Arc::clone(target), record.with_messages());
-    Ok(Box::new(ReplayOf { helm, record, target, files: Vec::new(), looks }))
+    Ok(Box::new(ReplayOf { helm, record, target, files: Vec::new(), paths: RecordedPaths::default(), looks }))
 }
 
 /// Loads the plan of a machine.
@@ -134,6 +135,8 @@ struct ReplayOf<A: EngineAlphabet<Output = Sensed, Input = Twist>> {
     target: Arc<Target>,
     /// The files of plans that took over, by their numbers in the record.
     files: Vec<Vec<(String, String)>>,
+    /// The paths that were recorded.
+    paths: RecordedPaths,
     /// `true` if plans are looked at.
     looks: bool,
 }
@@ -184,6 +187,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
                     supervisor.repeat(&change);
                 }
             }
+            Change::Path { name, setpoints } => self.paths.replace(name, setpoints),
             Change::Attribute { .. }
             | Change::Vanished(_)
             | Change::Published { .. }
@@ -192,7 +196,8 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
             | Change::Trial(_)
             | Change::Skipped
             | Change::Late
-            | Change::Back => self.helm.pilot_mut().repeat(&change),
+            | Change::Back
+            | Change::Peer { .. } => self.helm.pilot_mut().repeat(&change),
         }
         Ok(())
     }
@@ -207,6 +212,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
     /// Makes a turn.
     fn made(&mut self, recorded: RecordedTurn, messages: Vec<Message>) -> ReplayedTurn {
         let (mut y, mut transitions) = (recorded.y, Transitions::default());
+        self.paths.complete(&mut y);
         let made = self.helm.turn(&mut y, recorded.t, recorded.number, &mut transitions);
         let plan = self.helm.pilot().machine().map(|machine| machine.plan());
         let laws = transitions.iter().map(|(transition, _)| match (transition.atom, plan) {

@@ -21,6 +21,8 @@ pub(crate) struct WayRecorder {
     frame: Option<Frame>,
     /// The robot's paths since a way was recorded.
     store: Option<PathStore>,
+    /// The path that was replaced last, until it is taken.
+    replaced: Option<StoredPath>,
     /// Number of setpoints that were recorded.
     recorded: usize,
 }
@@ -40,7 +42,7 @@ pub(crate) struct RecordedTurn<'t> {
 impl WayRecorder {
     /// Returns a recorder that replaces the path of this name, on a robot with these greatest speeds.
     pub(crate) fn new(path: &'static str, fastest: Twist) -> Self {
-        Self { path, fastest, way: None, frame: None, store: None, recorded: 0 }
+        Self { path, fastest, way: None, frame: None, store: None, replaced: None, recorded: 0 }
     }
 
     /// Returns the name of the path that is replaced.
@@ -83,7 +85,9 @@ impl WayRecorder {
         let others = paths.names().filter(|name| *name != self.path);
         let others = others.map(|name| StoredPath { name, setpoints: paths.path(name).unwrap_or_default() });
         let mut stored: Vec<_> = others.collect();
-        stored.push(StoredPath { name: self.path, setpoints: setpoints.leak() });
+        let replaced = StoredPath { name: self.path, setpoints: setpoints.leak() };
+        self.replaced = Some(replaced);
+        stored.push(replaced);
         stored.sort_by_key(|path| path.name);
         self.store = Some(PathStore::new(stored.leak()));
         Ok(())
@@ -93,6 +97,10 @@ impl WayRecorder {
 impl Recorder<Sensed> for WayRecorder {
     fn complete(&self, y: &mut Sensed) {
         y.paths = self.store.unwrap_or(y.paths);
+    }
+
+    fn take_replaced(&mut self) -> Option<StoredPath> {
+        self.replaced.take()
     }
 
     fn turn(&mut self, y: &Sensed, law: Option<&str>, has_changed: bool) -> Option<String> {

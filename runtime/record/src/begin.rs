@@ -69,14 +69,7 @@ impl Begin {
         let paths: Vec<_> = y.paths.names().collect();
         put_u32(to, count(&paths));
         for name in paths {
-            put_text(to, name);
-            let setpoints = y.paths.path(name).unwrap_or_default();
-            put_u32(to, count(setpoints));
-            for Setpoint { at, heading, speed } in setpoints {
-                put_u64(to, at.0);
-                put_f64(to, heading.0);
-                put_f64(to, speed.0);
-            }
+            put_path(name, y.paths.path(name).unwrap_or_default(), to);
         }
     }
 
@@ -91,10 +84,7 @@ impl Begin {
             _ => Some(SafetyTexts { name: from.text()?, text: from.text()?, plans: from.list(take_files)? }),
         };
         let shape = take_shape(from)?;
-        let setpoint = |from: &mut Bytes<'_>| {
-            Some(Setpoint { at: from.nanos()?, heading: Radians(from.f64()?), speed: MetersPerSecond(from.f64()?) })
-        };
-        let mut paths = from.list(|from| Some((from.text()?, from.list(setpoint)?)))?;
+        let mut paths = from.list(take_path)?;
         paths.sort_by(|(one, _), (other, _)| one.cmp(other));
         let stored =
             paths.into_iter().map(|(name, setpoints)| StoredPath { name: name.leak(), setpoints: setpoints.leak() });
@@ -121,6 +111,25 @@ pub(crate) fn put_files(files: &[(String, String)], to: &mut Vec<u8>) {
 /// Reads the names and the texts of files.
 pub(crate) fn take_files(from: &mut Bytes<'_>) -> Option<Vec<(String, String)>> {
     from.list(|from| Some((from.text()?, from.text()?)))
+}
+
+/// Writes the name and the setpoints of a path.
+pub(crate) fn put_path(name: &str, setpoints: &[Setpoint], to: &mut Vec<u8>) {
+    put_text(to, name);
+    put_u32(to, count(setpoints));
+    for Setpoint { at, heading, speed } in setpoints {
+        put_u64(to, at.0);
+        put_f64(to, heading.0);
+        put_f64(to, speed.0);
+    }
+}
+
+/// Reads the name and the setpoints of a path.
+pub(crate) fn take_path(from: &mut Bytes<'_>) -> Option<(String, Vec<Setpoint>)> {
+    let setpoint = |from: &mut Bytes<'_>| {
+        Some(Setpoint { at: from.nanos()?, heading: Radians(from.f64()?), speed: MetersPerSecond(from.f64()?) })
+    };
+    Some((from.text()?, from.list(setpoint)?))
 }
 
 fn put_shape(shape: &Shape, to: &mut Vec<u8>) {

@@ -1,10 +1,10 @@
-//! Causes of a turn besides the robot's output, as bytes and back: what modules have published, and what people and
-//! the engine have changed at the break before the turn.
+//! Causes of a turn besides the robot's output, as bytes and back: values that modules have published, knowledge of
+//! other robots, paths that were recorded, and what people and the engine have changed at the break before the turn.
 
-use mdle_runtime::{Nanos, Twist};
+use mdle_runtime::{Nanos, PeerState, Setpoint, Twist};
 
-use crate::begin::{count, put_files, take_files};
-use crate::bytes::{Bytes, put_f64, put_text, put_u32, put_u64};
+use crate::begin::{count, put_files, put_path, take_files, take_path};
+use crate::bytes::{Bytes, put_f64, put_pose, put_text, put_u32, put_u64};
 use crate::exact::{put_twist, take_twist};
 
 /// A cause of a turn besides the robot's output.
@@ -60,6 +60,22 @@ pub enum Change {
     Late,
     /// A turn of the plan that was late has ended; its input comes too late.
     Back,
+    /// Another robot that the plan names, as the state link knows it in this turn.
+    Peer {
+        /// Name of the robot.
+        name: String,
+        /// Number of scopes with a `rendezvous` with it that the receiver had entered.
+        rounds: u64,
+        /// The newest state that has arrived; `None` before the first.
+        state: Option<PeerState>,
+    },
+    /// A way was recorded: from now on it replaces the path of this name.
+    Path {
+        /// Name of the path.
+        name: String,
+        /// Setpoints of the path.
+        setpoints: Vec<Setpoint>,
+    },
 }
 
 /// An input that a safety rule changed.
@@ -127,6 +143,38 @@ fn put(change: &Change, to: &mut Vec<u8>) {
         Change::Skipped => to.push(9),
         Change::Late => to.push(10),
         Change::Back => to.push(11),
+        Change::Peer { name, rounds, state } => {
+            to.push(12);
+            put_text(to, name);
+            put_u64(to, *rounds);
+            put_peer_state(state.as_ref(), to);
+        }
+        Change::Path { name, setpoints } => {
+            to.push(13);
+            put_path(name, setpoints, to);
+        }
+    }
+}
+
+fn put_peer_state(state: Option<&PeerState>, to: &mut Vec<u8>) {
+    to.push(u8::from(state.is_some()));
+    if let Some(PeerState { pose, velocity, age, rounds, atom }) = state {
+        put_pose(to, pose);
+        put_twist(*velocity, to);
+        put_u64(to, age.0);
+        put_u64(to, *rounds);
+        put_u64(to, *atom);
+    }
+}
+
+fn take_peer_state(from: &mut Bytes<'_>) -> Option<Option<PeerState>> {
+    match from.u8()? {
+        0 => Some(None),
+        1 => {
+            let (pose, velocity, age) = (from.pose()?, take_twist(from)?, from.nanos()?);
+            Some(Some(PeerState { pose, velocity, age, rounds: from.u64()?, atom: from.u64()? }))
+        }
+        _ => None,
     }
 }
 
@@ -144,6 +192,11 @@ fn take(from: &mut Bytes<'_>) -> Option<Change> {
         9 => Change::Skipped,
         10 => Change::Late,
         11 => Change::Back,
+        12 => Change::Peer { name: from.text()?, rounds: from.u64()?, state: take_peer_state(from)? },
+        13 => {
+            let (name, setpoints) = take_path(from)?;
+            Change::Path { name, setpoints }
+        }
         _ => return None,
     })
 }

@@ -4,8 +4,8 @@
 
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{
-    Cause, Compass, Meters, MetersPerSecond, Mount, Nanos, PathStore, Ping, Pose, Published, RadiansPerSecond, Sensed,
-    Shape, Supply, Twist,
+    Cause, Compass, Meters, MetersPerSecond, Mount, Nanos, PathStore, PeerState, Ping, Pose, Published, Radians,
+    RadiansPerSecond, Sensed, Setpoint, Shape, Supply, Twist,
 };
 
 use std::cell::RefCell;
@@ -37,7 +37,18 @@ fn changes() -> Vec<Change> {
         Change::Skipped,
         Change::Late,
         Change::Back,
+        Change::Peer { name: "ada".to_owned(), rounds: 2, state: None },
+        Change::Peer { name: "bob".to_owned(), rounds: 1, state: Some(peer_state()) },
+        Change::Path {
+            name: "back".to_owned(),
+            setpoints: vec![Setpoint { at: Nanos(5), heading: Radians(0.5), speed: MetersPerSecond(0.25) }],
+        },
     ]
+}
+
+fn peer_state() -> PeerState {
+    let velocity = Twist { v: MetersPerSecond(0.5), omega: RadiansPerSecond(-0.25) };
+    PeerState { pose: Pose { x: Meters(1.5), ..Pose::ORIGIN }, velocity, age: Nanos(8), rounds: 3, atom: 4 }
 }
 
 /// An output with an echo.

@@ -106,8 +106,8 @@ impl<A: EngineAlphabet> Engine<A> {
         Self { rules_read, repeats: Some(Repeats::default()), ..self }
     }
 
-    /// Repeats a change before the next turn. The caller repeats a plan that was armed, by [`Plans::replace`], and the
-    /// limits of safety rules.
+    /// Repeats a change before the next turn. The caller repeats a plan that was armed, by [`Plans::replace`], the
+    /// limits of safety rules, and paths that were recorded, which are part of outputs.
     pub fn repeat(&mut self, change: &Change) {
         match change {
             Change::Cancelled => self.plans.cancel(),
@@ -122,7 +122,9 @@ impl<A: EngineAlphabet> Engine<A> {
             | Change::Limit { .. }
             | Change::Skipped
             | Change::Late
-            | Change::Back => {
+            | Change::Back
+            | Change::Peer { .. }
+            | Change::Path { .. } => {
                 if let Some(repeats) = &mut self.repeats {
                     repeats.repeat(change, self.modules.board_mut());
                 }

@@ -48,8 +48,8 @@ impl StateLink {
         Self { link, name: name.to_owned(), start, sent: 0, known: Vec::new(), rounds: Rounds::default() }
     }
 
-    /// Gives the output of the turn at time `now` what is known of the robots of these names.
-    pub(crate) fn sense<Y: Output>(&mut self, y: &mut Y, robots: impl Iterator<Item = &'static str>, now: Nanos) {
+    /// Returns what is known of the robots of these names in the turn at time `now`.
+    pub(crate) fn sense(&mut self, robots: impl Iterator<Item = &'static str>, now: Nanos) -> Links {
         let Self { link, known, name, .. } = self;
         link.receive(now, &mut |state| match known.iter_mut().find(|(old, _)| old.name == state.name) {
             // What was sent later counts, in whatever order it arrives.
@@ -64,7 +64,7 @@ impl StateLink {
                 links.add(self.peer(name, now));
             }
         }
-        y.take_links(links);
+        links
     }
 
     /// Sends the state of the robot after a turn of its plan at time `now`.
@@ -133,7 +133,7 @@ fn inward(start: &Pose, shared: &Pose) -> Pose {
 
 #[cfg(test)]
 mod tests {
-    use mdle_runtime::{Sensed, Twist};
+    use mdle_runtime::Twist;
 
     use super::*;
 
@@ -179,41 +179,13 @@ mod tests {
         let mut link = StateLink::new(Box::new(script), "bob", pose(1.0, 0.0, 0.0));
         let mut seen = Vec::new();
         for turn in 0..5 {
-            let mut y: Sensed = sensed();
-            link.sense(&mut y, ["ada"].into_iter(), Nanos(turn));
-            let peer = *y.published.links().peer("ada").unwrap();
+            let links = link.sense(["ada"].into_iter(), Nanos(turn));
+            let peer = *links.peer("ada").unwrap();
             seen.push(peer.state.map(|state| (state.pose.x.0, state.age.0, state.rounds, state.atom)));
         }
         assert_eq!(
             seen,
             [None, Some((1.0, 0, 2, 2)), Some((1.0, 1, 2, 2)), Some((2.0, 0, 3, 3)), Some((2.0, 1, 3, 3))]
         );
-    }
-
-    fn sensed() -> Sensed {
-        use mdle_runtime::capability::Steering;
-        use mdle_runtime::{Compass, PathStore, Pings, Published, Shape, Supply};
-        let shape = Shape {
-            body_radius: Meters(0.2),
-            half_length: Meters(0.2),
-            half_width: Meters(0.2),
-            sonars_apart: None,
-            wheel_base: Meters(0.3),
-            ring_radius: Meters(0.2),
-            confirmation: 3,
-            steering: Steering::USUAL,
-        };
-        Sensed {
-            at: Nanos::ZERO,
-            odometry: Pose::ORIGIN,
-            velocity: Twist::default(),
-            switches: 0,
-            pings: [Pings::default(); mdle_runtime::SONARS],
-            compass: Compass::default(),
-            supply: Supply::default(),
-            shape,
-            paths: PathStore::EMPTY,
-            published: Published::NONE,
-        }
     }
 }

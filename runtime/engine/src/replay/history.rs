@@ -1,8 +1,8 @@
 //! The causes of an engine's turns besides the robot's outputs, while it drives: values that plans and safety rules
-//! read of modules, and changes of plans.
+//! read of modules, knowledge of other robots, recorded paths, and changes of plans.
 
 use mdle_record::Change;
-use mdle_runtime::{ModuleRead, Nanos};
+use mdle_runtime::{Links, ModuleRead, Nanos, Peer, StoredPath};
 
 use crate::attribute::{AGE, AttributeKind, AttributeName};
 use crate::board::{Board, Post};
@@ -51,6 +51,21 @@ impl History {
     /// Notes a cause of the turn that is made.
     pub(crate) fn note(&mut self, change: Change) {
         self.changes.push(change);
+    }
+
+    /// Notes what the state link knows of other robots in the turn that is made.
+    pub(crate) fn heard(&mut self, links: &Links) {
+        let peers = links.peers().map(|Peer { name, rounds, state }| Change::Peer {
+            name: (*name).to_owned(),
+            rounds: *rounds,
+            state: *state,
+        });
+        self.changes.extend(peers);
+    }
+
+    /// Notes a path that was recorded in place of the one of its name.
+    pub(crate) fn replaced(&mut self, StoredPath { name, setpoints }: &StoredPath) {
+        self.changes.push(Change::Path { name: (*name).to_owned(), setpoints: setpoints.to_vec() });
     }
 
     /// Takes the changes of the turn.

@@ -1,6 +1,7 @@
 //! The changes of a recorded run, as an engine repeats them: its board has what modules published, without modules.
 
 use mdle_record::Change;
+use mdle_runtime::{Links, Peer, PeerState};
 
 use crate::attribute::{AttributeKind, AttributeName, Reading, Value};
 use crate::board::Board;
@@ -10,6 +11,8 @@ use crate::board::Board;
 pub(crate) struct Repeats {
     /// The attributes of the record, by their numbers.
     attributes: Vec<(AttributeName, AttributeKind)>,
+    /// The other robots as they were known in the turn, by their names.
+    peers: Vec<(String, u64, Option<PeerState>)>,
     progress: PlanProgress,
 }
 
@@ -52,13 +55,27 @@ impl Repeats {
             Change::Skipped => self.progress = PlanProgress::Skipped,
             Change::Late => self.progress = PlanProgress::Late,
             Change::Back => self.progress = PlanProgress::Back,
+            Change::Peer { name, rounds, state } => self.peers.push((name.clone(), *rounds, *state)),
             Change::Files(_)
             | Change::Armed { .. }
             | Change::Cancelled
             | Change::RolledBack(_)
             | Change::Trial(_)
-            | Change::Limit { .. } => {}
+            | Change::Limit { .. }
+            | Change::Path { .. } => {}
         }
+    }
+
+    /// Returns what was known of the robots of these names in the turn.
+    pub(crate) fn links(&self, robots: impl Iterator<Item = &'static str>) -> Links {
+        let mut links = Links::NONE;
+        for name in robots {
+            let known = self.peers.iter().find(|(known, ..)| known == name);
+            if let Some((_, rounds, state)) = known.filter(|_| links.peer(name).is_none()) {
+                links.add(Peer { name, rounds: *rounds, state: *state });
+            }
+        }
+        links
     }
 
     /// Returns `true` if the plan makes its turn now.
@@ -73,6 +90,7 @@ impl Repeats {
 
     /// Ends the turn.
     pub(crate) fn end_turn(&mut self) {
+        self.peers.clear();
         self.progress = match self.progress {
             PlanProgress::Made | PlanProgress::Skipped | PlanProgress::Back => PlanProgress::Made,
             PlanProgress::Late | PlanProgress::Away => PlanProgress::Away,

@@ -35,10 +35,17 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
     ) -> Result<Turn<A::Input>, PilotFault> {
         let mut complete = y.clone();
         if let Some(link) = &mut self.link {
-            link.sense(&mut complete, self.plans.robots(), t);
+            let links = link.sense(self.plans.robots(), t);
+            self.history.iter_mut().for_each(|history| history.heard(&links));
+            complete.take_links(links);
         }
-        if let Some(recorder) = &self.recorder {
+        if let Some(repeats) = &self.repeats {
+            complete.take_links(repeats.links(self.plans.robots()));
+        }
+        if let Some(recorder) = &mut self.recorder {
             recorder.complete(&mut complete);
+            let replaced = recorder.take_replaced();
+            self.history.iter_mut().zip(replaced).for_each(|(history, path)| history.replaced(&path));
         }
         let published = self.plans.take_off(y, t, self.modules.board()).map_err(PilotFault::Stopped)?;
         if let Some(published) = published {

@@ -1,0 +1,38 @@
+//! The paths that a run has recorded, which replace those of its begin when its turns are made again.
+
+use mdle_runtime::{PathStore, Sensed, Setpoint, StoredPath};
+
+/// The paths that were recorded so far. They stay until the program ends, as those of a run do.
+#[derive(Debug, Default)]
+pub(crate) struct RecordedPaths {
+    recorded: Vec<StoredPath>,
+    /// All paths of the robot; `None` if they have changed since.
+    store: Option<PathStore>,
+}
+
+impl RecordedPaths {
+    /// Replaces the path of this name.
+    pub(crate) fn replace(&mut self, name: String, setpoints: Vec<Setpoint>) {
+        self.store = None;
+        let setpoints = setpoints.leak();
+        match self.recorded.iter_mut().find(|path| path.name == name) {
+            Some(path) => path.setpoints = setpoints,
+            None => self.recorded.push(StoredPath { name: name.leak(), setpoints }),
+        }
+    }
+
+    /// Gives an output the paths that were recorded.
+    pub(crate) fn complete(&mut self, y: &mut Sensed) {
+        if self.recorded.is_empty() {
+            return;
+        }
+        let Self { recorded, store } = self;
+        y.paths = *store.get_or_insert_with(|| {
+            let others = y.paths.names().filter(|name| recorded.iter().all(|path| path.name != *name));
+            let others = others.map(|name| StoredPath { name, setpoints: y.paths.path(name).unwrap_or_default() });
+            let mut paths: Vec<_> = others.chain(recorded.iter().copied()).collect();
+            paths.sort_by_key(|path| path.name);
+            PathStore::new(paths.leak())
+        });
+    }
+}
