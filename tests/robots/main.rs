@@ -25,6 +25,7 @@ mod pursuit;
 mod record_tools;
 mod records;
 mod replays;
+mod repeated_runs;
 mod safety;
 mod scout;
 mod sessions;

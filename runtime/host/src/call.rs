@@ -31,6 +31,9 @@ pub struct RecordedPlan {
     pub beside: String,
     /// The safety rules of the run, if there are any.
     pub safety: Option<SafetyTexts>,
+    /// Words besides those of the call that determine the run, such as the target and the modules of a file of
+    /// settings.
+    pub settings: Vec<String>,
 }
 
 impl Call {
@@ -64,6 +67,25 @@ impl Call {
         let words: Vec<String> = self.words.iter().map(|word| quoted(&word.to_string_lossy())).collect();
         if words.is_empty() { quoted(plan) } else { words.join(" ") }
     }
+
+    /// Returns the command that repeats the run: all words as a shell takes them, without those that ask for its log.
+    pub(crate) fn repeating(&self, plan: &str) -> String {
+        let settings = self.recorded.settings.iter().map(OsString::from);
+        let words = settings.chain(without_log(&self.options)).map(|word| quoted(&word.to_string_lossy()));
+        [self.command(plan)].into_iter().chain(words).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// Returns the options of a run without those that ask for its log.
+pub fn without_log(options: &[OsString]) -> impl Iterator<Item = OsString> {
+    let mut was_log = false;
+    let others = options.iter().filter(move |option| {
+        let option = option.to_string_lossy();
+        let is_log = !was_log && option == "--log";
+        let is_value = std::mem::replace(&mut was_log, is_log);
+        !(is_log || is_value || option == "--log-best-effort" || option.starts_with("--log="))
+    });
+    others.cloned()
 }
 
 /// Returns a word as a shell takes it, in quotes if it needs them.
@@ -80,6 +102,20 @@ pub fn quoted(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_run_is_repeated_without_its_log() {
+        let options = "--log --log --seed 7 --log=x --log-best-effort --logs".split(' ').map(OsString::from);
+        let settings = vec!["--module".to_owned(), "a=b c".to_owned()];
+        let call = Call {
+            words: ["mdle", "run", "a b"].map(OsString::from).into(),
+            options: options.collect(),
+            read: Vec::new(),
+            recorded: RecordedPlan { settings, ..RecordedPlan::default() },
+            later_path: None,
+        };
+        assert_eq!(call.repeating("P"), "mdle run 'a b' --module 'a=b c' --seed 7 --logs");
+    }
 
     #[test]
     fn a_call_is_shown_as_a_shell_takes_it() {

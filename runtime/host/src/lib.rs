@@ -82,7 +82,7 @@ use std::process::ExitCode;
 
 use background_writer::{Keeps, Outlet};
 pub use batch::Batch;
-pub use call::{Call, RecordedPlan, quoted};
+pub use call::{Call, RecordedPlan, quoted, without_log};
 pub use cause::{CauseText, cause_words, place};
 pub use clap;
 use executable::{Executable, PlanOnTarget};

@@ -98,7 +98,7 @@ where
         version: if program.version.is_empty() { env!("CARGO_PKG_VERSION") } else { program.version }.to_owned(),
         target: target.name.to_owned(),
         plan: program.plan.to_owned(),
-        command: call.command(program.plan),
+        command: call.repeating(program.plan),
         period: Nanos(nanos(options.period)),
         files: call.recorded.files.clone(),
         beside: call.recorded.beside.clone(),

@@ -53,6 +53,7 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
         files: texts(&input),
         beside: beside(&arguments, ready.as_ref()),
         safety: ready.safety().cloned(),
+        settings: determining(&arguments, &settings, &name),
     };
     options.extend(arguments.options);
     let read = input.inputs(&target).into_iter().chain(safety.iter().flat_map(SafetyFile::files)).chain(linked_by);
@@ -76,6 +77,14 @@ impl Run {
         let source = AudioSource::open(ears).map_err(Failure::Usage)?;
         Ok(Some(SoundInput { source, radius: self.head }))
     }
+}
+
+/// Returns the words that settings give a run with these arguments on the target of this name, besides its options.
+fn determining(arguments: &Run, settings: &Settings, target: &str) -> Vec<String> {
+    let target = arguments.target.is_none().then(|| ["--target".to_owned(), target.to_owned()]);
+    let modules = modules::only_of_settings(settings, arguments);
+    let modules = modules.flat_map(|module| ["--module".to_owned(), format!("{}={}", module.name, module.command)]);
+    target.into_iter().flatten().chain(modules).collect()
 }
 
 /// Names the causes of inputs besides the plan and the robot's outputs; empty if there are none.

@@ -29,15 +29,9 @@ pub(crate) fn shipped(library: &mut Library<Sensed>) {
 ///
 /// # Errors
 /// A name in the `mdle.toml` is none of a module, or another module has it.
-pub(crate) fn of_settings(
-    settings: &Settings,
-    Run { modules, point, ears, .. }: &Run,
-    library: &mut Library<Sensed>,
-) -> Result<(), Failure> {
-    let is_replaced = |name: &str| {
-        modules.iter().any(|(other, _)| other == name) || (point.is_some() || ears.is_some()) && name == HEADING
-    };
-    for NamedProcess { place, name, command } in settings.modules().filter(|module| !is_replaced(module.name)) {
+pub(crate) fn of_settings(settings: &Settings, arguments: &Run, library: &mut Library<Sensed>) -> Result<(), Failure> {
+    let Run { modules, point, .. } = arguments;
+    for NamedProcess { place, name, command } in only_of_settings(settings, arguments) {
         library.admits(name).map_err(|refusal| Failure::Usage(format!("{place}: {refusal}")))?;
         library.process(name, command);
     }
@@ -48,6 +42,15 @@ pub(crate) fn of_settings(
         library.process(name, command);
     }
     Ok(())
+}
+
+/// Returns the modules that the `mdle.toml` names and no option replaces.
+pub(crate) fn only_of_settings<'s>(settings: &'s Settings, arguments: &Run) -> impl Iterator<Item = NamedProcess<'s>> {
+    let Run { modules, point, ears, .. } = arguments;
+    let is_replaced = move |name: &str| {
+        modules.iter().any(|(other, _)| other == name) || (point.is_some() || ears.is_some()) && name == HEADING
+    };
+    settings.modules().filter(move |module| !is_replaced(module.name))
 }
 
 /// The sound of a run, and the radius of the head that hears it, in metres.

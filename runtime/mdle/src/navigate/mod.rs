@@ -52,7 +52,7 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
         options.extend(option.arguments);
     }
     options.extend(arguments.options.iter().cloned());
-    let recorded = RecordedPlan { files: texts(&first.input), beside: String::new(), safety: None };
+    let recorded = RecordedPlan { files: texts(&first.input), ..RecordedPlan::default() };
     let read = input.inputs(&target);
     (linked.navigate)(&legs, &target, Call { recorded, read, ..call(&arguments, options) }, library)
 }
