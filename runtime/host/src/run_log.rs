@@ -3,6 +3,7 @@
 use std::io;
 use std::path::Path;
 
+use mdle_quantity::Clocked;
 use mdle_record::Change;
 use mdle_runtime::Nanos;
 
@@ -21,6 +22,8 @@ pub(crate) struct RunLog {
     is_best_effort: bool,
     /// `true` once the log has ended before the run.
     has_ended: bool,
+    /// Time of the last turn.
+    t: Nanos,
     /// A message about that end which nobody has seen yet.
     message: Option<String>,
 }
@@ -42,7 +45,7 @@ pub(crate) fn is_record(path: &Path) -> bool {
 impl RunLog {
     /// A log that begins; if `is_best_effort`, the run goes on without it when it cannot be written.
     pub(crate) fn new(format: Format, is_best_effort: bool) -> Self {
-        Self { format, is_best_effort, has_ended: false, message: None }
+        Self { format, is_best_effort, has_ended: false, t: Nanos::ZERO, message: None }
     }
 
     /// Returns `true` if the log is a record, which takes more of a turn than an entry has.
@@ -66,6 +69,7 @@ impl RunLog {
     /// # Errors
     /// When the file cannot be written, and the run must not go on without it.
     pub(crate) fn turn_without_plan(&mut self, unmade: &UnmadeTurn<'_>) -> io::Result<()> {
+        self.t = unmade.t;
         self.write(|format| match format {
             Format::Lines(_) => Ok(()),
             Format::Record(record) => record.turn_without_plan(unmade),
@@ -77,6 +81,7 @@ impl RunLog {
     /// # Errors
     /// When the file cannot be written, and the run must not go on without it.
     pub(crate) fn turn(&mut self, entry: &Entry<'_>) -> io::Result<()> {
+        self.t = entry.t;
         self.write(|format| match format {
             Format::Lines(log) => log.turn(entry),
             Format::Record(record) => record.turn(entry),
@@ -116,7 +121,9 @@ impl RunLog {
         match write(&mut self.format) {
             Err(error) if self.is_best_effort => {
                 self.has_ended = true;
-                self.message = Some(format!("warning: the run log ends here, as it cannot be written: {error}"));
+                let t = Clocked(self.t);
+                self.message =
+                    Some(format!("warning: from {t} on the run has no log, as it cannot be written: {error}"));
                 Ok(())
             }
             written => written,
