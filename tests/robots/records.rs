@@ -309,7 +309,10 @@ fn a_changed_bit_is_noticed_in_every_part() {
     changed[viewers + 2] ^= 1;
     fs::write(folder.join("changed.mcap"), changed).unwrap();
     let (out, _, status) = replay(&folder, &["changed.mcap"]);
-    assert!(out.contains("the sum of a chunk differs, so that bytes besides the turns were changed"), "{out}");
+    assert!(
+        out.contains("the sum of one of its seconds differs, so that bytes besides its turns were changed"),
+        "{out}"
+    );
     assert_eq!(status, Some(1));
 }
 

@@ -110,7 +110,7 @@ impl<R: Read> Parts<R> {
                 }
                 // The file ends in the middle of a chunk: all chunks before it have been read.
                 Some(Err(McapError::UnexpectedEof)) | None => return Ok(None),
-                Some(Err(error)) => return Err(damage(&error)),
+                Some(Err(error)) => return Err(damage(error)),
             }
         }
     }
@@ -122,11 +122,12 @@ impl Chunk {
 
     /// Takes a chunk that is not compressed. The library must not see one that is shorter than it says: it panics.
     fn of(data: &[u8]) -> Result<Self, Unreadable> {
-        let shorter = || Unreadable::Damaged("a chunk is shorter than it says".to_owned());
+        let shorter = || Unreadable::Damaged("one of its seconds has another length than it gives".to_owned());
         let [before, after] = Self::HEAD;
         let name = data.get(before - 4..before).and_then(|bytes| bytes.try_into().ok()).map(u32::from_le_bytes);
         if name.ok_or_else(shorter)? != 0 {
-            return Err(Unreadable::Damaged("its chunks are compressed".to_owned()));
+            let why = "its seconds are compressed, which mdle never does: another program has written it anew";
+            return Err(Unreadable::Damaged(why.to_owned()));
         }
         let size = data.get(before..before + after).and_then(|bytes| bytes.try_into().ok()).map(u64::from_le_bytes);
         let content = data.get(before + after..).unwrap_or_default();
@@ -139,7 +140,7 @@ impl Chunk {
                 Ok(Self { data: data.into_owned(), at: 0, is_sound })
             }
             Ok(_) => Err(shorter()),
-            Err(error) => Err(damage(&error)),
+            Err(error) => Err(damage(error)),
         }
     }
 
@@ -147,7 +148,8 @@ impl Chunk {
     fn next(&mut self) -> Result<Option<Part>, Unreadable> {
         const HEAD: usize = 9;
         let changed = || {
-            Unreadable::Damaged("the sum of a chunk differs, so that bytes besides the turns were changed".to_owned())
+            let why = "the sum of one of its seconds differs, so that bytes besides its turns were changed";
+            Unreadable::Damaged(why.to_owned())
         };
         while let Some((head, rest)) = self.data.get(self.at..).and_then(|rest| rest.split_first_chunk::<HEAD>()) {
             let [opcode, length @ ..] = head;
@@ -166,18 +168,59 @@ impl Chunk {
                 }
                 Ok(_) => {}
                 Err(_) if !self.is_sound => return Err(changed()),
-                Err(error) => return Err(damage(&error)),
+                Err(error) => return Err(damage(error)),
             }
         }
         if self.is_sound && self.at == self.data.len() { Ok(None) } else { Err(changed()) }
     }
 }
 
-/// The damage of a file, as far as an error of the library says it.
-fn damage(error: &McapError) -> Unreadable {
-    Unreadable::Damaged(if let McapError::BadDataCrc { .. } = error {
-        "the sum of the file differs, so that bytes outside of its chunks were changed".to_owned()
-    } else {
-        error.to_string()
-    })
+/// The damage of a file in the words of this format: an error of the library names parts of MCAP.
+fn damage(error: McapError) -> Unreadable {
+    let why = match error {
+        McapError::Io(error) => return Unreadable::System(error),
+        McapError::BadMagic => "it does not begin or end as a record does",
+        McapError::BadDataCrc { .. } => {
+            "the sum of the file differs, so that bytes outside of its seconds were changed"
+        }
+        McapError::BadChunkCrc { .. } => {
+            "the sum of one of its seconds differs, so that bytes besides its turns were changed"
+        }
+        McapError::BadSummaryCrc { .. } => "the sum of its end differs, so that bytes after its turns were changed",
+        McapError::BadAttachmentCrc { .. } => {
+            "the sum of the text of a file in it differs, so that this text was changed"
+        }
+        McapError::BytesAfterEndMagic => "bytes follow after its end",
+        McapError::UnexpectedEof | McapError::UnexpectedEoc => "it ends in the middle of a part",
+        McapError::RecordTooLarge { .. }
+        | McapError::ChunkTooLarge(_)
+        | McapError::BadAttachmentLength { .. }
+        | McapError::BadChunkLength { .. }
+        | McapError::BadSchemaLength { .. } => {
+            "a part has a length that it cannot have, so that bytes of it were changed"
+        }
+        McapError::AttachmentNotInProgress
+        | McapError::AttachmentTooLarge { .. }
+        | McapError::AttachmentIncomplete { .. }
+        | McapError::BadFooter
+        | McapError::BadIndex
+        | McapError::EndBeforeStart
+        | McapError::PrivateRecordOpcodeIsReserved { .. }
+        | McapError::ConflictingChannels(_)
+        | McapError::ConflictingSchemas(_)
+        | McapError::Parse(_)
+        | McapError::InvalidSchemaId
+        | McapError::UnknownChannel(..)
+        | McapError::UnknownSchema(..)
+        | McapError::UnsupportedCompression(_)
+        | McapError::EmptyDecompressorName
+        | McapError::DecompressionError(_)
+        | McapError::ChunkBufferTooLarge(_)
+        | McapError::BadChunkStartOffset(_)
+        | McapError::TooManyChannels
+        | McapError::TooManySchemas
+        | McapError::UnexpectedChunkDataInserted
+        | McapError::AttemptedWriteAfterFailure => "a part of it cannot be read, so that bytes of it were changed",
+    };
+    Unreadable::Damaged(why.to_owned())
 }

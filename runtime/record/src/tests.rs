@@ -317,3 +317,28 @@ fn a_flipped_bit_in_the_head_of_any_part_is_noticed() {
     }
     assert!(parts > 5, "{parts} parts");
 }
+
+/// Messages are about the run, in plain words: a reader knows no terms of MCAP.
+#[test]
+fn damage_is_described_in_plain_words() {
+    let (whole, _) = written(&outputs(12));
+    let mut messages = std::collections::BTreeSet::new();
+    for at in (0..whole.len()).step_by(17) {
+        let mut flipped = whole.clone();
+        flipped[at] ^= 0x80;
+        let error = match Records::open(&flipped[..]) {
+            Ok((_, records)) => records.into_iter().find_map(Result::err),
+            Err(error) => Some(error),
+        };
+        messages.extend(error.map(|error| error.to_string()));
+    }
+    let cut = Records::open(&[&whole[..], b"more"].concat()[..]).unwrap().1.find_map(Result::err);
+    messages.extend(cut.map(|error| error.to_string()));
+    assert!(messages.len() > 6, "{messages:#?}");
+    for message in &messages {
+        let words = message.to_lowercase();
+        let terms =
+            ["chunk", "crc", "opcode", "record parse", "magic", "section", "schema", "attachment", "channel", "index"];
+        assert!(terms.iter().all(|term| !words.contains(term)), "{message}");
+    }
+}
