@@ -146,6 +146,25 @@ fn memories_kept_a_condition_from_firing() {
     insta::assert_snapshot!(answers("memories", plan, &outputs, &questions));
 }
 
+/// Each operand inside NOT and RISING has its value with its unit, and what holds says by how much or for how long: so
+/// much is missing until NOT fires.
+#[test]
+fn operands_inside_not_have_values() {
+    let plan = "{ Inside (wait 1min)
+  (Atom (NOT (r0 > 40cm OR bumper) OR NOT (x < 1m AND v < 50cm/s) OR NOT (t < 2s)) go 20 0)
+  (Atom (NOT (NOT wait 1 OR r0 < r1) AND NOT r0 > 40cm AND NOT theta == 90deg) go 10 0)
+  (Atom (NOT (way < 1m AND RISING (r0 < 60cm OR r1 < 60cm)) AND NOT (NOT way > 1m AND battery > 20) AND wait 1) stop)
+}
+";
+    let outputs = outputs(60, |turn, y| {
+        ping(y, 0, if turn < 20 { 0.9 } else { 0.3 });
+        ping(y, 1, if turn < 30 { f64::INFINITY } else { 0.2 });
+        y.odometry.x.0 = 0.02 * turn as f64;
+    });
+    let questions = ["0", "0.4", "1", "1.5", "2.2", "2.5", "3.5", "5.9", "--not stop"];
+    insta::assert_snapshot!(answers("inside", plan, &outputs, &questions));
+}
+
 /// A law that has a goal makes no progress, an interrupt that an enclosing scope has is removed, and loops count.
 #[test]
 fn laws_and_loops_took_part() {

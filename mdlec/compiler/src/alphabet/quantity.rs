@@ -115,7 +115,7 @@ impl Kind {
 }
 
 /// A unit that may touch a number.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Unit {
     /// Name of the unit as it is written.
     pub name: &'static str,

@@ -101,7 +101,7 @@ pub(super) fn resolve(
     let operator = written.operator;
     let left = quarks.get(signal.quark).map(|quark| quark.text.as_str()).unwrap_or_default();
     let text = format!("{left} {} {text}", operator.symbol());
-    let comparison = Comparison { signal: signal.quark, operator, with, tolerance };
+    let comparison = Comparison { signal: signal.quark, unit: signal.unit, operator, with, tolerance };
     let counted = match signal.declaration {
         time if is_time(time) => Some((EntrySignal::Time, interval(&comparison, EntrySignal::Time, span)?)),
         way if is_way(way) => Some((EntrySignal::Way, interval(&comparison, EntrySignal::Way, span)?)),

@@ -41,7 +41,7 @@ pub(crate) use words::Words;
 
 use std::num::NonZeroU32;
 
-use crate::alphabet::{Decimal, Kind, family_to_si};
+use crate::alphabet::{Decimal, Kind, Unit, family_to_si};
 use crate::diagnostic::Span;
 
 /// A plan: the outermost scope, and the quarks used anywhere in the plan.
@@ -97,6 +97,8 @@ pub struct Quark {
 pub struct Comparison {
     /// The signal.
     pub signal: QuarkId,
+    /// Unit of the signal, in which texts have its values.
+    pub unit: Unit,
     /// Operator of the comparison.
     pub operator: Operator,
     /// Right side of the comparison.

@@ -1,4 +1,4 @@
-//! The time or the value that an operand lacks to fire, in words.
+//! The time or the value that an operand lacks to fire, or for which it still holds, in words.
 
 use mdle_compiler::plan::Condition;
 use mdle_host::rounded;
@@ -30,6 +30,9 @@ pub(crate) fn lack(
     values: &Values<'_>,
 ) -> String {
     let Values { since, way, stalled, is_new, .. } = *values;
+    if condition.lasting().is_some_and(|(_, due)| due == MEETING) {
+        return meeting(part, since);
+    }
     if let Some((_, due)) = condition.lasting() {
         return match stalled {
             _ if since == Nanos::ZERO => "the law has not begun".to_owned(),
@@ -47,6 +50,12 @@ pub(crate) fn lack(
             let passed = format!("{} s passed", rounded(since.0));
             if part.fired { passed } else { format!("{passed}, {} s left", rounded(Nanos(*nanos).since(since).0)) }
         }
+        Condition::Not(_) if part.fired => match inner {
+            Some((Condition::Wait { .. }, _)) => {
+                inner.map_or_else(String::new, |(inner, part)| lack(inner, part, None, values))
+            }
+            Some(_) | None => String::new(),
+        },
         _ if part.fired => String::new(),
         Condition::Elapsed { from, until, .. } => match until {
             Some(until) if since.0 >= *until => format!("over for {} s", rounded(since.0 - until)),
@@ -63,12 +72,10 @@ pub(crate) fn lack(
             None => String::new(),
         },
         Condition::Not(_) => match inner {
-            Some((Condition::Wait { .. } | Condition::Quark(_), inner)) => match inner.measured {
-                Measured::Compared { .. } => "it holds".to_owned(),
-                Measured::Elapsed(_) | Measured::Driven(_) => "it is over".to_owned(),
-                Measured::Nothing => "it has fired".to_owned(),
-            },
-            Some(_) | None => "it holds".to_owned(),
+            Some((Condition::Wait { .. }, _)) => format!("it is over: {} s passed", rounded(since.0)),
+            Some((Condition::Quark(_), Examined { measured: Measured::Nothing, .. })) => "it has fired".to_owned(),
+            Some((condition, inner)) => ["it holds", &held(condition, inner, values)].join(" ").trim_end().to_owned(),
+            None => String::new(),
         },
         Condition::After(_) => "that was not the last to end, or it ended otherwise".to_owned(),
         Condition::Null => "it never fires".to_owned(),
@@ -76,9 +83,44 @@ pub(crate) fn lack(
     }
 }
 
+/// The time of a `rendezvous`, which fires in the turn after its scope was entered at the earliest.
+const MEETING: u64 = 1;
+
+/// Returns what a `rendezvous` lacks.
+fn meeting(part: Examined, since: Nanos) -> String {
+    match (part.fired, since) {
+        (true, _) => String::new(),
+        (false, Nanos::ZERO) => "its scope was entered in this turn".to_owned(),
+        (false, _) => "no state has told that the other robot is there".to_owned(),
+    }
+}
+
+/// Returns for how long, or by how much, an operand that has fired holds; empty if nothing can be said.
+pub(crate) fn held(condition: &Condition, part: Examined, values: &Values<'_>) -> String {
+    let Values { since, way, .. } = *values;
+    match condition {
+        Condition::Wait { .. } => format!("{} s passed", rounded(since.0)),
+        Condition::Elapsed { until, .. } => match until {
+            Some(until) => format!("for {} s more", rounded(Nanos(*until).since(since).0)),
+            None => "from now on".to_owned(),
+        },
+        Condition::Driven { until, .. } => match until {
+            Some(until) => format!("for {} m more", rounded(Nanometers(*until).since(way).0)),
+            None => "from now on".to_owned(),
+        },
+        Condition::Quark(_) => margin(part.measured, values),
+        Condition::Null
+        | Condition::Or(_)
+        | Condition::And(_)
+        | Condition::Not(_)
+        | Condition::Rising { .. }
+        | Condition::After(_) => String::new(),
+    }
+}
+
 /// Returns the difference by which a comparison does not hold.
 fn compared(measured: Measured, values: &Values<'_>) -> String {
-    let Measured::Compared { left, operator, right } = measured else { return "it has not fired".to_owned() };
+    let Measured::Compared { left, right, .. } = measured else { return "it has not fired".to_owned() };
     let Some((unit, scale)) = values.unit else { return String::new() };
     if left.is_nan() || right.is_nan() {
         return "the value is not known".to_owned();
@@ -86,23 +128,44 @@ fn compared(measured: Measured, values: &Values<'_>) -> String {
     if left.is_infinite() && values.is_range {
         return "no echo".to_owned();
     }
-    let (difference, words) = match operator {
+    let (difference, words) = difference(measured);
+    if difference == 0.0 {
+        return "just not".to_owned();
+    }
+    format!("{} {words}", amount(difference / scale, unit))
+}
+
+/// Returns the difference by which a comparison holds; empty if it is no comparison.
+fn margin(measured: Measured, values: &Values<'_>) -> String {
+    let (Measured::Compared { left, right, .. }, Some((unit, scale))) = (measured, values.unit) else {
+        return String::new();
+    };
+    if (left.is_infinite() || right.is_infinite()) && values.is_range {
+        return "as there is no echo".to_owned();
+    }
+    format!("by {}", amount(-difference(measured).0 / scale, unit))
+}
+
+/// Returns the difference by which a comparison does not hold, negative if it holds, and its kind in words.
+fn difference(measured: Measured) -> (f64, &'static str) {
+    let Measured::Compared { left, operator, right } = measured else { return (0.0, "") };
+    match operator {
         Operator::Less | Operator::LessOrEqual => (left - right, "too much"),
         Operator::Greater | Operator::GreaterOrEqual => (right - left, "too little"),
         Operator::Equal(tolerance) => ((left - right).abs() - tolerance, "outside the tolerance"),
         Operator::SameDirection(tolerance) => {
             (Radians(left - right).wrapped().0.abs() - tolerance, "outside the tolerance")
         }
-    };
-    if difference == 0.0 {
-        return "just not".to_owned();
     }
+}
+
+fn amount(value: f64, unit: &str) -> String {
     let between = if unit.is_empty() { "" } else { " " };
-    format!("{}{between}{unit} {words}", short(difference / scale))
+    format!("{}{between}{unit}", short(value))
 }
 
 /// Formats a number with two decimals, or with as many more as it takes to have another digit than 0.
-pub(crate) fn short(value: f64) -> String {
+fn short(value: f64) -> String {
     let text = |decimals: usize| format!("{value:.decimals$}");
     let is_zero = |text: &str| text.parse() == Ok(0.0);
     let text = (2..9).map(text).find(|text| !is_zero(text)).unwrap_or_else(|| text(9));

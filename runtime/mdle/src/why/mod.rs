@@ -6,6 +6,7 @@ mod lack;
 mod never;
 mod never_text;
 mod operands;
+mod part_text;
 mod scopes;
 mod text;
 

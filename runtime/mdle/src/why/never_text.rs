@@ -23,7 +23,7 @@ pub(super) fn text(never: &Never, log: &str) -> String {
         return text;
     }
     if began.is_some() {
-        text += "\nit did not begin again\n";
+        text += "\nit has not begun again since\n";
     }
     if let Some(skips) = skipped {
         skip(&mut text, skips);
@@ -40,7 +40,7 @@ pub(super) fn text(never: &Never, log: &str) -> String {
         };
         let at = if *is_replaced { "before another plan took over" } else { "at the end" };
         let end = turned(end);
-        let _ = writeln!(text, "\nno atom ran whose end would have led to it{follows}; {at}, in {end}, {last}");
+        let _ = writeln!(text, "\nno atom ran that leads to it{follows}; {at}, in {end}, {last}");
     }
     text
 }
@@ -57,8 +57,8 @@ fn beginnings(asked: &str, began: &Beginnings, log: &str) -> String {
         format!("{}  <- {cause}", turned(turn))
     };
     let times = match times {
-        1 => format!("`{asked}` did begin, in {}\n", when(first)),
-        _ => format!("`{asked}` did begin, {times} times\n  first in {}\n  last in {}\n", when(first), when(last)),
+        1 => format!("`{asked}` began in {}\n", when(first)),
+        _ => format!("`{asked}` began {times} times\n  first in {}\n  last in {}\n", when(first), when(last)),
     };
     let ((_, t), _) = last;
     format!("{times}help: `mdle why {log} {}` explains that turn\n", rounded(t.0))
@@ -85,12 +85,13 @@ fn chances(text: &mut String, chance: &Chance) {
     let _ = writeln!(text, "\nit could first have begun in {}{begins}, if {had} ended:", turned(&first.turned));
     let around = scopes.iter().filter_map(|number| first.scopes.get(*number));
     around.for_each(|around| scope(text, around));
-    let passes = if *times > 1 { format!(", in the last of {times} periods,") } else { String::new() };
-    let _ = writeln!(text, "\nthe last such turn{passes} was {}: {}", turned(&last.turned), named(&last.atom));
+    let of = if *times > 1 { format!(", the last of {times} periods in which it could") } else { String::new() };
+    let (turn, atom) = (turned(&last.turned), named(&last.atom));
+    let _ = writeln!(text, "\nit could last have begun in {turn}, during {atom}{of}:");
     last.scopes.iter().for_each(|around| scope(text, around));
     if last.cause.is_empty() {
-        *text += "  then the record ended\n";
+        *text += "  after that the record ended\n";
     } else {
-        let _ = writeln!(text, "  then another scope ended  <- {}", last.cause);
+        let _ = writeln!(text, "  after that another scope ended  <- {}", last.cause);
     }
 }

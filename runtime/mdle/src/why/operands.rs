@@ -4,11 +4,12 @@ use std::iter::Peekable;
 use std::slice::Iter;
 
 use mdle_compiler::fsm::{Element, Machine};
-use mdle_compiler::plan::{Compared, Condition, QuarkId, Value, condition_text};
+use mdle_compiler::plan::{Compared, Condition, QuarkId, Value};
 use mdle_host::operand_words;
 use mdle_runtime::{Examined, Measured, Nanos, OperandWords, SONARS, Words};
 
-use super::lack::{Values, lack, short};
+use super::lack::{Values, held, lack};
+use super::part_text::PartText;
 use crate::examined::ScopeMoment;
 
 /// Age from which the last ping of a sonar is stale.
@@ -79,7 +80,7 @@ pub(crate) fn examination(
     let operands = joined.iter().map(|part| {
         let turns = node.value(None) != node.value(part.number);
         let words = part.number.and_then(|number| source.get(number as usize));
-        explaining.operand(part, words, turns)
+        explaining.operand(part, words, turns, false)
     });
     let operands: Vec<_> = operands.collect();
     let fired = node.part.fired;
@@ -169,24 +170,25 @@ struct Explaining<'e> {
 }
 
 impl Explaining<'_> {
-    /// Explains an operand; `turns` if the condition would have the other value if this operand alone had.
-    fn operand(&self, node: &Node<'_>, words: Option<&OperandWords<'_>>, turns: bool) -> Operand {
+    /// Explains an operand; `turns` if the condition would have the other value if this operand alone had, `must_end`
+    /// if it is a part of a NOT that has not fired.
+    fn operand(&self, node: &Node<'_>, words: Option<&OperandWords<'_>>, turns: bool, must_end: bool) -> Operand {
         let Examined { fired, measured } = node.part;
         let is_about_another = matches!(node.condition, Condition::Not(_) | Condition::Rising { .. });
         let inner = node.parts.first().filter(|_| is_about_another);
-        let text = || condition_text(node.condition, &|id| self.machine.quark(id).text.clone());
-        let written = words.map_or_else(text, |words| words.written.to_owned());
+        let text = PartText::of(node.condition, self.machine);
+        let text = text.words();
+        let words = words.unwrap_or(&text);
+        let written = words.written.to_owned();
         // The comparison of which the values are shown is that inside NOT and RISING.
         let holds = inner.map_or(fired, |inner| innermost(inner).part.fired);
-        let alone = || match measured {
-            Measured::Compared { left, .. } => format!("{written} ({})", short(left)),
-            Measured::Nothing | Measured::Elapsed(_) | Measured::Driven(_) => written.clone(),
-        };
-        let shown = words.map_or_else(alone, |words| operand_words(words, measured, holds));
+        let shown = operand_words(words, measured, holds);
         // Its own values are shown unless it is joined of several.
         let joined = inner.map_or(&[][..], |inner| if inner.number.is_none() { &inner.parts } else { &[] });
-        let inside = joined.iter().map(|part| self.operand(part, None, false)).collect();
-        let unit = words.and_then(|words| words.values.first()).map(|value| (value.unit, value.scale));
+        let is_negated = matches!(node.condition, Condition::Not(_));
+        let must_end_inside = if is_negated { !fired } else { must_end };
+        let inside = joined.iter().map(|part| self.operand(part, None, false, must_end_inside)).collect();
+        let unit = words.values.first().map(|value| (value.unit, value.scale));
         let values = Values {
             since: self.scope.since,
             way: self.scope.way,
@@ -195,7 +197,11 @@ impl Explaining<'_> {
             unit,
             is_range: self.sonars(node.condition).0,
         };
-        let lack = lack(node.condition, node.part, inner.map(|inner| (inner.condition, inner.part)), &values);
+        let inner = inner.map(|inner| (inner.condition, inner.part));
+        let lack = match must_end && fired && !is_negated {
+            true => still(node.condition, &held(node.condition, node.part, &values)),
+            false => lack(node.condition, node.part, inner, &values),
+        };
         let stale = self.stale(node.condition);
         let (decided, suffices) = (turns && fired, turns && !fired);
         Operand { written, words: shown, fired, decided, suffices, measured, lack, stale, inside }
@@ -242,6 +248,12 @@ impl Explaining<'_> {
             }
         }
     }
+}
+
+/// Returns what is said of a part that has fired and has to end.
+fn still(condition: &Condition, held: &str) -> String {
+    let is_whole = held.is_empty() || matches!(condition, Condition::Wait { .. });
+    if is_whole { held.to_owned() } else { format!("holds {held}") }
 }
 
 /// Returns what several NOT and RISING are about.
