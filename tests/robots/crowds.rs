@@ -136,3 +136,30 @@ fn a_wrong_crowd_is_refused_with_place_and_cure() {
     let output = run(&folder, "s.toml --threads 2");
     assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
 }
+
+/// A record of each robot, which replays to the bit; the number of threads changes none.
+#[test]
+fn each_robot_of_a_crowd_has_a_record() {
+    let folder = folder("recorded");
+    crowd(&folder, "robots = 120\nbody = \"scout\"\nspacing = \"80cm\"\n");
+    let records = ["1", "2"].map(|threads| {
+        let output = run(&folder, &format!("crowd.toml --timeout 6s --threads {threads} --log run{threads}.mcap"));
+        assert_eq!(output.status.code(), Some(4), "{}", String::from_utf8_lossy(&output.stderr));
+        (1..=120).map(|robot| fs::read(folder.join(format!("run{threads}.{robot}.mcap"))).unwrap()).collect::<Vec<_>>()
+    });
+    let [one, other] = &records;
+    // The commands name the numbers of threads.
+    assert!(one.iter().zip(other).all(|(one, other)| one.len() == other.len()), "threads change a record");
+    for robot in [1, 2, 60, 120] {
+        let output = Command::new(mdle()).args(["replay", &format!("run2.{robot}.mcap")]).current_dir(&folder).output();
+        let text = String::from_utf8(output.unwrap().stdout).unwrap();
+        assert_eq!(text, "the same to the bit, 61 turns\n", "{robot}");
+    }
+    crowd(&folder, "robots = 300\nbody = \"scout\"\nspacing = \"80cm\"\n");
+    let refused = run(&folder, "crowd.toml --timeout 1s --log more.mcap");
+    let error = String::from_utf8(refused.stderr).unwrap();
+    assert!(
+        error.contains("for at most 250 robots, and this crowd has 300\n") && refused.status.code() == Some(2),
+        "{error}"
+    );
+}

@@ -28,6 +28,7 @@ mod replays;
 mod repeated_runs;
 mod safety;
 mod scout;
+mod scenario_records;
 mod sessions;
 mod several;
 mod sound;

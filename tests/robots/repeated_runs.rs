@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 
 use mdle_tests::executable::{folder, mdle};
 
-const FILES: [(&str, &str); 7] = [
+const FILES: [(&str, &str); 9] = [
     ("square.mdle", "{ Square (wait 5min)\n  ((Atom (way >= 1m OR r0 < 40cm) (go 20 0)) (Atom (null) turn 90))^4\n}\n"),
     ("slow.toml", "[limits]\nspeed = \"18cm/s\"\n"),
     ("commands", "step 20\nset /safety/limits/speed 15cm/s\nwait 5s\n"),
@@ -25,7 +25,16 @@ const FILES: [(&str, &str); 7] = [
         "set/heard.mdle",
         "{ Heard (wait 9s)\n  (Atom (range(ears module) < 1m AND t > 3) (go 20 0))\n  (Atom (null) turn 90)\n}\n",
     ),
+    (
+        "meet.mdle",
+        "{ First (wait 9s) (Atom (rendezvous second) stop) }\n{ Second (wait 9s) (Atom (sync first) stop) }\n",
+    ),
     ("it's.mdle", "{ Stop (wait 1s) (Atom (null) stop) }\n"),
+    (
+        "meet.toml",
+        "seed = 1\n[[robot]]\nname = \"first\"\nfile = \"meet.mdle\"\nplan = \"First\"\nstart = \"0,0,0\"\nbody = \"scout\"\n\
+         [[robot]]\nname = \"second\"\nfile = \"meet.mdle\"\nplan = \"Second\"\nstart = \"0,2,0\"\n",
+    ),
 ];
 
 /// Runs a command line of the shell in which `mdle` is the program of this workspace.
@@ -71,5 +80,9 @@ fn the_command_of_a_record_repeats_it() {
         let error = String::from_utf8_lossy(&output.stderr);
         assert!(matches!(output.status.code(), Some(0 | 4)), "{call}: {error}");
         assert_repeated(&folder, "run.mcap", "again.mcap");
+    }
+    assert_eq!(shell(&folder, "mdle run meet.toml --seed 5 --log meet.mcap --timeout 8s").status.code(), Some(4));
+    for robot in ["first", "second"] {
+        assert_repeated(&folder, &format!("meet.{robot}.mcap"), &format!("again.{robot}.mcap"));
     }
 }

@@ -45,6 +45,7 @@ mod refusal;
 mod replays;
 mod report;
 mod required;
+mod robot_record;
 mod robot_settings;
 mod run_end;
 mod run_log;
@@ -107,7 +108,9 @@ pub use program::Program;
 pub use progress::Progress;
 pub use refusal::Refusal;
 pub use replays::Replays;
+pub use robot_record::{RobotRecord, RobotTurn};
 pub use robot_settings::{RobotSettings, SettingsOf, sonar_order};
+pub use run_log::is_record;
 pub use scheduling::claim_for_worker;
 pub use stop_request::StopRequest;
 pub use supervisor::{

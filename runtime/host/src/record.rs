@@ -3,8 +3,7 @@
 //! The thread that drives the robot only encodes a turn; the thread of an [`Outlet`] makes the messages of it and
 //! writes the file.
 
-use std::fmt::Write as _;
-use std::io::{self, Write as _};
+use std::io::{self, Write};
 
 use mdle_record::frames::Frames;
 use mdle_record::{Applied, Begin, Change, Overruled, Step, TurnMade};
@@ -24,8 +23,8 @@ const FLUSH: u64 = 1_000_000_000;
 
 /// A record that is being written.
 #[derive(Debug)]
-pub(crate) struct Record {
-    file: Outlet,
+pub(crate) struct Record<W = Outlet> {
+    file: W,
     frames: Frames,
     begin: Begin,
     /// The output of the turn, and the inputs that the plan asked for and that is sent.
@@ -55,9 +54,9 @@ pub(crate) struct UnmadeTurn<'a> {
     pub(crate) supervised: &'a Supervised,
 }
 
-impl Record {
+impl<W: Write> Record<W> {
     /// A record to `file` of a run that begins.
-    pub(crate) fn new(file: Outlet, begin: Begin, prompt: bool) -> Self {
+    pub(crate) fn new(file: W, begin: Begin, prompt: bool) -> Self {
         let (frames, bytes, intervention) = (Frames::default(), Vec::new(), String::new());
         let flushed = Nanos::ZERO;
         let changes = Vec::new();
@@ -170,9 +169,7 @@ impl Record {
     }
 
     fn event(&mut self, turn: u64, t: Nanos, kind: &str, text: &str) {
-        let mut json = String::new();
-        let _ =
-            write!(json, "{{\"turn\":{turn},\"t\":{},\"kind\":{},\"text\":{}}}", Seconds(t), Json(kind), Json(text));
+        let json = format!("{{\"turn\":{turn},\"t\":{},\"kind\":{},\"text\":{}}}", Seconds(t), Json(kind), Json(text));
         self.frames.event(t, &json, &mut self.bytes);
     }
 

@@ -38,7 +38,7 @@ pub(crate) enum Format {
 }
 
 /// Returns `true` if the name of a log asks for a record.
-pub(crate) fn is_record(path: &Path) -> bool {
+pub fn is_record(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(MCAP))
 }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
-use mdle_host::{Quantity, output_format};
+use mdle_host::{Quantity, is_record, output_format, quoted, without_log};
 
 use crate::arguments::Run;
 use crate::failure::Failure;
@@ -14,8 +14,10 @@ use crate::failure::Failure;
 pub(super) struct Options {
     pub(super) seed: Option<u64>,
     pub(super) timeout: Option<Duration>,
-    /// File of the log.
+    /// File of the log; with the ending of a record, the name from which those of the records are made.
     pub(super) log: Option<PathBuf>,
+    /// The command that repeats the run, without its log.
+    pub(super) command: String,
     /// File of the table of poses.
     pub(super) trail: Option<PathBuf>,
     /// File of the picture.
@@ -51,7 +53,9 @@ impl Options {
         }
         let words = [std::ffi::OsString::from("mdle run SCENARIO.toml")].into_iter().chain(run.options.clone());
         let matches = command().try_get_matches_from(words).map_err(Failure::Unparsed)?;
-        Ok(Self::of(&matches))
+        let repeated = run.words.iter().cloned().chain(without_log(&run.options));
+        let repeated: Vec<_> = repeated.map(|word| quoted(&word.to_string_lossy())).collect();
+        Ok(Self { command: repeated.join(" "), ..Self::of(&matches) })
     }
 
     fn of(matches: &ArgMatches) -> Self {
@@ -60,6 +64,7 @@ impl Options {
             seed: matches.get_one("seed").copied(),
             timeout: matches.get_one("timeout").copied(),
             log: file("log"),
+            command: String::new(),
             trail: file("trail"),
             plot: file("plot"),
             trips: file("trips"),
@@ -74,7 +79,7 @@ impl Options {
     /// One is.
     pub(super) fn check_crowd(&self) -> Result<(), Failure> {
         let of_robots = [
-            (self.log.is_some(), "--log"),
+            (self.log.as_deref().is_some_and(|log| !is_record(log)), "--log FILE.jsonl"),
             (self.plot.is_some(), "--plot"),
             (self.trips.is_some(), "--trips"),
             (self.recorded_paths.is_some(), "--recorded-paths"),
@@ -112,7 +117,10 @@ fn command() -> Command {
             option("timeout", "TIME", "Time after which the run ends, in seconds or with a unit [default: that of the file]")
                 .value_parser(timeout),
         )
-        .arg(option("log", "FILE.jsonl", "File for a line of JSON for each turn of each robot").value_parser(output_format("JSON lines", "jsonl")))
+        .arg(
+            option("log", "FILE", "File for a line of JSON for each turn of each robot; `FILE.mcap` is a record of each robot to replay, as `FILE.ROBOT.mcap`")
+                .value_parser(log),
+        )
         .arg(option("trail", "FILE.csv", "File for the poses of all robots: time, robot, x, y, heading").value_parser(output_format("CSV", "csv")))
         .arg(option("plot", "FILE.svg", "File for a picture of the floor with the ways of all robots").value_parser(output_format("SVG", "svg")))
         .arg(
@@ -131,6 +139,17 @@ fn command() -> Command {
             "Exit status: 0 if all plans are over; 1 if a plan has errors; 2 for wrong usage or a file that cannot be read; 3 \
              if a fault stopped a robot, or a file could not be written; 4 if a plan still ran at the end",
         )
+}
+
+/// Reads the name of a log: that of records, or of JSON lines.
+fn log(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_known = is_record(&path) || path.extension().is_none_or(|ending| ending.eq_ignore_ascii_case("jsonl"));
+    let other = || {
+        let [lines, record] = ["jsonl", "mcap"].map(|ending| path.with_extension(ending));
+        format!("name the file `{}` for JSON lines, or `{}` for records", lines.display(), record.display())
+    };
+    if is_known { Ok(path.clone()) } else { Err(other()) }
 }
 
 fn timeout(text: &str) -> Result<Duration, String> {

@@ -27,14 +27,15 @@ pub(super) struct Fleet {
 }
 
 impl Fleet {
-    /// Returns the robots before their first turn.
+    /// Returns the robots before their first turn, which note what a record needs if they `are_recorded`.
     ///
     /// # Errors
     /// A module is refused: a sentence.
-    pub(super) fn new(mut scenario: Scenario, library: &Library<Sensed>) -> Result<Self, String> {
+    pub(super) fn new(mut scenario: Scenario, library: &Library<Sensed>, are_recorded: bool) -> Result<Self, String> {
         let members = std::mem::take(&mut scenario.members);
         let ends = Air::new(members.len(), scenario.faults, scenario.seed.unwrap_or_default());
-        let runners = members.into_iter().zip(ends).map(|(member, air)| Runner::new(member, air, &scenario, library));
+        let runners = members.into_iter().zip(ends);
+        let runners = runners.map(|(member, air)| Runner::new(member, air, &scenario, library, are_recorded));
         Ok(Self { runners: runners.collect::<Result<_, _>>()?, period: scenario.period, nearest: None })
     }
 
@@ -105,7 +106,7 @@ impl Fleet {
         for runner in &mut self.runners {
             let law = runner.law();
             if runner.standing == Standing::Drives {
-                output.line(t, &runner.name, &runner.standing.words(law.as_deref()));
+                output.ends(runner, t, law.as_deref());
             }
             runner.stop();
         }

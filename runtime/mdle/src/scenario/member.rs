@@ -4,11 +4,12 @@ use std::fmt::Write as _;
 
 use mdle_compiler::load::{Loaded, LoadedPlan};
 use mdle_engine::link::{Air, StateLink};
-use mdle_engine::{Engine, Library};
+use mdle_engine::{Engine, Library, Recorder as _};
 use mdle_host::{
-    Microphones, Moment, Pace, Passes, Pilot as _, PilotFault, RunTerms, StopRequest, Target as _, Time, Transitions,
-    cause_words, place,
+    Microphones, Moment, Pace, Passes, Pilot as _, PilotFault, RobotTurn, RunTerms, StopRequest, Target as _, Time,
+    Transitions, cause_words, place,
 };
+use mdle_record::Change;
 use mdle_runtime::{Machine, Nanos, PathStore, Plan as _, Robot as _, Sensed, Setpoint, StoredPath, Turn, Twist};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Sim, Simulated};
@@ -27,6 +28,8 @@ pub(super) struct Runner {
     passes: Passes,
     killed: Option<Nanos>,
     recorder: Option<WayRecorder>,
+    /// The path that was replaced in the turn before.
+    replaced: Option<StoredPath>,
 }
 
 /// State of a robot of a scenario: driven or not.
@@ -50,6 +53,10 @@ pub(super) struct MemberTurn {
     pub(super) law: Option<(u64, String)>,
     /// Text of the path that was recorded in this turn, by its name.
     pub(super) path: Option<(&'static str, String)>,
+    /// Source of the input; `None` if the robot was not driven.
+    pub(super) kind: Option<Turn<()>>,
+    /// Causes of the turn besides its output, if the robot is recorded.
+    pub(super) changes: Vec<Change>,
 }
 
 impl Runner {
@@ -62,6 +69,7 @@ impl Runner {
         air: Air,
         scenario: &Scenario,
         library: &Library<Sensed>,
+        is_recorded: bool,
     ) -> Result<Self, String> {
         let Member { name, mut robot, start, loaded, paths, records, killed, .. } = member;
         let terms = RunTerms {
@@ -72,7 +80,10 @@ impl Runner {
         };
         let plan = Loaded::plan(&loaded);
         let engine = Engine::new(plan, library, &terms).map_err(|refusal| format!("{refusal:?}"))?;
-        let engine = engine.linked(StateLink::new(Box::new(air), &name, start));
+        let mut engine = engine.linked(StateLink::new(Box::new(air), &name, start));
+        if is_recorded {
+            engine.record();
+        }
         let stored =
             |(name, setpoints): (&'static str, Vec<Setpoint>)| StoredPath { name, setpoints: setpoints.leak() };
         let mut stored: Vec<StoredPath> = paths.into_iter().map(stored).collect();
@@ -88,12 +99,21 @@ impl Runner {
             passes: Passes::default(),
             killed,
             recorder: records.zip(Sim::PATHS).map(|(path, replays)| WayRecorder::new(path, replays.fastest)),
+            replaced: None,
         })
     }
 
     /// Returns the plan that runs, once it has begun.
     pub(super) fn machine(&self) -> Option<&Machine<LoadedPlan<SimAlphabet>>> {
         self.engine.machine()
+    }
+
+    /// Returns a turn for the robot's record; `None` if the robot was not driven.
+    pub(super) fn recorded<'t>(&'t self, moment: Moment<'t, Sensed>, made: &MemberTurn) -> Option<RobotTurn<'t>> {
+        let Moment { y, t, number } = moment;
+        let plan = self.machine().map(|machine| (machine.plan() as &dyn mdle_host::Texts, machine.state()));
+        let (sent, transitions, changes) = (self.input, &self.transitions, made.changes.clone());
+        Some(RobotTurn { number, t, y, sent, kind: made.kind?, plan, transitions, changes })
     }
 
     /// Stops the robot.
@@ -117,7 +137,7 @@ impl Runner {
 
     /// Makes turn `number` at time `t` with this output; a robot that is no longer driven stands.
     pub(super) fn turn(&mut self, y: &Sensed, t: Nanos, number: u64) -> MemberTurn {
-        let mut made = MemberTurn { lines: Vec::new(), law: None, path: None };
+        let mut made = MemberTurn { lines: Vec::new(), law: None, path: None, kind: None, changes: Vec::new() };
         if self.standing == Standing::Drives && self.killed.is_some_and(|killed| t >= killed) {
             self.standing = Standing::Killed;
             made.lines.push("its program was killed".to_owned());
@@ -127,8 +147,15 @@ impl Runner {
             return made;
         }
         self.transitions.clear();
-        match self.engine.turn(Moment { y, t, number }, &mut self.transitions) {
+        let mut complete = *y;
+        self.engine.complete(&mut complete, t);
+        match self.engine.turn(Moment { y: &complete, t, number }, &mut self.transitions) {
             Ok(turn) => {
+                made.kind = Some(match turn {
+                    Turn::Law(_) => Turn::Law(()),
+                    Turn::Cut => Turn::Cut,
+                    Turn::Over => Turn::Over,
+                });
                 self.reports(&mut made);
                 if turn == Turn::Over {
                     self.standing = Standing::Over;
@@ -138,6 +165,13 @@ impl Runner {
             Err(PilotFault::Stopped(sentence)) => self.fails(sentence),
             Err(PilotFault::Panicked(message)) => self.fails(format!("a panic, which is a bug: {message}")),
         }
+        made.changes = self.engine.take_changes();
+        // The way that was recorded in the turn before is part of this turn's output.
+        let replaced = self.replaced.take();
+        made.changes.extend(replaced.map(|StoredPath { name, setpoints }| Change::Path {
+            name: name.to_owned(),
+            setpoints: setpoints.to_vec(),
+        }));
         self.engine.messages(&mut |message| made.lines.push(message.to_owned()));
         if let Standing::Failed(sentence) = &self.standing {
             made.lines.push(format!("error: {sentence}"));
@@ -173,6 +207,7 @@ impl Runner {
         let turn = RecordedTurn { here: &y.odometry, paths: self.robot.paths, law, has_changed };
         let taken = recorder.take(&turn);
         self.robot.paths = recorder.store().unwrap_or(self.robot.paths);
+        self.replaced = recorder.take_replaced();
         match taken {
             Ok(text) => Some((recorder.path(), text?)),
             Err(sentence) => {

@@ -6,6 +6,7 @@ mod file;
 mod fleet;
 mod member;
 mod output;
+mod records;
 mod setup;
 
 use std::io::{self, Write as _};
@@ -57,7 +58,7 @@ pub(crate) fn run(arguments: &Run, library: &Library<Sensed>) -> Result<ExitCode
     let scenario = Scenario::read(file, path, options.seed).map_err(refused)?;
     let mut output = Output::open(&options, &scenario).map_err(Failure::Usage)?;
     let timeout = options.timeout.unwrap_or(scenario.timeout);
-    let fleet = Fleet::new(scenario, library).map_err(Failure::Usage)?;
+    let fleet = Fleet::new(scenario, library, output.records()).map_err(Failure::Usage)?;
     let uncaught = |error| Failure::Usage(format!("signals cannot be caught: {error}"));
     let interruption = Interruption::listen().map_err(uncaught)?;
     let status = fleet.run(timeout, &interruption, &mut output);

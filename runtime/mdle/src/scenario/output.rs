@@ -4,19 +4,21 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use mdle_host::Clocked;
+use mdle_host::{Clocked, Moment, is_record};
 use mdle_runtime::trace::{Json, Seconds};
 use mdle_runtime::{Nanos, Printable, Sensed};
 use mdle_sim::{FleetDrawing, TripDrawing};
 
 use super::arguments::Options;
-use super::member::{MemberTurn, Runner};
+use super::member::{MemberTurn, Runner, Standing};
+use super::records::{Records, unwritten};
 use super::setup::Scenario;
 
 /// Reports and files of a run.
 pub(super) struct Output {
     out: BufWriter<io::Stdout>,
     log: Option<Table>,
+    records: Option<Records>,
     trail: Option<Table>,
     plot: Option<(PathBuf, FleetDrawing)>,
     trips: Option<(PathBuf, TripDrawing)>,
@@ -42,10 +44,6 @@ impl Table {
     }
 }
 
-fn unwritten(path: &Path, error: &io::Error) -> String {
-    format!("{} cannot be written: {error}", path.display())
-}
-
 impl Output {
     /// Opens the files that the options name.
     ///
@@ -54,9 +52,14 @@ impl Output {
     pub(super) fn open(options: &Options, scenario: &Scenario) -> Result<Self, String> {
         let table = |path: &Option<PathBuf>| path.as_deref().map(Table::create).transpose();
         let title = setup(scenario);
+        let (records, log) = match &options.log {
+            Some(log) if is_record(log) => (Some(Records::create(log, scenario, &options.command)?), None),
+            log => (None, table(log)?),
+        };
         let mut output = Self {
             out: BufWriter::new(io::stdout()),
-            log: table(&options.log)?,
+            log,
+            records,
             trail: table(&options.trail)?,
             plot: options.plot.clone().map(|path| (path, FleetDrawing::of(&scenario.world, &title))),
             trips: options.trips.clone().map(|path| (path, TripDrawing::of(&title))),
@@ -77,6 +80,17 @@ impl Output {
     pub(super) fn turn(&mut self, runner: &Runner, y: &Sensed, t: Nanos, number: u64, made: &MemberTurn) {
         for line in &made.lines {
             self.line(t, &runner.name, line);
+        }
+        if let Some(records) = &mut self.records {
+            let recorded = runner.recorded(Moment { y, t, number }, made);
+            let written = recorded.map_or(Ok(()), |turn| records.turn(&runner.name, turn));
+            let written = match &runner.standing {
+                Standing::Drives => written,
+                ended @ (Standing::Over | Standing::Killed | Standing::Failed(_)) => {
+                    written.and_then(|()| records.end(&runner.name, t, &ended.words(None)))
+                }
+            };
+            self.note(written);
         }
         let pose = runner.robot.pose();
         let (x, side, heading) = (pose.x.0, pose.y.0, pose.theta.degrees());
@@ -109,6 +123,20 @@ impl Output {
             let written = record(&folder.join(&runner.name), path, text);
             self.note(written);
         }
+    }
+
+    /// Takes the end of the run at time `t`, at which a robot still runs this law.
+    pub(super) fn ends(&mut self, runner: &Runner, t: Nanos, law: Option<&str>) {
+        self.line(t, &runner.name, &runner.standing.words(law));
+        if let Some(records) = &mut self.records {
+            let ended = records.end(&runner.name, t, "end of the scenario");
+            self.note(ended);
+        }
+    }
+
+    /// Returns `true` if the robots are recorded.
+    pub(super) fn records(&self) -> bool {
+        self.records.is_some()
     }
 
     /// Writes a line about a robot at time `t`.

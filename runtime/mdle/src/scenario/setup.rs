@@ -16,6 +16,7 @@ use mdle_sim::{Body, Make, Sim, Simulated, Start, StartNoise, Walls, World};
 
 use super::file::{At, LinkText, RobotText, ScenarioError, ScenarioText};
 use crate::failure::{self, Failure};
+use crate::plans::texts;
 
 /// Maximum size of a file of a path or a world, in bytes.
 const LARGEST: u64 = 10_000_000;
@@ -46,6 +47,8 @@ pub(super) struct Member {
     /// Pose at which its odometry is said to begin, in the world.
     pub(super) start: Pose,
     pub(super) loaded: Arc<Loaded<SimAlphabet>>,
+    /// Names and texts of the files of its plan, its own first.
+    pub(super) files: Vec<(String, String)>,
     /// The paths that its plan replays; one that is recorded may come later.
     pub(super) paths: Vec<(&'static str, Vec<Setpoint>)>,
     /// Name of the path that it records.
@@ -103,7 +106,7 @@ impl Scenario {
     /// Makes a robot, which may not stand in one of those before it.
     fn member(&self, text: &RobotText, path: &Path, names: &[&str]) -> Result<Member, SetupError> {
         let name = text.name.get_ref();
-        let loaded = plan(&text.file, text.plan.as_ref(), path)?;
+        let (loaded, files) = plan(&text.file, text.plan.as_ref(), path)?;
         let plan = loaded.plan();
         for other in plan.robots() {
             if other == name || !names.contains(other) {
@@ -130,7 +133,7 @@ impl Scenario {
         let paths = paths(text, path, plan.paths(), records)?;
         let killed = text.killed.as_ref().map(|killed| duration(killed, 0.0, 1e9)).transpose()?;
         let killed = killed.map(|killed| Nanos(u64::try_from(killed.as_nanos()).unwrap_or(u64::MAX)));
-        Ok(Member { name: name.clone(), body, robot, start, loaded, paths, records, killed })
+        Ok(Member { name: name.clone(), body, robot, start, loaded, files, paths, records, killed })
     }
 
     /// Returns the pose at which a robot begins, which is said to begin at `start`.
@@ -143,12 +146,11 @@ impl Scenario {
     }
 }
 
+/// A plan with the names and the texts of its files, its own first.
+pub(super) type PlanWithFiles = (Arc<Loaded<SimAlphabet>>, Vec<(String, String)>);
+
 /// Compiles and loads the plan of a robot.
-pub(super) fn plan(
-    file: &At<PathBuf>,
-    name: Option<&At<String>>,
-    path: &Path,
-) -> Result<Arc<Loaded<SimAlphabet>>, SetupError> {
+pub(super) fn plan(file: &At<PathBuf>, name: Option<&At<String>>, path: &Path) -> Result<PlanWithFiles, SetupError> {
     let file = path.with_file_name("").join(file.get_ref());
     let target = Settings::beside(&file)?.target(Some(SIM))?;
     let mut input = read_plan(&file, &target)?;
@@ -164,7 +166,7 @@ pub(super) fn plan(
     }
     let named = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine)).collect();
     let machine = input.only(named)?;
-    Ok(Arc::new(load::load(&machine, &input.sources, &target.alphabet)?))
+    Ok((Arc::new(load::load(&machine, &input.sources, &target.alphabet)?), texts(&input)))
 }
 
 /// Returns the error about a robot that a plan names and that is not there.

@@ -7,6 +7,8 @@ use mdle_runtime::{Machine, Nanos, Pose, Robot as _, Turn, Twist};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Footprint, Others, Simulated};
 
+use super::recorded::RecordedMember;
+
 /// A robot of a crowd.
 pub(super) struct Member {
     robot: Simulated,
@@ -19,11 +21,18 @@ pub(super) struct Member {
     pub(super) has_touched: bool,
     /// Way that it has driven, in metres.
     pub(super) way: f64,
+    record: Option<Box<RecordedMember>>,
 }
 
 impl Member {
-    pub(super) fn new(robot: Simulated) -> Self {
-        Self { robot, machine: None, input: Twist::default(), is_over: false, has_touched: false, way: 0.0 }
+    pub(super) fn new(robot: Simulated, record: Option<RecordedMember>) -> Self {
+        let record = record.map(Box::new);
+        Self { robot, machine: None, input: Twist::default(), is_over: false, has_touched: false, way: 0.0, record }
+    }
+
+    /// Returns the error of the record: a sentence.
+    pub(super) fn fault(&self) -> Option<&str> {
+        self.record.as_ref().and_then(|record| record.fault())
     }
 
     pub(super) fn footprint(&self) -> Footprint {
@@ -56,7 +65,18 @@ impl Member {
             return;
         }
         let machine = self.machine.get_or_insert_with(|| Box::new(Machine::begin(plan.plan(), &y, t)));
-        let turn = machine.turn(&y, t, &mut ());
+        let turn = match &mut self.record {
+            None => machine.turn(&y, t, &mut ()),
+            Some(record) => {
+                record.transitions.clear();
+                let turn = machine.turn(&y, t, &mut record.transitions);
+                record.turn(machine, (&y, t), &turn);
+                if turn == Turn::Over {
+                    record.end(t, "plan over");
+                }
+                turn
+            }
+        };
         self.input = turn.input();
         if turn == Turn::Over {
             self.ends();
@@ -71,9 +91,12 @@ impl Member {
         self.machine = None;
     }
 
-    /// Stops the robot.
-    pub(super) fn stop(&mut self) {
+    /// Stops the robot at the end of the run, at time `t`.
+    pub(super) fn stop(&mut self, t: Nanos) {
         // A simulated robot always obeys.
         let _ = self.robot.stop();
+        if let Some(record) = &mut self.record {
+            record.end(t, "end of the scenario");
+        }
     }
 }

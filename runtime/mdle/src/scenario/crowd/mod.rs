@@ -2,6 +2,7 @@
 
 mod member;
 mod places;
+mod recorded;
 mod setup;
 mod table;
 mod turns;
@@ -30,7 +31,8 @@ pub(super) fn run(setup: CrowdSetup, options: &Options) -> Result<ExitCode, Fail
     let uncaught = |error| Failure::Usage(format!("signals cannot be caught: {error}"));
     let interruption = Interruption::listen().map_err(uncaught)?;
     let (period, timeout) = (setup.period, setup.timeout);
-    let mut turns = Turns::new(setup);
+    let records = options.log.as_deref().map(|log| setup.records(log, &options.command)).transpose();
+    let mut turns = Turns::new(setup, records.map_err(Failure::Usage)?.unwrap_or_default());
     let begun = Instant::now();
     let last = {
         let mut err = io::stderr();
@@ -42,7 +44,7 @@ pub(super) fn run(setup: CrowdSetup, options: &Options) -> Result<ExitCode, Fail
             if let Some(trail) = &mut trail {
                 trail.turn(&mut turns, t);
             }
-            let is_unwritten = trail.as_ref().is_some_and(Trail::has_failed);
+            let is_unwritten = trail.as_ref().is_some_and(Trail::has_failed) || turns.fault().is_some();
             if turns.are_over() || t >= timeout || is_unwritten || interruption.is_made() {
                 break t;
             }
@@ -52,7 +54,7 @@ pub(super) fn run(setup: CrowdSetup, options: &Options) -> Result<ExitCode, Fail
             t = Nanos(t.0.saturating_add(period.0));
         }
     };
-    turns.stop();
+    turns.stop(last);
     let mut status = if turns.are_over() { 0 } else { TIMED_OUT };
     let _ = writeln!(io::stdout(), "{}", turns.summary(last));
     let seconds = begun.elapsed().as_secs_f64();
@@ -67,7 +69,7 @@ pub(super) fn run(setup: CrowdSetup, options: &Options) -> Result<ExitCode, Fail
         last.seconds()
     );
     status = interruption.tell(&mut io::stderr()).unwrap_or(status);
-    if let Some(Err(sentence)) = trail.map(Trail::close) {
+    for sentence in trail.and_then(|trail| trail.close().err()).into_iter().chain(turns.fault()) {
         let _ = writeln!(io::stderr(), "error: {sentence}");
         status = FAULT;
     }

@@ -12,11 +12,15 @@ use mdle_sim::{Make, Sim, Simulated};
 
 use super::super::arguments::Options;
 use super::super::file::{At, CrowdText, ScenarioError, ScenarioText};
+use super::super::records::begin;
 use super::super::setup::{self, SetupError, duration};
 use super::places::{Places, hall};
+use super::recorded::RecordedMember;
 
 /// Maximum number of robots.
 const ROBOTS_MOST: u64 = 100_000;
+/// Maximum number of robots that are recorded: each record is an open file.
+const RECORDED_MOST: usize = 250;
 /// Distance between two robots at the start, in metres: a robot on 4 m².
 const SPACING: f64 = 2.0;
 
@@ -24,6 +28,8 @@ const SPACING: f64 = 2.0;
 pub(in super::super) struct CrowdSetup {
     pub(super) robots: Vec<Simulated>,
     pub(super) plan: Arc<Loaded<SimAlphabet>>,
+    /// Names and texts of the files of the plan, its own first.
+    files: Vec<(String, String)>,
     pub(super) period: Nanos,
     pub(super) timeout: Nanos,
     pub(super) threads: usize,
@@ -46,7 +52,7 @@ impl CrowdSetup {
             let message = format!("a crowd has from 1 to {ROBOTS_MOST} robots");
             return Err(ScenarioError::at(crowd.robots.span(), message).into());
         }
-        let plan = setup::plan(&crowd.file, crowd.plan.as_ref(), path)?;
+        let (plan, files) = setup::plan(&crowd.file, crowd.plan.as_ref(), path)?;
         check(&plan, crowd)?;
         let period = file.period.as_ref().map(|period| duration(period, 0.001, 1.0)).transpose()?;
         let period = period.unwrap_or(Sim::PERIOD);
@@ -57,10 +63,27 @@ impl CrowdSetup {
         Ok(Self {
             robots,
             plan,
+            files,
             period: nanos(period),
             timeout: nanos(options.timeout.or(timeout).unwrap_or(setup::TIMEOUT)),
             threads: options.threads.unwrap_or_else(processors),
         })
+    }
+
+    /// Creates a record for each robot of a crowd that this command repeats, named after its number from 1.
+    ///
+    /// # Errors
+    /// There are too many robots, or a record cannot be written: a sentence.
+    pub(super) fn records(&self, log: &Path, command: &str) -> Result<Vec<RecordedMember>, String> {
+        let count = self.robots.len();
+        if count > RECORDED_MOST {
+            return Err(format!(
+                "--log writes a record of each robot, for at most {RECORDED_MOST} robots, and this crowd has {count}\n\
+                 help: leave it out; `--trail FILE.csv` has the poses of a crowd"
+            ));
+        }
+        let begin = begin(&self.plan.plan(), &self.files, command, self.period);
+        (1..=count).map(|number| RecordedMember::create(log, number, begin.clone())).collect()
     }
 }
 

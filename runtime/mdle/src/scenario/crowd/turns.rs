@@ -16,6 +16,7 @@ use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Crowd, Footprint, Groups, Others};
 
 use super::member::Member;
+use super::recorded::RecordedMember;
 use super::setup::CrowdSetup;
 
 /// Number of groups that a thread takes at a time.
@@ -50,11 +51,13 @@ fn lock(member: &Mutex<Member>) -> MutexGuard<'_, Member> {
 }
 
 impl Turns {
-    /// Returns a crowd before its first turn.
-    pub(super) fn new(setup: CrowdSetup) -> Self {
+    /// Returns a crowd before its first turn, with the records of its robots; none if they are not recorded.
+    pub(super) fn new(setup: CrowdSetup, records: Vec<RecordedMember>) -> Self {
         let CrowdSetup { robots, plan, threads, .. } = setup;
+        let mut records = records.into_iter();
         let (hears, touches) = robots.first().map_or((0.0, 0.0), |robot| (robot.hears(), robot.touches()));
-        let members: Vec<_> = robots.into_iter().map(|robot| Mutex::new(Member::new(robot))).collect();
+        let members = robots.into_iter().map(|robot| Mutex::new(Member::new(robot, records.next())));
+        let members: Vec<_> = members.collect();
         let threads = threads.min(members.len().div_ceil(FOR_A_THREAD));
         Self { members, plan, threads, hears, touches }
     }
@@ -95,9 +98,14 @@ impl Turns {
         self.each().all(|member| member.is_over)
     }
 
-    /// Stops all robots.
-    pub(super) fn stop(&mut self) {
-        self.each().for_each(|mut member| member.stop());
+    /// Stops all robots at the end of the run, at time `t`.
+    pub(super) fn stop(&mut self, t: Nanos) {
+        self.each().for_each(|mut member| member.stop(t));
+    }
+
+    /// Returns the error of a record that could not be written: a sentence.
+    pub(super) fn fault(&self) -> Option<String> {
+        self.each().find_map(|member| member.fault().map(str::to_owned))
     }
 
     /// Returns the report at time `t`.

@@ -1,0 +1,82 @@
+//! The record of a robot whose turns are made outside of a run of its own, such as a robot of a scenario.
+
+use std::fs::File;
+use std::io;
+use std::path::Path;
+
+use mdle_record::{Begin, Change, RecordFile};
+use mdle_runtime::{Nanos, Sensed, Turn, Twist};
+
+use crate::drive::Exact;
+use crate::log::Entry;
+use crate::position::Texts;
+use crate::record::{Record, UnmadeTurn};
+use crate::supervised::Supervised;
+use crate::transitions::Transitions;
+
+/// The record of a robot that is being written. Each second of the run reaches the file when it is over.
+pub struct RobotRecord(Record<RecordFile<File>>);
+
+/// A turn, for the record of a robot.
+pub struct RobotTurn<'a> {
+    /// Number of the turn, from 0.
+    pub number: u64,
+    /// Time of the turn.
+    pub t: Nanos,
+    /// The output.
+    pub y: &'a Sensed,
+    /// The input that is sent after the turn.
+    pub sent: Twist,
+    /// Source of the input.
+    pub kind: Turn<()>,
+    /// The plan, and the state in which the turn ended; `None` if no plan has made the turn.
+    pub plan: Option<(&'a dyn Texts, u64)>,
+    /// Transitions of the turn.
+    pub transitions: &'a Transitions,
+    /// Causes of the turn besides its output.
+    pub changes: Vec<Change>,
+}
+
+impl RobotRecord {
+    /// Creates the file of a record, or empties the file that has its name.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn create(path: &Path, begin: Begin) -> io::Result<Self> {
+        Ok(Self(Record::new(RecordFile::new(File::create(path)?), begin, false)))
+    }
+
+    /// Writes a turn.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn turn(&mut self, turn: RobotTurn<'_>) -> io::Result<()> {
+        let RobotTurn { number, t, y, sent, kind, plan, transitions, changes } = turn;
+        let supervised = &Supervised::default();
+        self.0.take(Some(Exact { y, asked: sent, sent }), changes);
+        match plan {
+            None => self.0.turn_without_plan(&UnmadeTurn { number, t, plan: 1, supervised }),
+            Some((plan, state)) => self.0.turn(&Entry {
+                plan,
+                turn: number,
+                t,
+                state,
+                kind,
+                applied: None,
+                frame: None,
+                transitions,
+                plan_number: 1,
+                supervised,
+            }),
+        }
+    }
+
+    /// Completes the record, whose last turn had this number, with the cause of the end.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn end(mut self, number: u64, t: Nanos, cause: &str) -> io::Result<()> {
+        self.0.ended(number, t, cause)?;
+        self.0.close()
+    }
+}

@@ -1,0 +1,72 @@
+//! The record of a robot of a crowd.
+
+use std::path::{Path, PathBuf};
+
+use mdle_compiler::load::LoadedPlan;
+use mdle_host::{RobotRecord, RobotTurn, Transitions};
+use mdle_record::Begin;
+use mdle_runtime::{Machine, Nanos, Sensed, Turn, Twist};
+use mdle_sim::alphabet::Alphabet as SimAlphabet;
+
+use super::super::records::unwritten;
+
+/// A record that is being written.
+pub(super) struct RecordedMember {
+    path: PathBuf,
+    /// `None` once the record is complete, or cannot be written.
+    record: Option<RobotRecord>,
+    /// Transitions of the turn.
+    pub(super) transitions: Transitions,
+    /// Number of the next turn.
+    next: u64,
+    /// The error that ended the record: a sentence.
+    fault: Option<String>,
+}
+
+impl RecordedMember {
+    /// Creates the record of the robot of this number: `run.mcap` becomes `run.17.mcap`.
+    ///
+    /// # Errors
+    /// It cannot be written: a sentence.
+    pub(super) fn create(log: &Path, number: usize, begin: Begin) -> Result<Self, String> {
+        let path = log.with_extension(format!("{number}.mcap"));
+        let record = RobotRecord::create(&path, begin).map_err(|error| unwritten(&path, &error))?;
+        Ok(Self { path, record: Some(record), transitions: Transitions::default(), next: 0, fault: None })
+    }
+
+    /// Writes a turn that `machine` has made at time `t` with the output `y`.
+    pub(super) fn turn(
+        &mut self,
+        machine: &Machine<LoadedPlan<SimAlphabet>>,
+        (y, t): (&Sensed, Nanos),
+        turn: &Turn<Twist>,
+    ) {
+        let (kind, sent) = match turn {
+            Turn::Law(input) => (Turn::Law(()), *input),
+            Turn::Cut => (Turn::Cut, Twist::default()),
+            Turn::Over => (Turn::Over, Twist::default()),
+        };
+        let Self { record, transitions, next, path, fault } = self;
+        let plan = Some((machine.plan() as _, machine.state()));
+        let recorded = RobotTurn { number: *next, t, y, sent, kind, plan, transitions, changes: Vec::new() };
+        let written = record.as_mut().map_or(Ok(()), |record| record.turn(recorded));
+        *next += 1;
+        if let Err(error) = written {
+            *record = None;
+            *fault = Some(unwritten(path, &error));
+        }
+    }
+
+    /// Completes the record at time `t`, unless it is complete, with the cause of the end.
+    pub(super) fn end(&mut self, t: Nanos, cause: &str) {
+        let ended = self.record.take().map_or(Ok(()), |record| record.end(self.next.saturating_sub(1), t, cause));
+        if let Err(error) = ended {
+            self.fault = Some(unwritten(&self.path, &error));
+        }
+    }
+
+    /// Returns the error that ended the record: a sentence.
+    pub(super) fn fault(&self) -> Option<&str> {
+        self.fault.as_deref()
+    }
+}

@@ -1,0 +1,106 @@
+//! The records of the robots of a scenario: a file for each, which commands read as that of any run.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use mdle_compiler::load::LoadedPlan;
+use mdle_host::{RobotRecord, RobotTurn, Target as _};
+use mdle_record::Begin;
+use mdle_runtime::{Nanos, Plan as _};
+use mdle_sim::Sim;
+use mdle_sim::alphabet::Alphabet as SimAlphabet;
+
+use super::setup::{Member, Scenario};
+
+/// The records that are being written.
+pub(super) struct Records(Vec<MemberRecord>);
+
+/// The record of a robot.
+struct MemberRecord {
+    /// Name of the robot.
+    robot: String,
+    path: PathBuf,
+    /// `None` once the record is complete.
+    record: Option<RobotRecord>,
+    /// Number of the last turn.
+    turn: u64,
+}
+
+impl Records {
+    /// Creates the records of a scenario that this command repeats: `run.mcap` becomes `run.ada.mcap` for the robot
+    /// `ada`.
+    ///
+    /// # Errors
+    /// One cannot be written: a sentence.
+    pub(super) fn create(log: &Path, scenario: &Scenario, command: &str) -> Result<Self, String> {
+        let created = scenario.members.iter().map(|member| {
+            let path = log.with_extension(format!("{}.mcap", member.name));
+            let record = RobotRecord::create(&path, of_member(member, scenario, command));
+            let record = record.map_err(|error| unwritten(&path, &error))?;
+            Ok(MemberRecord { robot: member.name.clone(), path, record: Some(record), turn: 0 })
+        });
+        created.collect::<Result<_, _>>().map(Self)
+    }
+
+    /// Writes a turn of a robot.
+    ///
+    /// # Errors
+    /// The record cannot be written: a sentence.
+    pub(super) fn turn(&mut self, robot: &str, turn: RobotTurn<'_>) -> Result<(), String> {
+        let number = turn.number;
+        self.write(robot, |record, last| {
+            *last = number;
+            record.as_mut().map_or(Ok(()), |record| record.turn(turn))
+        })
+    }
+
+    /// Completes the record of a robot, unless it is complete, with the cause of its end.
+    ///
+    /// # Errors
+    /// The record cannot be written: a sentence.
+    pub(super) fn end(&mut self, robot: &str, t: Nanos, cause: &str) -> Result<(), String> {
+        self.write(robot, |record, last| record.take().map_or(Ok(()), |record| record.end(*last, t, cause)))
+    }
+
+    fn write(
+        &mut self,
+        robot: &str,
+        write: impl FnOnce(&mut Option<RobotRecord>, &mut u64) -> io::Result<()>,
+    ) -> Result<(), String> {
+        let member = self.0.iter_mut().find(|member| member.robot == robot);
+        let Some(MemberRecord { path, record, turn, .. }) = member else { return Ok(()) };
+        write(record, turn).map_err(|error| unwritten(path, &error))
+    }
+}
+
+/// Returns the sentence about a file that cannot be written.
+pub(super) fn unwritten(path: &Path, error: &io::Error) -> String {
+    format!("{} cannot be written: {error}", path.display())
+}
+
+/// Returns the begin of a robot's record.
+fn of_member(member: &Member, scenario: &Scenario, command: &str) -> Begin {
+    let Member { loaded, files, records, .. } = member;
+    let plan = loaded.plan();
+    let period = Nanos(u64::try_from(scenario.period.as_nanos()).unwrap_or(u64::MAX));
+    let parts = [
+        (!plan.reads().is_empty(), "modules"),
+        (!plan.robots().is_empty(), "the state link"),
+        (records.is_some(), "recorded paths"),
+    ];
+    let beside: Vec<_> = parts.into_iter().filter_map(|(is_there, words)| is_there.then_some(words)).collect();
+    Begin { beside: beside.join(" and "), ..begin(&plan, files, command, period) }
+}
+
+/// Returns the begin of a robot's record, in a run that this command repeats.
+pub(super) fn begin(plan: &LoadedPlan<SimAlphabet>, files: &[(String, String)], command: &str, period: Nanos) -> Begin {
+    Begin {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        target: Sim::NAME.to_owned(),
+        plan: plan.name(0).to_owned(),
+        command: command.to_owned(),
+        period,
+        files: files.to_vec(),
+        ..Begin::default()
+    }
+}
