@@ -166,6 +166,7 @@ fn faulty_files_of_tests_have_a_help() {
         "script = []",
         "script = [{ t = 0 }, { t = 1, fired = [\"bumber\"] }]",
         "script = [{ t = 1 }, { t = 0 }]",
+        "script = [{ t = 0 }, { t = 1, completed = [\"go 20 0\"] }]",
         "script = [{ t = 0 }]\nworld = \"room\"",
         "script = [{ t = 0 }]\nexpect.never = [\"closer than 1m\"]",
         "script = [{ t = 0 }]\nexpect.pose = \"1,1,1\"",

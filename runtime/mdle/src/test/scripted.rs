@@ -24,7 +24,22 @@ pub(super) fn script(turns: &At<Vec<At<ScriptTurn>>>, subject: &Subject) -> Resu
     let lines = turns.get_ref().iter().map(|turn| serde_json::to_string(turn.get_ref()).unwrap_or_default());
     let script = Script::read(&lines.collect::<Vec<_>>().join("\n"));
     let script = script.and_then(|script| script.in_words_of(&subject.compiled.plan, &subject.target.alphabet));
-    script.map_err(|error| TestFileError::at(turn(error.line), error.message.replace("previous line", "previous turn")))
+    let script = script.map_err(|error| {
+        TestFileError::at(turn(error.line), error.message.replace("previous line", "previous turn"))
+    })?;
+    for (number, reports) in script.turns().iter().enumerate() {
+        if let Some(law) = reports.completed.iter().find(|law| never_completes(law, subject.machine())) {
+            let help = "leave it out of `completed`: an interrupt ends its atom";
+            return Err(TestFileError::at(turn(number + 1), format!("the law `{law}` never completes")).help(help));
+        }
+    }
+    Ok(script)
+}
+
+/// Returns `true` if the plan has this law, and the law never completes.
+fn never_completes(law: &str, machine: &Machine) -> bool {
+    let mut laws = machine.atoms().filter(|atom| atom.law().text == law).peekable();
+    laws.peek().is_some() && laws.all(|atom| !atom.law().completes)
 }
 
 /// Runs the plan on a script.
