@@ -78,11 +78,11 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
     pub fn scope(&self, fsm: Fsm<'_>, level: u16) -> u32 {
         let own = fsm.atoms.get(self.atom as usize).map_or(0, |atom| atom.scope);
         let mut outwards = fsm.outwards(own);
-        let found = outwards.find(|(_, bracket)| match bracket.kind {
-            Kind::Scope { level: found } => found == level,
+        let scope = outwards.find(|(_, bracket)| match bracket.kind {
+            Kind::Scope { level: here } => here == level,
             Kind::Loop { .. } => false,
         });
-        found.map_or(own, |(number, _)| number)
+        scope.map_or(own, |(number, _)| number)
     }
 
     /// The number of the current state in the expanded plan, from 1; the termination state when the plan is over.
@@ -92,8 +92,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
             Kind::Scope { .. } => state,
             Kind::Loop { times, slot, stride } => {
                 let left = self.left.as_ref().get(usize::from(slot)).copied().unwrap_or(0);
-                let passed = times.saturating_sub(left).saturating_sub(1);
-                state.saturating_add(passed.saturating_mul(stride))
+                let passes = times.saturating_sub(left).saturating_sub(1);
+                state.saturating_add(passes.saturating_mul(stride))
             }
         })
     }
@@ -102,10 +102,10 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
     /// that enclose it and whose last element has ended, a loop with its last pass.
     pub fn ending<'f>(&self, fsm: Fsm<'f>, level: u16) -> impl Iterator<Item = (u32, &'f Bracket)> {
         let mut outwards = fsm.outwards(self.scope(fsm, level));
-        let ended = outwards.next();
-        let last = ended.map_or(0, |(_, bracket)| bracket.last);
+        let scope = outwards.next();
+        let last = scope.map_or(0, |(_, bracket)| bracket.last);
         let around = outwards.take_while(move |(_, around)| around.last == last && !self.has_pass(around));
-        ended.into_iter().chain(around)
+        scope.into_iter().chain(around)
     }
 
     /// Returns `true` if `bracket` is a loop that has a pass left.
@@ -119,7 +119,7 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
     pub fn end(&mut self, fsm: Fsm<'_>, level: u16, t: Nanos) -> bool {
         let mut outwards = fsm.outwards(self.scope(fsm, level));
         // What ends together with the scope has the same last atom.
-        let last = outwards.next().map_or(0, |(_, ended)| ended.last);
+        let last = outwards.next().map_or(0, |(_, scope)| scope.last);
         for (holder, around) in outwards {
             if last != around.last {
                 self.open(fsm, last.saturating_add(1), Some(holder), t);
@@ -157,16 +157,16 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         }
     }
 
-    /// Makes `atom` current and restarts every enclosing bracket that lies inside `kept`, or all of them if that is
+    /// Makes `atom` current and restarts every enclosing bracket that lies inside `holder`, or all of them if that is
     /// `None`.
-    fn open(&mut self, fsm: Fsm<'_>, atom: u32, kept: Option<u32>, t: Nanos) {
+    fn open(&mut self, fsm: Fsm<'_>, atom: u32, holder: Option<u32>, t: Nanos) {
         self.atom = atom;
         // Known when the plan is compiled, and then nobody looks at the tables.
         if self.entered.is_empty() && self.left.as_ref().is_empty() {
             return;
         }
         let Some(own) = fsm.atoms.get(atom as usize) else { return };
-        for (_, bracket) in fsm.outwards(own.scope).take_while(|(here, _)| kept != Some(*here)) {
+        for (_, bracket) in fsm.outwards(own.scope).take_while(|(here, _)| holder != Some(*here)) {
             match bracket.kind {
                 Kind::Scope { level } => self.entered.note(level, t),
                 Kind::Loop { times, slot, .. } => {

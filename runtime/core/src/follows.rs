@@ -29,11 +29,11 @@ impl Fsm<'_> {
     #[must_use]
     pub fn follows(self, scope: u32) -> Option<Follows> {
         let mut outwards = self.outwards(scope);
-        let (_, ended) = outwards.next()?;
+        let (_, inner) = outwards.next()?;
         let (mut holder, mut is_over) = (scope, true);
         for (number, around) in outwards {
             holder = number;
-            is_over = around.last == ended.last;
+            is_over = around.last == inner.last;
             if !is_over {
                 break;
             }
@@ -44,7 +44,7 @@ impl Fsm<'_> {
         if is_over {
             return Some(Follows::new(u32::try_from(self.atoms.len()).ok()?, 0, 0));
         }
-        let atom = ended.last.checked_add(1)?;
+        let atom = inner.last.checked_add(1)?;
         let own = self.atoms.get(atom as usize)?.scope;
         let (mut from, mut to) = (u16::MAX, 0);
         for (_, bracket) in self.outwards(own).take_while(|(here, _)| *here != holder) {

@@ -86,12 +86,12 @@ impl<P: Plan> Machine<P> {
     /// atom's law.
     pub fn turn<W: Watch>(&mut self, y: &P::Output, t: Nanos, watch: &mut W) -> Turn<P::Input> {
         self.cursor.observe(y, self.plan.stalled(y, t));
-        let mut made: u32 = 0;
+        let mut transitions: u32 = 0;
         while !self.is_over() {
             match self.plan.next(&self.cursor, y, t) {
-                Some(ending) if made < TRANSITIONS_PER_TURN => {
+                Some(ending) if transitions < TRANSITIONS_PER_TURN => {
                     self.step(ending, y, t, watch);
-                    made = made.saturating_add(1);
+                    transitions = transitions.saturating_add(1);
                 }
                 Some(_) => {
                     self.plan.settle(&self.cursor, y, t);

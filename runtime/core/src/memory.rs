@@ -135,8 +135,8 @@ mod tests {
     fn marks_are_found_by_their_bracket() {
         let mark = |bracket, first| MarkRow { bracket, level: 0, first, count: 1, first_fact: 0, facts: 0 };
         let marks = [mark(1, 0), mark(3, 1), mark(3, 2), mark(4, 3)];
-        let found = |bracket| MarkRow::of(&marks, bracket).iter().map(|mark| mark.first).sum::<u32>();
-        assert_eq!([0, 1, 2, 3, 4, 5].map(found), [0, 0, 0, 3, 3, 0]);
+        let first_memory = |bracket| MarkRow::of(&marks, bracket).iter().map(|mark| mark.first).sum::<u32>();
+        assert_eq!([0, 1, 2, 3, 4, 5].map(first_memory), [0, 0, 0, 3, 3, 0]);
     }
 
     #[test]

@@ -75,8 +75,8 @@ impl Published {
 
     /// Sets the number of the attribute at this place among the names.
     pub fn set(&mut self, place: usize, number: Option<PublishedNumber>) {
-        if let Some(kept) = self.numbers.get_mut(place) {
-            *kept = number;
+        if let Some(entry) = self.numbers.get_mut(place) {
+            *entry = number;
         }
     }
 
@@ -102,9 +102,9 @@ mod tests {
         let number = PublishedNumber { value: 0.5, at: Nanos(3), age: Nanos(7) };
         published.set(1, Some(number));
         published.set(PUBLISHED, Some(number));
-        let found = [("ears", "bearing"), ("heading", "bearing"), ("heading", "range"), ("nobody", "bearing")];
-        let found = found.map(|(module, attribute)| published.number(module, attribute));
-        assert_eq!(found, [None, Some(number), None, None]);
+        let names = [("ears", "bearing"), ("heading", "bearing"), ("heading", "range"), ("nobody", "bearing")];
+        let numbers = names.map(|(module, attribute)| published.number(module, attribute));
+        assert_eq!(numbers, [None, Some(number), None, None]);
         assert_eq!(Published::NONE.number("heading", "bearing"), None);
     }
 }

@@ -44,7 +44,7 @@ impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
     #[inline(always)]
     fn outermost(&self, cursor: &Cursor<E, P>, y: &OutputOf<T>, t: Nanos) -> Option<&Guard<InterruptOf<T>>> {
         // From inside out, and the last one found counts: so the outermost wins, however deep scopes are nested.
-        let (guards, mut here, mut found) = (self.table.guards(), self.own, None);
+        let (guards, mut here, mut outermost) = (self.table.guards(), self.own, None);
         while let Some(guard) = guards.get(here as usize) {
             let fired = match &guard.condition {
                 Condition::Null => false,
@@ -60,14 +60,14 @@ impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
                 | Condition::After(..) => self.compound(guard, cursor, y, t),
             };
             if fired {
-                found = Some(guard);
+                outermost = Some(guard);
             }
             if guard.around >= here {
                 break;
             }
             here = guard.around;
         }
-        found
+        outermost
     }
 
     /// Returns `true` if a compound condition has fired.
@@ -82,8 +82,8 @@ impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
     fn record(&mut self, cursor: &Cursor<E, P>, cause: Cause, y: &OutputOf<T>, t: Nanos) {
         let Self { table, memory, .. } = self;
         let (fsm, marks, facts) = (table.fsm(), table.marks(), table.facts());
-        let ended = table.guards().get(cursor.scope(fsm, cause.level()) as usize);
-        let operand = match (cause, ended) {
+        let scope = table.guards().get(cursor.scope(fsm, cause.level()) as usize);
+        let operand = match (cause, scope) {
             (Cause::Fired(_), Some(guard)) => Some(guard.condition.cause(&reading(table, memory, guard, cursor, y, t))),
             (Cause::Completed(_), _) | (_, None) => None,
         };

@@ -82,19 +82,19 @@ impl Ping {
 /// The last pings of one sonar, newest first.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pings {
-    kept: [Option<Ping>; PINGS_KEPT],
+    latest: [Option<Ping>; PINGS_KEPT],
 }
 
 impl Pings {
     /// Adds a new ping and removes the oldest.
     pub fn push(&mut self, ping: Ping) {
-        let [first, second, _] = self.kept;
-        self.kept = [Some(ping), first, second];
+        let [first, second, _] = self.latest;
+        self.latest = [Some(ping), first, second];
     }
 
     /// Returns the stored pings, newest first; fewer than [`PINGS_KEPT`] shortly after the start.
     pub fn newest_first(&self) -> impl Iterator<Item = &Ping> {
-        self.kept.iter().flatten()
+        self.latest.iter().flatten()
     }
 
     /// Returns the smallest range among the newest `count` pings; `None` if no such ping brought an echo.

@@ -292,14 +292,14 @@ fn ends_by_either() -> Remembering {
 
 #[test]
 fn what_ends_is_written_down_with_its_cause_and_what_was_inside_is_forgotten() {
-    let recorded = |cause: Cause, y: Sensed| {
+    let memories = |cause: Cause, y: Sensed| {
         let leave = |plan: &mut Remembers<'_>, cursor: &mut At| plan.leave(cursor, cause, &y, Nanos::ZERO);
         ends_by_either().after([true; WIDTH * LEVELS], leave).1
     };
     // 0 and 4 are of no label. `Q` ends as well, but nothing of its own has ended it.
-    assert_eq!(recorded(Cause::Fired(2), Sensed(&[1])), [0, 1, 2, 4]);
-    assert_eq!(recorded(Cause::Fired(2), Sensed(&[0, 1])), [0, 1, 4]);
-    assert_eq!(recorded(Cause::Completed(2), Sensed(&[1])), [0, 1, 4]);
+    assert_eq!(memories(Cause::Fired(2), Sensed(&[1])), [0, 1, 2, 4]);
+    assert_eq!(memories(Cause::Fired(2), Sensed(&[0, 1])), [0, 1, 4]);
+    assert_eq!(memories(Cause::Completed(2), Sensed(&[1])), [0, 1, 4]);
 }
 
 #[test]

@@ -154,12 +154,12 @@ fn what_has_no_element_left_ends_with_its_last_one() {
     ];
     let fsm = Fsm { brackets: &brackets, atoms: &[Atom::new(3, 1), Atom::new(4, 2), Atom::new(5, 3)], termination: 4 };
     let mut cursor = start(fsm);
-    let ended = |cursor: &Walk, level| cursor.ending(fsm, level).map(|(number, _)| number).collect::<Vec<_>>();
-    assert_eq!([3, 2, 0].map(|level| ended(&cursor, level)), [std::vec![3], std::vec![2, 1], std::vec![0]]);
+    let endings = |cursor: &Walk, level| cursor.ending(fsm, level).map(|(number, _)| number).collect::<Vec<_>>();
+    assert_eq!([3, 2, 0].map(|level| endings(&cursor, level)), [std::vec![3], std::vec![2, 1], std::vec![0]]);
     cursor.end(fsm, 3, Nanos(100));
-    assert_eq!(ended(&cursor, 3), [4, 2, 1]);
+    assert_eq!(endings(&cursor, 3), [4, 2, 1]);
     cursor.end(fsm, 3, Nanos(100));
-    assert_eq!(ended(&cursor, 1), [5, 0]);
+    assert_eq!(endings(&cursor, 1), [5, 0]);
 }
 
 #[test]
@@ -172,19 +172,19 @@ fn a_loop_ends_with_its_body_in_its_last_pass() {
             Bracket::scope(1, 1, 1, 0),
         ]
     };
-    let ended = |times: u64, passed: u64| {
+    let endings = |times: u64, passes: u64| {
         let brackets = brackets(times);
         let fsm = Fsm { brackets: &brackets, atoms: &[Atom::new(2, 1), Atom::new(3, 2)], termination: 3 };
         let mut cursor = start(fsm);
-        (0..passed).for_each(|_| assert!(cursor.end(fsm, 1, Nanos(100))));
+        (0..passes).for_each(|_| assert!(cursor.end(fsm, 1, Nanos(100))));
         let without_counters = Cursor::start(fsm, [], [], Nanos(100));
-        let ended = cursor.ending(fsm, 1).map(|(number, _)| number).collect::<Vec<_>>();
-        (ended, without_counters.ending(fsm, 1).count())
+        let endings = cursor.ending(fsm, 1).map(|(number, _)| number).collect::<Vec<_>>();
+        (endings, without_counters.ending(fsm, 1).count())
     };
-    assert_eq!(ended(1, 0), (std::vec![2, 1], 2));
-    assert_eq!(ended(2, 0), (std::vec![2], 2), "a loop without a counter is in its last pass");
-    assert_eq!(ended(2, 1), (std::vec![2, 1], 2));
-    assert_eq!(ended(0, 3), (std::vec![2], 1), "a loop without end");
+    assert_eq!(endings(1, 0), (std::vec![2, 1], 2));
+    assert_eq!(endings(2, 0), (std::vec![2], 2), "a loop without a counter is in its last pass");
+    assert_eq!(endings(2, 1), (std::vec![2, 1], 2));
+    assert_eq!(endings(0, 3), (std::vec![2], 1), "a loop without end");
 }
 
 #[test]

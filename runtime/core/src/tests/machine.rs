@@ -151,8 +151,8 @@ fn a_turn_in_which_nothing_fires_computes_the_law() {
 #[test]
 fn the_outermost_interrupt_wins() {
     let mut machine = begin(Toy::nested());
-    let made = Transition { from: 1, scope: SCOPE, cause: Cause::Fired(1), atom: Some(2), to: 3 };
-    assert_eq!(turn(&mut machine, Sensed(&[FIRST, SCOPE], true)).1[0], made);
+    let transition = Transition { from: 1, scope: SCOPE, cause: Cause::Fired(1), atom: Some(2), to: 3 };
+    assert_eq!(turn(&mut machine, Sensed(&[FIRST, SCOPE], true)).1[0], transition);
     let mut machine = begin(Toy::nested());
     let over = Transition { from: 1, scope: PLAN, cause: Cause::Fired(0), atom: None, to: 4 };
     assert_eq!(turn(&mut machine, Sensed(&[FIRST, SCOPE, PLAN], true)), (Turn::Over, std::vec![over]));
@@ -172,8 +172,8 @@ fn an_interrupt_is_named_where_the_law_is_done_as_well() {
 #[test]
 fn an_atom_whose_interrupt_has_fired_is_entered_and_never_computed() {
     let mut machine = begin(Toy::nested());
-    let (came, made) = turn(&mut machine, Sensed(&[FIRST, SECOND], false));
-    assert_eq!((came, made.len()), (Turn::Law(3), 2));
+    let (result, transitions) = turn(&mut machine, Sensed(&[FIRST, SECOND], false));
+    assert_eq!((result, transitions.len()), (Turn::Law(3), 2));
     assert_eq!((&*machine.plan().entered, machine.plan().computed), (&[0, 1, 2][..], 1));
 }
 
@@ -199,26 +199,26 @@ fn a_plan_that_nobody_watches_is_over_as_well() {
 #[test]
 fn as_many_transitions_as_the_limit_are_no_cut() {
     let mut machine = begin(Toy::repeated(u64::from(TRANSITIONS_PER_TURN)));
-    let (came, made) = turn(&mut machine, Sensed(&[FIRST], false));
-    assert_eq!((came, made.len()), (Turn::Law(2), 4096));
+    let (result, transitions) = turn(&mut machine, Sensed(&[FIRST], false));
+    assert_eq!((result, transitions.len()), (Turn::Law(2), 4096));
 }
 
 #[test]
 fn the_search_goes_on_in_the_turn_after_a_cut() {
     let mut machine = begin(Toy::repeated(u64::from(TRANSITIONS_PER_TURN) + 1));
-    let (came, made) = turn(&mut machine, Sensed(&[FIRST], false));
-    assert_eq!((came, made.len(), machine.state()), (Turn::Cut, 4096, 4097));
-    assert_eq!((came.input(), machine.plan().computed), (0, 0), "the null input");
-    let (came, made) = turn(&mut machine, Sensed(&[FIRST], false));
-    assert_eq!((came, made.len(), machine.state()), (Turn::Law(2), 1, 4098));
+    let (result, transitions) = turn(&mut machine, Sensed(&[FIRST], false));
+    assert_eq!((result, transitions.len(), machine.state()), (Turn::Cut, 4096, 4097));
+    assert_eq!((result.input(), machine.plan().computed), (0, 0), "the null input");
+    let (result, transitions) = turn(&mut machine, Sensed(&[FIRST], false));
+    assert_eq!((result, transitions.len(), machine.state()), (Turn::Law(2), 1, 4098));
 }
 
 #[test]
 fn a_loop_without_end_is_cut_in_every_turn() {
     let mut machine = begin(Toy::repeated(0));
     for _ in 0..3 {
-        let (came, made) = turn(&mut machine, Sensed(&[FIRST], false));
-        assert_eq!((came, made.len(), machine.state()), (Turn::Cut, 4096, 1));
+        let (result, transitions) = turn(&mut machine, Sensed(&[FIRST], false));
+        assert_eq!((result, transitions.len(), machine.state()), (Turn::Cut, 4096, 1));
     }
 }
 
@@ -237,8 +237,8 @@ fn who_watches_and_what_is_foreseen_changes_nothing() {
         let begin = |foresees| begin(Toy { foresees, ..plan() });
         let (mut watched, mut unwatched) = (begin(false), begin(foresees));
         for y in SCRIPT {
-            let came = watched.turn(&y, Nanos(1), &mut Watched::default());
-            assert_eq!(unwatched.turn(&y, Nanos(1), &mut ()), came);
+            let result = watched.turn(&y, Nanos(1), &mut Watched::default());
+            assert_eq!(unwatched.turn(&y, Nanos(1), &mut ()), result);
             assert_eq!(unwatched.cursor(), watched.cursor());
         }
         assert_eq!(unwatched.plan().entered, watched.plan().entered);
