@@ -39,9 +39,9 @@ pub fn expands(plan: &Nondegenerate) -> Result<(), Diagnostic> {
         },
     };
     for (count, limit) in [(parts, PARTS), (text, TEXT)] {
-        let written = Expanded::of(Part::Scope(&plan.plan().root), &count, false).all;
+        let source_size = Expanded::of(Part::Scope(&plan.plan().root), &count, false).all;
         let expanded = Expanded::of(Part::Scope(&plan.plan().root), &count, true);
-        if expanded.all > limit.max(written) {
+        if expanded.all > limit.max(source_size) {
             return Err(too_large(&expanded, &count, limit, plan));
         }
     }

@@ -88,16 +88,16 @@ pub fn fsm_file(plan: &Nondegenerate) -> Result<FsmFile, Diagnostic> {
     };
     for (number, Transition { interrupt, name, matrix, .. }) in (1..).zip(&matrices.transitions) {
         let x = format!("x{number}");
-        let moves = matrix.listed().map(|from| (state(from), state(matrix.row()))).collect();
+        let moves = matrix.columns().map(|from| (state(from), state(matrix.row()))).collect();
         if interrupt.condition == Condition::Null {
             file.never.push(x.clone());
         }
-        let [first, last] = [*matrix.listed().start(), *matrix.listed().end()].map(state);
+        let [first, last] = [*matrix.columns().start(), *matrix.columns().end()].map(state);
         file.scopes.push(ScopeEntry { interrupt: x.clone(), name: (*name).to_owned(), first, last });
         file.interrupts.push(InterruptEntry { name: x, text: interrupt.text.clone(), moves: Moves(moves) });
     }
-    let done = matrices.completion(plan);
-    let moves: Vec<_> = done.map(|(_, matrix)| (state(*matrix.listed().start()), state(matrix.row()))).collect();
+    let completion = matrices.completion(plan);
+    let moves: Vec<_> = completion.map(|(_, matrix)| (state(*matrix.columns().start()), state(matrix.row()))).collect();
     if !moves.is_empty() {
         let name = "completed".to_owned();
         file.interrupts.push(InterruptEntry { text: name.clone(), name, moves: Moves(moves) });

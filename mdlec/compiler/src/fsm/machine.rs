@@ -306,11 +306,11 @@ impl<'m> Element<'m> {
         // atom it is the next of all.
         let after = self.index() + 1;
         let rest = &self.machine.0.brackets[after..];
-        let skipped = match rest.first() {
+        let nested = match rest.first() {
             Some(next) if next.first > last => 0,
             _ => rest.partition_point(|bracket| bracket.first <= last),
         };
-        Exit::Next(self.machine.element(as_number(after + skipped)))
+        Exit::Next(self.machine.element(as_number(after + nested)))
     }
 
     /// Returns what follows when the element ends, as far as no loop decides that at run time.

@@ -79,7 +79,7 @@ pub struct UnitVector {
 
 impl Matrix {
     /// Returns the columns that the interrupt lists: those of the states in its scope.
-    pub fn listed(&self) -> RangeInclusive<usize> {
+    pub fn columns(&self) -> RangeInclusive<usize> {
         self.first..=self.last
     }
 
@@ -218,8 +218,8 @@ impl<'p> Brackets<'p> {
     /// Returns the destination of a scope's interrupt: the start of the innermost enclosing loop without end whose last
     /// state is that of the scope, or else the state after the scope's last state.
     fn destination(&self, scope: &Bracket<'_>) -> Destination<'p> {
-        let (mut ended, mut ends_with) = (scope, Vec::new());
-        while let Some(around) = ended.around {
+        let (mut outermost, mut ends_with) = (scope, Vec::new());
+        while let Some(around) = outermost.around {
             let around = &self.all[around];
             if around.last > scope.last {
                 break;
@@ -228,9 +228,9 @@ impl<'p> Brackets<'p> {
                 return Destination { row: around.first, afresh: around.begins, ends_with };
             }
             ends_with.extend(around.marks);
-            ended = around;
+            outermost = around;
         }
-        Destination { row: scope.last + 1, afresh: ended.ends, ends_with }
+        Destination { row: scope.last + 1, afresh: outermost.ends, ends_with }
     }
 }
 
@@ -265,17 +265,17 @@ mod tests {
 
     #[test]
     fn an_atom_a_behavior_and_a_loop_have_the_three_types_of_the_paper() {
-        let found =
+        let matrices =
             dense("{ P (bumper) { Q (wait 9) (Atom (wait 1) stop) (Atom (wait 2) stop) } (Atom (wait 3) stop) }");
-        let expected = [
+        let of_the_paper = [
             ("bumper", [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1]),
             ("wait 9", [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0, 1]),
             ("wait 1", [0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]),
             ("wait 2", [1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1]),
             ("wait 3", [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1]),
         ];
-        let expected = expected.map(|(text, rows)| (text.to_owned(), DMatrix::from_row_slice(4, 4, &rows)));
-        assert_eq!(found, expected);
+        let of_the_paper = of_the_paper.map(|(text, rows)| (text.to_owned(), DMatrix::from_row_slice(4, 4, &rows)));
+        assert_eq!(matrices, of_the_paper);
         let looping = dense("{ P (Atom (wait 1) stop) ((Atom (wait 2) stop) (Atom (wait 3) stop))^inf }");
         let last = DMatrix::from_row_slice(4, 4, &[1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1]);
         assert_eq!(looping[3], ("wait 3".to_owned(), last));

@@ -48,12 +48,12 @@ mod tests {
 
     #[test]
     fn a_plan_that_repeats_an_interrupt_is_not_lowered() {
-        let found = [
+        let texts = [
             "{ P (bumper) (Atom (bumper) stop) }",
             "{ P { Q (bumper OR wait 5) { R (Atom (wait 1) stop) (Atom (wait 5s OR bumper) stop) } } }",
             "{ P (wait 3) ((Atom (wait 1) stop) { Q (wait 3000ms) (Atom (wait 2) stop) })^2 }",
         ];
-        for text in found {
+        for text in texts {
             let compiled = compiled(text).swap_remove(0);
             assert_eq!(observation1(&compiled.machine), Ok(()), "{text}");
             let degenerate = compiled.nondegenerate.map(|_| compiled.plan.root.clone());

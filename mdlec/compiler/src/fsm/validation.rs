@@ -126,14 +126,14 @@ impl Walk<'_> {
         self.atoms += 1;
         self.bracket(number, first, Kind::Scope { level: around.scopes }, around, atom.span)?;
         self.meaning(number, Some(("", &atom.interrupt)), &atom.marks, around, atom.span)?;
-        let made = self.draft.atoms.get(first as usize);
-        let made = made.map(|made| (made.scope, u128::from(made.state)));
-        same(atom.span, "its bracket and state", Some((number, around.states + 1)), made)?;
+        let in_machine = self.draft.atoms.get(first as usize);
+        let in_machine = in_machine.map(|in_machine| (in_machine.scope, u128::from(in_machine.state)));
+        same(atom.span, "its bracket and state", Some((number, around.states + 1)), in_machine)?;
         let here = self.here(atom.here, around, atom.span)?;
         let law = self.draft.laws.get(first as usize).map(|law| (law.quark, law.frame.to_bits()));
         same(atom.span, "its law and frame", Some((atom.law, atom.frame.to_bits())), law)?;
-        let asked = here.map(|level| Here { level, turned: Radians(atom.frame) });
-        same(atom.span, "its frame", Some(&asked), self.draft.frames.get(first as usize))?;
+        let in_plan = here.map(|level| Here { level, turned: Radians(atom.frame) });
+        same(atom.span, "its frame", Some(&in_plan), self.draft.frames.get(first as usize))?;
         Ok(1)
     }
 
@@ -161,15 +161,20 @@ impl Walk<'_> {
 
     /// Checks that a bracket is of this kind, begins with this atom, and is followed by what follows it in the plan.
     fn bracket(&self, number: u32, first: u32, kind: Kind, around: Around, span: Span) -> Result<(), Diagnostic> {
-        let made = self.draft.brackets.get(number as usize);
-        same(span, "what it is", Some((kind, first)), made.map(|made| (made.kind, made.first)))?;
-        let asked = match around.behind {
+        let in_machine = self.draft.brackets.get(number as usize);
+        same(
+            span,
+            "what it is",
+            Some((kind, first)),
+            in_machine.map(|in_machine| (in_machine.kind, in_machine.first)),
+        )?;
+        let in_plan = match around.behind {
             None => Step::Over,
             // All that is in it was met, so the next atom is the first one behind it.
             Some(true) => Step::Enters { atom: self.atoms, inside: around.holder },
             Some(false) => Step::Ends { bracket: around.holder },
         };
-        same(span, "what follows it", Some(asked), made.and_then(|made| self.step(number, made)))
+        same(span, "what follows it", Some(in_plan), in_machine.and_then(|in_machine| self.step(number, in_machine)))
     }
 
     /// Returns the step that the machine takes when this bracket ends.
@@ -197,27 +202,28 @@ impl Walk<'_> {
     fn meaning(
         &self,
         number: u32,
-        asked: Option<(&str, &Interrupt)>,
+        in_plan: Option<(&str, &Interrupt)>,
         marks: &[Mark],
         around: Around,
         span: Span,
     ) -> Result<(), Diagnostic> {
-        let made = self.draft.scopes.get(number as usize);
-        let made = made.map(|made| made.as_ref().map(|made| (made.name.as_str(), &made.interrupt)));
-        same(span, "its name and interrupt", Some(asked), made)?;
+        let in_machine = self.draft.scopes.get(number as usize);
+        let in_machine = in_machine
+            .map(|in_machine| in_machine.as_ref().map(|in_machine| (in_machine.name.as_str(), &in_machine.interrupt)));
+        same(span, "its name and interrupt", Some(in_plan), in_machine)?;
         same(span, "its labels", marks, self.draft.marks.get(&number).map_or(&[], Vec::as_slice))?;
-        let Some((_, interrupt)) = asked else { return Ok(()) };
+        let Some((_, interrupt)) = in_plan else { return Ok(()) };
         let (memories, levels) = (self.draft.sizes.memories, self.draft.sizes.levels);
         if interrupt.memories as usize > memories {
             return Err(mismatch(span, "its memories", &interrupt.memories.to_string(), &memories.to_string()));
         }
         if interrupt.condition.waits() && usize::from(around.scopes) >= levels {
-            let asked = format!("one of level {}", around.scopes);
-            return Err(mismatch(span, "its timer", &asked, &format!("timers of {levels} levels")));
+            let in_plan = format!("one of level {}", around.scopes);
+            return Err(mismatch(span, "its timer", &in_plan, &format!("timers of {levels} levels")));
         }
         if interrupt.condition.drives() && (usize::from(around.scopes) >= levels || !self.draft.sizes.stamps) {
-            let asked = format!("one of level {}", around.scopes);
-            return Err(mismatch(span, "its way", &asked, &format!("ways of {levels} levels")));
+            let in_plan = format!("one of level {}", around.scopes);
+            return Err(mismatch(span, "its way", &in_plan, &format!("ways of {levels} levels")));
         }
         Ok(())
     }
@@ -225,8 +231,8 @@ impl Walk<'_> {
     /// Checks that a record is after the memories of its scope's interrupt, and that there is room for all of it.
     fn record(&self, record: Record, scope: &Scope, around: Around) -> Result<(), Diagnostic> {
         let (first, facts) = (scope.interrupt.memories, record.facts);
-        let asked = RecordPlace { level: around.scopes, first, facts };
-        same(scope.span, "its record", Some(asked), self.draft.records.get(&record.id).copied())?;
+        let in_plan = RecordPlace { level: around.scopes, first, facts };
+        same(scope.span, "its record", Some(in_plan), self.draft.records.get(&record.id).copied())?;
         let (end, memories) = (first as usize + facts as usize, self.draft.sizes.memories);
         if end > memories {
             Err(mismatch(scope.span, "its record", &end.to_string(), &memories.to_string()))
@@ -237,12 +243,17 @@ impl Walk<'_> {
 }
 
 /// Checks that the plan and the machine agree.
-fn same<T: PartialEq + fmt::Debug>(span: Span, what: &str, asked: T, made: T) -> Result<(), Diagnostic> {
-    if asked == made { Ok(()) } else { Err(mismatch(span, what, &format!("{asked:?}"), &format!("{made:?}"))) }
+fn same<T: PartialEq + fmt::Debug>(span: Span, what: &str, in_plan: T, in_machine: T) -> Result<(), Diagnostic> {
+    if in_plan == in_machine {
+        Ok(())
+    } else {
+        Err(mismatch(span, what, &format!("{in_plan:?}"), &format!("{in_machine:?}")))
+    }
 }
 
-fn mismatch(span: Span, what: &str, asked: &str, made: &str) -> Diagnostic {
-    let message = format!("the machine differs from the plan: {what} is {asked} in the plan and {made} in the machine");
+fn mismatch(span: Span, what: &str, in_plan: &str, in_machine: &str) -> Diagnostic {
+    let message =
+        format!("the machine differs from the plan: {what} is {in_plan} in the plan and {in_machine} in the machine");
     Diagnostic::new(Code::E0901, message, span, "this is not what was made of it")
         .help("this is a defect of mdlec, not of the plan: please report it with the plan")
 }

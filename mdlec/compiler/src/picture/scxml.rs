@@ -30,7 +30,7 @@ pub fn scxml(plan: &Nondegenerate) -> Result<String, Diagnostic> {
     let made = matrices(plan)?;
     let mut listing = vec![Vec::new(); made.laws.len() + 1];
     for (number, transition) in made.transitions.iter().enumerate() {
-        transition.matrix.listed().for_each(|column| listing[column].push(number));
+        transition.matrix.columns().for_each(|column| listing[column].push(number));
     }
     let plan = plan.plan();
     let records = made.transitions.iter().filter_map(|transition| transition.record);

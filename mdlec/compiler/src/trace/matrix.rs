@@ -83,7 +83,7 @@ impl<'p> MatrixProduct<'p> {
         let matrices = matrices(plan)?;
         let mut listing = vec![Vec::new(); matrices.laws.len() + 1];
         for (number, Transition { matrix, .. }) in (0..).zip(&matrices.transitions) {
-            matrix.listed().for_each(|column| listing[column].push(number));
+            matrix.columns().for_each(|column| listing[column].push(number));
         }
         let entered = vec![Moment::default(); matrices.transitions.len()];
         let (risen, facts, e) = (BTreeSet::new(), BTreeSet::new(), UnitVector { row: 0 });

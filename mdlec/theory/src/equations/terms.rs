@@ -83,7 +83,7 @@ pub fn terms(plan: &Nondegenerate, combined: bool) -> Result<Terms<'_>, Diagnost
     let (mut live, mut never) = (Vec::<Term<'_>>::new(), Vec::new());
     let mut first_of = BTreeMap::new();
     for (number, transition) in (1..).zip(&made.transitions) {
-        let columns = transition.matrix.listed();
+        let columns = transition.matrix.columns();
         let (first, last, row) = (*columns.start(), *columns.end(), transition.matrix.row());
         let place = Extent { number, scope: transition.name, first, last, row };
         let condition = &transition.interrupt.condition;
@@ -108,7 +108,7 @@ pub fn terms(plan: &Nondegenerate, combined: bool) -> Result<Terms<'_>, Diagnost
 /// The interrupt that laws raise when they are done: it counts as their atoms' own.
 fn completion<'p>(plan: &'p Plan, made: &Matrices<'p>) -> Option<Term<'p>> {
     let places = made.completion(plan).map(|(number, matrix)| {
-        let (scope, column) = (made.transitions[number].name, *matrix.listed().start());
+        let (scope, column) = (made.transitions[number].name, *matrix.columns().start());
         Extent { number: number + 1, scope, first: column, last: column, row: matrix.row() }
     });
     let places: Vec<_> = places.collect();
