@@ -53,9 +53,11 @@ pub(super) fn compared(
 }
 
 /// Emits a quark among `quarks` with its arguments, for a constant: `robot::Go::new(…)`.
-pub(super) fn made(quark: &Quark, quarks: &[Quark]) -> TokenStream {
+pub(super) fn quark_value(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     if let Some(comparison) = &quark.comparison {
-        return compared(comparison, &quote!(runtime::NoSignal), |signal| made(&quarks[signal.0 as usize], quarks));
+        return compared(comparison, &quote!(runtime::NoSignal), |signal| {
+            quark_value(&quarks[signal.0 as usize], quarks)
+        });
     }
     let kind = quark_type(&quark.name, quark.overload);
     let arguments = quark.args.iter().map(argument);

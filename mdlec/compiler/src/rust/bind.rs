@@ -8,7 +8,7 @@ use quote::{ToTokens, format_ident, quote};
 use syn::LitInt;
 
 use super::bound::{Bound, capability_trait};
-use super::layout::laid_out;
+use super::layout::file_text;
 use super::signatures::from_arguments;
 use crate::alphabet::{Alphabet, DeclarationKind, Origin};
 
@@ -31,7 +31,7 @@ fn shared(alphabet: &Alphabet) -> String {
     let kinds = quarks.iter().map(|quark| &quark.kind);
     let functions = quarks.iter().map(|quark| from_arguments(quark, &quote!(#[must_use] pub)));
     let purpose = format!("The quarks of the shared alphabet `{}` by their arguments.", alphabet.name);
-    let text = laid_out(quote! {
+    let text = file_text(quote! {
         use #home::{#(#kinds),*};
         use ::mdle_runtime as runtime;
 
@@ -49,7 +49,7 @@ fn target(alphabet: &Alphabet) -> String {
     let constants = constants(alphabet);
     let own = quarks.iter().filter(|quark| quark.declaration.origin == Origin::Target);
     let own = own.map(|quark| from_arguments(quark, &TokenStream::new()));
-    let text = laid_out(quote! {
+    let text = file_text(quote! {
         pub use #home::{Input, Output};
         #imports
         use ::mdle_runtime as runtime;

@@ -7,7 +7,7 @@ use mdle_runtime::Printable;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-use super::arguments::{angle, made, type_of};
+use super::arguments::{angle, quark_value, type_of};
 use super::meaning::Meaning;
 use super::names::{atom_variant, quark_type};
 use super::rows::conditions;
@@ -55,7 +55,7 @@ impl Meaning<'_> {
         let quarks = quarks.filter(|((id, quark), _)| quark.name != "wait" && !signals.contains(id));
         let constants = quarks.map(|((_, quark), constant)| {
             let kind = type_of(quark, self.machine.quarks());
-            let value = made(quark, self.machine.quarks());
+            let value = quark_value(quark, self.machine.quarks());
             let doc = format!(" `{}`", Printable(&quark.text));
             quote! {
                 #[doc = #doc]
@@ -68,10 +68,10 @@ impl Meaning<'_> {
     /// The quarks that are no constants by themselves: signals, and comparisons of `t`, which the machine makes.
     fn signals(&self) -> BTreeSet<QuarkId> {
         let mut signals = BTreeSet::new();
-        let mut used = BTreeSet::new();
+        let mut in_conditions = BTreeSet::new();
         for element in self.machine.elements() {
             element.condition().each_quark(&mut |quark| {
-                used.insert(quark);
+                in_conditions.insert(quark);
             });
         }
         for (id, quark) in (0..).map(QuarkId).zip(self.machine.quarks()) {
@@ -80,7 +80,7 @@ impl Meaning<'_> {
             if let Compared::Signal(other) = comparison.with {
                 signals.insert(other);
             }
-            if !used.contains(&id) {
+            if !in_conditions.contains(&id) {
                 signals.insert(id);
             }
         }
@@ -157,7 +157,7 @@ impl Meaning<'_> {
             let number = Literal::usize_unsuffixed(atom.index());
             let variant = atom_variant(atom.index());
             let constant = &self.constants[atom.law_id().0 as usize];
-            let begin = turned(atom.turned());
+            let begin = beginning(atom.turned());
             quote!(#number => self.running = Running::#variant(runtime::Control::begin(&#constant, y, #begin)))
         });
         quote! {
@@ -176,19 +176,19 @@ impl Meaning<'_> {
     pub(super) fn next(&self) -> TokenStream {
         let arms = self.machine.atoms().map(|atom| {
             let (variant, element) = (atom_variant(atom.index()), atom.element());
-            let around = self.around(element).map(asked_first);
-            let asked = |question: &TokenStream, cause: TokenStream| {
+            let around = self.around(element).map(enclosing_first);
+            let exit = |question: &TokenStream, cause: TokenStream| {
                 let ending = ending(element, &cause);
                 quote!(if #question { return Some(#ending); })
             };
             let completes = atom.law().completes;
-            let interrupt = self.condition(element).map(|fired| asked(&fired, quote!(Fired)));
+            let interrupt = self.condition(element).map(|fired| exit(&fired, quote!(Fired)));
             let completion =
-                completes.then(|| asked(&quote!(runtime::Completes::completed(law, y, t)), quote!(Completed)));
+                completes.then(|| exit(&quote!(runtime::Completes::completed(law, y, t)), quote!(Completed)));
             let law = if completes { quote!(law) } else { quote!(_) };
             quote!(Running::#variant(#law) => { #around #interrupt #completion })
         });
-        let plan = self.function(self.machine.root()).map(asked_first);
+        let plan = self.function(self.machine.root()).map(enclosing_first);
         quote! {
             #[inline(always)]
             fn next(&self, cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
@@ -240,14 +240,14 @@ pub(super) fn atom_doc(atom: Atom<'_>) -> String {
 }
 
 /// Emits the call of a scope's function, which ends the turn's evaluation if that scope or an enclosing one ends.
-fn asked_first(function: &Ident) -> TokenStream {
+fn enclosing_first(function: &Ident) -> TokenStream {
     quote! {
         if let Some(ending) = #function(cursor, y, t) { return Some(ending); }
     }
 }
 
 /// Emits `begin`, or `begin.turned(…)` in a turned frame.
-fn turned(frame: f64) -> TokenStream {
+fn beginning(frame: f64) -> TokenStream {
     if frame == 0.0 {
         return quote!(begin);
     }

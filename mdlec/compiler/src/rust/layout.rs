@@ -16,9 +16,9 @@ const STAND_IN: &str =
 
 /// Returns the text of a file, with an empty line after each item of it and of its module. The elements of a long list
 /// are below each other; numbers fill lines.
-pub(super) fn laid_out(file: TokenStream) -> String {
+pub(super) fn file_text(file: TokenStream) -> String {
     let mut lists = Vec::new();
-    let text = printed(shortened(file, &mut lists));
+    let text = pretty(with_gaps(file, &mut lists));
     let mut spaced = String::with_capacity(text.len());
     let mut lines = text.lines().peekable();
     while let Some(line) = lines.next() {
@@ -35,19 +35,19 @@ pub(super) fn laid_out(file: TokenStream) -> String {
 }
 
 /// The tokens, with the elements of long lists taken out of them, in pieces.
-fn shortened(tokens: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStream {
-    let shortened = tokens.into_iter().map(|token| match token {
+fn with_gaps(tokens: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStream {
+    let tokens = tokens.into_iter().map(|token| match token {
         TokenTree::Group(group) => {
             let (delimiter, inside) = (group.delimiter(), group.stream());
             // Nobody else has these tokens then, and they are moved.
             drop(group);
             let inside =
-                if delimiter == Delimiter::Bracket { elements(inside, lists) } else { shortened(inside, lists) };
+                if delimiter == Delimiter::Bracket { elements(inside, lists) } else { with_gaps(inside, lists) };
             Group::new(delimiter, inside).into()
         }
         TokenTree::Ident(_) | TokenTree::Punct(_) | TokenTree::Literal(_) => token,
     });
-    shortened.collect()
+    tokens.collect()
 }
 
 /// Returns the content of a list's brackets, or a placeholder for it if it is long.
@@ -64,7 +64,7 @@ fn elements(inside: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStre
     }
     let rest = piece.into_iter().collect();
     if pieces.is_empty() {
-        return shortened(rest, lists);
+        return with_gaps(rest, lists);
     }
     pieces.push(rest);
     lists.push(pieces);
@@ -124,8 +124,8 @@ fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
     for _ in 1..indent / 4 {
         item = quote!(mod around { #item });
     }
-    let printed = printed(item);
-    let behind = printed.lines().skip_while(|line| list(line).is_none()).skip(1);
+    let text_around = pretty(item);
+    let behind = text_around.lines().skip_while(|line| list(line).is_none()).skip(1);
     behind.take_while(|line| line.trim_start() != "];").for_each(|line| write_line(line, text));
 }
 
@@ -173,7 +173,7 @@ fn write_line(line: &str, text: &mut String) {
 }
 
 /// Tokens that are no Rust are an error of rustc's.
-fn printed(file: TokenStream) -> String {
+fn pretty(file: TokenStream) -> String {
     syn::parse2(file).map_or_else(|error| error.into_compile_error().to_string(), |file| prettyplease::unparse(&file))
 }
 
@@ -182,13 +182,13 @@ mod tests {
     use proc_macro2::{Literal, TokenStream};
     use quote::quote;
 
-    use super::{PIECE, laid_out};
+    use super::{PIECE, file_text};
 
     /// Returns the text of a file laid out piece by piece, and laid out as a whole.
     fn both(file: &TokenStream) -> [String; 2] {
         let whole = prettyplease::unparse(&syn::parse2(file.clone()).expect("a file"));
         let pieces: Vec<_> =
-            laid_out(file.clone()).lines().filter(|line| !line.is_empty()).map(str::to_owned).collect();
+            file_text(file.clone()).lines().filter(|line| !line.is_empty()).map(str::to_owned).collect();
         [pieces.join("\n") + "\n", whole]
     }
 
@@ -241,7 +241,7 @@ mod tests {
                     mod machine {
                         static TRAILING: &[T] = &[#(#elements,)*];
                         const NESTED: Table = Table { first: 1, rows: &[#(#elements),*], last: &[&[#(#elements),*], &[]] };
-                        fn asked() -> usize { if true { [#(#elements),*].len() } else { 0 } }
+                        fn length() -> usize { if true { [#(#elements),*].len() } else { 0 } }
                     }
                 });
                 assert!(pieces == whole, "{length}:\n{pieces}\n{whole}");
@@ -251,6 +251,6 @@ mod tests {
 
     #[test]
     fn tokens_that_are_no_rust_are_an_error_of_rustc_s() {
-        assert!(laid_out(quote!(fn fn)).contains("compile_error"));
+        assert!(file_text(quote!(fn fn)).contains("compile_error"));
     }
 }

@@ -136,7 +136,7 @@ pub fn emit_as(shape: Shape, machine: &Machine, header: Header<'_>, alphabet: &A
             #source
         }
     };
-    format!("{}{}", heading(header, alphabet), layout::laid_out(file))
+    format!("{}{}", heading(header, alphabet), layout::file_text(file))
 }
 
 /// Returns an assertion that does not compile if the target is bound to another alphabet than that against which the

@@ -55,7 +55,7 @@ pub(super) fn atom_variant(atom: usize) -> Ident {
 /// Names that must differ from each other.
 #[derive(Debug)]
 pub(super) struct Distinct {
-    taken: BTreeSet<String>,
+    names: BTreeSet<String>,
     /// The last number given to each name, so that the search for the next one is short.
     numbers: BTreeMap<String, usize>,
 }
@@ -81,8 +81,8 @@ impl Distinct {
         Self::beside(&[])
     }
 
-    fn beside(taken: &[&str]) -> Self {
-        Self { taken: taken.iter().map(|name| (*name).to_owned()).collect(), numbers: BTreeMap::new() }
+    fn beside(names: &[&str]) -> Self {
+        Self { names: names.iter().map(|name| (*name).to_owned()).collect(), numbers: BTreeMap::new() }
     }
 
     /// The constant of a quark with its arguments, after its text: `GO_0_0_36`.
@@ -110,7 +110,7 @@ impl Distinct {
     /// Returns `name`, or the first of `name_2`, `name_3`, … that is not in use.
     fn distinct(&mut self, name: &str) -> Ident {
         let mut distinct = name.to_owned();
-        while !self.taken.insert(distinct.clone()) {
+        while !self.names.insert(distinct.clone()) {
             let number = self.numbers.entry(name.to_owned()).or_insert(1);
             *number += 1;
             distinct = format!("{name}_{number}");

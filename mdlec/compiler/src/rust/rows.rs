@@ -4,7 +4,7 @@ use mdle_runtime::{Condition, Fact, Guard, LawRow, MarkRow, Nanos};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-use super::arguments::{angle, compared, made};
+use super::arguments::{angle, compared, quark_value};
 use super::names::quark_type;
 use super::scopes::{asks_for_progress, nanometers};
 use super::tables::{entries, follows};
@@ -261,6 +261,6 @@ fn interrupt(id: QuarkId, quarks: &[Quark]) -> TokenStream {
 fn variant(any: &str, quark: &Quark, quarks: &[Quark]) -> TokenStream {
     let any = quote::format_ident!("{any}");
     let kind = quark_type(&quark.name, quark.overload);
-    let value = made(quark, quarks);
+    let value = quark_value(quark, quarks);
     quote!(robot::#any::#kind(#value))
 }

@@ -82,8 +82,8 @@ impl Meaning<'_> {
                 let [from, until] = [*from, until.unwrap_or(u64::MAX)].map(nanometers);
                 quote!((#from..#until).contains(&cursor.way(#level)))
             }
-            Condition::Or(operands) => joined(operands.iter().map(operand).collect(), &quote!(|)),
-            Condition::And(operands) => joined(operands.iter().map(operand).collect(), &quote!(&)),
+            Condition::Or(operands) => operator_chain(operands.iter().map(operand).collect(), &quote!(|)),
+            Condition::And(operands) => operator_chain(operands.iter().map(operand).collect(), &quote!(&)),
             Condition::Not(inner) => {
                 let inner = operand(inner);
                 quote!(!#inner)
@@ -121,7 +121,7 @@ pub(super) fn nanometers(length: u64) -> TokenStream {
 
 /// Operands with an operator between them, in groups where there are many: Rust's syntax nests operators to the left,
 /// and compilers follow it down.
-fn joined(operands: Vec<TokenStream>, operator: &TokenStream) -> TokenStream {
+fn operator_chain(operands: Vec<TokenStream>, operator: &TokenStream) -> TokenStream {
     const GROUP: usize = 64;
     let join = |operands: &[TokenStream]| {
         let (first, others) = operands.split_first().map_or((None, operands), |(first, others)| (Some(first), others));
@@ -132,7 +132,7 @@ fn joined(operands: Vec<TokenStream>, operator: &TokenStream) -> TokenStream {
     }
     let size = operands.len().div_ceil(GROUP).max(GROUP);
     let groups = operands.chunks(size).map(|group| {
-        let group = joined(group.to_vec(), operator);
+        let group = operator_chain(group.to_vec(), operator);
         quote!((#group))
     });
     join(&groups.collect::<Vec<_>>())
