@@ -40,14 +40,14 @@ pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
 }
 
 /// Returns an error with the type of the file unless it is a regular file.
-fn regular(found: FileType) -> io::Result<()> {
-    let what = if found.is_file() {
+fn regular(kind: FileType) -> io::Result<()> {
+    let what = if kind.is_file() {
         return Ok(());
-    } else if found.is_dir() {
+    } else if kind.is_dir() {
         "folder"
-    } else if found.is_fifo() {
+    } else if kind.is_fifo() {
         "pipe"
-    } else if found.is_socket() {
+    } else if kind.is_socket() {
         "socket"
     } else {
         "device"

@@ -45,17 +45,17 @@ mod tests {
 
     #[test]
     fn everything_comes_at_the_end_and_the_last_of_too_much() {
-        let mut held = HeldReport::new(Vec::new());
-        held.write_all(b"one\n").unwrap();
-        assert_eq!(held.to, b"");
-        held.flush().unwrap();
-        assert_eq!(held.to, b"one\n");
-        held.to.clear();
+        let mut report = HeldReport::new(Vec::new());
+        report.write_all(b"one\n").unwrap();
+        assert_eq!(report.to, b"");
+        report.flush().unwrap();
+        assert_eq!(report.to, b"one\n");
+        report.to.clear();
         let lines: Vec<String> = (0..300_000).map(|number| format!("line {number}\n")).collect();
-        lines.iter().for_each(|line| held.write_all(line.as_bytes()).unwrap());
-        assert!(held.text.len() <= MOST);
-        held.flush().unwrap();
-        let text = String::from_utf8(held.to).unwrap();
+        lines.iter().for_each(|line| report.write_all(line.as_bytes()).unwrap());
+        assert!(report.text.len() <= MOST);
+        report.flush().unwrap();
+        let text = String::from_utf8(report.to).unwrap();
         let (first, rest) = text.split_once('\n').unwrap();
         assert_eq!(first, "(lines are missing here: there were too many)");
         assert!(lines.concat().ends_with(rest) && rest.starts_with("line ") && rest.len() > MOST / 2);

@@ -212,9 +212,10 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
     let begun = std::time::Instant::now();
     // A person in a session types where the line would be.
     let shows_progress = io::stderr().is_terminal() && executable.session().is_none();
-    let seen = shows_progress.then(|| Box::new(move || begun.elapsed()) as Box<dyn FnMut() -> _>);
+    let elapsed = shows_progress.then(|| Box::new(move || begun.elapsed()) as Box<dyn FnMut() -> _>);
     let out = || Box::new(out) as Box<dyn Write>;
-    let surroundings = session::Surroundings { instants: clock::SinceBoot, signals, watch, out, err: &mut err, seen };
+    let surroundings =
+        session::Surroundings { instants: clock::SinceBoot, signals, watch, out, err: &mut err, elapsed };
     ExitCode::from(session::session(program, call, executable, surroundings))
 }
 

@@ -68,10 +68,10 @@ mod tests {
         for turn in 0..4_u16 {
             microphones.put(Nanos(u64::from(turn)), vec![[f32::from(turn), 0.0]]);
         }
-        let heard = |until| microphones.take(Nanos(until)).iter().map(|[left, _]| *left).collect::<Vec<_>>();
-        assert_eq!(heard(1), [0.0, 1.0]);
-        assert_eq!(heard(1), []);
-        assert_eq!(heard(9), [2.0, 3.0]);
+        let sound = |until| microphones.take(Nanos(until)).iter().map(|[left, _]| *left).collect::<Vec<_>>();
+        assert_eq!(sound(1), [0.0, 1.0]);
+        assert_eq!(sound(1), []);
+        assert_eq!(sound(9), [2.0, 3.0]);
     }
 
     #[test]

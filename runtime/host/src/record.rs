@@ -109,8 +109,8 @@ impl<W: Write> Record<W> {
         let overruled = supervised.intervention();
         let overruled = overruled.map(|Intervention { rule, .. }| Overruled { asked, rule: rule.to_owned() });
         let (changes, overruled) = (self.changes.as_slice(), overruled.as_ref());
-        let made = TurnMade { number, t, sent, applied, plan, state, changes, overruled };
-        self.frames.turn(made, &y, steps.into_iter(), &mut self.bytes);
+        let turn = TurnMade { number, t, sent, applied, plan, state, changes, overruled };
+        self.frames.turn(turn, &y, steps.into_iter(), &mut self.bytes);
         Ok(())
     }
 

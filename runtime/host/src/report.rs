@@ -25,7 +25,7 @@ pub(crate) struct Report<'a> {
     /// End of the plan, once it is over.
     over: Option<Over>,
     /// The strength and the rule of the intervention that was reported last, if it lasts.
-    held: Option<(Verdict, String)>,
+    last_verdict: Option<(Verdict, String)>,
     /// The rules that have limited an input.
     limiting: Vec<String>,
 }
@@ -62,7 +62,7 @@ impl<'a> Report<'a> {
             state: ReportState::Open,
             course: Course::default(),
             over: None,
-            held: None,
+            last_verdict: None,
             limiting: Vec::new(),
         }
     }
@@ -124,11 +124,11 @@ impl<'a> Report<'a> {
             self.line(t, &format!("safety: {limit}"));
         }
         let intervention = intervention.filter(|it| it.verdict > Verdict::Limited);
-        let held = self.held.as_ref().map(|(verdict, rule)| (*verdict, rule.as_str()));
-        if intervention.map(|it| (it.verdict, it.rule)) == held {
+        let last_verdict = self.last_verdict.as_ref().map(|(verdict, rule)| (*verdict, rule.as_str()));
+        if intervention.map(|it| (it.verdict, it.rule)) == last_verdict {
             return;
         }
-        self.held = intervention.map(|it| (it.verdict, it.rule.to_owned()));
+        self.last_verdict = intervention.map(|it| (it.verdict, it.rule.to_owned()));
         match intervention {
             Some(intervention) => self.line(t, &format!("safety: {intervention}")),
             None if supervised.begins.is_some() || self.over.is_some() => {}

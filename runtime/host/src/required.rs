@@ -57,11 +57,11 @@ impl Required {
         let texts: Vec<String> = matches.get_many("require").into_iter().flatten().cloned().collect();
         let mut causes = Vec::new();
         for text in &texts {
-            let found: Vec<Cause> = endings(plan, text.trim(), |scope| ends_plan(plan.fsm(), scope)).collect();
-            if found.is_empty() {
+            let of_text: Vec<Cause> = endings(plan, text.trim(), |scope| ends_plan(plan.fsm(), scope)).collect();
+            if of_text.is_empty() {
                 return Err(refused(plan, text));
             }
-            causes.extend(found);
+            causes.extend(of_text);
         }
         Ok(Self { texts, causes })
     }

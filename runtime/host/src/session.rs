@@ -42,7 +42,7 @@ pub(crate) struct Surroundings<'e, I, O> {
     /// Standard error.
     pub(crate) err: &'e mut dyn Write,
     /// Clock of the line that shows that a fast run goes on, if standard error is a terminal.
-    pub(crate) seen: Option<Box<dyn FnMut() -> Duration + 'e>>,
+    pub(crate) elapsed: Option<Box<dyn FnMut() -> Duration + 'e>>,
 }
 
 /// Runs an executable that was called like this; returns the exit status.
@@ -56,7 +56,7 @@ where
     I: Instants,
     O: FnOnce() -> Box<dyn Write + 'o>,
 {
-    let Surroundings { mut instants, signals, watch, out, err, seen } = surroundings;
+    let Surroundings { mut instants, signals, watch, out, err, elapsed } = surroundings;
     let target = executable.target();
     let matches = match arguments::command(&target, program, &call).try_get_matches_from(call.arguments()) {
         Ok(matches) => matches,
@@ -66,7 +66,7 @@ where
     let limits = Limits { timeout: options.timeout, turns: options.turns };
     match shielded(|| (target.answer)(&matches)).unwrap_or_else(bug_before) {
         Err(refusal) => return refusal.tell(err),
-        Ok(Some(answer)) => return answered(&answer, &mut *out()),
+        Ok(Some(answer)) => return print_answer(&answer, &mut *out()),
         Ok(None) => {}
     }
     let PlanData { store, paths, required } = match prepared(&target, &matches, executable, call.later_path.as_deref())
@@ -89,7 +89,7 @@ where
                 program: &program,
                 required: &required,
             };
-            return several(&batch, &terms, &mut *out(), err, seen);
+            return several(&batch, &terms, &mut *out(), err, elapsed);
         }
         Ok(None) => {}
     }
@@ -132,8 +132,8 @@ where
             Ok(log) => log.as_mut(),
             Err(error) => return RunEnd::Log(error.to_string()),
         };
-        let seen = seen.filter(|_| !screen && !is_watched(time));
-        let (progress, err): (_, Option<&mut dyn Write>) = match seen {
+        let elapsed = elapsed.filter(|_| !screen && !is_watched(time));
+        let (progress, err): (_, Option<&mut dyn Write>) = match elapsed {
             Some(now) => (Some(Progress::new(&mut *err, now)), None),
             None => (None, Some(&mut *err)),
         };
@@ -230,9 +230,9 @@ fn several<'e>(
     terms: &Terms<'_>,
     out: &mut dyn Write,
     err: &'e mut dyn Write,
-    seen: Option<Box<dyn FnMut() -> Duration + 'e>>,
+    elapsed: Option<Box<dyn FnMut() -> Duration + 'e>>,
 ) -> u8 {
-    let progress = seen.map(|now| Progress::new(&mut *err, now));
+    let progress = elapsed.map(|now| Progress::new(&mut *err, now));
     let (status, unwritten) = runs::run(batch, terms, out, progress);
     if let Some(signal) = terms.signals.caught() {
         RunEnd::Signal(signal).tell(true, err);
@@ -264,11 +264,11 @@ fn unparsed<'o>(error: &clap::Error, out: impl FnOnce() -> Box<dyn Write + 'o>, 
         say(err, format_args!("{}", error.render().to_string().trim_end()));
         return run_end::USAGE;
     }
-    answered(&error.render().to_string(), &mut *out())
+    print_answer(&error.render().to_string(), &mut *out())
 }
 
 /// Prints the answer that an option asks for instead of a run. Its reader may go before the end.
-fn answered(answer: &str, out: &mut dyn Write) -> u8 {
+fn print_answer(answer: &str, out: &mut dyn Write) -> u8 {
     let _ = write!(out, "{}", PrintableLines(answer)).and_then(|()| out.flush());
     run_end::OVER
 }

@@ -19,7 +19,7 @@ impl StopRequest {
 
     /// A request that is made already.
     #[must_use]
-    pub fn made() -> Self {
+    pub fn at_once() -> Self {
         Self(Arc::new(AtomicUsize::new(1)))
     }
 
@@ -31,9 +31,9 @@ impl StopRequest {
 
     /// Waits for `time`, or until the run is asked to end.
     pub fn wait(&self, time: Duration) {
-        let begun = Instant::now();
+        let start = Instant::now();
         while !self.is_made() {
-            let left = time.saturating_sub(begun.elapsed());
+            let left = time.saturating_sub(start.elapsed());
             if left.is_zero() {
                 return;
             }
@@ -48,10 +48,10 @@ mod tests {
 
     #[test]
     fn a_request_ends_a_wait() {
-        StopRequest::made().wait(Duration::MAX);
-        assert!(StopRequest::made().is_made() && !StopRequest::default().is_made());
-        let begun = Instant::now();
+        StopRequest::at_once().wait(Duration::MAX);
+        assert!(StopRequest::at_once().is_made() && !StopRequest::default().is_made());
+        let start = Instant::now();
         StopRequest::default().wait(Duration::from_millis(50));
-        assert!(begun.elapsed() >= Duration::from_millis(50));
+        assert!(start.elapsed() >= Duration::from_millis(50));
     }
 }

@@ -152,7 +152,7 @@ impl fmt::Display for Summary<'_> {
         if done < self.asked {
             write!(f, "{done} of ")?;
         }
-        write!(f, "{}, seeds {} to {last}", counted(self.asked, "run"), self.first)?;
+        write!(f, "{}, seeds {} to {last}", count_text(self.asked, "run"), self.first)?;
         let counts = Outcome::NAMES.into_iter().map(|name| (name, self.count(name)));
         for (number, (name, count)) in counts.filter(|(_, count)| *count > 0).enumerate() {
             write!(f, "{} {count} {name}", if number == 0 { ":" } else { "," })?;
@@ -165,7 +165,7 @@ impl fmt::Display for Summary<'_> {
         }
         let (contacts, runs) = self.contacts();
         if contacts > 0 {
-            writeln!(f, "{} in {}", counted(contacts, "contact"), counted(runs as u64, "run"))?;
+            writeln!(f, "{} in {}", count_text(contacts, "contact"), count_text(runs as u64, "run"))?;
         }
         for group in self.groups() {
             writeln!(f, "\n{group}\n  {}", self.command(group.first))?;
@@ -214,6 +214,6 @@ impl fmt::Display for Group<'_> {
     }
 }
 
-fn counted(count: u64, what: &str) -> String {
+fn count_text(count: u64, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }

@@ -6,7 +6,7 @@ use mdle_runtime::{Measured, Transition, Watch};
 #[derive(Debug, Default)]
 pub struct Transitions {
     /// Transitions in order, each with the number of operands up to its own.
-    made: Vec<(Transition, usize)>,
+    transitions: Vec<(Transition, usize)>,
     operands: Vec<Operand>,
 }
 
@@ -16,21 +16,21 @@ pub type Operand = (u32, Measured);
 impl Transitions {
     /// Removes the transitions of the previous turn.
     pub fn clear(&mut self) {
-        self.made.clear();
+        self.transitions.clear();
         self.operands.clear();
     }
 
     /// Returns `true` if there are no transitions.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.made.is_empty()
+        self.transitions.is_empty()
     }
 
     /// Returns the transitions in order, each with the operands that had fired.
     pub fn iter(&self) -> impl Iterator<Item = (&Transition, &[Operand])> + Clone {
-        let begins = std::iter::once(0).chain(self.made.iter().map(|(_, end)| *end));
+        let begins = std::iter::once(0).chain(self.transitions.iter().map(|(_, end)| *end));
         let operands = |first, end| self.operands.get(first..end).unwrap_or(&[]);
-        self.made.iter().zip(begins).map(move |((transition, end), first)| (transition, operands(first, *end)))
+        self.transitions.iter().zip(begins).map(move |((transition, end), first)| (transition, operands(first, *end)))
     }
 }
 
@@ -40,6 +40,6 @@ impl Watch for Transitions {
     }
 
     fn transition(&mut self, transition: Transition) {
-        self.made.push((transition, self.operands.len()));
+        self.transitions.push((transition, self.operands.len()));
     }
 }

@@ -29,7 +29,7 @@ pub(crate) struct TurnWatch(Arc<Mutex<Vec<Entry>>>);
 #[derive(Debug)]
 struct Entry {
     run: Weak<WatchedRun>,
-    seen: u64,
+    last_turn: u64,
     looks: u32,
 }
 
@@ -81,7 +81,7 @@ impl TurnWatch {
     /// Returns a run whose turns are watched until it is dropped.
     pub(crate) fn run(&self, time: Time) -> Arc<WatchedRun> {
         let run = Arc::new(WatchedRun { turn: AtomicU64::new(0), time });
-        self.entries().push(Entry { run: Arc::downgrade(&run), seen: 0, looks: 0 });
+        self.entries().push(Entry { run: Arc::downgrade(&run), last_turn: 0, looks: 0 });
         run
     }
 
@@ -91,8 +91,8 @@ impl TurnWatch {
         self.entries().retain_mut(|entry| {
             let Some(run) = entry.run.upgrade() else { return false };
             let turn = run.turn.load(Ordering::Acquire);
-            entry.looks = if turn == entry.seen && turn > 0 { entry.looks.saturating_add(1) } else { 0 };
-            entry.seen = turn;
+            entry.looks = if turn == entry.last_turn && turn > 0 { entry.looks.saturating_add(1) } else { 0 };
+            entry.last_turn = turn;
             if entry.looks >= LOOKS {
                 hung = Some(Hung { turn: turn.saturating_sub(1), is_real: run.time == Time::Wall });
             }

@@ -214,12 +214,12 @@ impl Witnesses<'_, '_> {
     fn tell(
         &mut self,
         position: &dyn Position,
-        made: MadeTurn,
+        latest: MadeTurn,
         transitions: &Transitions,
         supervised: &Supervised,
     ) -> io::Result<()> {
         let plan = position.texts();
-        let MadeTurn { turn, number, t, plan: plan_number } = made;
+        let MadeTurn { turn, number, t, plan: plan_number } = latest;
         if let Some(reason) = &supervised.begins {
             self.report.begins(plan, t, position.atom(), reason);
         }

@@ -77,6 +77,6 @@ pub(crate) fn by_odometry(
         )));
     }
     let file = |name| matches.get_one::<PathBuf>(name).map(|path| WholeFile::at(name, path)).transpose();
-    let made = || ByOdometry::new(target.name, matches, file("plot")?, file("record")?, file("trail")?, patience);
-    made().map(Some).map_err(Refusal::Usage)
+    let plot = || ByOdometry::new(target.name, matches, file("plot")?, file("record")?, file("trail")?, patience);
+    plot().map(Some).map_err(Refusal::Usage)
 }

@@ -99,7 +99,7 @@ impl Watch {
 
     /// A turn was made: shows it, if it is time to show anything. Where the walls are not known, `heard` are the places
     /// of all echoes so far.
-    pub fn turned(&mut self, standing: &PlanPosition<'_>, heard: &[Place]) {
+    pub fn turned(&mut self, standing: &PlanPosition<'_>, echoes: &[Place]) {
         if self.shown.is_some_and(|shown| shown.elapsed() < EVERY) {
             return;
         }
@@ -109,18 +109,18 @@ impl Watch {
         let (columns, rows) = screen::size();
         let below = self.now.below(columns);
         let (wide, high) = (columns, rows.saturating_sub(below.len() + 1));
-        let fits = |map: &Map| map.is_of(wide, high) && map.shows(Place::of(&self.now.pose)) && map.shows_new(heard);
+        let fits = |map: &Map| map.is_of(wide, high) && map.shows(Place::of(&self.now.pose)) && map.shows_new(echoes);
         if !self.map.as_ref().is_some_and(fits) {
-            self.map = Some(Map::of(&self.world, &self.way, heard, wide, high));
+            self.map = Some(Map::of(&self.world, &self.way, echoes, wide, high));
         }
         let Some(map) = &mut self.map else { return };
-        map.went(&self.way);
-        map.found(heard);
+        map.draw_way(&self.way);
+        map.draw_echoes(echoes);
         let mut lines = vec![self.now.above(columns)];
         let things = self.world.things.iter().zip(&self.things).filter_map(|(thing, gone)| Some((thing, (*gone)?)));
         let mut now = map.with(things);
-        now.heard(&self.echoes);
-        lines.extend(now.drawn(&Footprint { pose: self.now.pose, form: self.form }, self.now.touches));
+        now.draw_current_echoes(&self.echoes);
+        lines.extend(now.rows(&Footprint { pose: self.now.pose, form: self.form }, self.now.touches));
         lines.extend(below);
         lines.truncate(rows);
         screen.show(&lines);

@@ -134,8 +134,8 @@ impl Column {
             return Err(cell.wrong(format!("expected the column `{name}`, found `{}`; as in {HEADER}", cell.text)));
         }
         let word = words.collect::<Vec<_>>().join(" ");
-        let found = self.units.into_iter().find(|(unit, _)| *unit == word);
-        found.ok_or_else(|| {
+        let unit = self.units.into_iter().find(|(unit, _)| *unit == word);
+        unit.ok_or_else(|| {
             let expected = format!("expected `{name} {one}` or `{name} {other}`");
             cell.wrong(match word.as_str() {
                 "" => format!("the unit of `{name}` is missing: {expected}"),

@@ -145,7 +145,7 @@ impl Stage {
             watch: TurnWatch::default(),
             out: || Box::new(Shared(Rc::clone(&out))) as Box<dyn Write>,
             err: &mut err,
-            seen: None,
+            elapsed: None,
         };
         let arguments = [&self.program].into_iter().chain(arguments).map(OsString::from);
         // The pilot lives as long as the program does.

@@ -22,15 +22,15 @@ pub(super) struct Map {
     /// The dots of a metre.
     scale: f64,
     /// Number of places of the way that are drawn.
-    went: usize,
+    way_count: usize,
     /// Number of places of earlier echoes that are drawn.
-    found: usize,
+    echo_count: usize,
 }
 
 impl Map {
-    /// Returns the map of a floor, and of the places in `way` and `heard`, in `columns` columns and `rows` rows.
-    pub(super) fn of(world: &World, way: &[Place], heard: &[Place], columns: usize, rows: usize) -> Self {
-        let places = || world.places().chain(way.iter().chain(heard).copied());
+    /// Returns the map of a floor, and of the places in `way` and `echoes`, in `columns` columns and `rows` rows.
+    pub(super) fn of(world: &World, way: &[Place], echoes: &[Place], columns: usize, rows: usize) -> Self {
+        let places = || world.places().chain(way.iter().chain(echoes).copied());
         let range = |of: fn(&Place) -> f64| {
             let least = places().map(|place| of(&place)).fold(f64::INFINITY, f64::min);
             let most = places().map(|place| of(&place)).fold(f64::NEG_INFINITY, f64::max);
@@ -41,7 +41,7 @@ impl Map {
         let scale = (wide / (right - left)).min(tall / (high - low));
         // In the middle.
         let corner = Place { x: (left + right) / 2.0 - wide / scale / 2.0, y: (low + high) / 2.0 + tall / scale / 2.0 };
-        let mut map = Self { canvas: Canvas::new(columns, rows), corner, scale, went: 0, found: 0 };
+        let mut map = Self { canvas: Canvas::new(columns, rows), corner, scale, way_count: 0, echo_count: 0 };
         match world.goal.map(|goal| goal.zone) {
             Some(Zone::Rectangle { min, max }) => map.rectangle(min, max),
             Some(Zone::Circle { center, radius }) => {
@@ -70,31 +70,31 @@ impl Map {
     }
 
     /// Returns `true` if those of these places that are not drawn yet are on the map.
-    pub(super) fn shows_new(&self, heard: &[Place]) -> bool {
-        heard.iter().skip(self.found).all(|place| self.shows(*place))
+    pub(super) fn shows_new(&self, echoes: &[Place]) -> bool {
+        echoes.iter().skip(self.echo_count).all(|place| self.shows(*place))
     }
 
     /// Draws those places of earlier echoes that are new.
-    pub(super) fn found(&mut self, heard: &[Place]) {
-        for place in heard.iter().skip(self.found) {
+    pub(super) fn draw_echoes(&mut self, echoes: &[Place]) {
+        for place in echoes.iter().skip(self.echo_count) {
             self.dot(*place, Ink::Wall);
         }
-        self.found = heard.len();
+        self.echo_count = echoes.len();
     }
 
     /// Draws the new part of the way.
-    pub(super) fn went(&mut self, way: &[Place]) {
-        for place in way.iter().skip(self.went) {
+    pub(super) fn draw_way(&mut self, way: &[Place]) {
+        for place in way.iter().skip(self.way_count) {
             self.dot(*place, Ink::Way);
         }
-        self.went = way.len();
+        self.way_count = way.len();
     }
 
     /// Returns the map with the moving objects on it, each with its displacement.
     pub(super) fn with<'t>(&self, things: impl Iterator<Item = (&'t Thing, Place)>) -> Self {
         let mut map = self.clone();
-        for (thing, gone) in things {
-            for (from, to) in thing.corners(gone).zip(thing.corners(gone).skip(1)) {
+        for (thing, displacement) in things {
+            for (from, to) in thing.corners(displacement).zip(thing.corners(displacement).skip(1)) {
                 map.line(from, to, Ink::Wall);
             }
         }
@@ -102,14 +102,14 @@ impl Map {
     }
 
     /// Draws the echoes that the robot hears.
-    pub(super) fn heard(&mut self, echoes: &[Place]) {
+    pub(super) fn draw_current_echoes(&mut self, echoes: &[Place]) {
         for echo in echoes {
             self.dot(*echo, Ink::Echo);
         }
     }
 
     /// The rows of the map with the robot on it.
-    pub(super) fn drawn(mut self, robot: &Footprint, touches: bool) -> Vec<String> {
+    pub(super) fn rows(mut self, robot: &Footprint, touches: bool) -> Vec<String> {
         let pose = &robot.pose;
         self.body(robot);
         let eighths = libm::round(pose.theta.degrees() / 45.0) as i64;
@@ -181,11 +181,11 @@ mod tests {
         let world = World::office().unwrap();
         let way: Vec<Place> = (0..430).map(|step| Place { x: 0.0, y: f64::from(step) * 0.01 }).collect();
         let mut map = Map::of(&world, &way, &[], columns, rows);
-        map.went(&way);
+        map.draw_way(&way);
         let pose = Pose { x: Meters(0.0), y: Meters(4.3), theta: Radians::from_degrees(90.0) };
         assert!(map.shows(Place::of(&pose)) && map.is_of(columns, rows));
-        map.heard(&[Place { x: 0.0, y: 8.0 }]);
-        let text = map.drawn(&Footprint { pose, form: Form::Disc { radius: 0.205 } }, false).join("\n");
+        map.draw_current_echoes(&[Place { x: 0.0, y: 8.0 }]);
+        let text = map.rows(&Footprint { pose, form: Form::Disc { radius: 0.205 } }, false).join("\n");
         // Colours aside.
         let mut plain = text.split('\x1b').map(|part| part.split_once('m').map_or(part, |(_, rest)| rest));
         plain.by_ref().collect()
@@ -199,15 +199,15 @@ mod tests {
     #[test]
     fn a_floor_of_unknown_walls_has_the_echoes_so_far() {
         let place = |x, y| Place { x, y };
-        let (way, mut heard) = (vec![place(0.0, 0.0), place(1.0, 0.0)], vec![place(1.5, 1.0), place(1.5, -1.0)]);
-        let mut map = Map::of(&World::empty(), &way, &heard, 40, 20);
-        assert!(heard.iter().all(|echo| map.shows(*echo)) && !map.shows(place(5.0, 0.0)));
-        map.found(&heard);
+        let (way, mut echoes) = (vec![place(0.0, 0.0), place(1.0, 0.0)], vec![place(1.5, 1.0), place(1.5, -1.0)]);
+        let mut map = Map::of(&World::empty(), &way, &echoes, 40, 20);
+        assert!(echoes.iter().all(|echo| map.shows(*echo)) && !map.shows(place(5.0, 0.0)));
+        map.draw_echoes(&echoes);
         let dots = |map: Map| map.canvas.text(None).concat().chars().filter(|letter| *letter > '\u{2800}').count();
-        assert_eq!((map.found, dots(map.clone())), (2, 2));
-        heard.push(place(5.0, 0.0));
-        assert!(!map.shows_new(&heard));
-        assert!(Map::of(&World::empty(), &way, &heard, 40, 20).shows_new(&heard));
+        assert_eq!((map.echo_count, dots(map.clone())), (2, 2));
+        echoes.push(place(5.0, 0.0));
+        assert!(!map.shows_new(&echoes));
+        assert!(Map::of(&World::empty(), &way, &echoes, 40, 20).shows_new(&echoes));
     }
 
     #[test]
@@ -216,6 +216,6 @@ mod tests {
             assert!(shown(columns, rows).contains('↑'), "{columns} {rows}");
         }
         let nothing = Map::of(&World::empty(), &[], &[], 0, 0);
-        assert!(nothing.drawn(&Footprint { pose: Pose::ORIGIN, form: Form::Disc { radius: 0.205 } }, true).is_empty());
+        assert!(nothing.rows(&Footprint { pose: Pose::ORIGIN, form: Form::Disc { radius: 0.205 } }, true).is_empty());
     }
 }

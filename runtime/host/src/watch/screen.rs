@@ -20,7 +20,7 @@ const LEAVE: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
 
 /// Settings of the terminal before its screen was taken, as long as it is taken: a process has one screen, and its
 /// panic hook uses the same.
-static FOUND: Mutex<Option<SavedSettings>> = Mutex::new(None);
+static SETTINGS: Mutex<Option<SavedSettings>> = Mutex::new(None);
 
 struct SavedSettings(Option<Termios>);
 
@@ -65,12 +65,12 @@ impl Screen {
                 hook(panic);
             }));
         });
-        let found = tcgetattr(stdout()).ok();
-        if let Some(mut quiet) = found.clone() {
+        let settings = tcgetattr(stdout()).ok();
+        if let Some(mut quiet) = settings.clone() {
             quiet.local_modes &= !(LocalModes::ECHO | LocalModes::ICANON);
             let _ = tcsetattr(stdout(), OptionalActions::Now, &quiet);
         }
-        *FOUND.lock().unwrap_or_else(PoisonError::into_inner) = Some(SavedSettings(found));
+        *SETTINGS.lock().unwrap_or_else(PoisonError::into_inner) = Some(SavedSettings(settings));
         *terminal() = opened();
         write(ENTER);
         Self
@@ -98,9 +98,9 @@ impl Drop for Screen {
 
 /// Gives the screen back, if it is taken.
 fn leave() {
-    let Some(SavedSettings(found)) = FOUND.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
+    let Some(SavedSettings(settings)) = SETTINGS.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
     write_to_the_end(LEAVE);
-    restore(found);
+    restore(settings);
 }
 
 /// Gives the screen back while the thread that has it hangs: nothing here waits for a lock of that thread.
@@ -108,16 +108,16 @@ pub(super) fn leave_at_once() {
     if terminal().is_some() {
         return leave();
     }
-    let Some(SavedSettings(found)) = FOUND.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
-    restore(found);
+    let Some(SavedSettings(settings)) = SETTINGS.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
+    restore(settings);
 }
 
 /// Sets the terminal as it was found.
-fn restore(found: Option<Termios>) {
-    if let Some(found) = found {
+fn restore(settings: Option<Termios>) {
+    if let Some(settings) = settings {
         // What was typed meanwhile was meant for nobody.
         let _ = tcflush(stdout(), QueueSelector::IFlush);
-        let _ = tcsetattr(stdout(), OptionalActions::Now, &found);
+        let _ = tcsetattr(stdout(), OptionalActions::Now, &settings);
     }
 }
 
