@@ -5,6 +5,7 @@ mod circles;
 mod codes;
 mod coverage;
 mod directions;
+mod manifests;
 mod readme;
 mod tidy;
 mod versions;
