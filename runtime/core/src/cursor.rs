@@ -10,8 +10,6 @@ pub struct Cursor<E, P> {
     atom: u32,
     entered: E,
     left: P,
-    /// Time for which the law of the turn before has made no progress.
-    stalled: Option<Nanos>,
 }
 
 impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
@@ -20,7 +18,7 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
     /// `entered` needs a place for each level of scopes whose [`Cursor::since`] is asked, and `left` one for each level
     /// of loops; values do not matter.
     pub fn start(fsm: Fsm<'_>, entered: E, left: P, t: Nanos) -> Self {
-        let mut cursor = Self { atom: 0, entered, left, stalled: None };
+        let mut cursor = Self { atom: 0, entered, left };
         cursor.open(fsm, 0, None, t);
         cursor
     }
@@ -40,19 +38,18 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         self.entered.way(level)
     }
 
-    /// Returns how long the law of the turn before has made no progress towards its goal; `None` if it has no goal. The
-    /// value is the same throughout a turn.
+    /// Returns how long the law of the turn before has made no progress towards its goal; `None` if it has no goal, and
+    /// in a plan that does not ask. The value is the same throughout a turn.
     #[inline(always)]
     pub fn stalled(&self) -> Option<Nanos> {
-        self.stalled
+        self.entered.stalled()
     }
 
     /// Takes the output of a turn and the report of the law of the turn before, before anything in the turn is read or
     /// entered.
     #[inline(always)]
     pub(crate) fn observe<Y: Output>(&mut self, y: &Y, stalled: Option<Nanos>) {
-        self.entered.observe(y);
-        self.stalled = stalled;
+        self.entered.observe(y, stalled);
     }
 
     /// Takes the output of the first turn after the plan was suspended.

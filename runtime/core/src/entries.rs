@@ -1,5 +1,5 @@
-//! The entry of each scope, as a cursor keeps it: the time, and for plans with `way` or `FRAME here` the odometer's
-//! reading and the heading as well (docs/src/reference/semantics.md, 3.2 to 3.4).
+//! The entry of each scope, as a cursor keeps it: the time, and for plans with `way`, `FRAME here` or `stuck` the
+//! odometer's reading and the heading as well (docs/src/reference/semantics.md, 3.2 to 3.4).
 
 use crate::{Nanometers, Nanos, Output, Pose, Radians, Slots};
 
@@ -11,9 +11,15 @@ pub trait Entries {
     fn time(&self, level: u16) -> Option<Nanos>;
     /// Notes that the scope of this level is entered at time `t`.
     fn note(&mut self, level: u16, t: Nanos);
-    /// Takes the output of a turn, before anything in the turn is read or entered.
+    /// Takes the output of a turn and the report of the law of the turn before ([`Law::stalled`](crate::Law::stalled)),
+    /// before anything in the turn is read or entered.
     #[inline(always)]
-    fn observe<Y: Output>(&mut self, _y: &Y) {}
+    fn observe<Y: Output>(&mut self, _y: &Y, _stalled: Option<Nanos>) {}
+    /// Returns that report; `None` where it is not stored.
+    #[inline(always)]
+    fn stalled(&self) -> Option<Nanos> {
+        None
+    }
     /// Takes the output of the first turn of a plan that was suspended while another one drove: the path driven
     /// meanwhile is none of its own.
     fn resume<Y: Output>(&mut self, _y: &Y) {}
@@ -79,7 +85,7 @@ impl Stamp {
     pub const START: Self = Self { time: Nanos::ZERO, way: Nanometers::ZERO, heading: Radians(0.0) };
 }
 
-/// The moments at which scopes were entered, and the odometer that they are read from.
+/// The moments at which scopes were entered, the odometer that they are read from, and the progress of the law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stamps<S, F = &'static [Option<Here>]> {
     slots: S,
@@ -89,6 +95,8 @@ pub struct Stamps<S, F = &'static [Option<Here>]> {
     now: Stamp,
     /// The pose in the turn before; `None` before the first.
     last: Option<Pose>,
+    /// Time for which the law of the turn before has made no progress.
+    stalled: Option<Nanos>,
 }
 
 impl<S: Slots<Stamp>, F: AsRef<[Option<Here>]>> Stamps<S, F> {
@@ -96,7 +104,7 @@ impl<S: Slots<Stamp>, F: AsRef<[Option<Here>]>> Stamps<S, F> {
     /// as written, and may be empty in a plan without `FRAME here`.
     #[must_use]
     pub const fn new(slots: S, frames: F) -> Self {
-        Self { slots, frames, now: Stamp::START, last: None }
+        Self { slots, frames, now: Stamp::START, last: None, stalled: None }
     }
 }
 
@@ -115,11 +123,16 @@ impl<S: Slots<Stamp>, F: AsRef<[Option<Here>]>> Entries for Stamps<S, F> {
         }
     }
 
-    fn observe<Y: Output>(&mut self, y: &Y) {
+    fn observe<Y: Output>(&mut self, y: &Y, stalled: Option<Nanos>) {
+        self.stalled = stalled;
         let here = y.here();
         let step = self.last.replace(here).map_or(Nanometers::ZERO, |last| Nanometers::round(last.distance(&here)));
         self.now.way = y.way().unwrap_or(self.now.way.plus(step));
         self.now.heading = here.theta;
+    }
+
+    fn stalled(&self) -> Option<Nanos> {
+        self.stalled
     }
 
     fn resume<Y: Output>(&mut self, y: &Y) {
@@ -172,11 +185,11 @@ mod tests {
     #[test]
     fn the_way_is_the_sum_of_steps_there_and_back() {
         let mut stamps = Stamps::new([Stamp::START; 2], []);
-        stamps.observe(&at(5.0, 0.0, 90.0));
+        stamps.observe(&at(5.0, 0.0, 90.0), None);
         stamps.note(0, Nanos(0));
-        stamps.observe(&at(5.3, 0.4, 90.0));
+        stamps.observe(&at(5.3, 0.4, 90.0), None);
         stamps.note(1, Nanos(1));
-        stamps.observe(&at(5.0, 0.0, 40.0));
+        stamps.observe(&at(5.0, 0.0, 40.0), None);
         assert_eq!([0, 1, 7].map(|level| stamps.way(level).0), [1_000_000_000, 500_000_000, 0]);
         assert_eq!([0, 1, 7].map(|level| libm::round(stamps.heading(level).degrees())), [90.0, 90.0, 40.0]);
         assert_eq!([0, 1, 7].map(|level| stamps.time(level)), [Some(Nanos(0)), Some(Nanos(1)), None]);
@@ -185,24 +198,36 @@ mod tests {
     #[test]
     fn a_robot_with_an_odometer_of_its_own_is_believed() {
         let mut stamps = Stamps::new([Stamp::START; 1], []);
-        stamps.observe(&At(Pose::ORIGIN, Some(Nanometers(70))));
+        stamps.observe(&At(Pose::ORIGIN, Some(Nanometers(70))), None);
         stamps.note(0, Nanos(0));
-        stamps.observe(&At(at(3.0, 0.0, 0.0).0, Some(Nanometers(100))));
+        stamps.observe(&At(at(3.0, 0.0, 0.0).0, Some(Nanometers(100))), None);
         assert_eq!(stamps.way(0), Nanometers(30));
         stamps.resume(&At(Pose::ORIGIN, Some(Nanometers(500))));
-        stamps.observe(&At(Pose::ORIGIN, Some(Nanometers(507))));
+        stamps.observe(&At(Pose::ORIGIN, Some(Nanometers(507))), None);
         assert_eq!(stamps.way(0), Nanometers(37), "400 were driven while the plan was suspended");
     }
 
     #[test]
     fn the_way_of_another_plan_does_not_count() {
         let mut stamps = Stamps::new([Stamp::START; 1], []);
-        stamps.observe(&at(5.0, 0.0, 90.0));
+        stamps.observe(&at(5.0, 0.0, 90.0), None);
         stamps.note(0, Nanos(0));
-        stamps.observe(&at(5.3, 0.4, 90.0));
+        stamps.observe(&at(5.3, 0.4, 90.0), None);
         stamps.resume(&at(9.0, 9.0, 30.0));
         assert_eq!((stamps.way(0).0, libm::round(stamps.heading(7).degrees())), (500_000_000, 30.0));
-        stamps.observe(&at(9.0, 9.1, 30.0));
+        stamps.observe(&at(9.0, 9.1, 30.0), None);
         assert_eq!(stamps.way(0), Nanometers(600_000_000));
+    }
+
+    #[test]
+    fn progress_is_kept_beside_the_odometer_alone() {
+        let mut stamps = Stamps::new([Stamp::START; 1], []);
+        stamps.observe(&at(5.0, 0.0, 90.0), Some(Nanos(7)));
+        assert_eq!(stamps.stalled(), Some(Nanos(7)));
+        stamps.observe(&at(5.0, 0.0, 90.0), None);
+        assert_eq!(stamps.stalled(), None);
+        let mut times = [Nanos(0)];
+        times.observe(&at(5.0, 0.0, 90.0), Some(Nanos(7)));
+        assert_eq!(times.stalled(), None);
     }
 }

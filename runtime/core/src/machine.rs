@@ -76,7 +76,7 @@ impl<P: Plan> Machine<P> {
     pub fn begin(mut plan: P, y: &P::Output, t: Nanos) -> Self {
         let frame = Frame(y.here().theta);
         let (mut entered, left) = plan.slots();
-        entered.observe(y);
+        entered.observe(y, None);
         let cursor = Cursor::start(plan.fsm(), entered, left, t);
         plan.enter(0, y, cursor.begins(Begin { now: t, frame }));
         Self { plan, cursor, frame }

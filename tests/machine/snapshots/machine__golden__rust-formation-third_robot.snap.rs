@@ -69,13 +69,13 @@ mod machine {
     impl runtime::Plan for ThirdOfThree {
         type Output = Output;
         type Input = Input;
-        type Entered = [Nanos; 3];
+        type Entered = runtime::Stamps<[runtime::Stamp; 3]>;
         type Left = [u64; 0];
         fn fsm(&self) -> Fsm<'_> {
             FSM
         }
         fn slots(&self) -> (Self::Entered, Self::Left) {
-            ([Nanos::ZERO; 3], [0; 0])
+            (runtime::Stamps::new([runtime::Stamp::START; 3], &[]), [0; 0])
         }
         #[cfg_attr(target_os = "none", inline(never))]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
@@ -188,7 +188,7 @@ mod machine {
     }
 
     /// The plan's cursor, with a place for each level of scopes and for each level of loops.
-    type At = Cursor<[Nanos; 3], [u64; 0]>;
+    type At = Cursor<runtime::Stamps<[runtime::Stamp; 3]>, [u64; 0]>;
     /// ThirdOfThree (wait 120).
     fn third_of_three(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if cursor.since(0u16, t) >= Nanos(120000000000) {

@@ -86,13 +86,13 @@ mod machine {
     impl runtime::Plan for FirstRobotPlan {
         type Output = Output;
         type Input = Input;
-        type Entered = [Nanos; 2];
+        type Entered = runtime::Stamps<[runtime::Stamp; 2]>;
         type Left = [u64; 1];
         fn fsm(&self) -> Fsm<'_> {
             FSM
         }
         fn slots(&self) -> (Self::Entered, Self::Left) {
-            ([Nanos::ZERO; 2], [0; 1])
+            (runtime::Stamps::new([runtime::Stamp::START; 2], &[]), [0; 1])
         }
         #[cfg_attr(target_os = "none", inline(never))]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
@@ -294,7 +294,7 @@ mod machine {
     }
 
     /// The plan's cursor, with a place for each level of scopes and for each level of loops.
-    type At = Cursor<[Nanos; 2], [u64; 1]>;
+    type At = Cursor<runtime::Stamps<[runtime::Stamp; 2]>, [u64; 1]>;
     /// FirstRobotPlan (bumper OR wait 600).
     fn first_robot_plan(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y)

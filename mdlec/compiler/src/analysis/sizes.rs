@@ -30,13 +30,12 @@ pub struct Bytes {
 /// Counts the bytes of the emitted machine.
 pub(super) fn bytes(machine: &Machine) -> Bytes {
     let number = |count: usize| u64::try_from(count).unwrap_or(u64::MAX);
-    // A cursor holds the number of its atom, in front of numbers of eight bytes, and the report of the law on its
-    // progress.
+    // A cursor holds the number of its atom, in front of numbers of eight bytes.
     let entries = match machine.sizes().stamps {
         true => size_of::<Stamps<[Stamp; 0]>>() + machine.sizes().levels * size_of::<Stamp>(),
         false => machine.sizes().levels * size_of::<Nanos>(),
     };
-    let cursor = size_of::<u64>() + size_of::<Option<Nanos>>() + entries + machine.sizes().slots * size_of::<u64>();
+    let cursor = size_of::<u64>() + entries + machine.sizes().slots * size_of::<u64>();
     let tables = machine.tables();
     let tables = size_of_val(tables.brackets) + size_of_val(tables.atoms);
     debug_assert!(align_of::<Bracket>() == 8 && align_of::<Atom>() == 8);

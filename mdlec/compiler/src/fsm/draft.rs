@@ -73,8 +73,8 @@ pub struct Sizes {
     /// The levels of scopes down to the last one that has a `wait`, a `way` or a `FRAME here`: nothing is kept of the
     /// entry of those below.
     pub levels: usize,
-    /// `true` if the machine keeps odometer and heading at the entry of scopes, and not the time alone: where there is
-    /// a `way` or a `FRAME here`.
+    /// `true` if the machine keeps odometer and heading at the entry of scopes and the progress of the law, and not the
+    /// time alone: where there is a `way`, a `FRAME here`, a `stuck` or a `rendezvous`.
     pub stamps: bool,
     /// Maximum number of loops that enclose an atom.
     pub slots: usize,

@@ -143,7 +143,7 @@ impl Lowering {
             && (meaning.interrupt.condition.waits() || meaning.interrupt.condition.drives())
         {
             self.draft.sizes.levels = self.draft.sizes.levels.max(usize::from(level) + 1);
-            self.draft.sizes.stamps |= meaning.interrupt.condition.drives();
+            self.draft.sizes.stamps |= meaning.interrupt.condition.drives() || meaning.interrupt.condition.lasts();
         }
         let number = u32::try_from(self.draft.brackets.len()).unwrap_or(u32::MAX);
         let first = u32::try_from(self.draft.atoms.len()).unwrap_or(u32::MAX);

@@ -225,6 +225,9 @@ impl Walk<'_> {
             let in_plan = format!("one of level {}", around.scopes);
             return Err(mismatch(span, "its way", &in_plan, &format!("ways of {levels} levels")));
         }
+        if interrupt.condition.lasts() && !self.draft.sizes.stamps {
+            return Err(mismatch(span, "its progress", "that of a law", "no progress"));
+        }
         Ok(())
     }
 

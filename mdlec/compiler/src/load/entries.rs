@@ -9,7 +9,7 @@ use crate::fsm::Machine;
 pub enum Entered {
     /// Times alone.
     Times(Box<[Nanos]>),
-    /// Odometer and heading as well, for a plan with `way` or `FRAME here`.
+    /// Odometer, heading and progress as well, for a plan with `way`, `FRAME here` or `stuck`.
     Stamps(Stamps<Box<[Stamp]>, Box<[Option<Here>]>>),
 }
 
@@ -50,10 +50,18 @@ impl Entries for Entered {
     }
 
     #[inline(always)]
-    fn observe<Y: Output>(&mut self, y: &Y) {
+    fn observe<Y: Output>(&mut self, y: &Y, stalled: Option<Nanos>) {
         match self {
             Self::Times(_) => {}
-            Self::Stamps(stamps) => stamps.observe(y),
+            Self::Stamps(stamps) => stamps.observe(y, stalled),
+        }
+    }
+
+    #[inline(always)]
+    fn stalled(&self) -> Option<Nanos> {
+        match self {
+            Self::Times(_) => None,
+            Self::Stamps(stamps) => stamps.stalled(),
         }
     }
 

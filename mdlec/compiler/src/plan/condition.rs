@@ -179,6 +179,12 @@ impl Condition {
         self.any(&|part| matches!(part, Self::Wait { .. } | Self::Elapsed { .. }))
     }
 
+    /// Returns `true` if the condition contains a `stuck` or a `rendezvous`.
+    #[must_use]
+    pub fn lasts(&self) -> bool {
+        self.any(&|part| part.lasting().is_some())
+    }
+
     /// Returns `true` if the condition depends on the path driven since its scope was entered.
     #[must_use]
     pub fn drives(&self) -> bool {

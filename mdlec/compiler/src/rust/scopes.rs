@@ -94,7 +94,7 @@ impl Meaning<'_> {
 
 /// Returns `true` if a condition of the plan asks whether a law makes progress.
 pub(super) fn asks_for_progress(machine: &Machine) -> bool {
-    machine.elements().any(|element| element.condition().any(&|part| part.lasting().is_some()))
+    machine.elements().any(|element| element.condition().lasts())
 }
 
 /// Emits the end of an element: `Cause::Fired(level).then(…)`, without `then` if the next atom depends on a loop's
