@@ -93,271 +93,213 @@ mod machine {
         }
     }
 
+    /// `bumper`: Fires on contact of any bumper.
+    const fn bumper() -> runtime::Condition<robot::AnyInterrupt> {
+        runtime::Condition::Quark(robot::AnyInterrupt::Bumper(robot::Bumper::new()))
+    }
+
+    /// `atIsection <4 bits>`: Fires when the four directions front, left, back, right of the robot are all as the bits say: 1 where an obstacle is near.
+    const fn at_isection(
+        pattern: runtime::Bits<4>,
+    ) -> runtime::Condition<robot::AnyInterrupt> {
+        runtime::Condition::Quark(
+            robot::AnyInterrupt::AtIsection(robot::AtIsection::new(pattern)),
+        )
+    }
+
+    /// `go <v in cm/s> <omega in rad/s>`: Drives with a forward speed and a turn rate, counter-clockwise positive, for ever.
+    const fn go(
+        v: runtime::MetersPerSecond,
+        omega: runtime::RadiansPerSecond,
+    ) -> robot::AnyControl {
+        robot::AnyControl::Go(robot::Go::new(v, omega))
+    }
+
+    /// `rotate <heading in deg>`: Turns to a heading relative to the frame, the shortest way round.
+    const fn rotate(heading: runtime::Radians) -> robot::AnyControl {
+        robot::AnyControl::Rotate(robot::Rotate::new(heading))
+    }
+
+    /// `goAvoid <bearing in deg> <range in m> [speed in cm/s]`: Drives to the point at this bearing relative to the frame, and this range from where the atom began, round obstacles.
+    const fn go_avoid(
+        bearing: runtime::Radians,
+        range: runtime::Meters,
+        speed: runtime::MetersPerSecond,
+    ) -> robot::AnyControl {
+        robot::AnyControl::GoAvoid(robot::GoAvoid::new(bearing, range, speed))
+    }
+
+    /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges, whatever the frame is.
+    const fn align(
+        first: runtime::SonarId,
+        second: runtime::SonarId,
+    ) -> robot::AnyControl {
+        robot::AnyControl::Align(robot::Align::new(first, second))
+    }
+
+    /// The condition of a bracket, its level, the next bracket around it, and what follows it.
+    const fn guard(
+        condition: runtime::Condition<robot::AnyInterrupt>,
+        level: u16,
+        around: u32,
+        follows: Option<runtime::Follows>,
+    ) -> runtime::Guard<robot::AnyInterrupt> {
+        runtime::Guard {
+            condition,
+            level,
+            around,
+            follows,
+        }
+    }
+
+    /// The law of an atom, and the angle by which its frame is turned.
+    const fn law(
+        control: robot::AnyControl,
+        frame: runtime::Radians,
+    ) -> runtime::LawRow<robot::AnyControl> {
+        runtime::LawRow { control, frame }
+    }
+
+    /// The atom that follows a scope, and the levels of scopes that begin with it.
+    const fn follows(atom: u32, from: u16, to: u16) -> Option<runtime::Follows> {
+        Some(runtime::Follows::new(atom, from, to))
+    }
+
+    /// An angle.
+    const fn degrees(angle: f64) -> runtime::Radians {
+        runtime::Radians::from_degrees(angle)
+    }
+
     /// The conditions of brackets and the laws of atoms, in the order of the tables below.
     static ROWS: runtime::Rows<'static, robot::Alphabet> = runtime::Rows {
         fsm: FSM,
         guards: &[
-            runtime::Guard {
-                condition: runtime::Condition::Null,
-                level: 0,
-                around: 0,
-                follows: Some(runtime::Follows::new(13, 0, 0)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Quark(
-                    robot::AnyInterrupt::Bumper(robot::Bumper::new()),
-                ),
-                level: 1,
-                around: 1,
-                follows: Some(runtime::Follows::new(8, 1, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Quark(
-                    robot::AnyInterrupt::AtIsection(
-                        robot::AtIsection::new(
-                            runtime::Bits([false, true, false, false]),
-                        ),
-                    ),
-                ),
-                level: 2,
-                around: 1,
-                follows: Some(runtime::Follows::new(1, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Quark(
-                    robot::AnyInterrupt::AtIsection(
-                        robot::AtIsection::new(
-                            runtime::Bits([false, false, true, false]),
-                        ),
-                    ),
-                ),
-                level: 2,
-                around: 1,
-                follows: Some(runtime::Follows::new(2, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Null,
-                level: 2,
-                around: 1,
-                follows: Some(runtime::Follows::new(3, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Quark(
-                    robot::AnyInterrupt::AtIsection(
-                        robot::AtIsection::new(
-                            runtime::Bits([true, false, false, false]),
-                        ),
-                    ),
-                ),
-                level: 2,
-                around: 1,
-                follows: Some(runtime::Follows::new(4, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Quark(
-                    robot::AnyInterrupt::AtIsection(
-                        robot::AtIsection::new(
-                            runtime::Bits([false, true, false, false]),
-                        ),
-                    ),
-                ),
-                level: 2,
-                around: 1,
-                follows: Some(runtime::Follows::new(5, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Null,
-                level: 2,
-                around: 1,
-                follows: Some(runtime::Follows::new(6, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Wait(Nanos(7000000000)),
-                level: 2,
-                around: 1,
-                follows: Some(runtime::Follows::new(7, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Quark(
-                    robot::AnyInterrupt::AtIsection(
-                        robot::AtIsection::new(
-                            runtime::Bits([true, false, false, false]),
-                        ),
-                    ),
-                ),
-                level: 2,
-                around: 1,
-                follows: Some(runtime::Follows::new(8, 1, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Quark(
-                    robot::AnyInterrupt::Bumper(robot::Bumper::new()),
-                ),
-                level: 1,
-                around: 10,
-                follows: Some(runtime::Follows::new(13, 0, 0)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Quark(
-                    robot::AnyInterrupt::AtIsection(
-                        robot::AtIsection::new(runtime::Bits([true, false, false, true])),
-                    ),
-                ),
-                level: 2,
-                around: 10,
-                follows: Some(runtime::Follows::new(9, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Quark(
-                    robot::AnyInterrupt::AtIsection(
-                        robot::AtIsection::new(runtime::Bits([false, false, true, true])),
-                    ),
-                ),
-                level: 2,
-                around: 10,
-                follows: Some(runtime::Follows::new(10, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Null,
-                level: 2,
-                around: 10,
-                follows: Some(runtime::Follows::new(11, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Quark(
-                    robot::AnyInterrupt::AtIsection(
-                        robot::AtIsection::new(
-                            runtime::Bits([false, true, false, false]),
-                        ),
-                    ),
-                ),
-                level: 2,
-                around: 10,
-                follows: Some(runtime::Follows::new(12, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Wait(Nanos(10000000000)),
-                level: 2,
-                around: 10,
-                follows: Some(runtime::Follows::new(13, 0, 0)),
-            },
+            guard(runtime::Condition::Null, 0, 0, follows(13, 0, 0)),
+            guard(bumper(), 1, 1, follows(8, 1, 3)),
+            guard(
+                at_isection(runtime::Bits([false, true, false, false])),
+                2,
+                1,
+                follows(1, 2, 3),
+            ),
+            guard(
+                at_isection(runtime::Bits([false, false, true, false])),
+                2,
+                1,
+                follows(2, 2, 3),
+            ),
+            guard(runtime::Condition::Null, 2, 1, follows(3, 2, 3)),
+            guard(
+                at_isection(runtime::Bits([true, false, false, false])),
+                2,
+                1,
+                follows(4, 2, 3),
+            ),
+            guard(
+                at_isection(runtime::Bits([false, true, false, false])),
+                2,
+                1,
+                follows(5, 2, 3),
+            ),
+            guard(runtime::Condition::Null, 2, 1, follows(6, 2, 3)),
+            guard(runtime::Condition::Wait(Nanos(7000000000)), 2, 1, follows(7, 2, 3)),
+            guard(
+                at_isection(runtime::Bits([true, false, false, false])),
+                2,
+                1,
+                follows(8, 1, 3),
+            ),
+            guard(bumper(), 1, 10, follows(13, 0, 0)),
+            guard(
+                at_isection(runtime::Bits([true, false, false, true])),
+                2,
+                10,
+                follows(9, 2, 3),
+            ),
+            guard(
+                at_isection(runtime::Bits([false, false, true, true])),
+                2,
+                10,
+                follows(10, 2, 3),
+            ),
+            guard(runtime::Condition::Null, 2, 10, follows(11, 2, 3)),
+            guard(
+                at_isection(runtime::Bits([false, true, false, false])),
+                2,
+                10,
+                follows(12, 2, 3),
+            ),
+            guard(runtime::Condition::Wait(Nanos(10000000000)), 2, 10, follows(13, 0, 0)),
         ],
         operands: &[],
         laws: &[
-            runtime::LawRow {
-                control: robot::AnyControl::GoAvoid(
-                    robot::GoAvoid::new(
-                        runtime::Radians::from_degrees(90.0),
-                        runtime::Meters(40.0),
-                        runtime::MetersPerSecond(0.2),
-                    ),
+            law(
+                go_avoid(
+                    runtime::Radians::from_degrees(90.0),
+                    runtime::Meters(40.0),
+                    runtime::MetersPerSecond(0.2),
                 ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::Go(
-                    robot::Go::new(
-                        runtime::MetersPerSecond(0.0),
-                        runtime::RadiansPerSecond(0.36),
-                    ),
+                degrees(0.0),
+            ),
+            law(
+                go(runtime::MetersPerSecond(0.0), runtime::RadiansPerSecond(0.36)),
+                degrees(0.0),
+            ),
+            law(align(runtime::SonarId::new(7), runtime::SonarId::new(9)), degrees(0.0)),
+            law(
+                go_avoid(
+                    runtime::Radians::from_degrees(0.0),
+                    runtime::Meters(40.0),
+                    runtime::MetersPerSecond(0.2),
                 ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::Align(
-                    robot::Align::new(runtime::SonarId::new(7), runtime::SonarId::new(9)),
+                degrees(0.0),
+            ),
+            law(
+                go(runtime::MetersPerSecond(0.0), runtime::RadiansPerSecond(0.36)),
+                degrees(0.0),
+            ),
+            law(align(runtime::SonarId::new(3), runtime::SonarId::new(5)), degrees(0.0)),
+            law(
+                go_avoid(
+                    runtime::Radians::from_degrees(270.0),
+                    runtime::Meters(40.0),
+                    runtime::MetersPerSecond(0.2),
                 ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::GoAvoid(
-                    robot::GoAvoid::new(
-                        runtime::Radians::from_degrees(0.0),
-                        runtime::Meters(40.0),
-                        runtime::MetersPerSecond(0.2),
-                    ),
+                degrees(0.0),
+            ),
+            law(
+                go_avoid(
+                    runtime::Radians::from_degrees(270.0),
+                    runtime::Meters(40.0),
+                    runtime::MetersPerSecond(0.2),
                 ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::Go(
-                    robot::Go::new(
-                        runtime::MetersPerSecond(0.0),
-                        runtime::RadiansPerSecond(0.36),
-                    ),
+                degrees(0.0),
+            ),
+            law(
+                go_avoid(
+                    runtime::Radians::from_degrees(90.0),
+                    runtime::Meters(40.0),
+                    runtime::MetersPerSecond(0.2),
                 ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::Align(
-                    robot::Align::new(runtime::SonarId::new(3), runtime::SonarId::new(5)),
+                degrees(180.0),
+            ),
+            law(
+                go(runtime::MetersPerSecond(0.0), runtime::RadiansPerSecond(0.36)),
+                degrees(180.0),
+            ),
+            law(
+                align(runtime::SonarId::new(11), runtime::SonarId::new(13)),
+                degrees(180.0),
+            ),
+            law(
+                go_avoid(
+                    runtime::Radians::from_degrees(180.0),
+                    runtime::Meters(40.0),
+                    runtime::MetersPerSecond(0.2),
                 ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::GoAvoid(
-                    robot::GoAvoid::new(
-                        runtime::Radians::from_degrees(270.0),
-                        runtime::Meters(40.0),
-                        runtime::MetersPerSecond(0.2),
-                    ),
-                ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::GoAvoid(
-                    robot::GoAvoid::new(
-                        runtime::Radians::from_degrees(270.0),
-                        runtime::Meters(40.0),
-                        runtime::MetersPerSecond(0.2),
-                    ),
-                ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::GoAvoid(
-                    robot::GoAvoid::new(
-                        runtime::Radians::from_degrees(90.0),
-                        runtime::Meters(40.0),
-                        runtime::MetersPerSecond(0.2),
-                    ),
-                ),
-                frame: runtime::Radians::from_degrees(180.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::Go(
-                    robot::Go::new(
-                        runtime::MetersPerSecond(0.0),
-                        runtime::RadiansPerSecond(0.36),
-                    ),
-                ),
-                frame: runtime::Radians::from_degrees(180.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::Align(
-                    robot::Align::new(
-                        runtime::SonarId::new(11),
-                        runtime::SonarId::new(13),
-                    ),
-                ),
-                frame: runtime::Radians::from_degrees(180.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::GoAvoid(
-                    robot::GoAvoid::new(
-                        runtime::Radians::from_degrees(180.0),
-                        runtime::Meters(40.0),
-                        runtime::MetersPerSecond(0.2),
-                    ),
-                ),
-                frame: runtime::Radians::from_degrees(180.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::Rotate(
-                    robot::Rotate::new(runtime::Radians::from_degrees(90.0)),
-                ),
-                frame: runtime::Radians::from_degrees(180.0),
-            },
+                degrees(180.0),
+            ),
+            law(rotate(runtime::Radians::from_degrees(90.0)), degrees(180.0)),
         ],
         marks: &[],
         facts: &[],

@@ -60,8 +60,13 @@ pub(super) fn quark_value(quark: &Quark, quarks: &[Quark]) -> TokenStream {
         });
     }
     let kind = quark_type(&quark.name, quark.overload);
-    let arguments = quark.args.iter().map(argument);
+    let arguments = arguments(quark);
     quote!(robot::#kind::new(#(#arguments),*))
+}
+
+/// Emits the arguments of a quark that is no comparison.
+pub(super) fn arguments(quark: &Quark) -> impl Iterator<Item = TokenStream> {
+    quark.args.iter().map(argument)
 }
 
 /// An angle, in degrees where that gives the same value.

@@ -8,9 +8,9 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::arguments::{angle, quark_value, type_of};
+use super::conditions::conditions;
 use super::meaning::Meaning;
 use super::names::{atom_variant, quark_type};
-use super::rows::conditions;
 use super::scopes::{asks_for_progress, ending};
 use super::tables::entries;
 use crate::fsm::{Atom, Machine};

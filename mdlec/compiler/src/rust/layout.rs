@@ -135,26 +135,34 @@ fn strings(elements: &TokenStream) -> Option<Vec<String>> {
     tokens.map(|token| token.starts_with('"').then_some(token)).collect()
 }
 
-/// The elements, if all are calls of a path with literals, and no longer than `width` with their commas. The tables of
-/// a machine are such lists.
+/// The elements, if all are calls and no longer than `width` with their commas. The tables of a machine are such lists.
 fn calls(elements: &TokenStream, width: usize) -> Option<Vec<String>> {
-    let mut calls = Vec::new();
-    let mut call = String::new();
-    for token in elements.clone() {
+    let calls = plain(elements.clone())?;
+    calls.iter().all(|call| call.ends_with(')') && call.len() < width).then_some(calls)
+}
+
+/// The elements, if all are literals, paths, arrays of these, and calls of paths with these.
+fn plain(elements: TokenStream) -> Option<Vec<String>> {
+    let mut texts = Vec::new();
+    let mut text = String::new();
+    for token in elements {
         match token {
-            TokenTree::Ident(word) if !call.ends_with(')') => call += &word.to_string(),
-            TokenTree::Punct(colon) if colon.as_char() == ':' && !call.is_empty() => call.push(':'),
-            TokenTree::Group(group) if group.delimiter() == Delimiter::Parenthesis && !call.is_empty() => {
-                call += &format!("({})", literals(group.stream())?.join(", "));
+            TokenTree::Ident(word) if text.is_empty() || text.ends_with(':') => text += &word.to_string(),
+            TokenTree::Literal(literal) if text.is_empty() || text == "-" => text += &literal.to_string(),
+            TokenTree::Group(group) if group.delimiter() == Delimiter::Parenthesis && !text.is_empty() => {
+                text += &format!("({})", plain(group.stream())?.join(", "));
             }
-            TokenTree::Punct(comma) if comma.as_char() == ',' && call.ends_with(')') => {
-                calls.push(mem::take(&mut call))
+            TokenTree::Group(group) if group.delimiter() == Delimiter::Bracket && text.is_empty() => {
+                text = format!("[{}]", plain(group.stream())?.join(", "));
             }
+            TokenTree::Punct(minus) if minus.as_char() == '-' && text.is_empty() => text.push('-'),
+            TokenTree::Punct(colon) if colon.as_char() == ':' && !text.is_empty() => text.push(':'),
+            TokenTree::Punct(comma) if comma.as_char() == ',' => texts.push(mem::take(&mut text)),
             TokenTree::Ident(_) | TokenTree::Punct(_) | TokenTree::Group(_) | TokenTree::Literal(_) => return None,
         }
     }
-    calls.extend(Some(call).filter(|call| !call.is_empty()));
-    calls.iter().all(|call| call.ends_with(')') && call.len() < width).then_some(calls)
+    texts.extend(Some(text).filter(|text| !text.is_empty()));
+    Some(texts)
 }
 
 /// The arguments, if all are literals.
@@ -196,7 +204,7 @@ mod tests {
     fn long_lists_look_as_if_they_were_laid_out_at_once() {
         let number = |number: usize| Literal::usize_unsuffixed(number * number);
         let text = |number: usize| format!("number \"{number}\"\n");
-        let elements: [&dyn Fn(usize) -> TokenStream; 8] = [
+        let elements: [&dyn Fn(usize) -> TokenStream; 9] = [
             &|i| {
                 let number = number(i);
                 quote!(#number)
@@ -208,6 +216,10 @@ mod tests {
             &|i| {
                 let number = number(i);
                 quote!(Bracket::scope(#number, 1, 2))
+            },
+            &|i| {
+                let number = number(i);
+                quote!(guard(go(runtime::Meters(-1.5), #number), [true, false], robot::NONE, follows(1, #number, 2)))
             },
             &|i| {
                 let name = quote::format_ident!(

@@ -8,9 +8,11 @@ mod arguments;
 mod bind;
 mod bound;
 mod code;
+mod conditions;
 mod layout;
 mod meaning;
 mod names;
+mod quark_functions;
 mod rows;
 mod scopes;
 mod signatures;
@@ -110,7 +112,7 @@ pub fn emit_as(shape: Shape, machine: &Machine, header: Header<'_>, alphabet: &A
     // What a plan remembers is in rows, whatever is asked for.
     let meaning = match if machine.sizes().memories > 0 { Shape::Rows } else { shape } {
         Shape::Code => code::machine(&plan, &doc, machine, paths.as_ref()),
-        Shape::Rows => rows::machine(&plan, &doc, machine, paths.as_ref()),
+        Shape::Rows => rows::machine(&plan, &doc, machine, alphabet, paths.as_ref()),
     };
     let same_alphabet = same_alphabet(alphabet);
     let tables = tables::tables(machine);

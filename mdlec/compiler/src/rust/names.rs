@@ -71,9 +71,9 @@ impl Distinct {
         Self::beside(FUNCTIONS)
     }
 
-    /// Names of the functions that make a bound alphabet's quarks of their arguments.
+    /// Names of the functions that make an alphabet's quarks of their arguments, beside those that make rows.
     pub(super) fn quark_functions() -> Self {
-        Self::beside(&["gen"])
+        Self::beside(&["gen", "guard", "law", "follows", "degrees"])
     }
 
     /// Names of a function's parameters.

@@ -1,21 +1,29 @@
 //! A plan as rows of tables, which the runtime looks up: for plans too long to be code of their own.
 
-use mdle_runtime::{Condition, Fact, Guard, LawRow, MarkRow, Nanos};
+use mdle_runtime::{Fact, Follows, Guard, LawRow, MarkRow, Radians};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-use super::arguments::{angle, compared, quark_value};
-use super::names::quark_type;
-use super::scopes::{asks_for_progress, nanometers};
-use super::tables::{entries, follows};
+use super::arguments::{angle, number};
+use super::conditions::{row, variant};
+use super::quark_functions::QuarkFunctions;
+use super::scopes::asks_for_progress;
+use super::tables::entries;
+use crate::alphabet::Alphabet;
 use crate::fsm::{self, Machine, Rows};
-use crate::plan::{Quark, QuarkId};
+use crate::plan::in_degrees;
 
 /// Emits the plan's type, which delegates to the runtime's type, and its rows.
-pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
+pub(super) fn machine(
+    plan: &Ident,
+    doc: &str,
+    machine: &Machine,
+    alphabet: &Alphabet,
+    paths: Option<&TokenStream>,
+) -> TokenStream {
     let slots = Literal::usize_unsuffixed(machine.sizes().slots);
     let (entered, begins) = entries(machine);
-    let rows = rows(machine, paths);
+    let rows = rows(machine, alphabet, paths);
     let (memory, new) = memory(machine, &begins);
     let (memory_updates, stalled) = (memory_updates(machine), stalled(machine));
     let replayed = paths.map(|_| {
@@ -126,26 +134,31 @@ fn memory(machine: &Machine, begins: &TokenStream) -> (Option<TokenStream>, Toke
     (Some(quote!(, runtime::Memories<[bool; #size]>)), new)
 }
 
-/// Emits `static ROWS`: the condition of each bracket with its operands, and the law of each atom.
-fn rows(machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
-    let Rows { guards, operands, laws, marks, facts } = fsm::rows(machine);
-    let guards = guards.iter().map(|Guard { condition, level, around, follows: after }| {
-        let condition = row(condition, machine);
+/// Emits `static ROWS`: the condition of each bracket with its operands, and the law of each atom, as calls of the
+/// short functions before it.
+fn rows(machine: &Machine, alphabet: &Alphabet, paths: Option<&TokenStream>) -> TokenStream {
+    let rows = fsm::rows(machine);
+    let functions = QuarkFunctions::new(machine, &rows, alphabet);
+    let (quark_functions, row_functions) = (functions.items(), row_functions(&rows));
+    let Rows { guards, operands, laws, marks, facts } = rows;
+    let guards = guards.iter().map(|Guard { condition, level, around, follows }| {
+        let condition = row(condition, machine, Some(&functions));
         let (level, around) = (Literal::u16_unsuffixed(*level), Literal::u32_unsuffixed(*around));
-        let follows = match after.map(follows) {
-            Some(follows) => quote!(Some(#follows)),
-            None => quote!(None),
-        };
-        quote!(runtime::Guard { condition: #condition, level: #level, around: #around, follows: #follows })
+        let follows = follows.map_or_else(|| quote!(None), follower);
+        quote!(guard(#condition, #level, #around, #follows))
     });
-    let operands = operands.iter().map(|operand| row(operand, machine));
+    let operands = operands.iter().map(|operand| row(operand, machine, Some(&functions)));
     let laws = laws.iter().map(|LawRow { control, frame }| {
-        let control = variant("AnyControl", machine.quark(*control), machine.quarks());
-        let frame = angle(frame.0);
-        quote!(runtime::LawRow { control: #control, frame: #frame })
+        let quark = machine.quark(*control);
+        let control = functions.call(quark).unwrap_or_else(|| variant("AnyControl", quark, machine.quarks()));
+        let frame = turn(*frame);
+        quote!(law(#control, #frame))
     });
     let (marks, facts) = (marks.iter().map(mark), facts.iter().map(fact));
     quote! {
+        #quark_functions
+        #row_functions
+
         #[doc = " The conditions of brackets and the laws of atoms, in the order of the tables below."]
         static ROWS: runtime::Rows<'static, robot::Alphabet> = runtime::Rows {
             fsm: FSM,
@@ -161,19 +174,54 @@ fn rows(machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
     }
 }
 
-/// Emits `static OPERANDS`: the conditions of a plan that is emitted as code, for reports of the operands that have
-/// fired.
-pub(super) fn conditions(machine: &Machine) -> TokenStream {
-    let rows = fsm::rows(machine);
-    let conditions = rows.guards.iter().map(|guard| row(&guard.condition, machine));
-    let operands = rows.operands.iter().map(|operand| row(operand, machine));
+/// Emits the functions that make rows, without those that no row calls.
+fn row_functions(rows: &Rows) -> TokenStream {
+    let follows = rows.guards.iter().any(|guard| guard.follows.is_some()).then(|| {
+        quote! {
+            #[doc = " The atom that follows a scope, and the levels of scopes that begin with it."]
+            const fn follows(atom: u32, from: u16, to: u16) -> Option<runtime::Follows> {
+                Some(runtime::Follows::new(atom, from, to))
+            }
+        }
+    });
+    let degrees = rows.laws.iter().any(|law| in_degrees(law.frame.0).is_some()).then(|| {
+        quote! {
+            #[doc = " An angle."]
+            const fn degrees(angle: f64) -> runtime::Radians { runtime::Radians::from_degrees(angle) }
+        }
+    });
     quote! {
-        #[doc = " The conditions of brackets as rows, for reports of the operands that have fired."]
-        static OPERANDS: runtime::Conditions<'static, robot::AnyInterrupt> = runtime::Conditions {
-            conditions: &[#(#conditions),*],
-            operands: &[#(#operands),*],
-        };
+        #[doc = " The condition of a bracket, its level, the next bracket around it, and what follows it."]
+        const fn guard(
+            condition: runtime::Condition<robot::AnyInterrupt>,
+            level: u16,
+            around: u32,
+            follows: Option<runtime::Follows>,
+        ) -> runtime::Guard<robot::AnyInterrupt> {
+            runtime::Guard { condition, level, around, follows }
+        }
+
+        #[doc = " The law of an atom, and the angle by which its frame is turned."]
+        const fn law(control: robot::AnyControl, frame: runtime::Radians) -> runtime::LawRow<robot::AnyControl> {
+            runtime::LawRow { control, frame }
+        }
+
+        #follows
+        #degrees
     }
+}
+
+/// Emits `follows(1, 1, 2)`.
+fn follower(Follows { atom, from, to }: Follows) -> TokenStream {
+    let atom = Literal::u32_unsuffixed(atom);
+    let [from, to] = [from, to].map(Literal::u16_unsuffixed);
+    quote!(follows(#atom, #from, #to))
+}
+
+/// Emits the angle by which a frame is turned: `degrees(90.0)` where that gives the same value.
+fn turn(Radians(radians): Radians) -> TokenStream {
+    let Some(degrees) = in_degrees(radians).map(number) else { return angle(radians) };
+    quote!(degrees(#degrees))
 }
 
 /// Emits `runtime::MarkRow { … }`.
@@ -197,70 +245,4 @@ fn fact(Fact { memory, operand }: &Fact) -> TokenStream {
         None => quote!(None),
     };
     quote!(runtime::Fact { memory: #memory, operand: #operand })
-}
-
-/// Emits a condition or an operand: `runtime::Condition::Or(0, 2)`.
-fn row(condition: &Condition<QuarkId>, machine: &Machine) -> TokenStream {
-    let variant = match condition {
-        Condition::Null => quote!(Null),
-        Condition::Quark(id) => {
-            let interrupt = interrupt(*id, machine.quarks());
-            quote!(Quark(#interrupt))
-        }
-        Condition::Lasting(id, Nanos(nanos)) => {
-            let (interrupt, nanos) = (interrupt(*id, machine.quarks()), Literal::u64_unsuffixed(*nanos));
-            quote!(Lasting(#interrupt, Nanos(#nanos)))
-        }
-        Condition::Wait(Nanos(nanos)) => {
-            let nanos = Literal::u64_unsuffixed(*nanos);
-            quote!(Wait(Nanos(#nanos)))
-        }
-        Condition::Elapsed(Nanos(from), Nanos(until)) => {
-            let [from, until] = [*from, *until].map(Literal::u64_unsuffixed);
-            quote!(Elapsed(Nanos(#from), Nanos(#until)))
-        }
-        Condition::Driven(from, until) => {
-            let [from, until] = [from.0, until.0].map(nanometers);
-            quote!(Driven(#from, #until))
-        }
-        Condition::Or(first, count) => {
-            let [first, count] = [*first, *count].map(Literal::u32_unsuffixed);
-            quote!(Or(#first, #count))
-        }
-        Condition::And(first, count) => {
-            let [first, count] = [*first, *count].map(Literal::u32_unsuffixed);
-            quote!(And(#first, #count))
-        }
-        Condition::Not(number) => {
-            let number = Literal::u32_unsuffixed(*number);
-            quote!(Not(#number))
-        }
-        Condition::Rising(memory, number) => {
-            let [memory, number] = [*memory, *number].map(Literal::u32_unsuffixed);
-            quote!(Rising(#memory, #number))
-        }
-        Condition::After(level, memory) => {
-            let (level, memory) = (Literal::u16_unsuffixed(*level), Literal::u32_unsuffixed(*memory));
-            quote!(After(#level, #memory))
-        }
-    };
-    quote!(runtime::Condition::#variant)
-}
-
-/// An interrupt as one of its alphabet's.
-fn interrupt(id: QuarkId, quarks: &[Quark]) -> TokenStream {
-    let quark = &quarks[id.0 as usize];
-    let Some(comparison) = &quark.comparison else { return variant("AnyInterrupt", quark, quarks) };
-    let comparison = compared(comparison, &quote!(robot::AnySignal), |signal| {
-        variant("AnySignal", &quarks[signal.0 as usize], quarks)
-    });
-    quote!(robot::AnyInterrupt::Comparison(#comparison))
-}
-
-/// Emits a quark as a variant of its alphabet's enum: `robot::AnyControl::Go(robot::Go::new(…))`.
-fn variant(any: &str, quark: &Quark, quarks: &[Quark]) -> TokenStream {
-    let any = quote::format_ident!("{any}");
-    let kind = quark_type(&quark.name, quark.overload);
-    let value = quark_value(quark, quarks);
-    quote!(robot::#any::#kind(#value))
 }

@@ -1,6 +1,6 @@
 //! Emits the signatures of an alphabet's quarks, which a target's crate has to implement, with a type for each unit.
 
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::bound::Bound;
@@ -28,6 +28,27 @@ pub(super) fn from_arguments(quark: &Bound<'_>, visibility: &TokenStream) -> Tok
             #(#words)*
             Some(#kind::new(#(#names),*))
         }
+    }
+}
+
+/// The type of an argument of this kind.
+pub(super) fn argument_type(kind: Kind) -> TokenStream {
+    match kind {
+        Kind::Length => quote!(runtime::Meters),
+        Kind::Speed => quote!(runtime::MetersPerSecond),
+        Kind::Angle => quote!(runtime::Radians),
+        Kind::AngularRate => quote!(runtime::RadiansPerSecond),
+        Kind::Time => quote!(runtime::Nanos),
+        Kind::Voltage => quote!(runtime::Volts),
+        Kind::Frequency | Kind::Number => quote!(f64),
+        Kind::Integer => quote!(i64),
+        Kind::Count => quote!(u64),
+        Kind::Bits(length) => {
+            let length = Literal::u32_unsuffixed(length);
+            quote!(runtime::Bits<#length>)
+        }
+        Kind::Sonar => quote!(runtime::SonarId),
+        Kind::Robot | Kind::Module | Kind::File => quote!(&'static str),
     }
 }
 
