@@ -118,67 +118,73 @@ mod machine {
         }
     }
 
+    /// `bumper`: Fires on contact of any bumper.
+    const fn bumper() -> runtime::Condition<robot::AnyInterrupt> {
+        runtime::Condition::Quark(robot::AnyInterrupt::Bumper(robot::Bumper::new()))
+    }
+
+    /// `go <v in cm/s> <omega in rad/s>`: Drives with a forward speed and a turn rate, counter-clockwise positive, for ever.
+    const fn go(
+        v: runtime::MetersPerSecond,
+        omega: runtime::RadiansPerSecond,
+    ) -> robot::AnyControl {
+        robot::AnyControl::Go(robot::Go::new(v, omega))
+    }
+
+    /// `turn <angle in deg>`: Turns by an angle relative to the heading at which the atom began, counter-clockwise positive.
+    const fn turn(angle: runtime::Radians) -> robot::AnyControl {
+        robot::AnyControl::Turn(robot::Turn::new(angle))
+    }
+
+    /// The condition of a bracket, its level, the next bracket around it, and what follows it.
+    const fn guard(
+        condition: runtime::Condition<robot::AnyInterrupt>,
+        level: u16,
+        around: u32,
+        follows: Option<runtime::Follows>,
+    ) -> runtime::Guard<robot::AnyInterrupt> {
+        runtime::Guard {
+            condition,
+            level,
+            around,
+            follows,
+        }
+    }
+
+    /// The law of an atom, and the angle by which its frame is turned.
+    const fn law(
+        control: robot::AnyControl,
+        frame: runtime::Radians,
+    ) -> runtime::LawRow<robot::AnyControl> {
+        runtime::LawRow { control, frame }
+    }
+
+    /// The atom that follows a scope, and the levels of scopes that begin with it.
+    const fn follows(atom: u32, from: u16, to: u16) -> Option<runtime::Follows> {
+        Some(runtime::Follows::new(atom, from, to))
+    }
+
+    /// An angle.
+    const fn degrees(angle: f64) -> runtime::Radians {
+        runtime::Radians::from_degrees(angle)
+    }
+
     /// The conditions of brackets and the laws of atoms, in the order of the tables below.
     static ROWS: runtime::Rows<'static, robot::Alphabet> = runtime::Rows {
         fsm: FSM,
         guards: &[
-            runtime::Guard {
-                condition: runtime::Condition::Or(0, 2),
-                level: 0,
-                around: 0,
-                follows: Some(runtime::Follows::new(6, 0, 0)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Or(2, 2),
-                level: 1,
-                around: 0,
-                follows: Some(runtime::Follows::new(1, 1, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Not(4),
-                level: 1,
-                around: 0,
-                follows: Some(runtime::Follows::new(4, 1, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Null,
-                level: 2,
-                around: 2,
-                follows: Some(runtime::Follows::new(2, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Or(5, 2),
-                level: 2,
-                around: 2,
-                follows: Some(runtime::Follows::new(3, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Null,
-                level: 2,
-                around: 2,
-                follows: Some(runtime::Follows::new(4, 1, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Not(7),
-                level: 1,
-                around: 0,
-                follows: Some(runtime::Follows::new(6, 0, 0)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Null,
-                level: 2,
-                around: 6,
-                follows: Some(runtime::Follows::new(5, 2, 3)),
-            },
-            runtime::Guard {
-                condition: runtime::Condition::Or(8, 2),
-                level: 2,
-                around: 6,
-                follows: Some(runtime::Follows::new(6, 0, 0)),
-            },
+            guard(runtime::Condition::Or(0, 2), 0, 0, follows(6, 0, 0)),
+            guard(runtime::Condition::Or(2, 2), 1, 0, follows(1, 1, 3)),
+            guard(runtime::Condition::Not(4), 1, 0, follows(4, 1, 3)),
+            guard(runtime::Condition::Null, 2, 2, follows(2, 2, 3)),
+            guard(runtime::Condition::Or(5, 2), 2, 2, follows(3, 2, 3)),
+            guard(runtime::Condition::Null, 2, 2, follows(4, 1, 3)),
+            guard(runtime::Condition::Not(7), 1, 0, follows(6, 0, 0)),
+            guard(runtime::Condition::Null, 2, 6, follows(5, 2, 3)),
+            guard(runtime::Condition::Or(8, 2), 2, 6, follows(6, 0, 0)),
         ],
         operands: &[
-            runtime::Condition::Quark(robot::AnyInterrupt::Bumper(robot::Bumper::new())),
+            bumper(),
             runtime::Condition::Wait(Nanos(120000000000)),
             runtime::Condition::Quark(
                 robot::AnyInterrupt::Comparison(
@@ -214,51 +220,21 @@ mod machine {
             ),
         ],
         laws: &[
-            runtime::LawRow {
-                control: robot::AnyControl::Go(
-                    robot::Go::new(
-                        runtime::MetersPerSecond(0.2),
-                        runtime::RadiansPerSecond(0.0),
-                    ),
-                ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::Turn(
-                    robot::Turn::new(runtime::Radians::from_degrees(90.0)),
-                ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::Go(
-                    robot::Go::new(
-                        runtime::MetersPerSecond(0.2),
-                        runtime::RadiansPerSecond(0.0),
-                    ),
-                ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::Turn(
-                    robot::Turn::new(runtime::Radians::from_degrees(-90.0)),
-                ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::Turn(
-                    robot::Turn::new(runtime::Radians::from_degrees(180.0)),
-                ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
-            runtime::LawRow {
-                control: robot::AnyControl::Go(
-                    robot::Go::new(
-                        runtime::MetersPerSecond(0.2),
-                        runtime::RadiansPerSecond(0.0),
-                    ),
-                ),
-                frame: runtime::Radians::from_degrees(0.0),
-            },
+            law(
+                go(runtime::MetersPerSecond(0.2), runtime::RadiansPerSecond(0.0)),
+                degrees(0.0),
+            ),
+            law(turn(runtime::Radians::from_degrees(90.0)), degrees(0.0)),
+            law(
+                go(runtime::MetersPerSecond(0.2), runtime::RadiansPerSecond(0.0)),
+                degrees(0.0),
+            ),
+            law(turn(runtime::Radians::from_degrees(-90.0)), degrees(0.0)),
+            law(turn(runtime::Radians::from_degrees(180.0)), degrees(0.0)),
+            law(
+                go(runtime::MetersPerSecond(0.2), runtime::RadiansPerSecond(0.0)),
+                degrees(0.0),
+            ),
         ],
         marks: &[
             runtime::MarkRow {

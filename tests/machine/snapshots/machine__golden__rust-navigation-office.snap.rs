@@ -244,6 +244,411 @@ mod machine {
         Atom54(<robot::Rotate as runtime::Control<Output>>::Law),
     }
 
+    impl Running {
+        /// Becomes the law of an atom that begins.
+        #[cfg_attr(target_os = "none", inline(never))]
+        #[cfg_attr(not(target_os = "none"), inline(always))]
+        fn start(&mut self, atom: u32, y: &Output, begin: Begin) {
+            match atom {
+                0 => {
+                    *self = Running::Atom1(
+                        runtime::Control::begin(&GO_AVOID_90_40_20, y, begin),
+                    );
+                }
+                1 => {
+                    *self = Running::Atom2(runtime::Control::begin(&GO_0_0_36, y, begin));
+                }
+                2 => {
+                    *self = Running::Atom3(runtime::Control::begin(&ALIGN_7_9, y, begin));
+                }
+                3 => {
+                    *self = Running::Atom4(
+                        runtime::Control::begin(&GO_AVOID_0_40_20, y, begin),
+                    );
+                }
+                4 => {
+                    *self = Running::Atom5(runtime::Control::begin(&GO_0_0_36, y, begin));
+                }
+                5 => {
+                    *self = Running::Atom6(runtime::Control::begin(&ALIGN_3_5, y, begin));
+                }
+                6 => {
+                    *self = Running::Atom7(
+                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
+                    );
+                }
+                7 => {
+                    *self = Running::Atom8(
+                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
+                    );
+                }
+                8 => {
+                    *self = Running::Atom9(
+                        runtime::Control::begin(
+                            &GO_AVOID_90_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                9 => {
+                    *self = Running::Atom10(
+                        runtime::Control::begin(
+                            &GO_0_0_36,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                10 => {
+                    *self = Running::Atom11(
+                        runtime::Control::begin(
+                            &ALIGN_11_13,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                11 => {
+                    *self = Running::Atom12(
+                        runtime::Control::begin(
+                            &GO_AVOID_180_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                12 => {
+                    *self = Running::Atom13(
+                        runtime::Control::begin(
+                            &ROTATE_90,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                13 => {
+                    *self = Running::Atom14(
+                        runtime::Control::begin(
+                            &GO_AVOID_270_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                14 => {
+                    *self = Running::Atom15(
+                        runtime::Control::begin(
+                            &GO_AVOID_270_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                15 => {
+                    *self = Running::Atom16(
+                        runtime::Control::begin(
+                            &GO_AVOID_270_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                16 => {
+                    *self = Running::Atom17(
+                        runtime::Control::begin(
+                            &GO_AVOID_180_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                17 => {
+                    *self = Running::Atom18(
+                        runtime::Control::begin(
+                            &ROTATE_0,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                18 => {
+                    *self = Running::Atom19(
+                        runtime::Control::begin(
+                            &GO_AVOID_270_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                19 => {
+                    *self = Running::Atom20(
+                        runtime::Control::begin(
+                            &GO_AVOID_270_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                20 => {
+                    *self = Running::Atom21(
+                        runtime::Control::begin(
+                            &GO_0_0_36,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                21 => {
+                    *self = Running::Atom22(
+                        runtime::Control::begin(
+                            &ALIGN_7_9,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                22 => {
+                    *self = Running::Atom23(
+                        runtime::Control::begin(
+                            &GO_AVOID_0_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                23 => {
+                    *self = Running::Atom24(
+                        runtime::Control::begin(
+                            &GO_0_0_36,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                24 => {
+                    *self = Running::Atom25(
+                        runtime::Control::begin(
+                            &ALIGN_11_13,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                25 => {
+                    *self = Running::Atom26(
+                        runtime::Control::begin(
+                            &GO_AVOID_90_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                26 => {
+                    *self = Running::Atom27(
+                        runtime::Control::begin(
+                            &GO_AVOID_90_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                27 => {
+                    *self = Running::Atom28(
+                        runtime::Control::begin(
+                            &ROTATE_180,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
+                    );
+                }
+                28 => {
+                    *self = Running::Atom29(
+                        runtime::Control::begin(&GO_AVOID_90_40_20, y, begin),
+                    );
+                }
+                29 => {
+                    *self = Running::Atom30(
+                        runtime::Control::begin(&GO_0_0_36, y, begin),
+                    );
+                }
+                30 => {
+                    *self = Running::Atom31(
+                        runtime::Control::begin(&ALIGN_7_9, y, begin),
+                    );
+                }
+                31 => {
+                    *self = Running::Atom32(
+                        runtime::Control::begin(&GO_AVOID_0_40_20, y, begin),
+                    );
+                }
+                32 => {
+                    *self = Running::Atom33(
+                        runtime::Control::begin(&GO_0_0_36, y, begin),
+                    );
+                }
+                33 => {
+                    *self = Running::Atom34(
+                        runtime::Control::begin(&ALIGN_3_5, y, begin),
+                    );
+                }
+                34 => {
+                    *self = Running::Atom35(
+                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
+                    );
+                }
+                35 => {
+                    *self = Running::Atom36(
+                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
+                    );
+                }
+                36 => {
+                    *self = Running::Atom37(
+                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
+                    );
+                }
+                37 => {
+                    *self = Running::Atom38(
+                        runtime::Control::begin(&GO_0_0_36, y, begin),
+                    );
+                }
+                38 => {
+                    *self = Running::Atom39(
+                        runtime::Control::begin(&ALIGN_11_13, y, begin),
+                    );
+                }
+                39 => {
+                    *self = Running::Atom40(
+                        runtime::Control::begin(&GO_AVOID_0_40_20, y, begin),
+                    );
+                }
+                40 => {
+                    *self = Running::Atom41(
+                        runtime::Control::begin(&ROTATE_270, y, begin),
+                    );
+                }
+                41 => {
+                    *self = Running::Atom42(
+                        runtime::Control::begin(
+                            &GO_AVOID_270_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                42 => {
+                    *self = Running::Atom43(
+                        runtime::Control::begin(
+                            &GO_AVOID_270_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                43 => {
+                    *self = Running::Atom44(
+                        runtime::Control::begin(
+                            &GO_AVOID_270_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                44 => {
+                    *self = Running::Atom45(
+                        runtime::Control::begin(
+                            &GO_AVOID_180_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                45 => {
+                    *self = Running::Atom46(
+                        runtime::Control::begin(
+                            &GO_AVOID_180_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                46 => {
+                    *self = Running::Atom47(
+                        runtime::Control::begin(
+                            &GO_0_0_36,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                47 => {
+                    *self = Running::Atom48(
+                        runtime::Control::begin(
+                            &ALIGN_7_9,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                48 => {
+                    *self = Running::Atom49(
+                        runtime::Control::begin(
+                            &GO_AVOID_270_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                49 => {
+                    *self = Running::Atom50(
+                        runtime::Control::begin(
+                            &GO_0_0_36,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                50 => {
+                    *self = Running::Atom51(
+                        runtime::Control::begin(
+                            &ALIGN_11_13,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                51 => {
+                    *self = Running::Atom52(
+                        runtime::Control::begin(
+                            &GO_AVOID_0_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                52 => {
+                    *self = Running::Atom53(
+                        runtime::Control::begin(
+                            &GO_AVOID_0_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                53 => {
+                    *self = Running::Atom54(
+                        runtime::Control::begin(
+                            &ROTATE_90,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                _ => *self = Running::Idle,
+            }
+        }
+    }
+
     impl runtime::Plan for Circuit {
         type Output = Output;
         type Input = Input;
@@ -255,412 +660,14 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             ([Nanos::ZERO; 3], [0; 0])
         }
-        #[cfg_attr(target_os = "none", inline(never))]
+        #[inline(always)]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-            match atom {
-                0 => {
-                    self.running = Running::Atom1(
-                        runtime::Control::begin(&GO_AVOID_90_40_20, y, begin),
-                    );
-                }
-                1 => {
-                    self.running = Running::Atom2(
-                        runtime::Control::begin(&GO_0_0_36, y, begin),
-                    );
-                }
-                2 => {
-                    self.running = Running::Atom3(
-                        runtime::Control::begin(&ALIGN_7_9, y, begin),
-                    );
-                }
-                3 => {
-                    self.running = Running::Atom4(
-                        runtime::Control::begin(&GO_AVOID_0_40_20, y, begin),
-                    );
-                }
-                4 => {
-                    self.running = Running::Atom5(
-                        runtime::Control::begin(&GO_0_0_36, y, begin),
-                    );
-                }
-                5 => {
-                    self.running = Running::Atom6(
-                        runtime::Control::begin(&ALIGN_3_5, y, begin),
-                    );
-                }
-                6 => {
-                    self.running = Running::Atom7(
-                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
-                    );
-                }
-                7 => {
-                    self.running = Running::Atom8(
-                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
-                    );
-                }
-                8 => {
-                    self.running = Running::Atom9(
-                        runtime::Control::begin(
-                            &GO_AVOID_90_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                9 => {
-                    self.running = Running::Atom10(
-                        runtime::Control::begin(
-                            &GO_0_0_36,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                10 => {
-                    self.running = Running::Atom11(
-                        runtime::Control::begin(
-                            &ALIGN_11_13,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                11 => {
-                    self.running = Running::Atom12(
-                        runtime::Control::begin(
-                            &GO_AVOID_180_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                12 => {
-                    self.running = Running::Atom13(
-                        runtime::Control::begin(
-                            &ROTATE_90,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                13 => {
-                    self.running = Running::Atom14(
-                        runtime::Control::begin(
-                            &GO_AVOID_270_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                14 => {
-                    self.running = Running::Atom15(
-                        runtime::Control::begin(
-                            &GO_AVOID_270_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                15 => {
-                    self.running = Running::Atom16(
-                        runtime::Control::begin(
-                            &GO_AVOID_270_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                16 => {
-                    self.running = Running::Atom17(
-                        runtime::Control::begin(
-                            &GO_AVOID_180_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                17 => {
-                    self.running = Running::Atom18(
-                        runtime::Control::begin(
-                            &ROTATE_0,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                18 => {
-                    self.running = Running::Atom19(
-                        runtime::Control::begin(
-                            &GO_AVOID_270_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                19 => {
-                    self.running = Running::Atom20(
-                        runtime::Control::begin(
-                            &GO_AVOID_270_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                20 => {
-                    self.running = Running::Atom21(
-                        runtime::Control::begin(
-                            &GO_0_0_36,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                21 => {
-                    self.running = Running::Atom22(
-                        runtime::Control::begin(
-                            &ALIGN_7_9,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                22 => {
-                    self.running = Running::Atom23(
-                        runtime::Control::begin(
-                            &GO_AVOID_0_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                23 => {
-                    self.running = Running::Atom24(
-                        runtime::Control::begin(
-                            &GO_0_0_36,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                24 => {
-                    self.running = Running::Atom25(
-                        runtime::Control::begin(
-                            &ALIGN_11_13,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                25 => {
-                    self.running = Running::Atom26(
-                        runtime::Control::begin(
-                            &GO_AVOID_90_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                26 => {
-                    self.running = Running::Atom27(
-                        runtime::Control::begin(
-                            &GO_AVOID_90_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                27 => {
-                    self.running = Running::Atom28(
-                        runtime::Control::begin(
-                            &ROTATE_180,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
-                        ),
-                    );
-                }
-                28 => {
-                    self.running = Running::Atom29(
-                        runtime::Control::begin(&GO_AVOID_90_40_20, y, begin),
-                    );
-                }
-                29 => {
-                    self.running = Running::Atom30(
-                        runtime::Control::begin(&GO_0_0_36, y, begin),
-                    );
-                }
-                30 => {
-                    self.running = Running::Atom31(
-                        runtime::Control::begin(&ALIGN_7_9, y, begin),
-                    );
-                }
-                31 => {
-                    self.running = Running::Atom32(
-                        runtime::Control::begin(&GO_AVOID_0_40_20, y, begin),
-                    );
-                }
-                32 => {
-                    self.running = Running::Atom33(
-                        runtime::Control::begin(&GO_0_0_36, y, begin),
-                    );
-                }
-                33 => {
-                    self.running = Running::Atom34(
-                        runtime::Control::begin(&ALIGN_3_5, y, begin),
-                    );
-                }
-                34 => {
-                    self.running = Running::Atom35(
-                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
-                    );
-                }
-                35 => {
-                    self.running = Running::Atom36(
-                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
-                    );
-                }
-                36 => {
-                    self.running = Running::Atom37(
-                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
-                    );
-                }
-                37 => {
-                    self.running = Running::Atom38(
-                        runtime::Control::begin(&GO_0_0_36, y, begin),
-                    );
-                }
-                38 => {
-                    self.running = Running::Atom39(
-                        runtime::Control::begin(&ALIGN_11_13, y, begin),
-                    );
-                }
-                39 => {
-                    self.running = Running::Atom40(
-                        runtime::Control::begin(&GO_AVOID_0_40_20, y, begin),
-                    );
-                }
-                40 => {
-                    self.running = Running::Atom41(
-                        runtime::Control::begin(&ROTATE_270, y, begin),
-                    );
-                }
-                41 => {
-                    self.running = Running::Atom42(
-                        runtime::Control::begin(
-                            &GO_AVOID_270_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                42 => {
-                    self.running = Running::Atom43(
-                        runtime::Control::begin(
-                            &GO_AVOID_270_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                43 => {
-                    self.running = Running::Atom44(
-                        runtime::Control::begin(
-                            &GO_AVOID_270_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                44 => {
-                    self.running = Running::Atom45(
-                        runtime::Control::begin(
-                            &GO_AVOID_180_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                45 => {
-                    self.running = Running::Atom46(
-                        runtime::Control::begin(
-                            &GO_AVOID_180_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                46 => {
-                    self.running = Running::Atom47(
-                        runtime::Control::begin(
-                            &GO_0_0_36,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                47 => {
-                    self.running = Running::Atom48(
-                        runtime::Control::begin(
-                            &ALIGN_7_9,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                48 => {
-                    self.running = Running::Atom49(
-                        runtime::Control::begin(
-                            &GO_AVOID_270_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                49 => {
-                    self.running = Running::Atom50(
-                        runtime::Control::begin(
-                            &GO_0_0_36,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                50 => {
-                    self.running = Running::Atom51(
-                        runtime::Control::begin(
-                            &ALIGN_11_13,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                51 => {
-                    self.running = Running::Atom52(
-                        runtime::Control::begin(
-                            &GO_AVOID_0_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                52 => {
-                    self.running = Running::Atom53(
-                        runtime::Control::begin(
-                            &GO_AVOID_0_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                53 => {
-                    self.running = Running::Atom54(
-                        runtime::Control::begin(
-                            &ROTATE_90,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
-                    );
-                }
-                _ => self.running = Running::Idle,
+            if cfg!(target_os = "none") {
+                self.running.start(atom, y, begin);
+            } else {
+                let mut running = Running::Idle;
+                running.start(atom, y, begin);
+                self.running = running;
             }
         }
         #[inline(always)]

@@ -81,6 +81,41 @@ mod machine {
         Atom8(<robot::Rotate as runtime::Control<Output>>::Law),
     }
 
+    impl Running {
+        /// Becomes the law of an atom that begins.
+        #[cfg_attr(target_os = "none", inline(never))]
+        #[cfg_attr(not(target_os = "none"), inline(always))]
+        fn start(&mut self, atom: u32, y: &Output, begin: Begin) {
+            match atom {
+                0 => *self = Running::Atom1(runtime::Control::begin(&STOP, y, begin)),
+                1 => {
+                    *self = Running::Atom2(
+                        runtime::Control::begin(&PATH_LAST_PATH, y, begin),
+                    );
+                }
+                2 => *self = Running::Atom3(runtime::Control::begin(&GO_0_5_0, y, begin)),
+                3 => {
+                    *self = Running::Atom4(
+                        runtime::Control::begin(&ROTATE_180, y, begin),
+                    );
+                }
+                4 => *self = Running::Atom5(runtime::Control::begin(&STOP, y, begin)),
+                5 => *self = Running::Atom6(runtime::Control::begin(&GO_0_5_0, y, begin)),
+                6 => {
+                    *self = Running::Atom7(
+                        runtime::Control::begin(&FOLLOW_ROBOT2, y, begin),
+                    );
+                }
+                7 => {
+                    *self = Running::Atom8(
+                        runtime::Control::begin(&ROTATE_180, y, begin),
+                    );
+                }
+                _ => *self = Running::Idle,
+            }
+        }
+    }
+
     impl runtime::Plan for FirstRobotPlan {
         type Output = Output;
         type Input = Input;
@@ -92,50 +127,14 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             ([Nanos::ZERO; 2], [0; 1])
         }
-        #[cfg_attr(target_os = "none", inline(never))]
+        #[inline(always)]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-            match atom {
-                0 => {
-                    self.running = Running::Atom1(
-                        runtime::Control::begin(&STOP, y, begin),
-                    );
-                }
-                1 => {
-                    self.running = Running::Atom2(
-                        runtime::Control::begin(&PATH_LAST_PATH, y, begin),
-                    );
-                }
-                2 => {
-                    self.running = Running::Atom3(
-                        runtime::Control::begin(&GO_0_5_0, y, begin),
-                    );
-                }
-                3 => {
-                    self.running = Running::Atom4(
-                        runtime::Control::begin(&ROTATE_180, y, begin),
-                    );
-                }
-                4 => {
-                    self.running = Running::Atom5(
-                        runtime::Control::begin(&STOP, y, begin),
-                    );
-                }
-                5 => {
-                    self.running = Running::Atom6(
-                        runtime::Control::begin(&GO_0_5_0, y, begin),
-                    );
-                }
-                6 => {
-                    self.running = Running::Atom7(
-                        runtime::Control::begin(&FOLLOW_ROBOT2, y, begin),
-                    );
-                }
-                7 => {
-                    self.running = Running::Atom8(
-                        runtime::Control::begin(&ROTATE_180, y, begin),
-                    );
-                }
-                _ => self.running = Running::Idle,
+            if cfg!(target_os = "none") {
+                self.running.start(atom, y, begin);
+            } else {
+                let mut running = Running::Idle;
+                running.start(atom, y, begin);
+                self.running = running;
             }
         }
         #[inline(always)]

@@ -96,6 +96,38 @@ mod machine {
         Atom5(<robot::Rotate as runtime::Control<Output>>::Law),
     }
 
+    impl Running {
+        /// Becomes the law of an atom that begins.
+        #[cfg_attr(target_os = "none", inline(never))]
+        #[cfg_attr(not(target_os = "none"), inline(always))]
+        fn start(&mut self, atom: u32, y: &Output, begin: Begin) {
+            match atom {
+                0 => {
+                    *self = Running::Atom1(
+                        runtime::Control::begin(&GO_AVOID_90_40_20, y, begin),
+                    );
+                }
+                1 => {
+                    *self = Running::Atom2(runtime::Control::begin(&GO_0_0_36, y, begin));
+                }
+                2 => {
+                    *self = Running::Atom3(
+                        runtime::Control::begin(&ALIGN_11_13, y, begin),
+                    );
+                }
+                3 => {
+                    *self = Running::Atom4(
+                        runtime::Control::begin(&GO_AVOID_180_40_20, y, begin),
+                    );
+                }
+                4 => {
+                    *self = Running::Atom5(runtime::Control::begin(&ROTATE_90, y, begin));
+                }
+                _ => *self = Running::Idle,
+            }
+        }
+    }
+
     impl runtime::Plan for Lab1ToOfficePlan {
         type Output = Output;
         type Input = Input;
@@ -107,35 +139,14 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             ([Nanos::ZERO; 2], [0; 0])
         }
-        #[cfg_attr(target_os = "none", inline(never))]
+        #[inline(always)]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-            match atom {
-                0 => {
-                    self.running = Running::Atom1(
-                        runtime::Control::begin(&GO_AVOID_90_40_20, y, begin),
-                    );
-                }
-                1 => {
-                    self.running = Running::Atom2(
-                        runtime::Control::begin(&GO_0_0_36, y, begin),
-                    );
-                }
-                2 => {
-                    self.running = Running::Atom3(
-                        runtime::Control::begin(&ALIGN_11_13, y, begin),
-                    );
-                }
-                3 => {
-                    self.running = Running::Atom4(
-                        runtime::Control::begin(&GO_AVOID_180_40_20, y, begin),
-                    );
-                }
-                4 => {
-                    self.running = Running::Atom5(
-                        runtime::Control::begin(&ROTATE_90, y, begin),
-                    );
-                }
-                _ => self.running = Running::Idle,
+            if cfg!(target_os = "none") {
+                self.running.start(atom, y, begin);
+            } else {
+                let mut running = Running::Idle;
+                running.start(atom, y, begin);
+                self.running = running;
             }
         }
         #[inline(always)]

@@ -56,6 +56,19 @@ mod machine {
         Atom2(<robot::Stop as runtime::Control<Output>>::Law),
     }
 
+    impl Running {
+        /// Becomes the law of an atom that begins.
+        #[cfg_attr(target_os = "none", inline(never))]
+        #[cfg_attr(not(target_os = "none"), inline(always))]
+        fn start(&mut self, atom: u32, y: &Output, begin: Begin) {
+            match atom {
+                0 => *self = Running::Atom1(runtime::Control::begin(&TURN_45, y, begin)),
+                1 => *self = Running::Atom2(runtime::Control::begin(&STOP, y, begin)),
+                _ => *self = Running::Idle,
+            }
+        }
+    }
+
     impl runtime::Plan for Sentry {
         type Output = Output;
         type Input = Input;
@@ -67,20 +80,14 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             ([Nanos::ZERO; 2], [0; 1])
         }
-        #[cfg_attr(target_os = "none", inline(never))]
+        #[inline(always)]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-            match atom {
-                0 => {
-                    self.running = Running::Atom1(
-                        runtime::Control::begin(&TURN_45, y, begin),
-                    );
-                }
-                1 => {
-                    self.running = Running::Atom2(
-                        runtime::Control::begin(&STOP, y, begin),
-                    );
-                }
-                _ => self.running = Running::Idle,
+            if cfg!(target_os = "none") {
+                self.running.start(atom, y, begin);
+            } else {
+                let mut running = Running::Idle;
+                running.start(atom, y, begin);
+                self.running = running;
             }
         }
         #[inline(always)]

@@ -52,6 +52,22 @@ mod machine {
         Atom1(<robot::GoAvoid2 as runtime::Control<Output>>::Law),
     }
 
+    impl Running {
+        /// Becomes the law of an atom that begins.
+        #[cfg_attr(target_os = "none", inline(never))]
+        #[cfg_attr(not(target_os = "none"), inline(always))]
+        fn start(&mut self, atom: u32, y: &Output, begin: Begin) {
+            match atom {
+                0 => {
+                    *self = Running::Atom1(
+                        runtime::Control::begin(&GO_AVOID_HEADING_MODULE, y, begin),
+                    );
+                }
+                _ => *self = Running::Idle,
+            }
+        }
+    }
+
     impl runtime::Plan for SoundFollowing {
         type Output = Output;
         type Input = Input;
@@ -63,15 +79,14 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             ([Nanos::ZERO; 1], [0; 0])
         }
-        #[cfg_attr(target_os = "none", inline(never))]
+        #[inline(always)]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-            match atom {
-                0 => {
-                    self.running = Running::Atom1(
-                        runtime::Control::begin(&GO_AVOID_HEADING_MODULE, y, begin),
-                    );
-                }
-                _ => self.running = Running::Idle,
+            if cfg!(target_os = "none") {
+                self.running.start(atom, y, begin);
+            } else {
+                let mut running = Running::Idle;
+                running.start(atom, y, begin);
+                self.running = running;
             }
         }
         #[inline(always)]

@@ -1,5 +1,4 @@
-//! A plan as code: quarks as constants, laws as variants, interrupts as functions that ask the scopes around them
-//! first.
+//! A plan as code: quarks as constants, interrupts as functions that ask the scopes around them first.
 
 use std::collections::BTreeSet;
 
@@ -7,14 +6,14 @@ use mdle_runtime::Printable;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-use super::arguments::{angle, quark_value, type_of};
+use super::arguments::{quark_value, type_of};
 use super::conditions::conditions;
 use super::meaning::Meaning;
-use super::names::{atom_variant, quark_type};
-use super::scopes::{asks_for_progress, ending};
+use super::names::atom_variant;
+use super::scopes::ending;
 use super::tables::entries;
-use crate::fsm::{Atom, Machine};
-use crate::plan::{Compared, QuarkId, frame_text};
+use crate::fsm::Machine;
+use crate::plan::{Compared, QuarkId};
 
 /// The plan's type and its implementation, with an arm for each atom.
 pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
@@ -87,33 +86,11 @@ impl Meaning<'_> {
         signals
     }
 
-    /// Emits `enum Running`: the law of the current atom with its state.
-    pub(super) fn running(&self) -> TokenStream {
-        let variants = self.machine.atoms().map(|atom| {
-            let kind = quark_type(&atom.law().name, atom.law().overload);
-            let variant = atom_variant(atom.index());
-            let doc = format!(" `{}`", atom_doc(atom));
-            quote! {
-                #[doc = #doc]
-                #variant(<robot::#kind as runtime::Control<Output>>::Law)
-            }
-        });
-        quote! {
-            #[doc = " The law of the current atom, with its state since the atom began."]
-            #[derive(Debug)]
-            enum Running {
-                #[doc = " Before the plan begins."]
-                Idle,
-                #(#variants,)*
-            }
-        }
-    }
-
     /// Emits `impl Plan for LabTour`, by which the machine evaluates the plan.
     fn implementation(&self, plan: &Ident, paths: Option<&TokenStream>) -> TokenStream {
         let slots = Literal::usize_unsuffixed(self.machine.sizes().slots);
         let (entered, begins) = entries(self.machine);
-        let ([enter, next, input], stalled) = ([self.enter(), self.next(), self.input()], self.stalled());
+        let ([enter, next, input], stalled) = ([Self::enter(), self.next(), self.input()], self.stalled());
         let paths = paths.map(|paths| quote!(fn paths(&self) -> &[&'static str] { &[#paths] }));
         quote! {
             impl runtime::Plan for #plan {
@@ -150,27 +127,6 @@ impl Meaning<'_> {
         }
     }
 
-    /// Emits `fn enter`, which makes the law of the atom that is entered. A law may take kilobytes: each arm assigns
-    /// the one it makes, which puts it on the stack once, and on a microcontroller only while it is made.
-    pub(super) fn enter(&self) -> TokenStream {
-        let arms = self.machine.atoms().map(|atom| {
-            let number = Literal::usize_unsuffixed(atom.index());
-            let variant = atom_variant(atom.index());
-            let constant = &self.constants[atom.law_id().0 as usize];
-            let begin = beginning(atom.turned());
-            quote!(#number => self.running = Running::#variant(runtime::Control::begin(&#constant, y, #begin)))
-        });
-        quote! {
-            #[cfg_attr(target_os = "none", inline(never))]
-            fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-                match atom {
-                    #(#arms,)*
-                    _ => self.running = Running::Idle,
-                }
-            }
-        }
-    }
-
     /// Emits `fn next`, which evaluates the plan's own interrupt, and then, in an arm for each atom, the interrupts of
     /// the enclosing scopes, the atom's interrupt, and the completion of its law.
     pub(super) fn next(&self) -> TokenStream {
@@ -201,42 +157,6 @@ impl Meaning<'_> {
             }
         }
     }
-
-    /// Emits `fn stalled`, the report of the current atom's law about its progress, for a plan with `stuck`.
-    fn stalled(&self) -> Option<TokenStream> {
-        let variants = self.machine.atoms().map(|atom| atom_variant(atom.index()));
-        asks_for_progress(self.machine).then(|| {
-            quote! {
-                fn stalled(&self, y: &Output, t: Nanos) -> Option<Nanos> {
-                    match &self.running {
-                        Running::Idle => None,
-                        #(Running::#variants(law) => runtime::Law::stalled(law, y, t),)*
-                    }
-                }
-            }
-        })
-    }
-
-    /// Emits `fn input`, which applies the law of the current atom.
-    pub(super) fn input(&self) -> TokenStream {
-        let variants = self.machine.atoms().map(|atom| atom_variant(atom.index()));
-        quote! {
-            fn input(&mut self, y: &Output, t: Nanos) -> Input {
-                match &mut self.running {
-                    Running::Idle => Input::default(),
-                    #(Running::#variants(law) => runtime::Law::input(law, y, t),)*
-                }
-            }
-        }
-    }
-}
-
-/// Writes an atom for a comment: `FRAME 90 (Atom (bumper) stop)`. Rust allows neither a lone carriage return nor
-/// characters that reverse text in a comment.
-pub(super) fn atom_doc(atom: Atom<'_>) -> String {
-    let interrupt = atom.element().interrupt().filter(|interrupt| !interrupt.removed);
-    let condition = interrupt.map_or("null", |interrupt| &interrupt.text);
-    format!("{}(Atom ({}) {})", frame_text(atom.frame()), Printable(condition), Printable(&atom.law().text))
 }
 
 /// Emits the call of a scope's function, which ends the turn's evaluation if that scope or an enclosing one ends.
@@ -244,13 +164,4 @@ fn enclosing_first(function: &Ident) -> TokenStream {
     quote! {
         if let Some(ending) = #function(cursor, y, t) { return Some(ending); }
     }
-}
-
-/// Emits `begin`, or `begin.turned(…)` in a turned frame.
-fn beginning(frame: f64) -> TokenStream {
-    if frame == 0.0 {
-        return quote!(begin);
-    }
-    let angle = angle(frame);
-    quote!(begin.turned(#angle))
 }

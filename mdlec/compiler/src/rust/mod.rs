@@ -9,6 +9,7 @@ mod bind;
 mod bound;
 mod code;
 mod conditions;
+mod laws;
 mod layout;
 mod meaning;
 mod names;
