@@ -33,7 +33,7 @@ const DRIVES: Duration = Duration::from_millis(500);
 /// Maximum movement of a robot that stands, in a step, in metres.
 const STANDS: f64 = 1e-5;
 /// Number of runs at the same time.
-const AT_A_TIME: usize = 6;
+const AT_A_TIME: usize = 12;
 
 /// Something that is killed or asked to end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
