@@ -10,6 +10,7 @@ use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
 use std::thread;
 use std::time::Duration;
 
@@ -75,8 +76,14 @@ type Case<'r> = Box<dyn FnOnce() -> Row + Send + 'r>;
 struct Robot(PathBuf);
 
 impl Robot {
-    fn new(name: &str, target: &str) -> Self {
-        let folder = folder(&format!("faults_on_{name}"));
+    /// Returns the Scout and the ATRV-mini, which are built once for all tests.
+    fn both() -> &'static [Self; 2] {
+        static BUILT: OnceLock<[Robot; 2]> = OnceLock::new();
+        BUILT.get_or_init(|| ["scout", "atrv"].map(Self::new))
+    }
+
+    fn new(target: &str) -> Self {
+        let folder = folder(&format!("faults_on_{target}"));
         fs::write(folder.join("approach.mdle"), PLAN).unwrap();
         let output = run_mdlec(&folder, &["approach.mdle", "--target", target]);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -184,10 +191,10 @@ fn busy(robot: &Robot) -> Row {
 
 #[test]
 fn each_fault_stops_the_robot_or_is_borne() {
-    let (on_scout, on_atrv) = (Robot::new("scout", "scout"), Robot::new("atrv", "atrv"));
-    let mut of_scout = cases(&on_scout, scout, |scout| scout.with(atrv, IN_LOCKSTEP, None, Happening::Nothing).0);
+    let [on_scout, on_atrv] = Robot::both();
+    let mut of_scout = cases(on_scout, scout, |scout| scout.with(atrv, IN_LOCKSTEP, None, Happening::Nothing).0);
     let count = of_scout.len();
-    of_scout.extend(cases(&on_atrv, atrv, |atrv| atrv.with(scout, IN_LOCKSTEP, None, Happening::Nothing).0));
+    of_scout.extend(cases(on_atrv, atrv, |atrv| atrv.with(scout, IN_LOCKSTEP, None, Happening::Nothing).0));
     let mut of_scout = rows(of_scout);
     let of_atrv = of_scout.split_off(count);
     for (what, row) in of_scout.iter().chain(&of_atrv) {
@@ -252,7 +259,7 @@ fn assert_ends<R: Emulated>(robot: &Robot, made: MakeRobot<R>, (fault, happening
 
 #[test]
 fn by_the_clock_a_fault_ends_the_program_in_time() {
-    let (on_scout, on_atrv) = (&Robot::new("scout_by_the_clock", "scout"), &Robot::new("atrv_by_the_clock", "atrv"));
+    let [on_scout, on_atrv] = Robot::both();
     thread::scope(|scope| {
         for end in ENDS {
             scope.spawn(move || assert_ends(on_scout, scout, end));
