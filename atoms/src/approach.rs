@@ -101,7 +101,8 @@ impl Approach {
 /// The sonar that looks in this direction, given in the odometry's axes.
 fn looking(here: Pose, way: Radians) -> Option<SonarId> {
     let off = |sonar: SonarId| Radians(here.theta.0 + sonar.bearing().0 - way.0).wrapped().0.abs();
-    (0..SONARS as u8).map(SonarId::new).min_by(|one, other| off(*one).total_cmp(&off(*other)))
+    let sonars = (0..SONARS as u8).map(SonarId::new).map(|sonar| (sonar, off(sonar)));
+    sonars.min_by(|(_, one), (_, other)| one.total_cmp(other)).map(|(sonar, _)| sonar)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! nearer faster than the robot drives.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
-use mdle_runtime::{Meters, PINGS_KEPT, Pose, Radians, SONARS, SonarId};
+use mdle_runtime::{Meters, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
 
 /// Speeds, in m/s, of somebody who comes: anything slower is as good as fixed, faster echoes are of different things.
 const SPEEDS: [f64; 2] = [0.25, 2.0];
@@ -21,7 +21,6 @@ const SOON: f64 = 5.0;
 /// An echo: its time in seconds, and its distance along the way and to the left of it.
 struct Echo {
     at: f64,
-    heading: Radians,
     along: f64,
     across: f64,
 }
@@ -38,27 +37,27 @@ fn comes<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, speed: f64
     if sonar.bearing().wrapped().0.abs() > core::f64::consts::FRAC_PI_2 {
         return None;
     }
+    let mut pings = y.pings(sonar).newest_first().map(|ping| Some((ping, ping.range?)));
+    let [new, middle, old] = [pings.next()??, pings.next()??, pings.next()??];
+    let is_straight = |(from, _): (&Ping, Meters), (to, _): (&Ping, Meters)| {
+        let turned = Radians(to.pose.theta.0 - from.pose.theta.0).wrapped().0.abs();
+        turned <= TURNS * (to.at.seconds() - from.at.seconds())
+    };
+    if !(is_straight(old, middle) && is_straight(middle, new)) {
+        return None;
+    }
     let (sin, cos) = libm::sincos(here.theta.0);
-    let mut echoes = y.pings(sonar).newest_first().map(|ping| {
+    let [new, middle, old] = [new, middle, old].map(|(ping, range)| {
         let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
-        let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + ping.range?.0));
+        let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + range.0));
         let (x, y) = (place.x.0 - here.x.0, place.y.0 - here.y.0);
-        Some(Echo {
-            at: ping.at.seconds(),
-            heading: ping.pose.theta,
-            along: x * cos + y * sin,
-            across: y * cos - x * sin,
-        })
+        Echo { at: ping.at.seconds(), along: x * cos + y * sin, across: y * cos - x * sin }
     });
-    let [new, middle, old] = [echoes.next()??, echoes.next()??, echoes.next()??];
     let approach = |from: &Echo, to: &Echo| {
-        let seconds = to.at - from.at;
-        let turned = Radians(to.heading.0 - from.heading.0).wrapped().0.abs();
-        (turned <= TURNS * seconds)
-            .then(|| (libm::hypot(from.along, from.across) - libm::hypot(to.along, to.across)) / seconds)
+        (libm::hypot(from.along, from.across) - libm::hypot(to.along, to.across)) / (to.at - from.at)
     };
     let moves = |speed: f64| (SPEEDS[0]..=SPEEDS[1]).contains(&speed);
-    let (first, second) = (approach(&old, &middle)?, approach(&middle, &new)?);
+    let (first, second) = (approach(&old, &middle), approach(&middle, &new));
     let passes = new.along > y.body_radius().0 + PERSON && new.across.abs() > ASIDE;
     let mean = (first + second) / 2.0;
     let seconds = new.across.abs() / mean;

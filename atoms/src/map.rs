@@ -218,6 +218,19 @@ impl Map {
         self.evidence(cell) >= OCCUPIED
     }
 
+    /// Returns the cells in which something is.
+    pub(crate) fn occupied(&self) -> impl Iterator<Item = Cell> {
+        // Most bytes are of two cells without anything.
+        let bytes = (0..).zip(&self.evidence).filter(|(_, byte)| **byte & 15 >= OCCUPIED || **byte >> 4 >= OCCUPIED);
+        let cells = bytes.flat_map(|(number, _)| {
+            let (x, y) = (2 * (number % (CELLS / 2)), number / (CELLS / 2));
+            [Cell { x, y }, Cell { x: x + 1, y }]
+        });
+        let on_map = |at: i32, corner: i32| corner + ((at - corner) & (CELLS - 1));
+        let cells = cells.map(move |Cell { x, y }| Cell { x: on_map(x, self.corner.x), y: on_map(y, self.corner.y) });
+        cells.filter(|cell| self.is_occupied(*cell))
+    }
+
     /// Returns `true` if no ping has passed the cell.
     pub(crate) fn is_unknown(&self, cell: Cell) -> bool {
         self.evidence(cell) == UNKNOWN

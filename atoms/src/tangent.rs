@@ -261,10 +261,11 @@ impl Axis {
 fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose) -> Option<[Point; EXTENDS.len()]> {
     let mut echoes = y.pings(sonar).newest_first().map(|ping| {
         let range = ping.range.filter(|range| range.0 < SEEN_WITHIN)?;
-        let [on_axis] = on_arc(ping, range, sonar, y.ring_radius(), here, [Radians(0.0)]);
-        Some(on_axis)
+        Some((ping, range))
     });
     let (new, _, old) = (echoes.next()??, echoes.next()??, echoes.next()??);
+    let [[new], [old]] =
+        [new, old].map(|(ping, range)| on_arc(ping, range, sonar, y.ring_radius(), here, [Radians(0.0)]));
     let (along, up) = (new.x - old.x, new.y - old.y);
     let length = libm::hypot(along, up);
     let (sin, cos) = libm::sincos(here.theta.0 + sonar.bearing().0);

@@ -20,6 +20,9 @@ const CLASSES: [(i32, u16); 8] = [(2, 0), (4, 10), (6, 6), (8, 5), (2, 4), (10, 
 const AROUND: usize = 4;
 /// Class from which on a body turns as it likes; a disc turns in those below too.
 const TURNS: usize = 5;
+/// Rooms in centimetres, below which classes are looked up in a table, and that of a map without obstacles.
+const SMALL: usize = 64;
+const LARGE: i32 = DISTANCE as i32;
 /// Class of cells of which nothing is known.
 const UNKNOWN: usize = 5;
 /// Maximum number of passes over the map, to and fro.
@@ -31,6 +34,29 @@ pub(crate) const EDGE: f64 = 2.4;
 /// The distance of each cell from the end of the way, and its class.
 pub(crate) struct Wave {
     cells: [u16; SIDE * SIDE],
+}
+
+/// The rows of the map, each a bit, in which a pass to and fro may change a distance: a cell gets nearer only after one
+/// before it in the direction of the pass, in its own row or in the row before.
+struct Rows {
+    forth: u64,
+    back: u64,
+}
+
+impl Rows {
+    const NONE: Self = Self { forth: 0, back: 0 };
+
+    /// Notes that a distance in row `y` has changed.
+    fn changes(&mut self, y: i32) {
+        let row = 1_u64 << y;
+        self.forth |= row | row << 1;
+        self.back |= row | row >> 1;
+    }
+
+    fn are_done(&self) -> bool {
+        const { assert!(CELLS as u32 == u64::BITS) };
+        self.forth == 0 && self.back == 0
+    }
 }
 
 /// The place of a cell of the map, given by its numbers from the corner.
@@ -58,8 +84,8 @@ impl Wave {
     /// Lets a wave start from a goal, or from where it is nearer than `from` by a while, over the way of this body.
     pub(crate) fn start<Y: DiffDrive>(&mut self, map: &Map, goal: &Pose, from: Meters, base: f64, y: &Y) {
         self.measure(map, y);
-        self.seed(map, goal, from.0, base);
-        self.spread();
+        let rows = self.seed(map, goal, from.0, base);
+        self.spread(rows);
     }
 
     /// Returns the centimetres, by cost, from a cell to the goal, less those from which distances count; `None` if no
@@ -96,21 +122,27 @@ impl Wave {
 
     /// Measures the distance of every cell from the nearest occupied one, and notes its class.
     fn measure<Y: DiffDrive>(&mut self, map: &Map, y: &Y) {
-        let corner = map.corner;
-        for (x, y, place) in all() {
-            if map.is_occupied(Cell { x: corner.x + x, y: corner.y + y }) {
-                self.set(place, 0);
-            }
+        let (corner, mut rows) = (map.corner, Rows::NONE);
+        for Cell { x, y } in map.occupied() {
+            let (x, y) = (x - corner.x, y - corner.y);
+            self.set(index(x, y), 0);
+            rows.changes(y);
         }
-        self.pass(|_| 1);
+        self.pass(&mut rows, |_| 1);
         let [half_width, radius] =
             [y.half_width(), y.body_radius()].map(|Meters(length)| libm::round(100.0 * length) as i32);
-        for (x, y, place) in all() {
-            let room = i32::from(self.at(place));
+        let class_of = |room: i32| {
             let is_below = |(class, (below, _)): (usize, &(i32, u16))| {
                 room - if class < AROUND { half_width } else { radius } < *below
             };
-            let mut class = CLASSES.iter().enumerate().position(is_below).unwrap_or(CLASSES.len() - 1);
+            CLASSES.iter().enumerate().position(is_below).unwrap_or(CLASSES.len() - 1)
+        };
+        // Most rooms are small, or as large as can be.
+        let (small, large) = (core::array::from_fn::<_, SMALL, _>(|room| class_of(room as i32)), class_of(LARGE));
+        for (x, y, place) in all() {
+            let room = i32::from(self.at(place));
+            let known = if room == LARGE { Some(large) } else { small.get(room as usize).copied() };
+            let mut class = known.unwrap_or_else(|| class_of(room));
             let cell = Cell { x: corner.x + x, y: corner.y + y };
             if class > UNKNOWN && map.is_unknown(cell) {
                 class = UNKNOWN;
@@ -123,16 +155,23 @@ impl Wave {
         }
     }
 
-    /// Passes over the map to and fro once; `true` if a distance has changed. `factor` is that of a cell's cost.
-    fn pass(&mut self, factor: impl Fn(u16) -> u16) -> bool {
-        let forth =
-            self.relax((0..CELLS).flat_map(|y| (0..CELLS).map(move |x| index(x, y))), &factor, |cell, off| cell - off);
-        let back = self.relax(
-            (0..CELLS).rev().flat_map(|y| (0..CELLS).rev().map(move |x| index(x, y))),
-            &factor,
-            |cell, off| cell + off,
-        );
-        forth || back
+    /// Passes over the rows of the map to and fro once. `factor` is that of a cell's cost.
+    fn pass(&mut self, rows: &mut Rows, factor: impl Fn(u16) -> u16) {
+        for y in 0..CELLS {
+            if rows.forth >> y & 1 == 1 && self.relax((0..CELLS).map(|x| index(x, y)), &factor, |cell, off| cell - off)
+            {
+                rows.changes(y);
+            }
+        }
+        rows.forth = 0;
+        for y in (0..CELLS).rev() {
+            if rows.back >> y & 1 == 1
+                && self.relax((0..CELLS).rev().map(|x| index(x, y)), &factor, |cell, off| cell + off)
+            {
+                rows.changes(y);
+            }
+        }
+        rows.back = 0;
     }
 
     fn relax(
@@ -159,31 +198,36 @@ impl Wave {
         changes
     }
 
-    /// Sets the distances where ways end.
-    fn seed(&mut self, map: &Map, goal: &Pose, from: f64, base: f64) {
-        let corner = map.corner;
-        for (x, y, place) in all() {
-            let is_border = x == 0 || y == 0 || x == CELLS - 1 || y == CELLS - 1;
+    /// Sets the distances where ways end; returns the rows that may change by it.
+    fn seed(&mut self, map: &Map, goal: &Pose, from: f64, base: f64) -> Rows {
+        let (corner, end, mut rows) = (map.corner, Cell::of(goal.x.0, goal.y.0), Rows::NONE);
+        let is_edge = |at: i32| at == 0 || at == CELLS - 1;
+        let of_row = |y: i32| (0..CELLS).filter(move |x| is_edge(*x) || is_edge(y)).map(move |x| (x, y));
+        let goals = Some((end.x - corner.x, end.y - corner.y)).filter(|_| map.contains(end));
+        for (x, y) in (0..CELLS).flat_map(of_row).chain(goals) {
             let at = Cell { x: corner.x + x, y: corner.y + y };
-            let is_goal = at == Cell::of(goal.x.0, goal.y.0);
+            let (is_goal, place) = (at == end, index(x, y));
             let value = self.at(place);
-            if !(is_goal || is_border) || factor(value) == 0 {
+            if factor(value) == 0 {
                 continue;
             }
-            let (x, y) = at.centre();
-            let left = libm::hypot(goal.x.0 - x, goal.y.0 - y);
+            let centre = at.centre();
+            let left = libm::hypot(goal.x.0 - centre.0, goal.y.0 - centre.1);
             if is_goal || left < from - GAINS {
                 let distance = libm::round(100.0 * (left - base)).max(0.0) as u16;
                 self.set(place, value & !DISTANCE | distance.min(DISTANCE));
+                rows.changes(y);
             }
         }
+        rows
     }
 
-    fn spread(&mut self) {
+    fn spread(&mut self, mut rows: Rows) {
         for _ in 0..PASSES {
-            if !self.pass(factor) {
+            if rows.are_done() {
                 return;
             }
+            self.pass(&mut rows, factor);
         }
     }
 
@@ -201,5 +245,28 @@ impl Wave {
             }
         }
         (self.at(best.1) & DISTANCE < self.at(cell) & DISTANCE).then_some(best.1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::Sensed;
+
+    #[test]
+    fn a_wave_ends_where_no_pass_changes_it() {
+        let mut map = Map::EMPTY;
+        for wall in [((0.5, -1.0), (0.5, 0.4)), ((1.0, 0.0), (1.0, 1.3)), ((-0.4, -0.9), (0.1, -0.9))] {
+            map.occupy(wall.0, wall.1);
+        }
+        let goal = Pose { x: Meters(5.0), ..Pose::ORIGIN };
+        let mut wave = Wave::NONE;
+        wave.start(&map, &goal, Meters(5.0), 2.6, &Sensed::default());
+        let here = index(CELLS / 2, CELLS / 2);
+        assert!(wave.left(here).is_some_and(|left| left > 300), "a way round the walls");
+        let (before, mut rows) = (wave.cells, Rows::NONE);
+        (0..CELLS).for_each(|y| rows.changes(y));
+        wave.pass(&mut rows, factor);
+        assert_eq!(wave.cells, before);
     }
 }

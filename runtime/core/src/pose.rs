@@ -26,11 +26,8 @@ impl Pose {
     /// The place `range` away in direction `bearing` (of the axes in which this pose is given), with that heading.
     #[must_use]
     pub fn towards(&self, bearing: Radians, range: Meters) -> Self {
-        Self {
-            x: Meters(self.x.0 + range.0 * libm::cos(bearing.0)),
-            y: Meters(self.y.0 + range.0 * libm::sin(bearing.0)),
-            theta: bearing,
-        }
+        let (sin, cos) = libm::sincos(bearing.0);
+        Self { x: Meters(self.x.0 + range.0 * cos), y: Meters(self.y.0 + range.0 * sin), theta: bearing }
     }
 
     /// The pose after an arc of length `way` that turns by `turn`: exactly, by its chord.

@@ -74,6 +74,9 @@ impl Ping {
     #[must_use]
     pub fn axis(&self, sonar: SonarId) -> Pose {
         let theta = Radians(self.pose.theta.0 + sonar.bearing().0 + f64::from(self.mount.turned));
+        if self.mount.left == 0.0 {
+            return Pose { theta, ..self.pose };
+        }
         let left = Meters(self.mount.left.into());
         Pose { theta, ..self.pose.towards(Radians(theta.0 + FRAC_PI_2), left) }
     }

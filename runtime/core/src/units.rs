@@ -38,7 +38,16 @@ impl Radians {
     /// Returns this direction as an angle between -π and π.
     #[must_use]
     pub fn wrapped(self) -> Self {
-        Self(libm::remainder(self.0, core::f64::consts::TAU))
+        use core::f64::consts::{PI, TAU};
+        // Most angles are at most a turn off, where the difference is exact as well, and much faster.
+        let size = self.0.abs();
+        if size < PI {
+            self
+        } else if PI < size && size < 3.0 * PI {
+            Self(libm::copysign(1.0, self.0) * (size - TAU))
+        } else {
+            Self(libm::remainder(self.0, TAU))
+        }
     }
 }
 
@@ -63,6 +72,17 @@ mod tests {
             assert!(wrapped.0.abs() <= PI, "{degrees}");
             assert!((libm::cos(wrapped.0) - libm::cos(angle.0)).abs() < 1e-9, "{degrees}");
             assert!((libm::sin(wrapped.0) - libm::sin(angle.0)).abs() < 1e-9, "{degrees}");
+        }
+    }
+
+    #[test]
+    fn a_wrapped_angle_is_the_remainder_to_the_bit() {
+        let half_turns = (-9..=9).map(|half_turns| f64::from(half_turns) * PI);
+        let beside = half_turns.flat_map(|angle| [angle.next_down(), angle, angle.next_up()]);
+        let between = (-20_000..20_000).map(|step| f64::from(step) * 1e-3);
+        for angle in beside.chain(between).chain([-0.0, f64::INFINITY, f64::NAN]) {
+            let (wrapped, remainder) = (Radians(angle).wrapped().0, libm::remainder(angle, TAU));
+            assert!(wrapped.to_bits() == remainder.to_bits() || remainder.is_nan() && wrapped.is_nan(), "{angle:?}");
         }
     }
 }
