@@ -242,6 +242,22 @@ impl Footprint {
         }
     }
 
+    /// Returns the distance that a ray from outside in the unit direction `way` goes before it meets the body, if that
+    /// is less than `most`.
+    pub(crate) fn met(&self, from: Place, way: Place, most: f64) -> Option<f64> {
+        let Form::Disc { radius } = self.form else {
+            return self.sides().filter_map(|side| side.met(from, way, most)).reduce(f64::min);
+        };
+        let (x, y) = (self.pose.x.0 - from.x, self.pose.y.0 - from.y);
+        let (along, across) = (x * way.x + y * way.y, x * way.y - y * way.x);
+        let half = radius * radius - across * across;
+        if half < 0.0 {
+            return None;
+        }
+        let range = along - libm::sqrt(half);
+        (range >= 0.0 && range < most).then_some(range)
+    }
+
     /// Returns the surface that a ray from outside in the unit direction `way` meets, if its distance is less than
     /// `most`: a disc has no edges. The surface is smooth.
     pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
@@ -258,13 +274,7 @@ impl Footprint {
                 rough: 0.0,
             });
         };
-        let (x, y) = (self.pose.x.0 - from.x, self.pose.y.0 - from.y);
-        let (along, across) = (x * way.x + y * way.y, x * way.y - y * way.x);
-        let half = radius * radius - across * across;
-        let range = along - libm::sqrt(half.max(0.0));
-        if !(half >= 0.0 && range >= 0.0 && range < most) {
-            return None;
-        }
+        let range = self.met(from, way, most)?;
         let (x, y) = (from.x + range * way.x - self.pose.x.0, from.y + range * way.y - self.pose.y.0);
         let normal = Place { x: x / radius, y: y / radius };
         Some(Surface { range, normal, edge: f64::INFINITY, rough: 0.0 })

@@ -106,12 +106,10 @@ impl Walls {
 
     /// Returns the distance that a ray goes, as [`Walls::cast`] does, with these other robots alone.
     pub(crate) fn cast_among(&self, others: &[Footprint], from: Place, way: Place, most: f64) -> Option<f64> {
-        let range = self.standing.grid.ray(from, way, most).map_or(most, |hit| hit.range);
+        let range = nearest_of(others, from, way, most).map_or(most, |(range, _)| range);
+        let range = self.standing.grid.ray(from, way, range).map_or(range, |hit| hit.range);
         let range =
             self.moving.iter().fold(range, |range, thing| thing.ray(from, way, range).map_or(range, |hit| hit.range));
-        let range = others
-            .iter()
-            .fold(range, |range, other| other.found(from, way, range).map_or(range, |surface| surface.range));
         (range < most).then_some(range)
     }
 
@@ -123,16 +121,19 @@ impl Walls {
     /// Returns the surface that a ray meets, as [`Walls::found`] does, with these other robots alone.
     pub(crate) fn found_among(&self, others: &[Footprint], from: Place, way: Place, most: f64) -> Option<Surface> {
         let at = |range: f64| Place { x: from.x + range * way.x, y: from.y + range * way.y };
+        let other = nearest_of(others, from, way, most);
+        // What lies beyond the nearest robot is not looked for.
+        let reach = other.map_or(most, |(range, _)| range);
         let Standing { segments, ends, roughs, grid } = &*self.standing;
-        let standing = grid.ray(from, way, most).and_then(|Hit { range, segment }| {
+        let standing = grid.ray(from, way, reach).and_then(|Hit { range, segment }| {
             let (side, ends) = (segments.get(segment)?, ends.get(segment)?);
             Some(Surface { rough: *roughs.get(segment)?, ..surface(side, ends, at(range), way, range) })
         });
-        let nearer = |found: Option<Surface>| found.map_or(most, |surface| surface.range);
+        let nearer = |found: Option<Surface>| found.map_or(reach, |surface| surface.range);
         let found = self.moving.iter().fold(standing, |found, thing| thing.found(from, way, nearer(found)).or(found));
-        others.iter().fold(found, |found, other| {
-            let other = other.found(from, way, nearer(found));
-            other.map(|surface| Surface { rough: self.rough, ..surface }).or(found)
+        found.or_else(|| {
+            let surface = other.and_then(|(_, other)| other.found(from, way, most));
+            surface.map(|surface| Surface { rough: self.rough, ..surface })
         })
     }
 
@@ -254,6 +255,14 @@ impl Walls {
             thing.advance(seconds, body);
         }
     }
+}
+
+/// Returns the robot that a ray in the unit direction `way` meets first, and its distance, if that is less than `most`.
+fn nearest_of(others: &[Footprint], from: Place, way: Place, most: f64) -> Option<(f64, &Footprint)> {
+    others.iter().fold(None, |nearest: Option<(f64, &Footprint)>, other| {
+        let reach = nearest.map_or(most, |(range, _)| range);
+        other.met(from, way, reach).map(|range| (range, other)).or(nearest)
+    })
 }
 
 fn segments(world: &World) -> Vec<Segment> {

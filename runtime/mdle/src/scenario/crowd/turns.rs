@@ -143,14 +143,15 @@ impl Shared<'_> {
         let mut bodies: Vec<Footprint> = members.iter().map(|member| member.footprint()).collect();
         for (place, number) in numbers.iter().enumerate() {
             let Some(member) = members.get_mut(place) else { continue };
-            self.look(*number, numbers, &bodies, others);
+            self.hear(*number, others);
+            self.touch(*number, numbers, &bodies, others);
             member.moves(others);
             if let Some(body) = bodies.get_mut(place) {
                 *body = member.footprint();
             }
         }
         for (member, number) in members.iter_mut().zip(numbers) {
-            self.look(*number, numbers, &bodies, others);
+            self.touch(*number, numbers, &bodies, others);
             member.turn(self.t, &self.turns.plan, others);
         }
     }
@@ -159,23 +160,30 @@ impl Shared<'_> {
         self.turns.members.get(number as usize).map(lock)
     }
 
-    /// Takes down the other robots around one: those that it hears where the turn began, and those of its group that it
-    /// may touch where they are now.
-    fn look(&self, number: u32, group: &[u32], now: &[Footprint], others: &mut Others) {
-        let Others { heard, touched } = others;
+    /// Takes down the other robots that one hears, where they were when the turn began.
+    fn hear(&self, number: u32, Others { heard, .. }: &mut Others) {
         heard.clear();
+        self.near(number, self.turns.hears, |_, body| heard.push(*body));
+    }
+
+    /// Takes down the robots of its group that one may touch, where they are now.
+    fn touch(&self, number: u32, group: &[u32], now: &[Footprint], Others { touched, .. }: &mut Others) {
         touched.clear();
-        let Some(own) = self.crowd.bodies().get(number as usize) else { return };
-        let touches = self.turns.touches * self.turns.touches;
-        self.crowd.near(own.at(), self.turns.hears, |other, body| {
-            if other == number as usize {
-                return;
-            }
-            heard.push(*body);
-            let (x, y) = (body.pose.x.0 - own.pose.x.0, body.pose.y.0 - own.pose.y.0);
-            if x * x + y * y <= touches {
+        // Most robots are alone.
+        if group.len() > 1 {
+            self.near(number, self.turns.touches, |other, _| {
                 let place = group.binary_search(&(other as u32)).ok();
                 touched.extend(place.and_then(|place| now.get(place)));
+            });
+        }
+    }
+
+    /// Calls `take` with the number and the place of each other robot within `reach` metres of one when the turn began.
+    fn near(&self, number: u32, reach: f64, mut take: impl FnMut(usize, &Footprint)) {
+        let Some(own) = self.crowd.bodies().get(number as usize) else { return };
+        self.crowd.near(own.at(), reach, |other, body| {
+            if other != number as usize {
+                take(other, body);
             }
         });
     }

@@ -174,3 +174,25 @@ fn a_cone_leaves_out_no_robot_that_its_rays_meet() {
     }
     assert!(met > 500 && left_out > 200, "{met}, {left_out}");
 }
+
+#[test]
+fn a_ray_meets_the_nearest_of_robots_and_walls() {
+    let text = "rough = 0.5\n[[wall]]\npoints = [[3, -9], [3, 9]]\nrough = 0.25\n";
+    let mut walls = Walls::of(&World::parse("wall", text).expect("a good world"));
+    let at = |x: f64| Footprint { pose: Pose { x: Meters(x), ..Pose::ORIGIN }, form: Form::SCOUT };
+    let met = |walls: &Walls| {
+        let (from, way) = (Place { x: 0.0, y: 0.0 }, Place { x: 1.0, y: 0.0 });
+        let surface = walls.found(from, way, 9.0).expect("a surface");
+        assert_eq!(walls.cast(from, way, 9.0), Some(surface.range));
+        (libm::round(surface.range * 1000.0), surface.rough)
+    };
+    for (others, expected) in [
+        (vec![], (3000.0, 0.25)),
+        (vec![at(4.0)], (3000.0, 0.25)),
+        (vec![at(2.5), at(1.5), at(2.0)], (1295.0, 0.5)),
+        (vec![at(-1.5), at(4.0), at(2.0)], (1795.0, 0.5)),
+    ] {
+        walls.put_others(&others);
+        assert_eq!(met(&walls), expected, "{others:?}");
+    }
+}
