@@ -121,6 +121,8 @@ fn a_wrong_scenario_is_refused_with_place_and_cure() {
         stand("robot1", "0,0,0") + "body = \"round\"\n",
         stand("robot1", "0,0,0") + "killed = \"soon\"\n",
         stand("robot1", "0,0,0") + "colour = \"red\"\n",
+        stand("robot1", "0,0,0") + "ears = \"8.75cm\"\n",
+        stand("robot1", "0,0,0") + "ears = \"2m\"\n",
         "world = \"rom\"\n".to_owned() + &stand("robot1", "0,0,0"),
         "world = \"walker.toml\"\n".to_owned() + &stand("robot1", "0,0,0"),
         "world = \"room\"\n".to_owned() + &stand("robot1", "0,0,0"),

@@ -85,6 +85,34 @@ fn sound_is_the_same_every_time() {
 }
 
 #[test]
+fn robots_of_a_scenario_hear_by_their_own_ears() {
+    let folder = folder("scenario_ears");
+    copy_plan(&folder);
+    let robot = |name: &str, start: &str, ears: &str| {
+        format!("[[robot]]\nname = \"{name}\"\nfile = \"sound_following.mdle\"\nstart = \"{start}\"\n{ears}")
+    };
+    let ears = "ears = \"8.75cm\"\n";
+    let robots = robot("ada", "1.2,1.5,90", ears) + &robot("bob", "1,4.8,-90", ears);
+    fs::write(folder.join("s.toml"), format!("world = \"studio.toml\"\nseed = 5\n{robots}")).unwrap();
+    let course = |trail: &str| {
+        let mut command = Command::new(mdle());
+        command.args(["run", "s.toml", "--trail", trail]).current_dir(&folder);
+        let output = command.output().unwrap();
+        assert!(output.status.success(), "{}", refusal(&output));
+        fs::read_to_string(folder.join(trail)).unwrap()
+    };
+    let trail = course("first.csv");
+    assert_eq!(trail, course("second.csv"));
+    for name in ["ada", "bob"] {
+        let of_robot =
+            trail.lines().filter_map(|line| line.split_once(&format!(",{name},")).map(|(t, at)| format!("{t},{at}\n")));
+        let distance = nearest(&("t,x,y,heading\n".to_owned() + &of_robot.collect::<String>()));
+        // The one that comes second stands off the other.
+        assert!(distance < ARRIVED + 0.5, "{name}: {distance}");
+    }
+}
+
+#[test]
 fn sound_that_cannot_be_used_is_refused() {
     let folder = folder("refused");
     copy_plan(&folder);

@@ -25,7 +25,7 @@ use mdle_quantity::Quantity;
 use crate::Failure;
 use crate::new_module::NewModule;
 use crate::test::arguments::{self as test, Test};
-pub(crate) use ears::EarsOption;
+pub(crate) use ears::{EarsOption, head};
 pub(crate) use locate::Locate;
 pub(crate) use log::Log;
 pub(crate) use map::MakeMap;

@@ -11,8 +11,8 @@ mod target;
 
 pub use mdle_simulator::{
     Body, Charger, Crowd, Drawing, Fault, FleetDrawing, Footprint, Form, Goal, Groups, Heard, Input, Make, Others,
-    Outline, Output, Part, Place, Schedule, Sensed, SignalCurve, Simulated, Start, StartError, StartNoise, Stop, Thing,
-    TimeChart, TripDrawing, Walls, World, WorldError, Zone, alphabet,
+    Outline, Output, Part, Place, RobotEars, Schedule, Sensed, SignalCurve, Simulated, Start, StartError, StartNoise,
+    Stop, Thing, TimeChart, TripDrawing, Walls, World, WorldError, Zone, alphabet,
 };
 pub use observed::Observed;
 pub use target::Sim;

@@ -53,7 +53,10 @@ pub(super) fn ears(matches: &ArgMatches) -> (Option<EarsOption>, f64) {
 }
 
 /// Reads the radius of a head, in metres.
-fn head(text: &str) -> Result<f64, String> {
+///
+/// # Errors
+/// The text is no length, or no radius of a head: a sentence.
+pub(crate) fn head(text: &str) -> Result<f64, String> {
     let radius = Quantity::Length.read(text, "m")?;
     if (0.02..=0.5).contains(&radius) { Ok(radius) } else { Err("expected 2 cm to 50 cm".to_owned()) }
 }

@@ -77,6 +77,8 @@ pub(super) struct RobotText {
     pub(super) records: Option<At<String>>,
     /// Time at which the robot's program dies.
     pub(super) killed: Option<At<String>>,
+    /// Radius of the head between its two ears, whose module `heading` publishes the bearing of a sound.
+    pub(super) ears: Option<At<String>>,
 }
 
 /// An error in a file of a scenario.

@@ -12,9 +12,10 @@ use mdle_host::{
 use mdle_record::Change;
 use mdle_runtime::{Machine, Nanos, PathStore, Plan as _, Robot as _, Sensed, Setpoint, StoredPath, Turn, Twist};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
-use mdle_sim::{Sim, Simulated};
+use mdle_sim::{RobotEars, Sim, Simulated};
 
 use super::setup::{Member, Scenario};
+use crate::modules::{AudioSource, SoundInput};
 use crate::way_recorder::{RecordedTurn, WayRecorder};
 
 /// A robot that runs.
@@ -28,8 +29,8 @@ pub(super) struct Runner {
     passes: Passes,
     killed: Option<Nanos>,
     recorder: Option<WayRecorder>,
-    /// The path that was replaced in the turn before.
-    replaced: Option<StoredPath>,
+    /// Its ears, and the way from them to the module `heading`.
+    ears: Option<(RobotEars, Microphones)>,
 }
 
 /// State of a robot of a scenario: driven or not.
@@ -71,19 +72,20 @@ impl Runner {
         library: &Library<Sensed>,
         is_recorded: bool,
     ) -> Result<Self, String> {
-        let Member { name, mut robot, start, loaded, paths, records, killed, .. } = member;
+        let Member { name, mut robot, start, loaded, paths, records, killed, ears, .. } = member;
+        let microphones = Microphones::default();
         let terms = RunTerms {
             time: Time::Stepped(Pace::Max),
             period: scenario.period,
             request: StopRequest::default(),
-            microphones: Microphones::default(),
+            microphones: microphones.clone(),
         };
         let plan = Loaded::plan(&loaded);
-        let engine = Engine::new(plan, library, &terms).map_err(|refusal| format!("{refusal:?}"))?;
-        let mut engine = engine.linked(StateLink::new(Box::new(air), &name, start));
-        if is_recorded {
-            engine.record();
-        }
+        let hearing = ears.as_ref().map(|(_, radius)| SoundInput { source: AudioSource::Robot, radius: *radius });
+        let added = hearing.map(|hearing| hearing.added(library, &microphones));
+        let engine =
+            Engine::new(plan, added.as_ref().unwrap_or(library), &terms).map_err(|refusal| format!("{refusal:?}"))?;
+        let engine = engine.linked(StateLink::new(Box::new(air), &name, start));
         let stored =
             |(name, setpoints): (&'static str, Vec<Setpoint>)| StoredPath { name, setpoints: setpoints.leak() };
         let mut stored: Vec<StoredPath> = paths.into_iter().map(stored).collect();
@@ -99,7 +101,7 @@ impl Runner {
             passes: Passes::default(),
             killed,
             recorder: records.zip(Sim::PATHS).map(|(path, replays)| WayRecorder::new(path, replays.fastest)),
-            replaced: None,
+            ears: ears.map(|(ears, _)| (ears, microphones)),
         })
     }
 
@@ -145,6 +147,9 @@ impl Runner {
         self.input = Twist::default();
         if self.standing != Standing::Drives {
             return made;
+        }
+        if let Some((ears, microphones)) = &mut self.ears {
+            microphones.put(t, ears.heard(&self.robot.pose(), t));
         }
         self.transitions.clear();
         let mut complete = *y;

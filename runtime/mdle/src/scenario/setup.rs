@@ -12,9 +12,10 @@ use mdle_files::{Settings, read_plan};
 use mdle_host::{Quantity, Target as _, read_file, read_text, setpoints};
 use mdle_runtime::{Nanos, Plan as _, Pose, Setpoint};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
-use mdle_sim::{Body, Make, Sim, Simulated, Start, StartNoise, Walls, World};
+use mdle_sim::{Body, Make, RobotEars, Sim, Simulated, Start, StartNoise, Walls, World};
 
 use super::file::{At, LinkText, RobotText, ScenarioError, ScenarioText};
+use crate::arguments::head;
 use crate::failure::{self, Failure};
 use crate::plans::texts;
 
@@ -55,6 +56,8 @@ pub(super) struct Member {
     pub(super) records: Option<&'static str>,
     /// Time at which its program dies.
     pub(super) killed: Option<Nanos>,
+    /// Its ears, and the radius of the head between them, in metres.
+    pub(super) ears: Option<(RobotEars, f64)>,
 }
 
 /// Error of a scenario: in its file, or in a plan, which was reported.
@@ -133,7 +136,17 @@ impl Scenario {
         let paths = paths(text, path, plan.paths(), records)?;
         let killed = text.killed.as_ref().map(|killed| duration(killed, 0.0, 1e9)).transpose()?;
         let killed = killed.map(|killed| Nanos(u64::try_from(killed.as_nanos()).unwrap_or(u64::MAX)));
-        Ok(Member { name: name.clone(), body, robot, start, loaded, files, paths, records, killed })
+        let ears = text.ears.as_ref().map(|ears| self.ears(ears, seed.unwrap_or_default())).transpose()?;
+        Ok(Member { name: name.clone(), body, robot, start, loaded, paths, records, killed, ears })
+    }
+
+    /// Returns the ears of a robot, and the radius of its head.
+    fn ears(&self, text: &At<String>, seed: u64) -> Result<(RobotEars, f64), ScenarioError> {
+        let radius = head(text.get_ref()).map_err(|sentence| ScenarioError::at(text.span(), sentence))?;
+        let ears = RobotEars::new(&self.world, radius, seed);
+        let silent = ScenarioError::at(text.span(), "the world has no source of sound");
+        let help = "write one into its file, as `[[sound]]`";
+        Ok((ears.ok_or_else(|| silent.help(help))?, radius))
     }
 
     /// Returns the pose at which a robot begins, which is said to begin at `start`.
