@@ -6,6 +6,7 @@
 
 mod arguments;
 mod elements_named;
+mod evidence;
 mod examined;
 mod failure;
 mod link;

@@ -4,10 +4,13 @@ use std::process::ExitCode;
 
 use mdle_runtime::Printable;
 
-use super::matching::{Fit, fit};
-use super::{pings, pose, ros_map};
+use super::{pings, pose};
 use crate::arguments::Locate;
+use crate::evidence::{Fit, fit, read_map};
 use crate::failure::{self, Failure};
+
+/// Steps of 10 cm to either side in which the pose is searched.
+const WAYS: i16 = 4;
 
 /// Prints how well a record fits each map, the best first.
 ///
@@ -20,7 +23,7 @@ pub(crate) fn locate(arguments: &Locate) -> Result<ExitCode, Failure> {
     let mut fits = Vec::new();
     for map in &arguments.maps {
         let name = map.file_stem().unwrap_or_default().display().to_string();
-        let fit = fit(&ros_map::read(map)?, &heard, near);
+        let fit = fit(&read_map(map)?, &heard, near, WAYS);
         fits.push((name, fit.ok_or_else(|| Failure::Usage("the record has no echo of a sonar".to_owned()))?));
     }
     fits.sort_by(|(_, one), (_, other)| other.score.total_cmp(&one.score));

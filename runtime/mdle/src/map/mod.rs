@@ -1,10 +1,7 @@
 //! `mdle map`: the evidence grid of a recorded run, as a map of ROS (docs/src/navigation.md). `mdle locate` finds in
 //! which of several maps a robot was.
 
-mod evidence;
 mod locate;
-mod matching;
-mod pings;
 mod ros_map;
 
 use std::path::Path;
@@ -14,12 +11,11 @@ use mdle_runtime::Pose;
 use mdle_sim::Start;
 
 use crate::arguments::MakeMap;
+use crate::evidence::{EvidenceGrid, GridPing, PingOrder};
 use crate::failure::Failure;
 use crate::log::damaged;
 use crate::replay;
-use evidence::{EvidenceGrid, GridPing};
 pub(crate) use locate::locate;
-use pings::PingOrder;
 
 /// Makes the map of a record.
 ///

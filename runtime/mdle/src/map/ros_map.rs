@@ -1,16 +1,11 @@
-//! An evidence grid as a map of ROS: a YAML file, and a grey image beside it in which black is occupied.
+//! Writes an evidence grid as a map of ROS: a YAML file, and a grey image beside it in which black is occupied.
 
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::evidence::{CELL, CELLS, EvidenceGrid, HALF};
+use crate::evidence::{CELL, EvidenceGrid, HALF, image, pixels};
 use crate::failure::Failure;
 use crate::log::{created, exists, unwritten};
-
-/// Maximum size of an image, in bytes.
-const LARGEST: u64 = 1_000_000;
-/// Grey of what is free.
-const WHITE: f64 = 255.0;
 
 /// Saves a grid as the YAML file at a path, with its image beside it.
 ///
@@ -33,47 +28,4 @@ pub(super) fn save(grid: &EvidenceGrid, file: &Path) -> Result<(), Failure> {
 
 fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
     created(file)?.write_all(bytes).map_err(|error| unwritten(&file.display(), &error))
-}
-
-fn head() -> String {
-    format!("P5\n{CELLS} {CELLS}\n{WHITE}\n")
-}
-
-/// Returns the image: its first row has the greatest second coordinate.
-fn pixels(grid: &EvidenceGrid) -> Vec<u8> {
-    let mut bytes = head().into_bytes();
-    for row in (0..CELLS).rev() {
-        let greys = (0..CELLS).map(|column| libm::round(WHITE * (1.0 - grid.probability(column, row))) as u8);
-        bytes.extend(greys);
-    }
-    bytes
-}
-
-/// Returns the image of the map in a YAML file.
-///
-/// # Errors
-/// The name does not end in `.yaml` or `.yml`.
-fn image(file: &Path) -> Result<PathBuf, Failure> {
-    if file.extension().is_some_and(|extension| extension == "yaml" || extension == "yml") {
-        return Ok(file.with_extension("pgm"));
-    }
-    let help = format!("name it {}", file.with_extension("yaml").display());
-    Err(Failure::Usage(format!("{} is no name of a map: it has to end in .yaml\nhelp: {help}", file.display())))
-}
-
-/// Reads the grid of a map that [`save`] has written.
-///
-/// # Errors
-/// The name does not end in `.yaml` or `.yml`; the image beside the file cannot be read, or is none of such a map.
-pub(super) fn read(file: &Path) -> Result<EvidenceGrid, Failure> {
-    let image = image(file)?;
-    let bytes = mdle_host::read_file(&image, LARGEST)
-        .map_err(|error| Failure::Usage(format!("the map {} cannot be read: {error}", image.display())))?;
-    let greys = bytes.strip_prefix(head().as_bytes()).filter(|greys| greys.len() == CELLS * CELLS);
-    let greys = greys.ok_or_else(|| {
-        let help = "`mdle map RECORD MAP.yaml` makes one";
-        Failure::Usage(format!("{} is no map of a landmark\nhelp: {help}", image.display()))
-    })?;
-    let rows = greys.chunks_exact(CELLS).rev().flatten();
-    Ok(EvidenceGrid::of(rows.map(|grey| 1.0 - f64::from(*grey) / WHITE)))
 }

@@ -4,9 +4,9 @@
 /// Number of cells along each axis, as in the paper's Fig. 9.
 pub(super) const CELLS: usize = 150;
 /// Edge of a cell, in metres: an inch.
-pub(super) const CELL: f64 = 0.0254;
+pub(crate) const CELL: f64 = 0.0254;
 /// Distance from the middle of the grid to its edges, in metres.
-pub(super) const HALF: f64 = CELL * CELLS as f64 / 2.0;
+pub(crate) const HALF: f64 = CELL * CELLS as f64 / 2.0;
 /// Maximum log-odds to either side.
 const MOST: f64 = 5.0;
 /// Half the angle of a sonar's cone, in radians.
@@ -22,31 +22,31 @@ const FADES: f64 = 2.5;
 
 /// A ping, in the axes of the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct GridPing {
+pub(crate) struct GridPing {
     /// Position of the transducer, in metres.
-    pub(super) x: f64,
-    pub(super) y: f64,
+    pub(crate) x: f64,
+    pub(crate) y: f64,
     /// Direction of the transducer, in radians.
-    pub(super) theta: f64,
+    pub(crate) theta: f64,
     /// Range in metres; `None` without an echo.
-    pub(super) range: Option<f64>,
+    pub(crate) range: Option<f64>,
 }
 
 /// A square grid around the origin of its axes.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct EvidenceGrid {
+pub(crate) struct EvidenceGrid {
     /// Log-odds, by rows along the second axis.
     odds: Vec<f64>,
 }
 
 impl EvidenceGrid {
     /// Returns a grid that knows nothing.
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { odds: vec![0.0; CELLS * CELLS] }
     }
 
     /// Takes a ping.
-    pub(super) fn take(&mut self, ping: &GridPing) {
+    pub(crate) fn take(&mut self, ping: &GridPing) {
         let reach = ping.range.map_or(SILENT, |range| range.min(FARTHEST) + DEPTH);
         let (columns, rows) = (near(ping.x, reach), near(ping.y, reach));
         for row in rows {
@@ -77,7 +77,7 @@ impl EvidenceGrid {
 
     /// Returns the probability that a cell is occupied, by its column along the first axis and its row along the
     /// second.
-    pub(super) fn probability(&self, column: usize, row: usize) -> f64 {
+    pub(crate) fn probability(&self, column: usize, row: usize) -> f64 {
         let odds = self.odds.get(row * CELLS + column).copied().unwrap_or_default();
         1.0 / (1.0 + libm::exp(-odds))
     }

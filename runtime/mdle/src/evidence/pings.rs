@@ -2,11 +2,11 @@
 
 use mdle_runtime::{Nanos, Pings, Pose, SONARS, Sensed, SonarId};
 
-use super::evidence::GridPing;
+use super::grid::GridPing;
 
 /// The pings that were taken.
 #[derive(Debug)]
-pub(super) struct PingOrder {
+pub(crate) struct PingOrder {
     /// Pose of the robot in the axes of the grid where its odometry was zero.
     origin: Pose,
     /// Time of the last ping of each sonar that was taken.
@@ -15,12 +15,12 @@ pub(super) struct PingOrder {
 
 impl PingOrder {
     /// Returns the order of a run that began at this pose.
-    pub(super) fn new(origin: Pose) -> Self {
+    pub(crate) fn new(origin: Pose) -> Self {
         Self { origin, last: [None; SONARS] }
     }
 
     /// Returns the pings of an output that no output before it had.
-    pub(super) fn take(&mut self, y: &Sensed) -> Vec<GridPing> {
+    pub(crate) fn take(&mut self, y: &Sensed) -> Vec<GridPing> {
         let radius = y.shape.ring_radius;
         let mut new = Vec::new();
         for ((number, pings), last) in (0..).zip(&y.pings).zip(&mut self.last) {

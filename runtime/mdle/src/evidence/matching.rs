@@ -3,15 +3,15 @@
 
 use mdle_runtime::{Meters, Pose, Radians};
 
-use super::evidence::{EvidenceGrid, GridPing};
+use super::grid::{EvidenceGrid, GridPing};
 
 /// Part of a range at which nothing should be.
 const BEFORE: f64 = 0.6;
 /// Weight of the evidence there.
 const BEFORE_WEIGHT: f64 = 0.3;
-/// Steps of the first search, in metres and radians, and its numbers of steps to either side.
+/// Steps of the first search, in metres and radians, and its number of angles to either side.
 const COARSE: (f64, f64) = (0.10, 3.0 * DEGREE);
-const COARSE_STEPS: (i16, i16) = (4, 8);
+const COARSE_ANGLES: i16 = 8;
 /// Steps of the searches around the best pose so far.
 const FINE: [(f64, f64); 3] = [(0.05, 1.5 * DEGREE), (0.025, 0.75 * DEGREE), (0.0125, 0.5 * DEGREE)];
 /// A degree, in radians.
@@ -19,22 +19,37 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// A pose in a grid, and how well echoes fit there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Fit {
+pub(crate) struct Fit {
     /// Pose at which the robot's odometry was zero, in the axes of the grid.
-    pub(super) origin: Pose,
+    pub(crate) origin: Pose,
     /// Mean evidence for each echo.
-    pub(super) score: f64,
+    pub(crate) score: f64,
 }
 
-/// Returns the best pose near `origin`: up to 40 cm along each axis and 24° off it. The pings are in the axes of
-/// odometry; `None` if none has an echo.
-pub(super) fn fit(grid: &EvidenceGrid, pings: &[GridPing], origin: Pose) -> Option<Fit> {
-    let echoes: Vec<(&GridPing, f64)> = pings.iter().filter_map(|ping| Some((ping, ping.range?))).collect();
+/// An echo in the axes of odometry: the place that it came from, and one before it.
+struct Echo {
+    at: (f64, f64),
+    before: (f64, f64),
+}
+
+impl Echo {
+    fn of(ping: &GridPing) -> Option<Self> {
+        let range = ping.range?;
+        let (ahead, left) = (range * libm::cos(ping.theta), range * libm::sin(ping.theta));
+        let at = (ping.x + ahead, ping.y + left);
+        Some(Self { at, before: (ping.x + BEFORE * ahead, ping.y + BEFORE * left) })
+    }
+}
+
+/// Returns the best pose near `origin`: up to `ways` times 10 cm along each axis and 24° off it. The pings are in the
+/// axes of odometry; `None` if none has an echo.
+pub(crate) fn fit(grid: &EvidenceGrid, pings: &[GridPing], origin: Pose, ways: i16) -> Option<Fit> {
+    let echoes: Vec<Echo> = pings.iter().filter_map(Echo::of).collect();
     if echoes.is_empty() {
         return None;
     }
     let scored = |origin: Pose| Fit { origin, score: score(grid, &echoes, &origin) };
-    let mut best = better(scored(origin), origin, COARSE, COARSE_STEPS, &scored);
+    let mut best = better(scored(origin), origin, COARSE, (ways, COARSE_ANGLES), &scored);
     for steps in FINE {
         best = better(best, best.origin, steps, (1, 1), &scored);
     }
@@ -67,14 +82,10 @@ fn better(
 }
 
 /// Returns the mean evidence for echoes of a robot whose odometry was zero at `origin`.
-fn score(grid: &EvidenceGrid, echoes: &[(&GridPing, f64)], origin: &Pose) -> f64 {
+fn score(grid: &EvidenceGrid, echoes: &[Echo], origin: &Pose) -> f64 {
     let (sin, cos) = libm::sincos(origin.theta.0);
-    let odds = |x: f64, y: f64| grid.odds_at(origin.x.0 + x * cos - y * sin, origin.y.0 + x * sin + y * cos);
-    let evidence = echoes.iter().map(|(ping, range)| {
-        let (ahead, left) = (range * libm::cos(ping.theta), range * libm::sin(ping.theta));
-        let before = odds(ping.x + BEFORE * ahead, ping.y + BEFORE * left);
-        odds(ping.x + ahead, ping.y + left) - BEFORE_WEIGHT * before
-    });
+    let odds = |(x, y): (f64, f64)| grid.odds_at(origin.x.0 + x * cos - y * sin, origin.y.0 + x * sin + y * cos);
+    let evidence = echoes.iter().map(|echo| odds(echo.at) - BEFORE_WEIGHT * odds(echo.before));
     evidence.sum::<f64>() / echoes.len() as f64
 }
 
@@ -106,7 +117,7 @@ mod tests {
         turn(Pose::ORIGIN).iter().for_each(|ping| grid.take(ping));
         for (x, y, degrees) in [(0.0, 0.0, 0.0), (0.2, -0.15, 10.0), (-0.3, 0.1, -14.0)] {
             let there = pose(x, y, degrees);
-            let Fit { origin, .. } = fit(&grid, &turn(there), Pose::ORIGIN).unwrap();
+            let Fit { origin, .. } = fit(&grid, &turn(there), Pose::ORIGIN, 4).unwrap();
             let off = libm::hypot(origin.x.0 - x, origin.y.0 - y);
             let turned = (origin.theta.0 - there.theta.0).abs() / DEGREE;
             assert!(off < 0.05 && turned < 2.0, "({x}, {y}, {degrees}): {off} m and {turned} degrees off");
@@ -116,6 +127,6 @@ mod tests {
     #[test]
     fn silence_is_nowhere() {
         let silent = GridPing { x: 0.0, y: 0.0, theta: 0.0, range: None };
-        assert_eq!(fit(&EvidenceGrid::new(), &[silent], Pose::ORIGIN), None);
+        assert_eq!(fit(&EvidenceGrid::new(), &[silent], Pose::ORIGIN, 4), None);
     }
 }
