@@ -6,6 +6,7 @@ use std::io::{BufRead as _, BufReader, Read as _};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use mdle_tests::chance::repeated;
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
 
@@ -74,6 +75,66 @@ fn a_route_of_two_plans_is_driven() {
     at lab1
     at office
     "#);
+}
+
+/// A folder with the graph of the repository, and maps of its landmarks that a Scout has made.
+fn mapped(test: &str) -> std::path::PathBuf {
+    let folder = folder(test);
+    fs::copy(root().join("plans/navigation/office.mdle"), folder.join("office.mdle")).unwrap();
+    let drive = root().join("plans/navigation/map.mdle");
+    let mut landmarks = String::new();
+    for (name, start, axis) in [("lab2", "0,0,0", 0), ("lab1", "7.45,0.4,180", 180), ("office", "11.5,0,270", 270)] {
+        let words = ["run", drive.to_str().unwrap(), "--target", "sim", "--speed", "max", "--body", "scout"];
+        let output = run(&folder, &[&words[..], &["--seed", "1", "--start", start, "--log", "drive.mcap"]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+        let output = run(&folder, &["map", "drive.mcap", &format!("{name}.yaml"), "--at", "-0.75,0,0"]);
+        assert_eq!(text(&output), "[0]\n");
+        fs::remove_file(folder.join("drive.mcap")).unwrap();
+        landmarks += &format!("[[landmark]]\nname = \"{name}\"\naxis = \"{axis}\"\nmap = \"{name}.yaml\"\n");
+        landmarks += "at = \"-0.75,0,0\"\n\n";
+    }
+    fs::write(folder.join("landmarks.toml"), landmarks).unwrap();
+    folder
+}
+
+/// Drives a Scout by the graph in a folder.
+fn by_maps(folder: &Path, words: &[&str]) -> Output {
+    let usual = ["--target", "sim", "--speed", "max", "--body", "scout"];
+    run(folder, &[&["navigate", "office.mdle"], words, &usual].concat())
+}
+
+#[test]
+fn a_robot_turns_at_landmarks_and_names_them() {
+    let folder = mapped("navigation_maps");
+    let off = ["--start-noise", "10cm,5deg", "--seed", "9803000"];
+    let output = by_maps(&folder, &[&["lab2", "lab1,office", "--goal", "11.5,0,0.8,270,15"], &off[..]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    let lines = landmarks(&output);
+    let places: Vec<&str> = lines.lines().map(|line| line.split(':').next().unwrap()).collect();
+    assert_eq!(places, ["route", "at lab2", "at lab1", "at office"], "{lines}");
+    // It begins at another landmark than it is told.
+    for (start, there) in [("7.45,0.4,180", "lab1"), ("11.5,0,270", "office")] {
+        let output = by_maps(&folder, &[&["lab2", "lab1", "--start", start], &off[..]].concat());
+        assert_eq!(output.status.code(), Some(3), "{}", text(&output));
+        let expected = format!("the robot is at {there} and not at lab2, by its maps");
+        assert!(text(&output).contains(&expected), "{}", text(&output));
+    }
+    // All six plans in a row, each in the frame of its landmark.
+    let runs = repeated(2).to_string();
+    let circuit = ["lab2", "lab1,office,lab1,lab2,office,lab2", "--goal", "0,0,0.45,0,15"];
+    let output = by_maps(
+        &folder,
+        &[&circuit[..], &["--start-noise", "10cm,5deg", "--seed", "9804000", "--runs", &runs]].concat(),
+    );
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    // Where no map is known, nothing is looked for.
+    let file = fs::read_to_string(folder.join("landmarks.toml")).unwrap();
+    fs::write(folder.join("landmarks.toml"), file.replace("map = \"lab1.yaml\"\nat = \"-0.75,0,0\"\n", "")).unwrap();
+    let output = by_maps(&folder, &[&["lab1", "office", "--start", "7.45,0.4,180"], &off[..]].concat());
+    assert!(landmarks(&output).contains("\nat lab1\nat office: "), "{}", text(&output));
+    fs::remove_file(folder.join("office.pgm")).unwrap();
+    let output = by_maps(&folder, &["lab2", "lab1"]);
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output));
 }
 
 #[test]

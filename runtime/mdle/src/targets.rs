@@ -23,7 +23,7 @@ use crate::modules::SoundInput;
 use crate::plans::{self, texts};
 use crate::record::Record;
 use crate::replayer::{RecordedRun, replay};
-use crate::route::{Leg, drive};
+use crate::route::{Route, drive};
 use crate::safety::{Guarded, SafetyFile};
 use crate::session::Seat;
 use crate::way_recorder::WayRecorder;
@@ -49,8 +49,8 @@ type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Bo
 /// Runs the plan of a machine on the outputs of a record; the last argument tells whether plans are looked at.
 type ReplayRecord = fn(Machine, &Sources, &Arc<Target>, &Begin, Record, bool) -> Result<Box<dyn RecordedRun>, Failure>;
 
-/// Drives the legs of a route, with these modules.
-type DriveRoute = fn(&[Leg], &Arc<Target>, Call, &Library<Sensed>) -> Result<ExitCode, Failure>;
+/// Drives a route, with these modules.
+type DriveRoute = fn(&Route, &Arc<Target>, Call, &Library<Sensed>) -> Result<ExitCode, Failure>;
 
 /// A plan that is ready to run.
 pub(crate) trait Ready {

@@ -12,7 +12,7 @@ pub(crate) struct Navigate {
     pub(crate) graph: PathBuf,
     /// Landmark at which the robot is.
     pub(crate) from: String,
-    /// Landmark to which the robot is to go.
+    /// Landmark to which the robot is to go, after others with commas between them.
     pub(crate) to: String,
     /// Name or folder of the target; `None` for that of the `mdle.toml` beside the graph.
     pub(crate) target: Option<String>,
@@ -54,7 +54,7 @@ pub(super) fn navigate() -> Command {
         .override_usage("mdle navigate [OPTIONS] <GRAPH> <FROM> <TO> [OPTIONS OF THE RUN]")
         .arg(path("graph").value_name("GRAPH").help("File of plans whose labels name landmarks").required(true))
         .arg(Arg::new("from").value_name("FROM").help("Landmark at which the robot is").required(true))
-        .arg(Arg::new("to").value_name("TO").help("Landmark to which the robot is to go").required(true))
+        .arg(Arg::new("to").value_name("TO").help("Landmark to which the robot is to go; several are visited in order, as `a,b,c`").required(true))
         .arg(
             Arg::new("target")
                 .long("target")

@@ -1,11 +1,18 @@
-//! The file of landmarks beside a graph: the direction of each landmark's axes on the floor (docs/src/navigation.md).
+//! The file of landmarks beside a graph: the direction of each landmark's axes on the floor, and its map
+//! (docs/src/navigation.md).
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use mdle_host::Quantity;
+use mdle_runtime::Pose;
+use mdle_sim::Start;
 use serde::Deserialize;
 use toml::Spanned;
+
+use crate::evidence::read_map;
+use crate::failure::Failure;
+use crate::route::LandmarkMap;
 
 /// Maximum size of the file, in bytes.
 const LARGEST: u64 = 1_000_000;
@@ -24,6 +31,10 @@ struct Landmark {
     name: Spanned<String>,
     /// Direction of the landmark's first axis on the floor.
     axis: Spanned<String>,
+    /// File of its map, relative to the folder of this file.
+    map: Option<PathBuf>,
+    /// Pose in the axes of the map of a robot that is at the landmark and heads along its first axis.
+    at: Option<Spanned<String>>,
 }
 
 impl Landmarks {
@@ -50,7 +61,7 @@ impl Landmarks {
             let place = error.span().map_or(0, |span| span.start);
             (line(place), error.message().to_owned())
         })?;
-        for (number, Landmark { name, axis }) in landmarks.landmark.iter().enumerate() {
+        for (number, Landmark { name, axis, map, at }) in landmarks.landmark.iter().enumerate() {
             let wrong = |place: &Spanned<String>, sentence| Err((line(place.span().start), sentence));
             if !known.contains(&name.get_ref().as_str()) {
                 let near = mdle_compiler::alphabet::did_you_mean(name.get_ref(), known);
@@ -64,8 +75,32 @@ impl Landmarks {
                 Ok(_) => return wrong(axis, "an axis is turned by at most 360 degrees to either side".to_owned()),
                 Err(sentence) => return wrong(axis, sentence),
             }
+            let Some(at) = at else { continue };
+            if map.is_none() {
+                return wrong(at, format!("the landmark `{}` has no `map` in which it could be", name.get_ref()));
+            }
+            if let Err(error) = at.get_ref().parse::<Start>() {
+                return wrong(at, error.to_string());
+            }
         }
         Ok(landmarks)
+    }
+
+    /// Reads the maps of the landmarks, for a route that begins at a landmark with this axis. `file` is that of the
+    /// landmarks.
+    ///
+    /// # Errors
+    /// A map cannot be read.
+    pub(super) fn maps(&self, file: &Path, begins: f64) -> Result<Vec<LandmarkMap>, Failure> {
+        let maps = self.landmark.iter().filter_map(|landmark| {
+            let map = file.with_file_name("").join(landmark.map.as_ref()?);
+            let name = landmark.name.get_ref().clone();
+            let at = landmark.at.as_ref().and_then(|at| at.get_ref().parse().ok());
+            let at = at.map_or(Pose::ORIGIN, |Start(pose)| pose);
+            let turned = self.axis(&name) - begins;
+            Some(read_map(&map).map(|grid| LandmarkMap { name, turned, at, grid }))
+        });
+        maps.collect()
     }
 
     /// Returns the direction of a landmark's first axis on the floor, in degrees; 0 if the file does not give it.
@@ -84,6 +119,19 @@ mod tests {
         let text = "[[landmark]]\nname = \"a\"\naxis = \"90deg\"\n[[landmark]]\nname = \"b\"\naxis = \"-45\"\n";
         let landmarks = Landmarks::parse(text, &["a", "b", "c"]).unwrap();
         assert_eq!(["a", "b", "c"].map(|name| landmarks.axis(name)), [90.0, -45.0, 0.0]);
+    }
+
+    #[test]
+    fn a_place_at_a_landmark_is_a_pose_on_its_map() {
+        let read = |rest: &str| {
+            Landmarks::parse(&format!("[[landmark]]\nname = \"a\"\naxis = \"0\"\n{rest}\n"), &["a"]).map(|_| ())
+        };
+        let map = "map = \"a.yaml\"\n";
+        assert_eq!(read(&format!("{map}at = \"-0.75, 0, 0\"")), Ok(()));
+        assert_eq!(read(map), Ok(()));
+        let (line, sentence) = read("at = \"-0.75, 0, 0\"").unwrap_err();
+        assert_eq!((line, sentence.as_str()), (4, "the landmark `a` has no `map` in which it could be"));
+        assert_eq!(read(&format!("{map}at = \"-0.75, 0\"")).unwrap_err().0, 5);
     }
 
     #[test]

@@ -15,7 +15,7 @@ use mdle_runtime::{Printable, Sensed};
 use crate::arguments::Navigate;
 use crate::failure::{self, Failure};
 use crate::plans::texts;
-use crate::route::{Edge, LandmarkGraph, Leg, leg};
+use crate::route::{Edge, LandmarkGraph, Leg, Look, Route, leg};
 use crate::targets;
 use landmarks::Landmarks;
 
@@ -36,7 +36,8 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
     let route = route(&graph, &arguments)?;
     let (beside, known) = (arguments.graph.with_file_name(LANDMARKS), graph.landmarks());
     let file = arguments.landmarks.as_deref();
-    let landmarks = Landmarks::read(file.unwrap_or(&beside), file.is_some(), &known).map_err(Failure::Usage)?;
+    let file = (file.unwrap_or(&beside), file.is_some());
+    let landmarks = Landmarks::read(file.0, file.1, &known).map_err(Failure::Usage)?;
     let legs = legs(&route, &landmarks, &arguments, &target)?;
     let Some(first) = legs.first() else {
         let sentence = format!("the robot is at {} already", Printable(&arguments.to));
@@ -44,6 +45,9 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
         return Ok(ExitCode::SUCCESS);
     };
     failure::print_line(&format!("route: {}", words(&route)))?;
+    let maps = landmarks.maps(file.0, landmarks.axis(&arguments.from))?;
+    let look = (!maps.is_empty()).then(|| Look::of(maps, &arguments.graph, &target)).transpose()?;
+    let looks = look.as_ref().filter(|look| look.maps.iter().any(|map| map.name == arguments.from));
     let program = Program { plan: &first.name, version: "" };
     let given: Vec<_> = arguments.options.iter().map(|option| option.to_string_lossy().into_owned()).collect();
     let mut options: Vec<OsString> = Vec::new();
@@ -52,9 +56,10 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
         options.extend(option.arguments);
     }
     options.extend(arguments.options.iter().cloned());
-    let recorded = RecordedPlan { files: texts(&first.input), ..RecordedPlan::default() };
+    let files = texts(looks.map_or(&first.input, |look| &look.input));
+    let recorded = RecordedPlan { files, beside: String::new(), safety: None };
     let read = input.inputs(&target);
-    (linked.navigate)(&legs, &target, Call { recorded, read, ..call(&arguments, options) }, library)
+    (linked.navigate)(&Route { legs, look }, &target, Call { recorded, read, ..call(&arguments, options) }, library)
 }
 
 fn call(arguments: &Navigate, options: Vec<OsString>) -> Call {
@@ -62,17 +67,29 @@ fn call(arguments: &Navigate, options: Vec<OsString>) -> Call {
     Call { words: arguments.words.clone(), options, read: Vec::new(), recorded, later_path: None }
 }
 
-/// Finds the route.
-fn route<'g>(
+/// Finds the route, from each landmark to the next.
+fn route<'g>(graph: &'g LandmarkGraph, arguments: &Navigate) -> Result<Vec<&'g Edge>, Failure> {
+    let (mut edges, mut from) = (Vec::new(), arguments.from.as_str());
+    for to in arguments.to.split(',') {
+        edges.extend(part(graph, arguments, from, to)?);
+        from = to;
+    }
+    Ok(edges)
+}
+
+/// Finds the route from one landmark to another.
+fn part<'g>(
     graph: &'g LandmarkGraph,
-    Navigate { graph: file, from, to, .. }: &Navigate,
+    Navigate { graph: file, .. }: &Navigate,
+    from: &str,
+    to: &str,
 ) -> Result<Vec<&'g Edge>, Failure> {
     let (known, file) = (graph.landmarks(), file.display());
     if known.is_empty() {
         let help = "write the landmarks before the plan, as in `Γ_a^b = { Name … }`";
         return Err(Failure::Usage(format!("no plan of {file} leads from one landmark to another\nhelp: {help}")));
     }
-    if let Some(name) = [from, to].into_iter().find(|name| !known.contains(&name.as_str())) {
+    if let Some(name) = [from, to].into_iter().find(|name| !known.contains(name)) {
         let (name, near) = (Printable(name), did_you_mean(name, &known));
         let help = format!("its landmarks are {}", known.join(", "));
         return Err(Failure::Usage(format!("{file} has no landmark `{name}`{near}\nhelp: {help}")));

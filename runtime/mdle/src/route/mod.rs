@@ -1,6 +1,8 @@
-//! Routes between landmarks: the graph of plans, the legs of a route, and the pilot that drives them.
+//! Routes between landmarks: the graph of plans, the legs of a route, the look around at a landmark, and the pilot that
+//! drives them.
 
 mod graph;
+mod look;
 mod navigator;
 
 use std::path::{Path, PathBuf};
@@ -13,7 +15,15 @@ use mdle_files::{Input, Target, plan};
 use crate::failure::{self, Failure};
 
 pub(crate) use graph::{Edge, LandmarkGraph};
+pub(crate) use look::{LandmarkMap, Look};
 pub(crate) use navigator::drive;
+
+/// A route that has been checked.
+pub(crate) struct Route {
+    pub(crate) legs: Vec<Leg>,
+    /// The look around at landmarks that have maps; `None` if none has one.
+    pub(crate) look: Option<Look>,
+}
 
 /// A leg of a route: the plan of an edge in the frame of the landmark where it begins, compiled.
 pub(crate) struct Leg {

@@ -12,7 +12,8 @@ use mdle_host::{Call, Moment, Pilot, PilotFault, RunTerms, Transitions};
 use mdle_record::Change;
 use mdle_runtime::{Cause, Machine, Nanos, Plan as _, Printable, Radians, Robot, Sensed, Turn, Twist};
 
-use super::{Edge, Leg, leg_text};
+use super::look::{Heard, LOOK, LandmarkMap, Look, Stand};
+use super::{Edge, Leg, Route, leg_text};
 use crate::failure::Failure;
 use crate::plans::texts;
 use crate::recorded_files;
@@ -27,20 +28,31 @@ struct ReadyLeg<A: EngineAlphabet> {
     plan: StoredPlan<A>,
 }
 
+/// A look around that is ready to run.
+struct ReadyLook<'l, A: EngineAlphabet> {
+    plan: StoredPlan<A>,
+    maps: &'l [LandmarkMap],
+}
+
 /// The pilot of a route.
 struct Navigator<'l, A: EngineAlphabet> {
     engine: Engine<A>,
     /// The leg that is driven, and those after it.
     legs: VecDeque<&'l ReadyLeg<A>>,
+    look: Option<&'l ReadyLook<'l, A>>,
+    /// The echoes of the robot that looks around.
+    heard: Option<Heard>,
+    /// Angle by which odometry has turned the axes of the floor, as far as landmarks have shown.
+    drift: Radians,
     messages: Vec<String>,
 }
 
-/// Drives the legs of a route, of which there is at least one, with these modules.
+/// Drives a route of at least one leg, with these modules.
 ///
 /// # Errors
 /// A plan cannot be loaded.
 pub(crate) fn drive<T, A>(
-    legs: &[Leg],
+    route: &Route,
     target: &Arc<Target>,
     call: Call,
     library: &Library<Sensed>,
@@ -49,11 +61,26 @@ where
     T: mdle_host::Target<Robot: Robot<Output = Sensed, Input = Twist>> + 'static,
     A: EngineAlphabet<Output = Sensed, Input = Twist>,
 {
-    let legs = legs.iter().map(|leg| ready::<A>(leg, target)).collect::<Result<Vec<_>, Failure>>()?;
-    let Some(first) = legs.first() else { return Ok(ExitCode::SUCCESS) };
-    let plan = || first.plan.loaded.plan();
-    let pilot = |terms: &RunTerms| Ok(Navigator::new(Engine::new(plan(), library, terms)?, &legs));
-    Ok(mdle_host::run_piloted::<T, _>(&*first.plan.name, call, &plan, pilot, None))
+    let legs = route.legs.iter().map(|leg| ready::<A>(leg, target)).collect::<Result<Vec<_>, Failure>>()?;
+    let look = route.look.as_ref().map(|look| ready_look::<A>(look, target)).transpose()?;
+    let Some(leg) = legs.first() else { return Ok(ExitCode::SUCCESS) };
+    let first = look.as_ref().filter(|look| look.knows(&leg.edge.from)).map_or(&leg.plan, |look| &look.plan);
+    let plan = || first.loaded.plan();
+    let pilot = |terms: &RunTerms| Ok(Navigator::new(Engine::new(plan(), library, terms)?, &legs, look.as_ref()));
+    Ok(mdle_host::run_piloted::<T, _>(&*first.name, call, &plan, pilot, None))
+}
+
+fn ready_look<'l, A: EngineAlphabet>(look: &'l Look, target: &Target) -> Result<ReadyLook<'l, A>, Failure> {
+    let loaded = Arc::new(load::load::<A>(&look.machine, &look.input.sources, &target.alphabet)?);
+    let plan = StoredPlan { name: LOOK.into(), files: texts(&look.input).into(), loaded };
+    Ok(ReadyLook { plan, maps: &look.maps })
+}
+
+impl<A: EngineAlphabet> ReadyLook<'_, A> {
+    /// Returns `true` if there is a map of this landmark.
+    fn knows(&self, landmark: &str) -> bool {
+        self.maps.iter().any(|map| map.name == landmark)
+    }
 }
 
 fn ready<A: EngineAlphabet>(leg: &Leg, target: &Arc<Target>) -> Result<ReadyLeg<A>, Failure> {
@@ -64,10 +91,11 @@ fn ready<A: EngineAlphabet>(leg: &Leg, target: &Arc<Target>) -> Result<ReadyLeg<
 }
 
 impl<A: EngineAlphabet> ReadyLeg<A> {
-    /// Returns the plan of the leg for a robot with this heading by odometry: direction 0 of a plan that begins during
-    /// a run is the heading with which it begins. The texts are those that were read before the run.
-    fn plan_at(&self, heading: Radians) -> Result<StoredPlan<A>, PilotFault> {
-        let turned = libm::round((self.turned - heading.degrees()) * 100.0) / 100.0;
+    /// Returns the plan of the leg for a robot with this heading by odometry, which has turned the axes of the floor by
+    /// `drift`: direction 0 of a plan that begins during a run is the heading with which it begins. The texts are those
+    /// that were read before the run.
+    fn plan_at(&self, heading: Radians, drift: Radians) -> Result<StoredPlan<A>, PilotFault> {
+        let turned = libm::round((self.turned + drift.degrees() - heading.degrees()) * 100.0) / 100.0;
         let name = &self.plan.name;
         let mut files = self.plan.files.to_vec();
         if let Some((_, text)) = files.first_mut() {
@@ -81,30 +109,73 @@ impl<A: EngineAlphabet> ReadyLeg<A> {
 }
 
 impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
-    fn new(mut engine: Engine<A>, legs: &'l [ReadyLeg<A>]) -> Self {
+    fn new(mut engine: Engine<A>, legs: &'l [ReadyLeg<A>], look: Option<&'l ReadyLook<'l, A>>) -> Self {
         // A leg that is over cannot go on.
         engine.plans_mut().set_trial(Nanos::ZERO);
-        let mut navigator = Self { engine, legs: legs.iter().collect(), messages: Vec::new() };
-        if let Some(leg) = legs.first() {
-            navigator.messages.push(format!("at {}", Printable(&leg.edge.from)));
+        let (legs, drift) = (legs.iter().collect(), Radians(0.0));
+        let mut navigator = Self { engine, legs, look, heard: None, drift, messages: Vec::new() };
+        if let Some(leg) = navigator.legs.front().copied() {
+            navigator.stands(&leg.edge.from, None);
         }
         navigator
     }
 
-    /// Goes on after the plan of a leg is over; returns `true` if there is another leg.
-    fn arrives(&mut self, heading: Radians, transitions: &Transitions) -> Result<bool, PilotFault> {
-        let Some(leg) = self.legs.pop_front() else { return Ok(false) };
+    /// Says at which landmark the robot is, or begins to look around if the landmark has a map; returns its plan.
+    fn stands(&mut self, landmark: &str, driven: Option<&Sensed>) -> Option<&'l StoredPlan<A>> {
+        let Some(look) = self.look.filter(|look| look.knows(landmark)) else {
+            self.messages.push(format!("at {}", Printable(landmark)));
+            return None;
+        };
+        self.heard = Some(Heard::at(landmark, driven));
+        Some(&look.plan)
+    }
+
+    /// Goes on after a plan is over; returns `true` if there is another one.
+    fn goes_on(&mut self, y: &Sensed, transitions: &Transitions) -> Result<bool, PilotFault> {
+        match self.heard.take() {
+            Some(heard) => self.has_looked(&heard, transitions)?,
+            None => {
+                if let Some(look) = self.arrives(y, transitions)? {
+                    self.engine.plans_mut().follow(look).map_err(PilotFault::Stopped)?;
+                    return Ok(true);
+                }
+            }
+        }
+        let Some(next) = self.legs.front() else { return Ok(false) };
+        let plan = next.plan_at(y.odometry.theta, self.drift)?;
+        self.engine.plans_mut().follow(&plan).map_err(PilotFault::Stopped)?;
+        Ok(true)
+    }
+
+    /// Notes that the plan of a leg is over; returns the plan of the look around, if there is one.
+    fn arrives(&mut self, y: &Sensed, transitions: &Transitions) -> Result<Option<&'l StoredPlan<A>>, PilotFault> {
+        let Some(leg) = self.legs.pop_front() else { return Ok(None) };
         let Edge { from, to, plan } = &leg.edge;
         if let Some(cause) = self.cut_short(plan, transitions) {
             let (from, to) = (Printable(from), Printable(to));
             let sentence = format!("the way from {from} to {to} is not done: `{plan}` was ended by `{cause}`");
             return Err(PilotFault::Stopped(sentence));
         }
-        self.messages.push(format!("at {}", Printable(to)));
-        let Some(next) = self.legs.front() else { return Ok(false) };
-        let plan = next.plan_at(heading)?;
-        self.engine.plans_mut().follow(&plan).map_err(PilotFault::Stopped)?;
-        Ok(true)
+        Ok(self.stands(to, Some(y)))
+    }
+
+    /// Judges a look around: the robot has to be where it should be, and its frame is set by the landmark.
+    fn has_looked(&mut self, heard: &Heard, transitions: &Transitions) -> Result<(), PilotFault> {
+        let landmark = Printable(heard.expected());
+        if let Some(cause) = self.cut_short(LOOK, transitions) {
+            let sentence = format!("the turn at {landmark} is not done: it was ended by `{cause}`");
+            return Err(PilotFault::Stopped(sentence));
+        }
+        let maps = self.look.map_or(&[][..], |look| look.maps);
+        let Stand { off: (x, y), drift } = heard.stand(maps, self.drift).map_err(PilotFault::Stopped)?;
+        let turned = Radians(drift.0 - self.drift.0).wrapped().degrees();
+        // Minus zero is zero.
+        let [x, y] = [x, y].map(|metres| libm::round(metres.0 * 100.0) / 100.0 + 0.0);
+        let turned = libm::round(turned * 10.0) / 10.0 + 0.0;
+        let place = format!("{x:.2} m and {y:.2} m from its place, headings {turned:.1} degrees off");
+        self.messages.push(format!("at {landmark}: {place}"));
+        self.drift = drift;
+        Ok(())
     }
 
     /// Returns the cause by which the plan of an edge ended, if that is its own condition rather than its last element.
@@ -128,13 +199,17 @@ impl<A: EngineAlphabet<Output = Sensed>> Pilot for Navigator<'_, A> {
         moment: Moment<'_, Sensed>,
         transitions: &mut Transitions,
     ) -> Result<Turn<A::Input>, PilotFault> {
-        let heading = moment.y.odometry.theta;
+        let y = moment.y;
+        if let Some(heard) = &mut self.heard {
+            heard.take(y);
+        }
         let turn = self.engine.turn(moment, transitions)?;
-        Ok(if matches!(turn, Turn::Over) && self.arrives(heading, transitions)? { Turn::Cut } else { turn })
+        Ok(if matches!(turn, Turn::Over) && self.goes_on(y, transitions)? { Turn::Cut } else { turn })
     }
 
     fn divert(&mut self, plan: LoadedPlan<A>, moment: Moment<'_, Sensed>) {
         self.legs.clear();
+        self.heard = None;
         self.engine.divert(plan, moment);
     }
 

@@ -1,0 +1,138 @@
+//! The look around at a landmark: a robot turns once on the spot, names the landmark by the evidence grids of all, and
+//! measures where the axes of the landmark are (docs/src/navigation.md).
+
+use std::path::Path;
+
+use mdle_compiler::diagnostic::judged;
+use mdle_compiler::fsm::Machine;
+use mdle_files::{Input, Target, plan};
+use mdle_runtime::{Meters, Pose, Printable, Radians, Sensed};
+
+use crate::evidence::{EvidenceGrid, Fit, GridPing, PingOrder, fit};
+use crate::failure::{self, Failure};
+
+/// Name of the plan of a look around.
+pub(super) const LOOK: &str = "LookAround";
+/// Steps of 10 cm to either side in which a robot that has arrived is searched.
+const WAYS: i16 = 6;
+
+/// The map of a landmark.
+pub(crate) struct LandmarkMap {
+    /// Name of the landmark.
+    pub(crate) name: String,
+    /// Direction of the landmark's first axis from that of the landmark where the route begins, in degrees.
+    pub(crate) turned: f64,
+    /// Pose in the axes of the map of a robot that is at the landmark and heads along its first axis.
+    pub(crate) at: Pose,
+    pub(crate) grid: EvidenceGrid,
+}
+
+/// The plan of a look around, compiled, and the maps by which landmarks are named.
+pub(crate) struct Look {
+    pub(crate) machine: Machine,
+    pub(crate) input: Input,
+    pub(crate) maps: Vec<LandmarkMap>,
+}
+
+impl Look {
+    /// Compiles the plan of a look around. Messages go to standard error.
+    ///
+    /// # Errors
+    /// The target has not what the plan needs.
+    pub(crate) fn of(maps: Vec<LandmarkMap>, graph: &Path, target: &Target) -> Result<Self, Failure> {
+        let text = format!("{{ {LOOK} (bumper OR wait 1min)\n  (Atom (null) turn 360)\n}}\n");
+        let mut input = plan(&graph.with_file_name(format!("{LOOK}.mdle")), text, target)?;
+        let (plans, diagnostics) = input.compile(&target.alphabet, Some(LOOK));
+        if let Err(sentence) = judged(&diagnostics, false) {
+            failure::print(&input.sources, &diagnostics);
+            return Err(Failure::OtherPlan(format!("{sentence} in the turn at landmarks")));
+        }
+        let named = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine)).collect();
+        let machine = input.only(named)?;
+        Ok(Self { machine, input, maps })
+    }
+}
+
+/// What a robot hears while it turns at a landmark.
+pub(super) struct Heard {
+    /// Name of the landmark at which the robot should be.
+    expected: String,
+    /// `true` if the robot has driven there, `false` if it was put there along the landmark's first axis.
+    has_driven: bool,
+    order: PingOrder,
+    pings: Vec<GridPing>,
+    /// Pose by odometry.
+    here: Pose,
+}
+
+/// The place of a robot at a landmark.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Stand {
+    /// Distance from where the landmark's map has the robot, along the axes of the map.
+    pub(super) off: (Meters, Meters),
+    /// Angle by which odometry has turned the axes of the floor since the route began.
+    pub(super) drift: Radians,
+}
+
+impl Heard {
+    /// Returns a look around by a robot that should be at a landmark, with its first output if it has driven there.
+    pub(super) fn at(expected: &str, driven: Option<&Sensed>) -> Self {
+        let mut order = PingOrder::new(Pose::ORIGIN);
+        if let Some(y) = driven {
+            // Pings on the way there are of other places.
+            order.take(y);
+        }
+        let has_driven = driven.is_some();
+        Self { expected: expected.to_owned(), has_driven, order, pings: Vec::new(), here: Pose::ORIGIN }
+    }
+
+    /// Returns the name of the landmark at which the robot should be.
+    pub(super) fn expected(&self) -> &str {
+        &self.expected
+    }
+
+    /// Takes the output of a turn.
+    pub(super) fn take(&mut self, y: &Sensed) {
+        self.here = y.odometry;
+        self.pings.extend(self.order.take(y));
+    }
+
+    /// Returns how the robot stands at the landmark, after odometry has turned by about `drift`.
+    ///
+    /// # Errors
+    /// The robot is at another landmark, or has heard nothing: a sentence.
+    pub(super) fn stand(&self, maps: &[LandmarkMap], drift: Radians) -> Result<Stand, String> {
+        let expected = Printable(&self.expected);
+        let fits = maps.iter().filter_map(|map| {
+            // Odometry knows the axes of all landmarks once it knows those of one.
+            let turned = if self.has_driven { map.turned } else { 0.0 };
+            let axis = Radians::from_degrees(turned).0 + drift.0;
+            Some((map, fit(&map.grid, &self.pings, origin(map.at, axis, self.here), WAYS)?))
+        });
+        let best = fits.reduce(|best, other| if other.1.score > best.1.score { other } else { best });
+        let Some((map, Fit { origin, .. })) = best else {
+            return Err(format!("no sonar has heard anything at {expected}: nothing says that the robot is there"));
+        };
+        if map.name != self.expected {
+            return Err(format!("the robot is at {} and not at {expected}, by its maps", Printable(&map.name)));
+        }
+        let (sin, cos) = libm::sincos(origin.theta.0);
+        let (x, y) = (self.here.x.0, self.here.y.0);
+        let off =
+            (Meters(origin.x.0 + x * cos - y * sin - map.at.x.0), Meters(origin.y.0 + x * sin + y * cos - map.at.y.0));
+        let axis = map.at.theta.0 - origin.theta.0;
+        Ok(Stand { off, drift: Radians(axis - Radians::from_degrees(map.turned).0).wrapped() })
+    }
+}
+
+/// Returns the pose in the axes of a map at which the odometry of a robot was zero that is now at `here` by odometry,
+/// if it is at `at` and the landmark's first axis has this direction by odometry.
+fn origin(at: Pose, axis: f64, here: Pose) -> Pose {
+    let theta = at.theta.0 - axis;
+    let (sin, cos) = libm::sincos(theta);
+    Pose {
+        x: Meters(at.x.0 - (here.x.0 * cos - here.y.0 * sin)),
+        y: Meters(at.y.0 - (here.x.0 * sin + here.y.0 * cos)),
+        theta: Radians(theta),
+    }
+}
