@@ -13,6 +13,7 @@ mod late_plans;
 mod loaded;
 mod meetings;
 mod module_faults;
+mod module_reads;
 mod modules;
 mod movement;
 mod navigation;

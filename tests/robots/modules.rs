@@ -249,6 +249,7 @@ fn a_plan_that_waits_in_vain_names_the_modules() {
     the plan reads /usr/ecko/range, which no module has published within 2 s; did you mean `echo`?
     help: `echo` publishes range, bearing
     the plan reads /usr/echo/range, which no module has published within 2 s
+    help: a module in the background that needs longer declares its `latency`, and the plan waits 2 s longer than that
     the plan reads /usr/nose/age, which no module has published within 2 s
     help: `echo` publishes range, bearing
     ");
@@ -272,9 +273,9 @@ fn wrong() -> Library<Sensed> {
 
 #[test]
 fn a_plan_and_a_module_agree_on_kinds() {
-    let fault = Run::of(FOLLOW, &wrong()).turn().unwrap_err();
+    let refusal = Run::begin(FOLLOW, &wrong(), Time::Stepped(Pace::Max)).map(|_: Run| ()).unwrap_err();
     let sentence = "the plan reads /usr/heading/bearing in rad, and it is a length";
-    assert_eq!(fault, PilotFault::Stopped(sentence.into()));
+    assert!(matches!(&refusal, Refusal::Usage(found) if found == sentence), "{refusal:?}");
 }
 
 #[test]

@@ -25,6 +25,8 @@ pub struct Post {
     pub about: About,
     /// The value that was published last; `None` before the first.
     pub reading: Option<Reading>,
+    /// Time from one exchange of its module to the next, as the module declares it.
+    pub latency: Nanos,
     /// Number of values with a NaN, which were not published.
     pub refused: u64,
 }
@@ -69,6 +71,7 @@ impl Board {
             name: AttributeName::new(module, &about.name),
             about: about.clone(),
             reading: None,
+            latency: declared.latency,
             refused: 0,
         }));
     }
@@ -87,7 +90,7 @@ impl Board {
     pub(crate) fn restore(&mut self, name: AttributeName, kind: AttributeKind) {
         self.forget(&name);
         let about = About { name: Arc::clone(&name.attribute), kind, unit: None, doc: "" };
-        self.posts.push(Post { name, about, reading: None, refused: 0 });
+        self.posts.push(Post { name, about, reading: None, latency: Nanos::ZERO, refused: 0 });
     }
 
     /// Gives such an attribute the value that it had.

@@ -76,7 +76,8 @@ impl<Y> Loaded<Y> {
                 if lives {
                     gate.begin();
                 }
-                let due = Nanos(now.0.saturating_add(declared.latency.0));
+                let latency = if declared.begins_at_once { Nanos::ZERO } else { declared.latency };
+                let due = Nanos(now.0.saturating_add(latency.0));
                 (Runs::InBackground(Visit { gate, due, ports: None }), ModuleState::Stopped)
             }
         };

@@ -8,6 +8,7 @@ mod modules;
 mod piloting;
 mod relevance;
 mod turns;
+mod unpublished;
 
 pub use event::{Arrivals, End, Event};
 pub use loaded::ModuleState;

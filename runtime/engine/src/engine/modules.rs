@@ -9,6 +9,7 @@ use mdle_runtime::{ModuleRead, Nanos};
 use super::event::{Arrivals, Event};
 use super::janitor::Janitor;
 use super::loaded::{Loaded, ModuleState, Runs};
+use super::unpublished::unpublished;
 use crate::attribute::{AttributeName, Reading, Value};
 use crate::board::Board;
 use crate::fork::{Fork, Threads};
@@ -130,6 +131,12 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         self.rewire();
         self.events.push(Event::Loaded(name));
         Ok(())
+    }
+
+    /// Returns for each loaded module that reads what no loaded module publishes its name, and a sentence about it.
+    pub(super) fn unpublished(&self) -> impl Iterator<Item = (&str, String)> {
+        let sentence = |module: &Loaded<Y>| unpublished(&module.name, &module.declared, &self.board);
+        self.loaded.iter().filter_map(move |module| Some((&*module.name, sentence(module)?)))
     }
 
     /// Unloads a module; its attributes vanish. A thread that still runs it is left to it.

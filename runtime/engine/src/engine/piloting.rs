@@ -45,7 +45,7 @@ impl<A: EngineAlphabet> Engine<A> {
     /// in stepped time on the thread of the caller.
     ///
     /// # Errors
-    /// A module is refused (exit status 2), the system gives no threads, or the run is asked to end before.
+    /// A module is refused, or publishes an attribute as another kind than the plan reads (exit status 2), the system gives no threads, or the run is asked to end before.
     pub fn new(
         plan: LoadedPlan<A>,
         library: &Library<A::Output>,
@@ -82,6 +82,8 @@ impl<A: EngineAlphabet> Engine<A> {
                 }
             })?;
         }
+        reads::check_kinds(engine.plans.reads(), engine.modules.board()).map_err(mdle_host::Refusal::Usage)?;
+        engine.messages.extend(engine.modules.unpublished().map(|(_, sentence)| format!("warning: {sentence}")));
         engine.modules.plan_reads(engine.plans.reads());
         engine.modules.prepare();
         Ok(engine)
@@ -205,11 +207,20 @@ impl<A: EngineAlphabet> Engine<A> {
         self.plans.arm();
         let made = self.loading.next();
         let loaded =
-            made.map(|(number, candidate)| (number, candidate.and_then(|candidate| self.modules.load(candidate))));
+            made.map(|(number, candidate)| (number, candidate.and_then(|candidate| self.load_made(candidate))));
         self.modules.drop_later(self.plans.take_spent());
         self.modules.plan_reads(self.plans.reads().chain(self.rules_read.unwrap_or_default()));
         self.modules.prepare();
         loaded
+    }
+
+    /// Loads a module that was made while the robot drives.
+    fn load_made(&mut self, candidate: Candidate<A::Output>) -> Result<(), Refusal> {
+        let name = candidate.name().to_owned();
+        self.modules.load(candidate)?;
+        let sentence = self.modules.unpublished().find_map(|(reader, sentence)| (reader == name).then_some(sentence));
+        self.messages.extend(sentence.map(|sentence| format!("warning: {sentence}")));
+        Ok(())
     }
 
     /// Ends the plan on trial for this reason; the plan before it goes on in the next turn at its atom, as if no time

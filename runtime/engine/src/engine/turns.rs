@@ -16,6 +16,9 @@ use crate::module::{Fault, ThreadEnd};
 const LATE_TURNS: u64 = 10;
 /// Time after which a late module is given up, and for which a background module is waited for in stepped time.
 const PATIENCE: Duration = Duration::from_secs(1);
+/// Maximum part of a declared latency for which a background module is waited for in stepped time besides
+/// [`PATIENCE`]: a turn may take ten seconds.
+const LONGEST_LATENCY: Duration = Duration::from_secs(8);
 /// Number of turns after which modules are put in order by their cost.
 const REORDERED: u64 = 128;
 
@@ -161,11 +164,12 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     fn settle_background(&mut self, number: usize) {
         let Self { board, loaded, events, arrivals, service, turn, .. } = self;
         let Some(module) = loaded.get_mut(number) else { return };
+        let patience = module.patience();
         let Runs::InBackground(visit) = &mut module.runs else { return };
         if module.state != ModuleState::Active || *service == Service::WhenDue && turn.1 < visit.due {
             return;
         }
-        let is_there = *service == Service::WhenReady || visit.gate.wait_for_offer(PATIENCE);
+        let is_there = *service == Service::WhenReady || visit.gate.wait_for_offer(patience);
         if let Some(mut ports) = visit.gate.take_offer() {
             let keep = |place, value: &_| arrivals.values.push((place, Clone::clone(value)));
             board.publish(module.first, &mut ports, turn.1, keep);
@@ -249,6 +253,11 @@ impl<Y> Loaded<Y> {
         Some(event)
     }
 
+    /// Returns the real time for which a background module is waited for in stepped time.
+    fn patience(&self) -> Duration {
+        PATIENCE.saturating_add(Duration::from_nanos(self.declared.latency.0).min(LONGEST_LATENCY))
+    }
+
     /// Notes the end of a background module.
     fn ends(&mut self, end: End) -> Event {
         let name = Arc::clone(&self.name);
@@ -259,7 +268,7 @@ impl<Y> Loaded<Y> {
                 (ModuleState::Failed, Event::Failed(name, format!("its code panicked, which is a bug: {message}")))
             }
             End::GivenUp => {
-                let sentence = format!("it has exchanged no values within {} s", PATIENCE.as_secs());
+                let sentence = format!("it has exchanged no values within {} s", self.patience().as_secs_f64());
                 (ModuleState::GivenUp, Event::Failed(name, sentence))
             }
         };

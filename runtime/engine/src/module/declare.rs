@@ -28,6 +28,8 @@ pub(crate) struct Declared {
     pub(crate) priority: i32,
     pub(crate) relevance: Relevance,
     pub(crate) latency: Nanos,
+    /// `true` if the first exchange is due at the first break, whatever the latency.
+    pub(crate) begins_at_once: bool,
     /// Time for which the engine waits at most for the end of the module's thread.
     pub(crate) farewell: Duration,
 }
@@ -167,10 +169,15 @@ impl Declare {
     }
 
     /// Sets the time that a background module needs from one exchange to the next, 0 by default. In stepped time its
-    /// next exchange is at the first break after this much of the engine's time, however fast this computer is. In real
-    /// time it has no effect.
+    /// next exchange is at the first break after this much of the engine's time, however fast this computer is. A plan
+    /// that reads the module waits for its first values as much longer.
     pub fn latency(&mut self, latency: Nanos) {
         self.declared.latency = latency;
+    }
+
+    /// Lets the first exchange be due at the first break: it publishes nothing, and takes what the module reads.
+    pub(crate) fn begins_at_once(&mut self) {
+        self.declared.begins_at_once = true;
     }
 
     /// Sets the time for which the engine waits at most for the end of the module's thread, 0 by default.

@@ -8,8 +8,8 @@ use crate::attribute::{AGE, AttributeName, Reading};
 use crate::board::{Board, Post};
 use crate::tree::listed;
 
-/// Time for which a plan waits for what it reads.
-pub(super) const PATIENCE: Nanos = Nanos(2_000_000_000);
+/// Time for which a plan waits for what it reads, besides the latency that a module declares.
+const PATIENCE: Nanos = Nanos(2_000_000_000);
 
 /// Reason why a plan cannot begin in this turn.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,16 +39,26 @@ pub(super) fn published(reads: &'static [ModuleRead], board: &Board, now: Nanos)
     if missing.is_empty() { Ok(numbers) } else { Err(Unready::Missing(missing)) }
 }
 
+/// Returns the time for which a plan waits for attributes that have not been published.
+pub(super) fn patience(missing: &[&ModuleRead], board: &Board) -> Nanos {
+    let latency = |read: &&ModuleRead| Some(board.posts().get(board.place_of(read)?)?.latency);
+    let longest = missing.iter().filter_map(latency).max().unwrap_or(Nanos::ZERO);
+    Nanos(PATIENCE.0.saturating_add(longest.0))
+}
+
 /// Returns the sentence about a plan that reads attributes which have not been published in time.
 pub(super) fn in_vain(missing: &[&ModuleRead], board: &Board) -> String {
+    let seconds = patience(missing, board).seconds();
     let is_other = |read: &&&ModuleRead| read.attribute != AGE || others(read.module, missing).next().is_none();
     let missing: Vec<_> = missing.iter().filter(is_other).collect();
     let paths: Vec<_> =
         missing.iter().map(|read| AttributeName::new(read.module, read.attribute).to_string()).collect();
     let paths = paths.join(" and ");
-    let seconds = PATIENCE.seconds();
     if missing.iter().all(|read| board.place_of(read).is_some()) {
-        return format!("the plan reads {paths}, which no module has published within {seconds} s");
+        return format!(
+            "the plan reads {paths}, which no module has published within {seconds} s\nhelp: a module in the \
+             background that needs longer declares its `latency`, and the plan waits 2 s longer than that"
+        );
     }
     let module = missing.iter().find(|read| board.place_of(read).is_none()).map_or("", |read| read.module);
     let there_are = publishers(module, board);
@@ -79,6 +89,17 @@ pub(crate) fn current(reads: &'static [ModuleRead], board: &Board, now: Nanos) -
         numbers.set(place, number(read, reads, board, now).filter(|_| is_fit));
     }
     numbers
+}
+
+/// Checks that modules publish the attributes that a plan reads in the kinds in which it reads them, if any does.
+///
+/// # Errors
+/// A module does not: a sentence.
+pub(crate) fn check_kinds<'r>(reads: impl IntoIterator<Item = &'r ModuleRead>, board: &Board) -> Result<(), String> {
+    reads.into_iter().try_for_each(|read| match board.post(read.module, read.attribute) {
+        Some(post) => check_kind(read, post).map_err(|sentence| format!("the plan {sentence}")),
+        None => Ok(()),
+    })
 }
 
 /// Checks that modules publish the attributes that safety rules read, and in the kinds in which they are read.

@@ -84,7 +84,7 @@ impl<A: Alphabet> Running<A> {
         match reads::published(self.reads, board, now) {
             Ok(published) => Ok(Some(published)),
             Err(Unready::OtherKind(sentence)) => Err(sentence),
-            Err(Unready::Missing(_)) if now.since(since) < reads::PATIENCE => Ok(None),
+            Err(Unready::Missing(missing)) if now.since(since) < reads::patience(&missing, board) => Ok(None),
             Err(Unready::Missing(missing)) => Err(reads::in_vain(&missing, board)),
         }
     }

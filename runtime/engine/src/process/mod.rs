@@ -57,6 +57,7 @@ impl<Y> Candidate<Y> {
         let declaration = Declaration::read(&line).map_err(refused)?;
         Self::background(name, |declare: &mut Declare| {
             declaration.declare(declare);
+            declare.begins_at_once();
             declare.farewell(LONGEST_FAREWELL);
             Process { child, declaration }
         })
