@@ -39,10 +39,10 @@ fn loaded(text: &str) -> Arc<Loaded<mdle_sim::alphabet::Alphabet>> {
     Arc::new(load(&plan.machine, &golden::sources(&file).0, &golden::alphabet(Some("sim"))).unwrap())
 }
 
-/// Compiles the conditions of rules in the file `s.toml`, which is added to the sources.
-fn conditions(rules: &Rules) -> (Sources, Result<Conditions<mdle_sim::alphabet::Alphabet>, GuardError>) {
+/// Compiles the conditions of rules in the file `s.toml` of this text, which is added to the sources.
+fn conditions(text: &str, rules: &Rules) -> (Sources, Result<Conditions<mdle_sim::alphabet::Alphabet>, GuardError>) {
     let mut sources = golden::sources(&TextFile { path: "plan.mdle".to_owned(), text: String::new() }).0;
-    let compiled = Conditions::compile("s.toml", &rules.guards, &mut sources, &golden::alphabet(Some("sim")));
+    let compiled = Conditions::compile(("s.toml", text), &rules.guards, &mut sources, &golden::alphabet(Some("sim")));
     (sources, compiled)
 }
 
@@ -50,7 +50,7 @@ fn conditions(rules: &Rules) -> (Sources, Result<Conditions<mdle_sim::alphabet::
 fn run(plan: &str, rules: &Rules, make: &Make, turns: u64) -> Vec<Turned> {
     let world = World::named("hall").unwrap().unwrap();
     let mut robot = Simulated::with(make, &world, world.start, PERIOD).unwrap();
-    let mut conditions = conditions(rules).1.unwrap().watch();
+    let mut conditions = conditions("", rules).1.unwrap().watch();
     let mut envelope = Envelope::new(rules.clone(), PERIOD);
     let plan = loaded(plan);
     let (mut input, mut machine) = (Twist::default(), None);
@@ -240,11 +240,33 @@ fn random_plan(chance: &mut Chance) -> String {
     plan + "}\n"
 }
 
+/// A safety file with a guard.
+fn file_with(when: &str) -> String {
+    format!("# safety\n\n[guards.near]\nwhen = \"{when}\"\nthen = \"hold\"\n")
+}
+
+#[test]
+fn a_condition_has_the_warnings_of_a_plan() {
+    let warned = |text: &str| {
+        let (sources, compiled) = conditions(text, &read(text).unwrap());
+        compiled.unwrap().warnings().iter().map(|warning| sources.render(warning)).collect::<String>()
+    };
+    let files = [
+        file_with("r0 < 70"),
+        file_with("NOT bumper OR r0 < 70 AND v > 5cm/s"),
+        file_with("r0 < 70cm"),
+        file_with("r0 < 0\\u00370 AND bumper"),
+        "guards.near = { then = 'hold', when = '''\nbumper OR\n  r0 < 70''' }\n".to_owned(),
+        format!("{}\n[guards.far]\nwhen = \"x > 5\"\nthen = \"end\"\n", file_with("bumper")),
+    ];
+    insta::assert_snapshot!(files.map(|file| format!("{file}\n{}", warned(&file))).join("\n"));
+}
+
 #[test]
 fn a_condition_that_cannot_be_is_refused_with_its_place() {
     let refused = |when: &str| {
-        let rules = read(&format!("# safety\n\n[guards.near]\nwhen = \"{when}\"\nthen = \"hold\"\n")).unwrap();
-        let (sources, compiled) = conditions(&rules);
+        let text = file_with(when);
+        let (sources, compiled) = conditions(&text, &read(&text).unwrap());
         match compiled.unwrap_err() {
             GuardError::Faulty(diagnostics) => {
                 diagnostics.iter().map(|diagnostic| sources.render(diagnostic)).collect::<String>()

@@ -74,8 +74,11 @@ impl SafetyFile {
     pub(crate) fn compile<A: Alphabet>(&self, target: &Target, looks: bool) -> Result<Guarded<A>, Failure> {
         let mut sources = target.sources();
         let name = self.path.display().to_string();
-        let compiled = Conditions::compile(&name, &self.rules.guards, &mut sources, &target.alphabet);
+        let compiled = Conditions::compile((&name, &self.text), &self.rules.guards, &mut sources, &target.alphabet);
         let conditions = compiled.map_err(|error| refused(error, &name, &sources))?;
+        if self.recorded.is_none() {
+            failure::print(&sources, conditions.warnings());
+        }
         let (mut diversions, mut texts) = (Vec::new(), Vec::new());
         for (number, plan) in self.files().skip(1).enumerate() {
             let recorded = self.recorded.as_ref().map(|plans| plans.get(number).map_or(&[][..], Vec::as_slice));

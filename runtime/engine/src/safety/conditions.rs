@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 use mdle_compiler::alphabet;
-use mdle_compiler::diagnostic::{Diagnostic, Severity, Sources};
+use mdle_compiler::diagnostic::{Diagnostic, Severity, SourceId, Sources, Span, has_errors};
 use mdle_compiler::fsm;
 use mdle_compiler::load::{self, LoadError, Loaded, LoadedPlan};
 use mdle_runtime as runtime;
@@ -18,6 +19,7 @@ pub struct Conditions<A: runtime::Alphabet> {
     loaded: Vec<Arc<Loaded<A>>>,
     /// Attributes of modules that they read.
     reads: &'static [ModuleRead],
+    warnings: Vec<Diagnostic>,
 }
 
 /// The conditions in a run.
@@ -52,19 +54,24 @@ impl<A: runtime::Alphabet> fmt::Debug for Watched<A> {
 }
 
 impl<A: runtime::Alphabet> Conditions<A> {
-    /// Compiles the conditions of guards in the safety file of this name, for the robot of `alphabet`, whose files are
-    /// among `sources`.
+    /// Compiles the conditions of guards in the safety file of this name and text, for the robot of `alphabet`, whose
+    /// files are among `sources`.
     ///
     /// # Errors
     /// A condition has errors, or depends on more than the output of one turn.
     pub fn compile(
-        file: &str,
+        (name, text): (&str, &str),
         guards: &[Guard],
         sources: &mut Sources,
         alphabet: &alphabet::Alphabet,
     ) -> Result<Self, GuardError> {
-        let loaded = guards.iter().map(|guard| compiled(file, &guard.when, sources, alphabet));
-        let loaded: Vec<_> = loaded.collect::<Result<_, _>>()?;
+        let file = sources.add(name, text);
+        let (mut loaded, mut warnings) = (Vec::new(), Vec::new());
+        for Guard { when, .. } in guards {
+            let (condition, diagnostics) = compiled(file, when, sources, alphabet)?;
+            loaded.push(condition);
+            warnings.extend(diagnostics);
+        }
         let reads: BTreeSet<_> =
             loaded.iter().flat_map(|loaded| runtime::Plan::reads(&loaded.plan())).copied().collect();
         if reads.len() > PUBLISHED {
@@ -74,7 +81,13 @@ impl<A: runtime::Alphabet> Conditions<A> {
             return Err(GuardError::Unfit(line, sentence));
         }
         // A process reads one safety file.
-        Ok(Self { loaded, reads: Vec::from_iter(reads).leak() })
+        Ok(Self { loaded, reads: Vec::from_iter(reads).leak(), warnings })
+    }
+
+    /// Returns the warnings about the conditions, whose places are in the sources.
+    #[must_use]
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
     }
 
     /// Returns the conditions before the first output of a run.
@@ -103,33 +116,82 @@ impl<A: runtime::Alphabet> Watched<A> {
     }
 }
 
-/// Compiles a condition, as the interrupt of a plan that stands still.
+/// Compiles a condition of the safety file `file`, as the interrupt of a plan that stands still; returns its warnings
+/// as well.
 fn compiled<A: runtime::Alphabet>(
-    file: &str,
+    file: SourceId,
     condition: &Condition,
     sources: &mut Sources,
     alphabet: &alphabet::Alphabet,
-) -> Result<Arc<Loaded<A>>, GuardError> {
-    let Condition { text, line, indent } = condition;
-    // The condition is in the line and the column that it has in the file, so that messages show its place.
-    let (above, head) = if *line > 1 { (line - 2, "{ Guard (\n") } else { (0, "{ Guard (") };
-    let indent = if *line > 1 { *indent } else { indent.saturating_sub(head.len()) };
-    let plan = format!("{}{head}{}{text}\n) (Atom (wait inf) stop) }}\n", "\n".repeat(above), " ".repeat(indent));
-    let source = sources.add(file, plan.as_str());
-    let (plans, mut diagnostics) = mdle_compiler::compile(source, &plan, alphabet, None);
-    diagnostics.retain(|diagnostic| diagnostic.code.severity() == Severity::Error);
-    let machine = match (plans.as_slice(), diagnostics.as_slice()) {
-        ([plan], []) if plan.machine.atoms().count() == 1 => &plan.machine,
-        (_, []) => return Err(GuardError::Unfit(*line, "`when` has to be one condition".to_owned())),
-        _ => return Err(GuardError::Faulty(diagnostics)),
+) -> Result<(Arc<Loaded<A>>, Vec<Diagnostic>), GuardError> {
+    let line = condition.line;
+    let plan = format!("{BEFORE}{}\n) (Atom (wait inf) stop) }}\n", condition.text);
+    let source = sources.add(format!("line {line}"), plan.as_str());
+    let (plans, diagnostics) = mdle_compiler::compile(source, &plan, alphabet, None);
+    let placed = Placed { file, plan: source, condition, sources };
+    let mut warnings: Vec<_> = diagnostics.into_iter().filter_map(|diagnostic| placed.moved(diagnostic)).collect();
+    let machine = match plans.as_slice() {
+        _ if has_errors(&warnings) => {
+            warnings.retain(|diagnostic| diagnostic.code.severity() == Severity::Error);
+            return Err(GuardError::Faulty(warnings));
+        }
+        [plan] if plan.machine.atoms().count() == 1 => &plan.machine,
+        _ => return Err(GuardError::Unfit(line, "`when` has to be one condition".to_owned())),
     };
     let rows = fsm::rows(machine);
     let guard = rows.guards.iter().take(1).map(|guard| &guard.condition);
     if let Some(word) = guard.chain(&rows.operands).find_map(memory) {
         let message = format!("`when` may not contain `{word}`: a guard is about the output of one turn");
-        return Err(GuardError::Unfit(*line, message));
+        return Err(GuardError::Unfit(line, message));
     }
-    load::load(machine, sources, alphabet).map(Arc::new).map_err(GuardError::Load)
+    let loaded = load::load(machine, sources, alphabet).map_err(GuardError::Load)?;
+    Ok((Arc::new(loaded), warnings))
+}
+
+/// Text before a condition in its plan.
+const BEFORE: &str = "{ Guard (";
+
+/// A condition in its plan and in its safety file.
+struct Placed<'c> {
+    file: SourceId,
+    plan: SourceId,
+    condition: &'c Condition,
+    sources: &'c Sources,
+}
+
+impl Placed<'_> {
+    /// Returns a diagnostic about the plan as one about the file; `None` for a warning that is not about the condition.
+    fn moved(&self, mut diagnostic: Diagnostic) -> Option<Diagnostic> {
+        let span = diagnostic.span()?;
+        let end = BEFORE.len() + self.condition.text.len();
+        let (source, Range { start, .. }) = self.sources.range(span);
+        let is_inside = source == self.plan && (BEFORE.len()..end).contains(&start);
+        if diagnostic.code.severity() == Severity::Warning && !is_inside {
+            return None;
+        }
+        if start >= end {
+            // The file has no such bracket.
+            diagnostic.message = diagnostic.message.replace("found `)`", "found the end of `when`");
+        }
+        let edits = diagnostic.help.iter_mut().filter_map(|help| help.edit.as_mut());
+        let spans = diagnostic.labels.iter_mut().map(|label| &mut label.span).chain(edits.map(|edit| &mut edit.span));
+        spans.for_each(|span| *span = self.in_file(*span));
+        Some(diagnostic)
+    }
+
+    /// Returns the place in the safety file of a place in the plan.
+    fn in_file(&self, span: Span) -> Span {
+        let Condition { text, bytes, .. } = self.condition;
+        let (source, Range { start, end }) = self.sources.range(span);
+        if source != self.plan {
+            return span;
+        }
+        if text.len() != bytes.len() {
+            return Span::new(self.file, bytes.start, bytes.end);
+        }
+        let place = |byte: usize| bytes.start + byte.saturating_sub(BEFORE.len()).min(text.len());
+        Span::new(self.file, place(start), place(end))
+    }
 }
 
 /// Returns the word of an operand that depends on more than the output.

@@ -118,8 +118,8 @@ impl<'t, 'i> Reading<'t, 'i> {
             let section = guards.table(name, value)?.only(&["when", "then"])?;
             let when = section.needed("when", "\"r0 < 20cm AND v > 5cm/s\"")?;
             let text = section.text("when", when, "\"r0 < 20cm AND v > 5cm/s\"")?;
-            let (line, indent) = section.place(&when.span());
-            let when = Condition { text: text.to_owned(), line, indent: indent + 1 };
+            let (line, bytes) = section.place(&when.span(), text);
+            let when = Condition { text: text.to_owned(), line, bytes };
             let then = self.then(section, &ALL)?;
             self.rules.guards.push(Guard { name: name.to_string(), when, then });
         }

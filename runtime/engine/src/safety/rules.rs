@@ -1,5 +1,7 @@
 //! The rules of a safety file, in SI units.
 
+use std::ops::Range;
+
 use mdle_quantity::Quantity;
 use mdle_runtime::{Nanos, Radians};
 
@@ -61,8 +63,8 @@ pub struct Condition {
     pub text: String,
     /// Line of the text, from 1.
     pub line: usize,
-    /// Number of characters before the text in its line.
-    pub indent: usize,
+    /// Bytes of the text in the safety file; those of the whole value if the file has it with escapes.
+    pub bytes: Range<usize>,
 }
 
 /// Consequence of a rule, the weakest first.

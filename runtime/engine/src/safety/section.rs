@@ -145,11 +145,11 @@ impl<'t, 'i> Section<'t, 'i> {
         RulesError { line: line(self.text, place.span().start), message }
     }
 
-    /// Returns the line of a text, from 1, and the number of characters before the text in its line.
-    pub(super) fn place(self, span: &Range<usize>) -> (usize, usize) {
-        let before = self.text.get(..span.start).unwrap_or_default();
-        let of_line = before.rsplit('\n').next().unwrap_or_default();
-        (line(self.text, span.start), of_line.chars().count())
+    /// Returns the line of a value, from 1, and the bytes of its text: those of the value if it has escapes.
+    pub(super) fn place(self, span: &Range<usize>, text: &str) -> (usize, Range<usize>) {
+        let start = self.text.get(span.clone()).and_then(|value| value.find(text)).map(|before| span.start + before);
+        let bytes = start.map_or_else(|| span.clone(), |start| start..start + text.len());
+        (line(self.text, bytes.start), bytes)
     }
 }
 
