@@ -89,8 +89,8 @@ fn a_cancelled_plan_does_not_take_over() {
     assert_eq!(
         (&*out, &*err, status),
         (
-            "Go is stored\nGo takes over when the atom ends\nGo, when the atom ends\n(no value yet)\n12 turns, 1.1s\n\
-             Turn\nGo takes over in the next turn\nTurn takes over when the plan ends\nTurn, when the plan ends\n",
+            "Go is stored\nGo takes over when the atom ends\nGo, when the atom ends\nGo does not take over\n(no value yet)\n12 turns, 1.1s\n\
+             Turn\nGo takes over in the next turn\nTurn takes over when the plan ends, in place of Go\nTurn, when the plan ends\n",
             "1.0 s  go 0 0.3490658503988659 (plan.mdle:3)  <- wait 1s (plan.mdle:2)\n",
             Some(0)
         )

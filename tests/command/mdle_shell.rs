@@ -139,6 +139,36 @@ fn input_of_any_bytes_ends_the_session() {
 }
 
 #[test]
+fn a_file_goes_on_after_the_run() {
+    let folder = with_plan("shell_after");
+    let commands = "wait\nget /clock/turns\nstep\nget /clock/turns\nset /clock/pace 2\nls /plans\n";
+    fs::write(folder.join("session"), commands).unwrap();
+    let left = piped(&folder, &["-c", "session"], b"");
+    assert_eq!(left.out, "31 turns, 3s, and the plan is over\n31\n31\nAhead/\n");
+    assert!(
+        left.err.contains("error: session:3: the run has ended\nerror: session:5: the run has ended\n"),
+        "{left:?}"
+    );
+    assert_eq!(left.status, Some(1));
+    let left = piped(&folder, &["-e", "-c", "session"], b"");
+    assert_eq!(left.out, "31 turns, 3s, and the plan is over\n31\n");
+}
+
+#[test]
+fn help_is_about_commands_and_names() {
+    let commands = "help swap\nhelp step\nhelp /clock/pause\nhelp nothing\nhelp\n";
+    insta::assert_snapshot!(dialogue(&with_plan("shell_help"), &[], commands));
+}
+
+#[test]
+fn limits_need_safety_rules() {
+    let commands = "set /safety/limits/speed 10cm/s\nget /safety/limits/speed\n";
+    let text = dialogue(&with_plan("shell_unsafe"), &[], commands);
+    let refusal = "`/safety/limits/speed`: this session has no safety rules: begin it with `--safety FILE`";
+    assert!(text.contains(&format!("error: standard input:1: {refusal}\n")), "{text}");
+}
+
+#[test]
 fn what_cannot_begin_is_told_once() {
     let folder = with_plan("shell_unbegun");
     let started = |options: &[&str]| {

@@ -166,7 +166,7 @@ impl fmt::Display for Refusal {
         match self {
             Self::NameTaken(name) => write!(f, "a module `{name}` is loaded already"),
             Self::BadName(name) => {
-                write!(f, "`{name}` is no name of a module: letters, digits and `_`, and no digit first")
+                write!(f, "`{name}` is no name of a module: ASCII letters, digits and `_`, and no digit first")
             }
             Self::Unknown(name) => write!(f, "no module `{name}` is loaded"),
             Self::NoSetting(name, setting) => write!(f, "module `{name}` has no setting `{setting}`"),

@@ -51,8 +51,10 @@ pub enum PlanEvent {
     Warned(u32, String),
     /// The plans of these names are stored.
     Stored(u32, Vec<Arc<str>>),
-    /// Another request came before this one took over, and replaces it.
+    /// Another request came before this one was compiled, and replaces it.
     Superseded(u32),
+    /// The plan of this name was armed, and does not take over: the plan that is armed next replaces it.
+    Replaced(u32, Arc<str>),
     /// The plan is compiled, and takes over when its moment comes.
     Armed(u32),
     /// The plan was cancelled before it took over.

@@ -162,7 +162,7 @@ impl<A: EngineAlphabet> Plans<A> {
             changes.armed(&files, plan.name(0), when);
         }
         if let Some((old, _)) = self.armed.replace((Running::new(ticket, plan), when)) {
-            self.events.push(PlanEvent::Superseded(old.ticket));
+            self.events.push(PlanEvent::Replaced(old.ticket, Arc::clone(&old.name)));
             self.discard(old);
         }
         self.events.push(PlanEvent::Armed(ticket));

@@ -110,7 +110,7 @@ impl<'t, 'i> Reading<'t, 'i> {
                 !name.is_empty() && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
             if !is_name || RESERVED.contains(&&**name) {
                 let message = format!(
-                    "`{}` is no name of a guard: use letters, digits and `_`, and no rule's name",
+                    "`{}` is no name of a guard: use ASCII letters, digits and `_`, and no rule's name",
                     Printable(name)
                 );
                 return Err(guards.error(key, message));

@@ -125,10 +125,13 @@ impl<B: Pilot> Served<Break<'_, B>> for SessionClock {
             ("now", Node::reading(SECONDS, "time of the last turn")),
             ("turns", Node::reading(Kind::Integer, "number of turns that have been made")),
             ("period", Node::reading(SECONDS, "time from the start of a turn to the start of the next")),
-            ("pace", Node::setting(Kind::Text, Role::Tune, "pace of stepped time: a multiple of real time, or `max`")),
+            (
+                "pace",
+                Node::setting(Kind::Text, Role::Tune, "pace of simulated time: a multiple of real time, or `max`"),
+            ),
             ("state", Node::reading(Kind::Text, "`runs` or `stands`")),
-            ("pause", Node::method(Role::Tune, "stops stepped time after this turn")),
-            ("resume", Node::method(Role::Tune, "lets stepped time go on")),
+            ("pause", Node::method(Role::Tune, "stops simulated time after this turn")),
+            ("resume", Node::method(Role::Tune, "lets simulated time go on")),
             ("step", Node::method(Role::Tune, "makes one turn, or as many as the argument says, and stops the time")),
             (
                 "wait",

@@ -15,6 +15,10 @@ pub(super) enum Command {
     Here,
     /// Prints the commands, or what a node is.
     Help(Option<String>),
+    /// Prints a command, with its arguments and what it does.
+    Explain((&'static str, &'static str, &'static str)),
+    /// Lets the stored plan of this name take over at the moment that these words name.
+    Swap(String, Vec<String>),
     /// Ends the session, as the end of the commands does.
     Quit,
 }
@@ -29,16 +33,16 @@ pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
     ("call", "PATH [ARGUMENTS]", "call a method"),
     ("watch", "PATH", "print a value when it changes"),
     ("unwatch", "PATH", "print it no longer"),
-    ("help", "[PATH]", "print the commands, or what a node is"),
+    ("help", "[PATH|COMMAND]", "print the commands, or what a name or a command is"),
     ("load_plan", "FILE", "compile the plans of a file, and store them"),
     ("swap", "PLAN [now|atom|plan]", "let a stored plan take over: now, when the atom ends, or when the plan ends"),
     ("cancel", "", "take back a plan that has not taken over yet"),
     ("rollback", "", "end the plan on trial: the plan before it goes on"),
-    ("pause", "", "stop stepped time"),
-    ("resume", "", "let stepped time go on"),
+    ("pause", "", "stop simulated time"),
+    ("resume", "", "let simulated time go on"),
     ("step", "[N]", "make N turns, and stop the time"),
     ("wait", "[TIME]", "let the robot's clock go on for this long, or until the end of the plan"),
-    ("pace", "N|max", "set the pace of stepped time"),
+    ("pace", "N|max", "set the pace of simulated time"),
     ("quit", "", "stop the robot, and end the session"),
 ];
 
@@ -79,10 +83,13 @@ pub(super) fn command(line: &str, here: &str) -> Result<Command, String> {
         "watch" | "unwatch" => Ok(Command::Ask(path(), Operation::Watch(name == "watch"))),
         "set" => Ok(Command::Ask(path(), Operation::Change(Change::Set(others.trim().to_owned())))),
         "call" => call(&path(), others.split_whitespace().map(str::to_owned).collect()),
-        "help" => Ok(Command::Help((!first.is_empty()).then(path))),
+        "help" => Ok(match COMMANDS.into_iter().find(|(known, ..)| *known == first) {
+            Some(command) => Command::Explain(command),
+            None => Command::Help((!first.is_empty()).then(path)),
+        }),
         "pace" => Ok(Command::Ask("/clock/pace".to_owned(), Operation::Change(Change::Set(rest.to_owned())))),
         "quit" => Ok(Command::Quit),
-        "swap" => call(&format!("/plans/{first}/run"), others.split_whitespace().map(str::to_owned).collect()),
+        "swap" => Ok(Command::Swap(first.to_owned(), others.split_whitespace().map(str::to_owned).collect())),
         "load_plan" | "cancel" | "rollback" => call(&format!("/usr/mdle/{name}"), words()),
         other => call(&format!("/clock/{other}"), words()),
     }

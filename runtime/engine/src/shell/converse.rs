@@ -55,7 +55,8 @@ pub fn converse(
             Err(sentence) => Answer::Refused(sentence),
         };
         asker.report();
-        let has_ended = answer == Answer::Ended;
+        // At a terminal nobody reads on; a file goes on, as `get` is answered after the run.
+        let is_last = answer == Answer::Ended && conversation.file.is_none();
         let sentence = match answer {
             Answer::Entries(entries) => Ok(entries.join("\n")),
             Answer::Value(text) | Answer::Done(text) => Ok(text),
@@ -73,7 +74,7 @@ pub fn converse(
             }
         }
         let _ = out.flush();
-        if has_ended || !is_done && conversation.stops_at_errors {
+        if is_last || !is_done && conversation.stops_at_errors {
             break;
         }
     }
@@ -107,17 +108,31 @@ impl Asker<'_> {
         }
     }
 
+    /// Returns the sentence about a plan that is not stored.
+    fn no_plan(&mut self, name: &str) -> String {
+        let stored = match self.ask("/plans", Operation::List) {
+            Answer::Entries(names) => names,
+            Answer::Value(_) | Answer::Done(_) | Answer::Refused(_) | Answer::Ended => Vec::new(),
+        };
+        let stored: Vec<_> = stored.iter().map(|name| name.trim_end_matches('/')).collect();
+        let near = mdle_compiler::alphabet::did_you_mean(name, &stored);
+        let others = if stored.is_empty() { "there is none".to_owned() } else { stored.join(", ") };
+        format!("no plan `{name}` is stored{near}; the stored plans: {others}")
+    }
+
     /// Carries out a command.
     fn carried_out(&mut self, command: Command, here: &mut String) -> Answer {
         match command {
             Command::Nothing | Command::Quit => Answer::Done(String::new()),
             Command::Ask(path, operation) => self.ask(&path, operation),
             Command::Here => Answer::Done(here.clone()),
-            Command::Help(None) => {
-                let line = |(name, arguments, does): (&str, &str, &str)| {
-                    format!("{:28} {does}", format!("{name} {arguments}"))
-                };
-                Answer::Done(COMMANDS.map(line).join("\n"))
+            Command::Help(None) => Answer::Done(COMMANDS.map(summary).join("\n")),
+            Command::Explain(command) => Answer::Done(summary(command)),
+            Command::Swap(name, moment) => {
+                let path = format!("/plans/{name}/run");
+                let answer = self.ask(&path, Operation::Change(Change::Call(moment)));
+                let is_unknown = matches!(answer, Answer::Refused(_)) && self.hub.node(&path).is_none();
+                if is_unknown { Answer::Refused(self.no_plan(&name)) } else { answer }
             }
             Command::Help(Some(path)) => match (self.ask(&path, Operation::List), self.hub.node(&path)) {
                 (Answer::Ended, _) => Answer::Ended,
@@ -139,6 +154,11 @@ impl Asker<'_> {
             }
         }
     }
+}
+
+/// A line about a command.
+fn summary((name, arguments, does): (&str, &str, &str)) -> String {
+    format!("{:28} {does}", format!("{name} {arguments}"))
 }
 
 /// A line about a node.

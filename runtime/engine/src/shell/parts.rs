@@ -12,7 +12,7 @@ use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 #[derive(Debug)]
 pub(super) struct RobotPart;
 
-/// `/safety`: the rules, if there are any.
+/// `/safety`: the rules, if there are any; without rules the limits have no values.
 #[derive(Debug)]
 pub(super) struct SafetyPart<A: Alphabet>(pub(super) Option<Guardian<A>>);
 
@@ -87,12 +87,12 @@ where
 
 impl<A: Alphabet, B: Pilot> Served<Break<'_, B>> for SafetyPart<A> {
     fn nodes(&self, _: &Break<'_, B>) -> Vec<(String, Node)> {
-        let Some(envelope) = self.0.as_ref().map(Guardian::envelope) else { return Vec::new() };
         let limits = Measure::ALL.map(|measure| {
             let (quantity, unit) = measure.quantity();
             let node = Node::setting(Kind::Quantity(quantity, unit), Role::Admin, "limit of inputs");
             (format!("/safety/limits/{}", measure.key()), node)
         });
+        let Some(envelope) = self.0.as_ref().map(Guardian::envelope) else { return limits.into() };
         let count = Node::reading(Kind::Integer, "number of turns in which the rule has decided");
         let rules = envelope.counts();
         let rules =
@@ -101,7 +101,9 @@ impl<A: Alphabet, B: Pilot> Served<Break<'_, B>> for SafetyPart<A> {
     }
 
     fn values(&self, _: &Break<'_, B>, to: &mut Vec<Option<Value>>) {
-        let Some(envelope) = self.0.as_ref().map(Guardian::envelope) else { return };
+        let Some(envelope) = self.0.as_ref().map(Guardian::envelope) else {
+            return to.extend(Measure::ALL.map(|_| None));
+        };
         let mut limits: Limits = envelope.rules().limits;
         for measure in Measure::ALL {
             let value = *measure.of(&mut limits);
@@ -113,6 +115,10 @@ impl<A: Alphabet, B: Pilot> Served<Break<'_, B>> for SafetyPart<A> {
     fn change(&mut self, path: &str, change: &Change, _: &mut Break<'_, B>, reply: Reply) {
         let measure =
             Measure::ALL.into_iter().find(|measure| path.strip_prefix("/safety/limits/") == Some(measure.key()));
+        if self.0.is_none() {
+            let sentence = format!("`{path}`: this session has no safety rules: begin it with `--safety FILE`");
+            return reply.answer(Answer::Refused(sentence));
+        }
         let (Some(measure), Some(guardian), Change::Set(text)) = (measure, &mut self.0, change) else {
             return reply.answer(Answer::Refused(format!("`{path}` is read-only")));
         };

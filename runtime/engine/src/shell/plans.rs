@@ -38,6 +38,8 @@ const OWN: [(&str, Node); 13] = [
 #[derive(Debug, Default)]
 pub(super) struct PlansPart {
     waiting: Vec<Waiting>,
+    /// Number of the request of the plan that was armed last, and the name of the plan.
+    armed: (u32, String),
 }
 
 /// A request that waits for the compiler.
@@ -60,7 +62,8 @@ impl PlansPart {
     /// before.
     pub(super) fn answer<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>) -> Vec<String> {
         let mut messages = Vec::new();
-        let armed = plans.armed().map(|(name, when)| format!("{name} takes over {when}"));
+        let armed = plans.armed().map(|(name, when)| (name.to_owned(), when));
+        let mut replaced = None;
         for event in plans.take_events() {
             match event {
                 PlanEvent::Warned(ticket, warnings) => {
@@ -68,8 +71,8 @@ impl PlansPart {
                     waiting.into_iter().for_each(|waiting| waiting.warnings.clone_from(&warnings));
                 }
                 PlanEvent::Refused(ticket, sentence) => {
-                    if self.waiting.iter().all(|waiting| waiting.ticket != ticket) {
-                        messages.push(format!("warning: a plan does not take over: {sentence}"));
+                    if self.armed.0 == ticket {
+                        messages.push(format!("warning: {} does not take over: {sentence}", self.armed.1));
                     }
                     self.settle(ticket, Err(sentence));
                 }
@@ -77,7 +80,13 @@ impl PlansPart {
                     let verb = if names.len() == 1 { "is" } else { "are" };
                     self.settle(ticket, Ok(format!("{} {verb} stored", names.join(", "))));
                 }
-                PlanEvent::Armed(ticket) => self.settle(ticket, Ok(armed.clone().unwrap_or_default())),
+                PlanEvent::Armed(ticket) => {
+                    let Some((name, when)) = &armed else { continue };
+                    let replaced = replaced.take().map_or_else(String::new, |old| format!(", in place of {old}"));
+                    self.settle(ticket, Ok(format!("{name} takes over {when}{replaced}")));
+                    self.armed = (ticket, name.clone());
+                }
+                PlanEvent::Replaced(_, name) => replaced = Some(name),
                 PlanEvent::Superseded(ticket) => {
                     self.settle(ticket, Err("a later request replaces this one".to_owned()))
                 }
@@ -137,6 +146,7 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
     }
 
     fn change(&mut self, path: &str, change: &Change, moment: &mut Break<'_, Engine<A>>, reply: Reply) {
+        let armed = moment.pilot.plans().armed().map(|(name, _)| name.to_owned());
         let result = match change {
             Change::Set(text) => set(path, text, moment.pilot.plans_mut()),
             Change::Call(arguments) => call(path, arguments, moment.pilot),
@@ -147,6 +157,10 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
             Ok(None) if path == "/usr/mdle/rollback" => {
                 reply.answer(Answer::Done(format!("{} goes on", moment.pilot.plans().name())));
             }
+            Ok(None) if path == "/usr/mdle/cancel" => reply.answer(Answer::Done(match armed {
+                Some(name) => format!("{name} does not take over"),
+                None => "no plan was to take over".to_owned(),
+            })),
             Ok(None) => reply.answer(Answer::Done(String::new())),
             Err(sentence) => reply.answer(Answer::Refused(sentence)),
         }

@@ -115,7 +115,10 @@ fn wrong_kinds_and_names_are_refused_at_load() {
         });
         candidate.map(|_| ()).unwrap_err().to_string()
     };
-    assert_eq!(declared("2nd", |_| ()), "`2nd` is no name of a module: letters, digits and `_`, and no digit first");
+    assert_eq!(
+        declared("2nd", |_| ()),
+        "`2nd` is no name of a module: ASCII letters, digits and `_`, and no digit first"
+    );
     assert_eq!(
         declared("twice", |declare| {
             let _: (Out<f64>, In<f64>) = (declare.publishes("a"), declare.setting("a", 1.0));

@@ -138,7 +138,9 @@ fn number(text: &str) -> Option<f64> {
 /// Reads a number with a unit of this quantity, and returns it in `unit`.
 fn quantity_of(text: &str, quantity: Quantity, unit: &str) -> Result<f64, String> {
     if number(text).is_some() {
-        return Err(format!("`{text}` has no unit: write `{text}{unit}`"));
+        let smaller = Quantity::of_unit(&format!("c{unit}")).filter(|(other, ..)| *other == quantity);
+        let smaller = smaller.map_or_else(String::new, |_| format!("`{text}c{unit}` or "));
+        return Err(format!("`{text}` has no unit: write {smaller}`{text}{unit}`"));
     }
     let read = quantity.read(text, unit);
     // A number alone has been refused.
@@ -201,7 +203,7 @@ mod tests {
             ("+1é", Kind::Bytes),
         ];
         insta::assert_snapshot!(refused.map(|(text, kind)| read(text, kind).unwrap_err()).join("\n"), @"
-        `40` has no unit: write `40m/s`
+        `40` has no unit: write `40cm/s` or `40m/s`
         `1.2ft` is a length: expected a speed in m/s, cm/s, mm/s, in/s
         there is no unit `knots`: expected a speed in m/s, cm/s, mm/s, in/s
         `fast` is not a number with a unit: expected a speed, such as `5m/s`
