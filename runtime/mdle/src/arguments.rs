@@ -328,7 +328,7 @@ fn with_plan(command: Command) -> Command {
             Arg::new("target")
                 .long("target")
                 .value_name("TARGET")
-                .help("Robot to run on [default: the target of the `mdle.toml` beside the plan]"),
+                .help("Robot to run on: atrv, scout or sim [default: the target of the `mdle.toml` beside the plan]"),
         )
         .arg(
             Arg::new("plan")

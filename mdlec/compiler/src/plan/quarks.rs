@@ -112,7 +112,9 @@ impl<'a> Quarks<'a> {
             let what = if is_link { "needs the state link" } else { "reads modules" };
             let message = format!("`{quark}` {what}, and an executable has none");
             let report = Diagnostic::new(Code::E0403, message, call.span, "needs an engine");
-            return Err(vec![report.help(format!("`mdle run PLAN --target {}` runs the plan", self.alphabet.name))]);
+            return Err(vec![
+                report.help("`mdle run PLAN --target TARGET` runs such plans; `mdle run --help` lists its targets"),
+            ]);
         }
         let missing = missing.join(" and ");
         let robot = &self.alphabet.name;

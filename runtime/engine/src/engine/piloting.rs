@@ -45,7 +45,8 @@ impl<A: EngineAlphabet> Engine<A> {
     /// in stepped time on the thread of the caller.
     ///
     /// # Errors
-    /// A module is refused, or publishes an attribute as another kind than the plan reads (exit status 2), the system gives no threads, or the run is asked to end before.
+    /// A module is refused, or publishes an attribute as another kind than the plan reads (exit status 2), the system
+    /// gives no threads, or the run is asked to end before.
     pub fn new(
         plan: LoadedPlan<A>,
         library: &Library<A::Output>,

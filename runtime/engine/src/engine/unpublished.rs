@@ -7,7 +7,7 @@ use crate::board::Board;
 use crate::module::{Declared, Source};
 use crate::tree::listed;
 
-/// Returns a sentence about the attributes that a module reads and no loaded module publishes; `None` if there are none.
+/// Returns a sentence about the attributes that a module reads and no loaded module publishes, if there are any.
 pub(super) fn unpublished(reader: &str, declared: &Declared, board: &Board) -> Option<String> {
     let names = declared.reads.iter().filter_map(|source| match source {
         Source::Attribute(name, _) => Some(name),
