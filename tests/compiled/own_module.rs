@@ -14,7 +14,10 @@ fn create(folder: &Path, name: &str) {
     command.args(["new-module", name, "--checkout"]).arg(root()).current_dir(folder);
     let output = command.output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success() && text.starts_with(&format!("`{name}` is a program `mdle`")), "{text}");
+    assert!(
+        output.status.success() && text.starts_with(&format!("`{name}` is a program with all of `mdle`")),
+        "{text}"
+    );
 }
 
 /// Returns `true` if the tests of the module in this folder pass, and cargo's output.
@@ -42,6 +45,17 @@ fn a_plan_waits_for_a_new_module() {
     fs::write(&library, text.replace("Meters(libm::hypot(x, y))", "Meters(0.0)")).unwrap();
     let (passed, message) = tested(&module);
     assert!(!passed && message.contains("plan over: bumper"), "{message}");
+}
+
+#[test]
+fn a_new_module_needs_a_checkout() {
+    let folder = folder("new_module_alone");
+    let output = Command::new(mdle()).args(["new-module", "ears"]).current_dir(&folder).output().unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    let expected =
+        "error: there is no checkout of mdle in `../mdle` of the new folder\nhelp: `--checkout FOLDER` names one\n";
+    assert_eq!((message.as_str(), output.status.code()), (expected, Some(2)));
+    assert!(!folder.join("ears").exists());
 }
 
 #[test]

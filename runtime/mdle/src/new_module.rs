@@ -46,14 +46,14 @@ pub(crate) struct NewModule {
 pub(crate) fn new_module(arguments: &NewModule) -> Result<ExitCode, Failure> {
     let name = arguments.name.as_str();
     must_be_free(name)?;
-    let sources = sources(arguments.checkout.as_deref())?;
     let folder = Path::new(name);
+    if folder.symlink_metadata().is_ok() {
+        return Err(exists(name));
+    }
+    let sources = sources(arguments.checkout.as_deref())?;
     fs::create_dir(folder).map_err(|error| {
-        Failure::Usage(if error.kind() == ErrorKind::AlreadyExists {
-            format!("`{name}` exists already\nhelp: take another name, or go to another folder")
-        } else {
-            format!("the folder `{name}` cannot be made: {error}")
-        })
+        let is_there = error.kind() == ErrorKind::AlreadyExists;
+        if is_there { exists(name) } else { Failure::Usage(format!("the folder `{name}` cannot be made: {error}")) }
     })?;
     fill(folder, name, &sources).map_err(|error| {
         // The cause matters more than what becomes of the part that was written.
@@ -61,12 +61,17 @@ pub(crate) fn new_module(arguments: &NewModule) -> Result<ExitCode, Failure> {
         Failure::Usage(format!("`{name}` cannot be written: {error}"))
     })?;
     let next = format!(
-        "`{name}` is a program `mdle` with a module `{name}`, which is in {name}/src/lib.rs\n\
+        "`{name}` is a program with all of `mdle` and a module `{name}`, which is in {name}/src/lib.rs\n\
          next: `cargo test` in {name}, and the page \"A module of your own\" of the book\n"
     );
     // Nobody is left to read it when standard output is closed.
     let _ = io::stdout().write_all(next.as_bytes());
     Ok(ExitCode::SUCCESS)
+}
+
+/// Returns the failure of a name that a file or a folder has.
+fn exists(name: &str) -> Failure {
+    Failure::Usage(format!("`{name}` exists already\nhelp: take another name, or go to another folder"))
 }
 
 /// Writes the files into an empty folder.
@@ -96,8 +101,15 @@ fn named(file: &str, text: &str, name: &str, sources: &Path) -> String {
 
 /// Returns the folder of a checkout of mdle, as the manifest names it.
 fn sources(checkout: Option<&Path>) -> Result<PathBuf, Failure> {
-    let Some(checkout) = checkout else { return Ok(PathBuf::from("../mdle")) };
-    let is_checkout = checkout.join("runtime/mdle/Cargo.toml").is_file();
+    let is_checkout = |folder: &Path| folder.join("runtime/mdle/Cargo.toml").is_file();
+    let Some(checkout) = checkout else {
+        // The new folder is in this one.
+        let sentence =
+            "there is no checkout of mdle in `../mdle` of the new folder\nhelp: `--checkout FOLDER` names one";
+        let is_there = is_checkout(Path::new("mdle"));
+        return is_there.then(|| PathBuf::from("../mdle")).ok_or_else(|| Failure::Usage(sentence.to_owned()));
+    };
+    let is_checkout = is_checkout(checkout);
     let folder = checkout.canonicalize().ok().filter(|folder| is_checkout && folder.to_str().is_some());
     folder.ok_or_else(|| {
         Failure::Usage(format!("`{}` is no checkout of mdle: it has no runtime/mdle", checkout.display()))
