@@ -137,6 +137,20 @@ fn a_run_is_that_of_mdle_run() {
 }
 
 #[test]
+fn a_test_has_the_modules_of_its_plan() {
+    let plan = "{ Near (bumper OR wait 5s OR range(ears module) < 50cm)\n  (Atom (null) (go 20 0))\n}\n";
+    let test = "[[test]]\nname = \"one\"\nworld = \"hall\"\nexpect.end = \"range(ears module) < 50cm\"\nexpect.most-time = \"2s\"\n";
+    let folder = with("test_modules", plan, test);
+    let ears = "echo '{\"publishes\": {\"range\": \"m\"}}'; while read line; do echo '{\"range\": 0.3}'; done";
+    fs::write(folder.join("mdle.toml"), format!("target = \"sim\"\n\n[modules]\nears = \"\"\"{ears}\"\"\"\n")).unwrap();
+    let tested = report(&folder, &[]);
+    assert!(tested.contains("1 passed"), "{tested}");
+    fs::write(folder.join("mdle.toml"), "target = \"sim\"\n\n[modules]\nsensors = \"true\"\n").unwrap();
+    let tested = report(&folder, &[]);
+    assert!(tested.contains("mdle.toml:4: a module `sensors` is loaded already"), "{tested}");
+}
+
+#[test]
 fn faulty_files_of_tests_have_a_help() {
     let tests = [
         "wrold = \"room\"",

@@ -98,7 +98,8 @@ impl Simulation {
             request: StopRequest::default(),
             microphones: Microphones::default(),
         };
-        let engine = Engine::new(self.loaded.plan(), library, &terms).map_err(|refusal| format!("{refusal:?}"))?;
+        let library = subject.modules(library)?;
+        let engine = Engine::new(self.loaded.plan(), &library, &terms).map_err(|refusal| format!("{refusal:?}"))?;
         let mut drive = Driven {
             simulation: self,
             robot: self.trials.robot(seed)?,

@@ -8,9 +8,10 @@ use mdle_compiler::diagnostic::{Diagnostic, Severity, judged};
 use mdle_compiler::fsm::{self, Element, Machine, PlanWords};
 use mdle_compiler::load::{self, Loaded};
 use mdle_compiler::{Compiled, compile};
-use mdle_files::{Input, InputError, Known, Settings, Spelling, Target, read_plan};
+use mdle_engine::Library;
+use mdle_files::{Input, InputError, Known, NamedProcess, Settings, Spelling, Target, read_plan};
 use mdle_host::Texts;
-use mdle_runtime::{Condition, Fsm, Words};
+use mdle_runtime::{Condition, Fsm, Sensed, Words};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 
 use super::file::{TestFile, TestFileError};
@@ -34,6 +35,16 @@ pub(super) struct Subject {
     pub(super) loaded: Option<Arc<Loaded<SimAlphabet>>>,
     /// Arguments for the simulator by the `mdle.toml` beside the plan.
     pub(super) options: Vec<String>,
+    /// Child processes that the `mdle.toml` beside the plan names as modules.
+    processes: Vec<NamedByFile>,
+}
+
+/// A module of an `mdle.toml`.
+struct NamedByFile {
+    /// Place of its entry, for messages.
+    place: String,
+    name: String,
+    command: String,
 }
 
 /// A condition that a test names.
@@ -87,7 +98,26 @@ impl Subject {
             false => None,
         };
         let options = run_options(&settings, option)?;
-        Ok((Self { file, compiled, words, target, target_name, loaded, options }, input))
+        let processes = settings.modules().map(|NamedProcess { place, name, command }| NamedByFile {
+            place: place.to_string(),
+            name: name.to_owned(),
+            command: command.to_owned(),
+        });
+        let processes = processes.collect();
+        Ok((Self { file, compiled, words, target, target_name, loaded, options, processes }, input))
+    }
+
+    /// Returns the modules of a run: those of the program, and those that the `mdle.toml` names.
+    ///
+    /// # Errors
+    /// A name is none of a module, or is taken: a sentence.
+    pub(super) fn modules(&self, library: &Library<Sensed>) -> Result<Library<Sensed>, String> {
+        let mut library = library.clone();
+        for NamedByFile { place, name, command } in &self.processes {
+            library.admits(name).map_err(|refusal| format!("{place}: {refusal}"))?;
+            library.process(name, command);
+        }
+        Ok(library)
     }
 
     /// Returns the state machine of the plan.
