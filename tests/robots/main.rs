@@ -3,6 +3,8 @@
 mod atrv;
 mod batches;
 mod building;
+#[allow(unreachable_pub, reason = "the book shows the module as that of a library")]
+mod closing;
 mod contacts;
 mod crowds;
 mod driven;
