@@ -490,6 +490,109 @@ test("text and settings are kept while the page is loaded again", () => using(as
   assert.match(await tab.locator(".cm-content").innerText(), /Kept/);
 }));
 
+test("an example that replaces a plan can be undone, and redone", () => using(async (tab) => {
+  const text = tab.locator(".cm-content");
+  const offered = tab.locator("#replaced");
+  await checkedText(tab, DOCK.replace("Dock", "Mine"));
+  await tab.locator("#seed").fill("5");
+  await tab.locator("#example").selectOption({ label: "Patrol: a plan with parameters" });
+  await offered.getByText("The example “Patrol: a plan with parameters” replaced your plan.").waitFor();
+  assert.match(await text.innerText(), /Patrol/);
+  // Another example, and loading the page again, do not take the offer away.
+  await tab.locator("#example").selectOption({ label: "Sentry: a loop without end" });
+  await tab.waitForFunction(() => document.querySelector(".cm-content").textContent.includes("Sentry"));
+  await tab.waitForTimeout(400);
+  await tab.reload();
+  await checked(tab);
+  assert.match(await text.innerText(), /Sentry/);
+  await picture(tab, "undo");
+  await offered.getByRole("button", { name: "Undo" }).click();
+  assert.match(await text.innerText(), /Mine/);
+  assert.deepEqual([await tab.locator("#seed").inputValue(), await tab.locator("#world").inputValue()], ["5", "room"]);
+  assert.equal(await offered.isVisible(), false);
+}));
+
+test("a key moves the choice of an example, and Enter opens it", () => using(async (tab) => {
+  const text = tab.locator(".cm-content");
+  await checkedText(tab, DOCK.replace("Dock", "Mine"));
+  await tab.locator("#example").focus();
+  await tab.keyboard.press("ArrowDown");
+  await tab.getByText("Enter opens this example.").waitFor();
+  await tab.keyboard.press("ArrowDown");
+  await tab.waitForTimeout(200);
+  assert.match(await text.innerText(), /Mine/);
+  await tab.keyboard.press("Enter");
+  await tab.getByText(/^The example “Lab tour: the tour of the paper” replaced your plan/).waitFor();
+  assert.match(await text.innerText(), /LabTour/);
+}));
+
+test("a file that was removed is brought back as it was", () => using(async (tab) => {
+  await tab.getByRole("button", { name: "+ File" }).click();
+  await type(tab, "{ Precious (wait 1s)\n  (Atom (null) stop)\n}\n");
+  await tab.getByRole("button", { name: "Remove it" }).click();
+  assert.equal(await tabOf(tab, "part.mdle").count(), 0);
+  await tab.locator("#replaced").getByText("The file part.mdle was removed.").waitFor();
+  await tab.getByRole("button", { name: "Undo" }).click();
+  assert.equal(await tabOf(tab, "part.mdle").getAttribute("aria-selected"), "true");
+  assert.match(await tab.locator(".cm-content").innerText(), /Precious/);
+}));
+
+test("edits after a link are kept", () => using(async (tab, context) => {
+  await context.grantPermissions(["clipboard-read", "clipboard-write"]);
+  const text = tab.locator(".cm-content");
+  const noted = async (word) => {
+    await text.click();
+    await tab.keyboard.press("Control+End");
+    await tab.keyboard.insertText(`// ${word}`);
+    await tab.waitForTimeout(500);
+    await tab.reload();
+    await checked(tab);
+    assert.match(await text.innerText(), new RegExp(word));
+  };
+  await checkedText(tab, DOCK.replace("Dock", "Mine"));
+  await tab.getByRole("button", { name: "Copy link" }).click();
+  await tab.getByText(/The link is copied/).waitFor();
+  await noted("after my own link");
+  // A link that somebody sent is in the address until its plan is edited, and what it replaced is offered.
+  const sent = `${server.address}#plan=${encodeURIComponent(DOCK.replace("Dock", "Sent"))}`;
+  await tab.goto(sent);
+  await tab.locator("#replaced").getByText("The plan of the link replaced your plan.").waitFor();
+  await tab.waitForTimeout(500);
+  await tab.reload();
+  await checked(tab);
+  assert.equal(tab.url(), sent);
+  await noted("after their link");
+  assert.equal(tab.url(), server.address);
+  assert.match(await text.innerText(), /Sent/);
+  await tab.getByRole("button", { name: "Undo" }).click();
+  assert.match(await text.innerText(), /Mine[^]*after my own link/);
+  await tab.locator("#replaced").getByText("Your plan is back.").waitFor();
+  await tab.getByRole("button", { name: "Redo" }).click();
+  assert.match(await text.innerText(), /Sent[^]*after their link/);
+}));
+
+test("an own world is kept while another world is chosen", () => using(async (tab) => {
+  await tabOf(tab, "World").click();
+  const text = tab.getByLabel("World as TOML");
+  const own = "[[wall]]\npoints = [[-2, -2], [4, -2], [4, 3], [-2, 3], [-2, -2]]\n";
+  await text.fill(own);
+  await tab.locator("#world").selectOption("maze");
+  assert.match(await text.inputValue(), /maze/i);
+  await tab.waitForTimeout(500);
+  await tab.reload();
+  await checked(tab);
+  await tabOf(tab, "World").click();
+  await tab.locator("#world").selectOption("own");
+  assert.equal(await text.inputValue(), own);
+  // Another world that is edited takes the place of the own one, which is offered.
+  await tab.locator("#world").selectOption("hall");
+  await text.fill("# mine\n");
+  await tab.getByText("Your own world was replaced by the one that you edit.").waitFor();
+  await tab.getByRole("button", { name: "Undo" }).click();
+  await tab.locator("#world").selectOption("own");
+  assert.equal(await text.inputValue(), own);
+}));
+
 test("the page works from a folder", () => using(async (tab) => {
   await run(tab);
   assert.match(await ended(tab), /^The plan is over/);

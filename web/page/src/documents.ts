@@ -2,6 +2,7 @@
 import type { EditorState } from "@codemirror/state";
 import { button, byId } from "./dom";
 import type { Editor } from "./editor";
+import { offer } from "./replaced";
 import { FILE, isName, LONGEST } from "./settings";
 
 /** Text of a file that is added: a plan that says how it is used. */
@@ -72,9 +73,17 @@ export class Documents {
   private remove(): void {
     const { shown } = this;
     this.show(FILE);
+    const state = this.states.get(shown);
     this.states.delete(shown);
     this.draw();
     this.changed();
+    offer(`The file ${shown} was removed.`, "Undo", () => this.bringBack(shown, state));
+  }
+
+  /** Brings a file back that was removed, unless another one has its name by now. */
+  private bringBack(name: string, state: EditorState | undefined): void {
+    if (state && !this.states.has(name)) this.states.set(name, state);
+    this.show(name);
   }
 
   private rename(name: string): void {

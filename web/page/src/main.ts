@@ -1,4 +1,5 @@
 // The page: its parts, and what connects them.
+import { Address } from "./address";
 import { Batch } from "./batch";
 import { Checking, QUIET } from "./checking";
 import { Documents } from "./documents";
@@ -8,14 +9,14 @@ import { EXAMPLES, settingsOfExample } from "./examples";
 import { copy, files } from "./files";
 import { FloorView } from "./floor";
 import { choices, field, FIELDS, forgetPlans, planToRun } from "./form";
-import { fragmentOf, settingsIn } from "./link";
 import { Module } from "./module";
 import { tell } from "./notice";
 import { Picture } from "./picture";
+import { Replaced } from "./replaced";
 import { Running } from "./running";
 import { EMPTY, type Settings, settingsOf, setupOf } from "./settings";
 import { Signals } from "./signals";
-import { kept, keep } from "./storage";
+import { kept } from "./storage";
 import { tabs } from "./tabs";
 import { Transitions } from "./transitions";
 import { Views } from "./views";
@@ -44,7 +45,12 @@ const world: World = new World(floor, simulator, settings, () => running.run !==
   keepSoon();
   checking.settled();
   void world.draw();
+}, () => {
+  const before = settings();
+  queueMicrotask(() => replaced.offer(before, "Your own world was replaced by the one that you edit."));
 });
+const address = new Address(settings);
+const replaced = new Replaced(settings, set);
 const checking: Checking = new Checking(editor, documents, picture, language, {
   settings: toRun,
   changed: () => {
@@ -53,7 +59,7 @@ const checking: Checking = new Checking(editor, documents, picture, language, {
   },
   settled: () => running.refresh(),
 });
-const keepSoon = later(QUIET, () => keep(settings()));
+const keepSoon = later(QUIET, () => address.keep());
 
 /** The plan files as they are typed, and the one in the editor. */
 function draft() {
@@ -82,30 +88,45 @@ function set(next: Settings): void {
 }
 
 async function share(): Promise<void> {
-  const fragment = await fragmentOf(toRun());
-  history.replaceState(null, "", fragment);
-  await copy(location.href, (sentence) => tell(sentence === "Copied." ? "The link is copied. The plan is in it: nothing was sent anywhere." : sentence));
+  const link = await address.linkOf(toRun());
+  await copy(link, (sentence) => tell(sentence === "Copied." ? "The link is copied. The plan is in it: nothing was sent anywhere." : sentence));
 }
 
 /** Takes the settings of the link, or those that were kept, or the first example. */
 async function open(): Promise<void> {
-  try {
-    const linked = await settingsIn(location.hash);
-    if (linked) return set(linked);
-  } catch (error) {
-    tell((error as Error).message, true);
-  }
+  const mine = kept(settingsOf);
+  const linked = await address.opened();
   const first = EXAMPLES[0];
-  set(kept(settingsOf) ?? (first ? settingsOfExample(first) : EMPTY));
+  set(linked ?? mine ?? (first ? settingsOfExample(first) : EMPTY));
+  replaced.offerAgain();
+  if (linked && mine) replaced.offer(mine, "The plan of the link replaced your plan.");
+}
+
+/** Takes the settings of another link in the address, while the page is open. */
+async function openAnother(): Promise<void> {
+  const linked = await address.opened();
+  if (linked) replaced.by(linked, "The plan of the link replaced your plan.");
 }
 
 function wireExamples(): void {
   const examples = byId<HTMLSelectElement>("example");
   examples.append(element("option", { value: "" }, "choose one …"), ...EXAMPLES.map(({ name }, number) => element("option", { value: String(number) }, name)));
-  examples.addEventListener("change", () => {
+  // A key that moves the choice on opens nothing yet.
+  let byKey = false;
+  const choose = () => {
     const example = EXAMPLES[Number(examples.value)];
-    if (examples.value !== "" && example) set(settingsOfExample(example));
     tell("");
+    if (examples.value === "" || !example) return;
+    if (byKey) return tell("Enter opens this example.");
+    replaced.by(settingsOfExample(example), `The example “${example.name}” replaced your plan.`);
+  };
+  examples.addEventListener("change", choose);
+  examples.addEventListener("pointerdown", () => (byKey = false));
+  examples.addEventListener("keydown", (event) => {
+    byKey = event.key !== "Enter" && event.key !== " " && !event.altKey;
+    if (event.key !== "Enter") return;
+    event.preventDefault();
+    choose();
   });
 }
 
@@ -140,8 +161,8 @@ function wire(): void {
     void running.begin();
   });
   files(byId("files"), toRun, tell);
-  window.addEventListener("hashchange", () => void open());
-  document.addEventListener("visibilitychange", () => document.visibilityState === "hidden" && keep(settings()));
+  window.addEventListener("hashchange", () => void openAnother());
+  document.addEventListener("visibilitychange", () => document.visibilityState === "hidden" && address.keep());
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey && event.key === "Enter" && !event.defaultPrevented) void running.begin();
   });

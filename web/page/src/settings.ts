@@ -52,6 +52,11 @@ export function isSame(key: keyof Settings, one: Settings, other: Settings): boo
   return key === "files" ? JSON.stringify(one.files) === JSON.stringify(other.files) : one[key] === other[key];
 }
 
+/** Returns `true` if two settings are the same in everything. */
+export function isAllSame(one: Settings, other: Settings): boolean {
+  return (Object.keys(EMPTY) as (keyof Settings)[]).every((key) => isSame(key, one, other));
+}
+
 function filesOf(value: unknown): Record<string, string> {
   if (value === null || typeof value !== "object") throw new Error("files are no files");
   const files = Object.entries(value as Record<string, unknown>);

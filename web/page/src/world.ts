@@ -13,25 +13,39 @@ export class World {
   private readonly own = element("textarea", { id: "world-text", spellcheck: "false", "aria-label": "World as TOML" });
   private readonly error = element("p", { class: "bad", role: "status" });
 
-  /** `changed` is called when another world, or another text of it, is meant. */
-  constructor(private floor: FloorView, private module: Module, private settings: () => Settings, private hasRun: () => boolean, changed: () => void) {
+  /** Text of the world `own`, which is kept while another world is chosen; empty if there is none yet. */
+  private ownText = "";
+
+  /**
+   * `changed` is called when another world, or another text of it, is meant; `replaces` before the text of another world, edited,
+   * takes the place of an own one.
+   */
+  constructor(
+    private floor: FloorView, private module: Module, private settings: () => Settings, private hasRun: () => boolean, changed: () => void,
+    replaces: () => void,
+  ) {
     field("world").addEventListener("change", () => {
-      if (field("world").value !== "own") this.own.value = worldText(settings());
+      if (field("world").value === "own") this.ownText ||= this.own.value;
+      this.own.value = worldText(settings());
       changed();
     });
-    this.own.addEventListener("input", later(QUIET, () => {
+    const soon = later(QUIET, changed);
+    this.own.addEventListener("input", () => {
+      if (field("world").value !== "own" && this.ownText !== "") replaces();
       field("world").value = "own";
-      changed();
-    }));
+      this.ownText = this.own.value;
+      soon();
+    });
     byId("panel-world").append(element("p", { class: "quiet" }, "Change the text, and the floor is drawn again. Lengths are in metres; the book has the format."), this.error, this.own);
   }
 
   /** Text of the world `own`. */
   get text(): string {
-    return this.own.value;
+    return this.ownText;
   }
 
   set({ world, ownWorld }: Settings): void {
+    this.ownText = ownWorld;
     this.own.value = world === "own" ? ownWorld : (WORLDS[world] ?? "");
   }
 
