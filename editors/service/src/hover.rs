@@ -10,6 +10,7 @@ use mdle_compiler::syntax::tree::{Condition, ConditionNode, Element, Plan, Prima
 
 use crate::mentions::{Mention, Role, inside, mentions, quark_name};
 use crate::view::View;
+use crate::words::{Kind, words};
 
 /// A text about a place.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,7 +25,9 @@ pub struct Hover {
 #[must_use]
 pub fn hover(view: &View<'_>, byte: usize) -> Option<Hover> {
     let mentions = mentions(view.files, view.alphabet);
-    let mention = mentions.iter().find(|mention| view.contains(mention.span, byte))?;
+    let Some(mention) = mentions.iter().find(|mention| view.contains(mention.span, byte)) else {
+        return keyword(view.text, byte);
+    };
     let text = match mention.role {
         Role::Plan => plan(view, mention),
         Role::Parameter => parameter(view, mention),
@@ -34,6 +37,41 @@ pub fn hover(view: &View<'_>, byte: usize) -> Option<Hover> {
         Role::Type | Role::Text => None,
     }?;
     Some(Hover { range: view.range(mention.span)?, text })
+}
+
+/// Keywords, each with its form and its meaning.
+const KEYWORDS: &[(&str, &str, &str)] = &[
+    (
+        "Atom",
+        "(Atom (interrupt) (law))",
+        "Applies the law in every turn, until the interrupt fires or the law completes.",
+    ),
+    (
+        "ExecPlan",
+        "ExecPlan 3 { … }",
+        "Repeats the elements in braces as often as the number says, or without end with `inf`.",
+    ),
+    (
+        "FRAME",
+        "FRAME 90deg element",
+        "Turns direction 0 of the headings and bearings in the element counter-clockwise by the angle. `FRAME here` makes \
+         the robot's heading at the entry of the element direction 0.",
+    ),
+    ("null", "null", "Never fires: only the law, or the last element, ends what has this interrupt."),
+    ("RISING", "RISING interrupt", "Fires when the interrupt begins to hold."),
+    (
+        "after",
+        "after label (interrupt)",
+        "Has fired if the element with this label was the last to end, by this interrupt.",
+    ),
+];
+
+/// Form and meaning of the keyword at a byte.
+fn keyword(text: &str, byte: usize) -> Option<Hover> {
+    let mut near = words(text).take_while(|word| word.range.start <= byte);
+    let found = near.find(|word| word.range.end >= byte && word.kind == Kind::Name)?;
+    let (_, form, meaning) = KEYWORDS.iter().find(|(name, ..)| *name == found.text)?;
+    Some(Hover { range: found.range, text: format!("```text\n{form}\n```\n{meaning}") })
 }
 
 /// Signature, meaning and needs of the quarks of this name.

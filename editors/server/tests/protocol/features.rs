@@ -48,6 +48,17 @@ fn a_quark_is_shown_with_its_signature() {
 }
 
 #[test]
+fn a_keyword_is_shown_with_its_form() {
+    assert_eq!(
+        hover("{ P (At|om (bumper) stop) }"),
+        "```text\n(Atom (interrupt) (law))\n```\nApplies the law in every turn, until the interrupt fires or the law completes."
+    );
+    assert!(hover("{ P (|Atom (bumper) stop) }").starts_with("```text\n(Atom"));
+    assert!(hover("{ P FRAME| 90deg (Atom (bumper) stop) }").contains("counter-clockwise"));
+    assert_eq!(hover("// Atom| as a word\n{ P (Atom (bumper) stop) }"), "");
+}
+
+#[test]
 fn a_number_is_shown_in_the_default_unit() {
     assert_eq!(hover("{ P (Atom (wait 1.5|min) stop) }"), "1.5 min = 90 s");
     assert_eq!(
