@@ -11,6 +11,7 @@ const pictures = process.env.MDLE_PICTURES;
 /** Makes 4,096 transitions in each turn. */
 const SPIN = "{ Spin (wait 1h)\n  ExecPlan inf {\n    (Atom (NOT bumper) stop)\n    (Atom (r0 > 0m OR r0 < 1m OR wait 0s) stop)\n  }\n}\n";
 const DOCK = "{ Dock (bumper)\n  (Atom (atIsection 1000 OR wait 20s) (go 20 0))\n  (Atom (wait 1s) (go 5 0))\n}\n";
+const SKIP = "{ Skip (bumper)\n  (Atom (wait 1s) (go 20 0))\n  (Atom (NOT bumper) stop)\n  (Atom (wait 2s) (go 0 0.3))\n}\n";
 let chromium, server;
 
 before(async () => {
@@ -76,6 +77,9 @@ test("words are completed, and explained under the pointer", () => using(async (
   await tab.getByText("No errors.").waitFor();
   await tab.locator(".cm-content .tok-event").first().hover();
   await tab.locator(".cm-tooltip-hover .markdown").waitFor();
+  await tab.mouse.move(0, 0);
+  await tab.locator(".cm-content .tok-keyword").first().hover();
+  await tab.locator(".cm-tooltip-hover").getByText("Applies the law in every turn, until the interrupt fires or the law completes.").waitFor();
 }));
 
 test("a plan is formatted", () => using(async (tab) => {
@@ -94,8 +98,8 @@ test("a run is played, paused, stepped and scrubbed", () => using(async (tab) =>
   const simulated = Number(await tab.evaluate(() => document.documentElement.dataset.simulated));
   console.log(`a tour simulated in ${simulated.toFixed(0)} ms`);
   await tab.getByRole("button", { name: "Pause" }).click();
-  // The end is told when it is shown, not while the robot still drives.
-  assert.match(await tab.locator("#status").innerText(), /^Simulated up to 1\d\d\.\d s\.$/);
+  // The end is told before it is shown.
+  assert.match(await tab.locator("#status").innerText(), /^The end of the run: The plan is over after 1\d\d\.\d s: .* The robot is at the goal\.$/);
   const clock = () => tab.locator("#clock").innerText();
   await goTo(tab, 100);
   assert.equal(await clock(), "10.0 s");
@@ -125,7 +129,7 @@ test("a run is played, paused, stepped and scrubbed", () => using(async (tab) =>
 }));
 
 test("a turn is explained, and an atom that was skipped", () => using(async (tab) => {
-  await type(tab, "{ Skip (bumper)\n  (Atom (wait 1s) (go 20 0))\n  (Atom (NOT bumper) stop)\n  (Atom (wait 2s) (go 0 0.3))\n}\n");
+  await type(tab, SKIP);
   await tab.waitForFunction(() => /Skip/.test(document.querySelector("#plan").textContent));
   await run(tab);
   await goTo(tab, 10);
@@ -140,6 +144,14 @@ test("a turn is explained, and an atom that was skipped", () => using(async (tab
   await why.locator(".skipped").getByRole("button").click();
   assert.equal(await tab.evaluate(() => document.activeElement.classList.contains("cm-content")), true);
   await picture(tab, "why");
+  // A law that is done says so.
+  await checkedText(tab, "{ Done (wait 1min)\n  (Atom (wait 30s) rotate 90)\n}\n");
+  await run(tab);
+  await ended(tab);
+  assert.match(await why.locator(".step").innerText(), /^rotate 90 .* ended: completed[^]*its interrupt has not fired[^]*Its law is done\.$/);
+  await checkedText(tab, SKIP);
+  await run(tab);
+  await goTo(tab, 10);
   await tabOf(tab, "Transitions").click();
   await tab.locator("#panel-transitions tbody tr").filter({ hasText: "skipped: stop" }).getByRole("button", { name: "1.0 s" }).waitFor();
 }));
@@ -167,9 +179,22 @@ test("a batch judges seeds, and shows the run of one", () => using(async (tab) =
   assert.equal(await tab.locator("#panel-batch").getByRole("button", { name: "Stop" }).isDisabled(), true);
   await tab.locator("#panel-batch").getByRole("button", { name: "7", exact: true }).click();
   assert.equal(await tab.locator("#seed").inputValue(), "7");
-  assert.match(await tab.locator("#panel-batch tbody th").first().innerText(), /^plan over, (at the goal|away from the goal|touching something)$|^time limit$/);
-  await tab.waitForFunction(() => document.querySelector("#status").textContent.startsWith("Simulated up to"), null, { timeout: 60_000 });
+  assert.match(await tab.locator("#panel-batch tbody th").first().innerText(), /^plan over, (at the goal( with a wrong heading)?|away from the goal|touching something)$|^time limit$/);
+  await tab.waitForFunction(() => document.querySelector("#status").textContent.startsWith("The end of the run: "), null, { timeout: 60_000 });
   await picture(tab, "batch");
+  // The seed that is open is marked, and the next batch has the same seeds. The table waits for the pointer to leave it.
+  const seeds = () => tab.locator("#panel-batch .seeds button").allTextContents().then((texts) => texts.map(Number).sort((one, other) => one - other));
+  assert.equal(await tab.locator("#panel-batch [aria-current=true]").innerText(), "7");
+  await tab.getByLabel("Seeds").fill("7");
+  const start = tab.getByRole("button", { name: "Run the batch" });
+  await start.focus();
+  await tab.keyboard.press("Enter");
+  await tab.locator("#panel-batch table").hover();
+  await tab.getByText(/^7 of 7 runs in/).waitFor({ timeout: 60_000 });
+  assert.deepEqual(await seeds(), [4, 5, 6, 7, 8, 9]);
+  await tab.mouse.move(10, 10);
+  await tab.waitForFunction(() => document.querySelectorAll("#panel-batch .seeds button").length === 7);
+  assert.deepEqual(await seeds(), [4, 5, 6, 7, 8, 9, 10]);
 }));
 
 test("a world is edited as text, and drawn", () => using(async (tab) => {
@@ -378,6 +403,51 @@ test("a run is marked once its plan or its setup has changed", () => using(async
   await picture(tab, "refused");
 }));
 
+test("a run remains while the text of its world is changed", () => using(async (tab) => {
+  const isPale = () => tab.locator(".stage").evaluate((stage) => stage.classList.contains("stale"));
+  const drawn = () => tab.locator("#floor").evaluate((canvas) => canvas.toDataURL());
+  await run(tab);
+  await ended(tab);
+  await tab.waitForTimeout(300);
+  const floor = await drawn();
+  await tabOf(tab, "World").click();
+  const text = tab.getByLabel("World as TOML");
+  const room = await text.inputValue();
+  await text.fill(`${room}[[wall]]\npoints = [[`);
+  await tab.getByText(/^world:\d+/).waitFor();
+  await tab.getByText("This run is of the world before your change. Run again to see the change.").waitFor();
+  assert.equal(await isPale(), true);
+  assert.equal(await tab.getByRole("button", { name: "Play", exact: true }).isEnabled(), true);
+  // A text that is complete is drawn; the slider shows the run in its world.
+  await text.fill(`${room}[[wall]]\npoints = [[1, 1], [2, 1]]\n`);
+  await tab.waitForFunction(() => !document.querySelector(".stage").classList.contains("stale"));
+  await tab.waitForTimeout(600);
+  assert.notEqual(await drawn(), floor);
+  await ended(tab);
+  assert.equal(await isPale(), true);
+  await tab.waitForTimeout(200);
+  assert.equal(await drawn(), floor);
+  await text.fill(room);
+  await tab.locator("#stale").waitFor({ state: "hidden" });
+  await tab.waitForTimeout(600);
+  assert.deepEqual([await isPale(), await drawn()], [false, floor]);
+}));
+
+test("a refusal goes away with its cause", () => using(async (tab) => {
+  const status = tab.locator("#status");
+  await tab.locator("#seed").fill("x");
+  await tab.getByRole("button", { name: "Run", exact: true }).click();
+  await tab.waitForFunction(() => document.querySelector("#status.bad")?.textContent.startsWith("seed: expected"));
+  await tab.locator("#seed").fill("");
+  await tab.waitForFunction(() => document.querySelector("#status").textContent === "");
+  await type(tab, DOCK.replace("bumper", "bumbper"));
+  await tab.getByRole("button", { name: "Run", exact: true }).click();
+  await tab.locator("#report").getByText(/E0201/).waitFor();
+  await type(tab, DOCK);
+  await tab.locator("#report").waitFor({ state: "hidden" });
+  assert.equal(await status.textContent(), "");
+}));
+
 test("a plan that an edit leaves alone is not run in place of the one before", () => using(async (tab) => {
   await checkedText(tab, "{ Outer (bumper)\n  Inner\n}\n{ Inner (wait 2s)\n  (Atom (null) stop)\n}\n");
   assert.equal(await tab.locator("#plan option").first().innerText(), "auto");
@@ -421,7 +491,13 @@ test("a goal of one's own judges the end, and a battery is charged as asked", ()
   assert.match(await ended(tab), /^The plan is over after 0\.0 s: .*lowBattery.* The robot is at the goal\.$/);
   await tab.locator("#goal").fill("3,3,0.2");
   await run(tab);
-  assert.match(await ended(tab), /The robot is away from the goal\.$/);
+  assert.match(await ended(tab), /The robot is 3\.05 m away from the goal\.$/);
+  // In the area of the goal, the heading is what is wrong.
+  await tab.locator("#goal").fill("0.7,0.7,0.5,270,15");
+  await run(tab);
+  assert.match(await ended(tab), /The robot is in the area of the goal, but its heading is 0°, and the goal asks for 270° ± 15°\.$/);
+  await tab.locator("#goal").fill("3,3,0.2");
+  await run(tab);
   assert.match(await command(tab), /--battery=5 --goal=3,3,0\.2 /);
 }));
 

@@ -48,9 +48,13 @@ fn drawn(world: &World, goal: Option<Goal>) -> Result<Value, String> {
         let corners: Value = points(&outline.points);
         json!({ "name": outline.name, "solid": outline.solid, "points": corners })
     };
-    let goal = goal.map(|goal| match goal.zone {
-        Zone::Rectangle { min, max } => json!({ "min": [min.x, min.y], "max": [max.x, max.y] }),
-        Zone::Circle { center, radius } => json!({ "center": [center.x, center.y], "radius": radius }),
+    let goal = goal.map(|goal| {
+        let mut shown = match goal.zone {
+            Zone::Rectangle { min, max } => json!({ "min": [min.x, min.y], "max": [max.x, max.y] }),
+            Zone::Circle { center, radius } => json!({ "center": [center.x, center.y], "radius": radius }),
+        };
+        shown["heading"] = json!(goal.heading.map(|(heading, tolerance)| [heading.degrees(), tolerance.degrees()]));
+        shown
     });
     let charger = world.charger.map(|charger| {
         json!({ "at": [charger.pose.x.0, charger.pose.y.0], "heading": charger.pose.theta.0, "reach": charger.reach })

@@ -30,11 +30,14 @@ export interface Outline {
   points: Point[];
 }
 
+/** A goal; its heading and tolerance are in degrees. */
+export type Goal = ({ min: Point; max: Point } | { center: Point; radius: number }) & { heading: [number, number] | null };
+
 export interface Floor {
   outlines: Outline[];
   things: Outline[];
   start: Pose;
-  goal: { min: Point; max: Point } | { center: Point; radius: number } | null;
+  goal: Goal | null;
   charger: { at: Point; heading: number; reach: number } | null;
 }
 

@@ -30,8 +30,14 @@ export class FloorView {
     canvas.addEventListener("pointerleave", () => (pointed.textContent = ""));
   }
 
+  /** Makes the floor pale, or not. */
+  fade(isPale: boolean): void {
+    this.canvas.canvas.parentElement?.classList.toggle("stale", isPale);
+  }
+
   /** Shows a world without a run. */
   show(ready: Ready): void {
+    this.fade(false);
     [this.shown, this.run] = [ready, undefined];
     this.canvas.draw();
   }

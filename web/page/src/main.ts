@@ -39,15 +39,18 @@ const views = new Views(
   new Signals(byId("panel-signals")), new Transitions(byId("panel-transitions"), (turn) => running.go(turn)),
 );
 const running: Running = new Running(simulator, views, { settings: toRun, hasErrors: () => checking.hasErrors, drawWorld: () => void world.draw() });
-const world: World = new World(floor, simulator, settings, () => running.run !== undefined, () => {
-  // A run in another world is not shown in this one.
-  running.clear();
+const world: World = new World(floor, simulator, settings, () => running.hasFloor, () => {
+  running.showStale();
   keepSoon();
   checking.settled();
   void world.draw();
 }, () => {
   const before = settings();
   queueMicrotask(() => replaced.offer(before, "Your own world was replaced by the one that you edit."));
+});
+const batch = new Batch(byId("panel-batch"), () => setupOf(toRun()), (seed) => {
+  field("seed").value = String(seed);
+  void running.begin();
 });
 const address = new Address(settings);
 const replaced = new Replaced(settings, set);
@@ -79,6 +82,7 @@ function toRun(): Settings {
 
 function set(next: Settings): void {
   running.clear();
+  batch.clear();
   world.set(next);
   forgetPlans(next.plan);
   for (const name of FIELDS) if (name !== "plan") field(name).value = next[name];
@@ -156,10 +160,6 @@ function wire(): void {
   byId("stop").addEventListener("click", () => running.stop());
   byId("share").addEventListener("click", () => void share());
   byId("format").addEventListener("click", () => void editor.format().then((done) => tell(done ? "" : "A plan with errors is not formatted.", !done)));
-  new Batch(byId("panel-batch"), () => setupOf(toRun()), (seed) => {
-    field("seed").value = String(seed);
-    void running.begin();
-  });
   files(byId("files"), toRun, tell);
   window.addEventListener("hashchange", () => void openAnother());
   document.addEventListener("visibilitychange", () => document.visibilityState === "hidden" && address.keep());

@@ -1,5 +1,5 @@
 // Places of a floor: where outlines reach, and what is at a point.
-import type { Floor, Outline, Point } from "./answers";
+import type { Floor, Goal, Outline, Point } from "./answers";
 
 /** Returns the smallest and the largest coordinates of an outline. */
 export function reach({ points }: Outline): [number, number, number, number] {
@@ -20,13 +20,14 @@ export function nameAt(floor: Floor, point: Point, near: number): string {
   if (inside) return inside.name;
   const wall = floor.outlines.find(({ points }) => points.some((from, place) => distance(point, from, points[place + 1] ?? from) <= near));
   if (wall && wall.name !== "") return wall.name;
-  return isInGoal(floor, point) ? "goal" : "";
+  return floor.goal && distanceTo(floor.goal, point) === 0 ? "goal" : "";
 }
 
-function isInGoal({ goal }: Floor, [x, y]: Point): boolean {
-  if (!goal) return false;
-  if ("min" in goal) return x >= goal.min[0] && x <= goal.max[0] && y >= goal.min[1] && y <= goal.max[1];
-  return Math.hypot(x - goal.center[0], y - goal.center[1]) <= goal.radius;
+/** Returns the distance of a point from the area of a goal, in metres; 0 inside. */
+export function distanceTo(goal: Goal, [x, y]: [number, number, ...number[]]): number {
+  if ("radius" in goal) return Math.max(0, Math.hypot(x - goal.center[0], y - goal.center[1]) - goal.radius);
+  const { min, max } = goal;
+  return Math.hypot(Math.max(min[0] - x, 0, x - max[0]), Math.max(min[1] - y, 0, y - max[1]));
 }
 
 function contains({ points }: Outline, [x, y]: Point): boolean {

@@ -4,12 +4,12 @@ import { FIELDS } from "./form";
 import type { Module } from "./module";
 import { Player } from "./player";
 import { Run } from "./run";
-import { isSame, type Settings, setupOf } from "./settings";
+import { isAllSame, isSame, type Settings, setupOf, worldText } from "./settings";
 import { stateOf, status } from "./status";
 import type { Views } from "./views";
 
 /** Settings that change a run. The robot changes only what the plan is checked for. */
-const OF_RUN = FIELDS.filter((name) => name !== "robot");
+const OF_RUN = FIELDS.filter((name) => name !== "robot" && name !== "world");
 
 /** What other parts of the page have to do with a run. */
 interface Around {
@@ -25,7 +25,9 @@ export class Running {
   /** The settings of the run that is shown. */
   private ranWith: Settings | undefined;
   /** What has changed since. */
-  private stale: "" | "plan" | "fields" = "";
+  private stale: "" | "plan" | "world" | "fields" = "";
+  /** The settings with which a run could not begin. */
+  private refusedWith: Settings | undefined;
   /** Number of runs begun. */
   private runs = 0;
 
@@ -36,16 +38,21 @@ export class Running {
     this.player.go(turn);
   }
 
-  /** Shows the turn again, in another view or with another picture; or no run. */
+  /** The floor that is shown is that of the run. */
+  get hasFloor(): boolean {
+    return this.run !== undefined && this.stale !== "world";
+  }
+
+  /** Shows the turn again, in another view or with another picture; or no run. The floor of another world remains. */
   refresh(): void {
-    if (this.run) this.show(this.run, this.player.turn);
+    if (this.run) this.show(this.run, this.player.turn, this.hasFloor);
     else this.views.noRun(this.around.hasErrors());
   }
 
   /** Shows no run any more. */
   clear(): void {
     this.run?.stop({ how: "stopped" });
-    [this.run, this.ranWith] = [undefined, undefined];
+    [this.run, this.ranWith, this.refusedWith] = [undefined, undefined, undefined];
     this.player.clear();
     this.views.clear();
     status("");
@@ -71,7 +78,7 @@ export class Running {
       await next.make(() => this.run === next && this.player.more());
       document.documentElement.dataset.simulated = String(performance.now() - begun);
     } catch (error) {
-      if (number === this.runs) this.broken(next, (error as Error).message);
+      if (number === this.runs) this.broken(next, given, (error as Error).message);
     }
   }
 
@@ -83,30 +90,40 @@ export class Running {
     this.refresh();
   }
 
-  /** Says that the run that is shown is not that of the text and the fields. */
+  /** Says that the run that is shown is not that of the text and the fields. What another setup was refused for is said no more. */
   showStale(): void {
-    const { ranWith } = this;
-    const now = ranWith && this.around.settings();
-    const differs = (names: readonly (keyof Settings)[]) => ranWith !== undefined && now !== undefined && names.some((name) => !isSame(name, now, ranWith));
-    this.stale = differs(["text", "files", "plan"]) ? "plan" : differs(OF_RUN) ? "fields" : "";
+    const { ranWith, refusedWith } = this;
+    const now = this.around.settings();
+    if (refusedWith && !isAllSame(refusedWith, now)) {
+      this.refusedWith = undefined;
+      status("");
+    }
+    const differs = (names: readonly (keyof Settings)[]) => ranWith !== undefined && names.some((name) => !isSame(name, now, ranWith));
+    const isOtherWorld = ranWith !== undefined && worldText(now) !== worldText(ranWith);
+    this.stale = differs(["text", "files", "plan"]) ? "plan" : isOtherWorld ? "world" : differs(OF_RUN) ? "fields" : "";
+    if (this.stale === "world") this.player.pause();
     byId("stale").hidden = this.stale === "";
     byId("stale").textContent = this.stale === "" ? "" : `This run is of the ${this.stale} before your change. Run again to see the change.`;
-    byId("floor").parentElement?.classList.toggle("stale", this.stale !== "");
+    this.views.fade(this.stale !== "");
   }
 
   /** A run could not be begun, or the module stopped while it was made. */
-  private broken(made: Run | undefined, sentence: string): void {
+  private broken(made: Run | undefined, given: Settings, sentence: string): void {
     if (made && made.frames.length > 0) {
       made.stop({ how: "broken", by: sentence });
       return this.player.go(made.frames.length - 1);
     }
     this.clear();
+    this.refusedWith = given;
     status(sentence, true);
+    // The settings may have changed meanwhile.
+    this.showStale();
     this.around.drawWorld();
   }
 
-  private show(run: Run, turn: number): void {
-    this.views.show(run, turn, this.stale === "plan", this.around.hasErrors());
+  private show(run: Run, turn: number, onFloor = true): void {
+    this.views.show(run, turn, { isOld: this.stale === "plan", hasErrors: this.around.hasErrors(), onFloor });
+    if (onFloor) this.views.fade(this.stale !== "");
     status(...stateOf(run, turn));
   }
 }

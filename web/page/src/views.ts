@@ -15,9 +15,9 @@ export class Views {
     private floor: FloorView, private picture: Picture, private why: Why, private signals: Signals, private transitions: Transitions,
   ) {}
 
-  /** Shows a turn; of a run of an older plan, the picture is that of the plan as it is now. */
-  show(run: Run, turn: number, isOld: boolean, hasErrors: boolean): void {
-    this.floor.at(run, turn, isOld);
+  /** Shows a turn, perhaps not on the floor; of a run of an older plan, the picture is that of the plan as it is now. */
+  show(run: Run, turn: number, { isOld, hasErrors, onFloor }: { isOld: boolean; hasErrors: boolean; onFloor: boolean }): void {
+    if (onFloor) this.floor.at(run, turn, isOld);
     if (isOld) this.picture.clear(`${hasErrors ? LAST : "The plan as it is now."} The run above is of the plan before your change.`);
     else this.picture.at(run, turn);
     this.signals.at(run, turn);
@@ -28,6 +28,11 @@ export class Views {
     byId("floor").setAttribute("aria-label", frame
       ? `Floor of the world. At ${frame.t.toFixed(1)} s the robot is at ${frame.pose[0].toFixed(2)}, ${frame.pose[1].toFixed(2)} m; ${law}`
       : "Floor of the world");
+  }
+
+  /** Makes the floor pale: it is not that of the plan and the fields. */
+  fade(isPale: boolean): void {
+    this.floor.fade(isPale);
   }
 
   /** Shows the picture of the plan without a run. */

@@ -61,7 +61,7 @@ export class Why {
       for (const { fired, words } of operands) list.append(element("li", { class: fired ? "yes" : "no" }, words ?? scope.condition));
       if (operands.length > 0) step.append(list);
     }
-    if (!moment.ends) step.append(element("div", { class: "quiet" }, moment.completed ? "Its law is done." : "Its law is not done."));
+    if (!moment.ends || moment.completed) step.append(element("div", { class: "quiet" }, moment.completed ? "Its law is done." : "Its law is not done."));
     return step;
   }
 }

@@ -21,7 +21,7 @@ export class World {
    * takes the place of an own one.
    */
   constructor(
-    private floor: FloorView, private module: Module, private settings: () => Settings, private hasRun: () => boolean, changed: () => void,
+    private floor: FloorView, private module: Module, private settings: () => Settings, private isOfRun: () => boolean, changed: () => void,
     replaces: () => void,
   ) {
     field("world").addEventListener("change", () => {
@@ -49,15 +49,16 @@ export class World {
     this.own.value = world === "own" ? ownWorld : (WORLDS[world] ?? "");
   }
 
-  /** Draws the world with the robot at its start, unless a run is shown in it; marks a field that is refused. */
+  /** Draws the world with the robot at its start, unless a run in it is shown; marks a field, or a text, that is refused. */
   async draw(): Promise<void> {
     const now = this.settings();
     const ready = await checkSetup(this.module, now);
     this.error.textContent = "";
     try {
       const shown = ready ?? (await this.alone(now));
-      if (!this.hasRun()) this.floor.show(shown);
+      if (!this.isOfRun()) this.floor.show(shown);
     } catch (error) {
+      this.floor.fade(true);
       this.error.textContent = (error as Error).message;
     }
   }
