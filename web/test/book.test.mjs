@@ -22,6 +22,9 @@ test("plans of the book open in the playground", async () => {
     await checked(tab);
     const lines = await tab.locator(".cm-line").allInnerTexts();
     assert.equal(lines.map((line) => line.replace(/\n/g, "")).join("\n").trim(), plans[0].trim());
+    await tab.getByText("Five words to begin with").click();
+    await tab.getByRole("link", { name: "the book" }).click();
+    assert.equal(tab.url(), pathToFileURL(join(book, "index.html")).href);
     await context.close();
   }
   await chromium.close();

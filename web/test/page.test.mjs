@@ -263,12 +263,22 @@ test("a plan in several files is checked, run, shared and kept", () => using(asy
   // A name is changed, refused, and a file removed.
   await tabOf(tab, "leg.mdle").click();
   const name = tab.getByLabel("Name of this file");
-  await name.fill("foot");
-  await name.press("Tab");
-  assert.equal(await name.getAttribute("aria-invalid"), "true");
+  const reason = tab.locator("#unnamed");
+  for (const [wrong, sentence] of [
+    ["foot", "The name of a file ends in .mdle: foot.mdle"], ["plan.mdle", "There is another file plan.mdle."], ["a b.mdle", /^The name of a file has letters/],
+    ["", /^A file needs a name/],
+  ]) {
+    await name.fill(wrong);
+    await name.press("Tab");
+    await reason.getByText(sentence).waitFor();
+    assert.equal(await name.getAttribute("aria-invalid"), "true");
+  }
   await name.fill("foot.mdle");
   await name.press("Tab");
+  assert.equal(await reason.textContent(), "");
   await tab.getByRole("button", { name: /^plan\.mdle, line 1: there is no file/ }).waitFor();
+  await tab.getByRole("button", { name: "Change the use of it in plan.mdle" }).click();
+  await tab.getByText("No errors.").waitFor();
   await picture(tab, "files");
   await tab.getByRole("button", { name: "Remove it" }).click();
   await tab.getByRole("button", { name: /^Line 1: there is no file/ }).waitFor();
@@ -287,6 +297,7 @@ test("a plan is checked for the robot that is chosen, and run on the simulated o
   await tab.getByRole("button", { name: /^Line 2: / }).waitFor();
   await tab.locator("#robot").selectOption("ros2");
   await tab.getByText("No errors.").waitFor();
+  assert.equal(await tab.locator("#body").inputValue(), "ideal");
   // What only another robot can do is refused by the simulated one, with the reason.
   await tab.getByRole("button", { name: "Run", exact: true }).click();
   await tab.locator("#report").getByText(/E0402/).waitFor();
@@ -690,10 +701,71 @@ test("the keyboard alone runs a plan and reads its views", () => using(async (ta
   await tab.keyboard.press("Escape");
   await tab.keyboard.press("Tab");
   assert.equal(await tab.evaluate(() => document.activeElement.closest("#editor")), null);
+  await goTo(tab, 10);
+  const clock = tab.locator("#clock");
+  for (const [key, time] of [
+    ["Alt+Period", /^1\.1 s$/], ["Alt+Comma", /^1\.0 s$/], ["Alt+Shift+Period", /^20\.0 s$/], ["Alt+Shift+Period", /^2\d\.[1-9] s$/], ["Alt+Shift+Comma", /^20\.0 s$/],
+  ]) {
+    await tab.keyboard.press(key);
+    assert.match(await clock.innerText(), time, key);
+  }
   await tabOf(tab, "Plan").focus();
   await tab.keyboard.press("ArrowRight");
   assert.equal(await tabOf(tab, "Why").getAttribute("aria-selected"), "true");
   await tab.locator("#panel-why h2").waitFor();
+}));
+
+test("a picture of a plan is in its panel, with the current atom", async () => {
+  for (const [width, share] of [[1360, 1], [390, 0.3]]) {
+    await using(async (tab) => {
+      await checkedText(tab, `{ Long (bumper)\n${Array.from({ length: 9 }, (_, number) => `  (Atom (wait ${number + 1}s OR atIsection 1111) (go ${number} 0))\n`).join("")}}\n`);
+      await run(tab);
+      await ended(tab);
+      await goTo(tab, 400);
+      await tab.waitForTimeout(300);
+      const [host, svg, atom] = await tab.evaluate(() => {
+        const { shadowRoot, clientWidth, scrollWidth } = document.querySelector(".scrolled");
+        const [around, box] = [document.querySelector(".scrolled"), shadowRoot.querySelector("g.current > rect")].map((part) => part.getBoundingClientRect());
+        const natural = Number(shadowRoot.querySelector("svg").getAttribute("width"));
+        return [clientWidth, [natural, scrollWidth], box.left >= around.left - 1 && box.right <= around.right + 1];
+      });
+      assert.ok(svg[0] > host, `${svg[0]} px are no test of ${host} px`);
+      assert.ok(host / svg[1] >= share, `${svg[1]} px in ${host} px`);
+      assert.ok(atom, "the current atom cannot be seen");
+      await tab.getByRole("button", { name: "Full size" }).click();
+      assert.ok(await tab.locator(".scrolled").evaluate(({ scrollWidth }) => scrollWidth) >= svg[0]);
+    }, { viewport: { width, height: 844 } });
+  }
+});
+
+test("on a phone, buttons are large, and a text about a word goes away with it", () => using(async (tab) => {
+  await checkedText(tab, DOCK);
+  await run(tab);
+  for (const id of ["run", "previous", "back", "forward", "next", "share"]) {
+    const { width, height } = await tab.locator(`#${id}`).boundingBox();
+    assert.ok(width >= 44 && height >= 44, `${id}: ${width} x ${height}`);
+  }
+  await tab.locator(".cm-line").nth(1).click();
+  await tab.keyboard.press("End");
+  await tab.locator(".cm-line").nth(1).locator(".tok-number").last().hover();
+  await tab.locator(".cm-tooltip-hover .markdown").waitFor();
+  for (let letter = 0; letter < 12; letter++) await tab.keyboard.press("Backspace");
+  await tab.waitForTimeout(200);
+  assert.equal(await tab.locator(".cm-tooltip-hover").count(), 0);
+}, { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }));
+
+test("the page says what it is, and explains five words", () => using(async (tab) => {
+  await tab.getByText("A plan tells a robot what to do.").waitFor();
+  const words = tab.locator("#intro dt");
+  assert.equal(await words.first().isVisible(), false);
+  await tab.getByText("Five words to begin with").click();
+  assert.deepEqual(await words.allInnerTexts(), ["plan", "atom", "law", "interrupt", "turn"]);
+  await picture(tab, "words");
+  // The book is beside the page only in a release.
+  assert.equal(await tab.getByRole("link", { name: "the book" }).count(), 0);
+  await tab.locator("#keys").getByText("Escape", { exact: true }).waitFor();
+  await tab.getByText("About these fields").click();
+  await tab.getByText("the robot for which the plan is checked. A run here always uses the simulated robot").waitFor();
 }));
 
 test("axe finds nothing serious, in light, in dark and on a phone", async () => {

@@ -3,10 +3,15 @@ import type { EditorState } from "@codemirror/state";
 import { button, byId } from "./dom";
 import type { Editor } from "./editor";
 import { offer } from "./replaced";
-import { FILE, isName, LONGEST } from "./settings";
+import { FILE, isName, LONGEST, wrongName } from "./settings";
 
 /** Text of a file that is added: a plan that says how it is used. */
 const added = (name: string, plan: string) => `/// plan.mdle reads this file by the line: use "${name}"\n{ ${plan} (null)\n  (Atom (wait 2s) (go 20 0))\n}\n`;
+
+/** Returns where a text names a file in its lines of `use`. */
+function usesOf(name: string, text: string): number[] {
+  return [...text.matchAll(/^(\s*use\s+")([^"\n]*)"/gm)].filter(([, , used]) => used === name).map(({ index, 1: before = "" }) => index + before.length);
+}
 
 export class Documents {
   /** Name of the file in the editor. */
@@ -20,7 +25,7 @@ export class Documents {
     byId("add").addEventListener("click", () => this.add());
     byId("remove").addEventListener("click", () => this.remove());
     this.name.addEventListener("change", () => this.rename(this.name.value.trim()));
-    this.name.addEventListener("input", () => this.name.removeAttribute("aria-invalid"));
+    this.name.addEventListener("input", () => this.refuse(""));
     tabs.addEventListener("keydown", ({ key }) => {
       const step = key === "ArrowRight" ? 1 : key === "ArrowLeft" ? -1 : 0;
       if (step === 0) return;
@@ -87,12 +92,39 @@ export class Documents {
   }
 
   private rename(name: string): void {
-    if (name === this.shown) return;
-    if (!isName(name) || this.states.has(name)) return this.name.setAttribute("aria-invalid", "true");
-    this.states = new Map([...this.states].map(([known, state]) => [known === this.shown ? name : known, state]));
+    const { shown } = this;
+    if (name === shown) return this.refuse("");
+    if (this.states.has(name)) return this.refuse(`There is another file ${name}.`);
+    if (!isName(name)) return this.refuse(wrongName(name));
+    this.states = new Map([...this.states].map(([known, state]) => [known === shown ? name : known, state]));
     this.shown = name;
     this.draw();
     this.changed();
+    this.offerUses(shown, name);
+  }
+
+  /** Says what is wrong with the name in the field; an empty sentence if nothing is. */
+  private refuse(sentence: string): void {
+    byId("unnamed").textContent = sentence;
+    if (sentence === "") this.name.removeAttribute("aria-invalid");
+    else this.name.setAttribute("aria-invalid", "true");
+  }
+
+  /** Offers to change the lines that use a file by the name that it had. */
+  private offerUses(old: string, name: string): void {
+    const using = this.names.filter((file) => usesOf(old, this.textOf(file)).length > 0);
+    if (using.length === 0) return;
+    offer(`The file ${old} is ${name} now.`, `Change the use of it in ${using.join(", ")}`, () => {
+      for (const file of using) this.edit(file, usesOf(old, this.textOf(file)).map((from) => ({ from, to: from + old.length, insert: name })));
+      this.changed();
+    });
+  }
+
+  private edit(file: string, changes: { from: number; to: number; insert: string }[]): void {
+    const { view } = this.editor;
+    const state = this.states.get(file);
+    if (file === this.shown) view.dispatch({ changes });
+    else if (state) this.states.set(file, state.update({ changes }).state);
   }
 
   private textOf(name: string): string {
@@ -114,6 +146,6 @@ export class Documents {
     }));
     byId("naming").hidden = this.shown === FILE;
     this.name.value = this.shown;
-    this.name.removeAttribute("aria-invalid");
+    this.refuse("");
   }
 }

@@ -91,7 +91,7 @@ export class Editor {
       lineNumbers(), history(), drawSelection(), bracketMatching(), closeBrackets(), highlightActiveLine(), highlightSelectionMatches(),
       mdle, syntaxHighlighting(COLOURS), colours, lintGutter(), tooltips({ parent: document.body }),
       autocompletion({ override: [(context) => this.complete(context)] }),
-      hoverTooltip((_, position) => this.hover(position)),
+      hoverTooltip((_, position) => this.hover(position), { hideOnChange: true }),
       keymap.of([
         { key: "Mod-Enter", run: () => (run(), true) },
         { key: "Mod-Shift-f", run: () => (void this.format(), true) },
@@ -174,7 +174,7 @@ export class Editor {
   private async hover(position: number) {
     const { doc } = this.view.state;
     const found = await this.module.ask<{ range: Range; text: string } | null>({ ask: "hover", ...this.draft(), at: place(doc, position) });
-    if (found === null) return null;
+    if (found === null || this.view.state.doc !== doc) return null;
     const { from, to } = span(doc, found.range);
     return { pos: from, end: to, create: () => ({ dom: markdown(found.text) }) };
   }

@@ -80,7 +80,11 @@ function toRun(): Settings {
   return { ...settings(), plan: planToRun() };
 }
 
+/** The robot for which the plan was checked before another one was chosen. */
+let robotBefore = EMPTY.robot;
+
 function set(next: Settings): void {
+  robotBefore = next.robot;
   running.clear();
   batch.clear();
   world.set(next);
@@ -146,8 +150,10 @@ function wireFields(): void {
   byId("setup").addEventListener("input", later(QUIET, changed));
   field("robot").addEventListener("change", () => {
     const robot = field("robot").value;
-    // The simulated robot gets the body of the one that the plan is for.
+    // The simulated robot gets the body of the one that the plan is for, and gives it up with that robot.
     if (robot === "scout" || robot === "atrv") field("body").value = robot;
+    else if (field("body").value === robotBefore) field("body").value = EMPTY.body;
+    robotBefore = robot;
     changed();
     checking.changed();
   });

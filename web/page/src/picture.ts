@@ -1,12 +1,15 @@
 // The picture of the plan, as `mdlec draw` makes it, with the active path and the number of times that atoms were entered.
-import { element } from "./dom";
+import { button, element } from "./dom";
 import type { Module } from "./module";
 import { draftOf, type Settings } from "./settings";
 import type { Run, Visits } from "./run";
 
 const SVG = "http://www.w3.org/2000/svg";
+/** Scale to which a picture that is wider than its panel is reduced at most: smaller words cannot be read. */
+const SMALLEST = 0.6;
 const STYLE = `
-  svg { display: block; max-width: none }
+  svg { display: block; width: 100%; height: auto; min-width: calc(${SMALLEST} * var(--natural)); max-width: var(--natural) }
+  :host(.full) svg { min-width: var(--natural) }
   g.path > rect:first-of-type { stroke-width: 3.5px }
   g.current > rect:first-of-type { stroke-width: 4px; stroke: var(--robot) }
   g.ended > rect:first-of-type { stroke: var(--bad) }
@@ -25,7 +28,11 @@ export class Picture {
 
   constructor(parent: HTMLElement, private module: Module) {
     this.host = element("div", { class: "scrolled", tabindex: "0", role: "group", "aria-label": "Picture of the plan" });
-    parent.append(this.caption, this.host);
+    const full: HTMLButtonElement = button("Full size", () => {
+      full.setAttribute("aria-pressed", String(this.host.classList.toggle("full")));
+      this.scroll();
+    }, { "aria-pressed": "false", title: "Show the picture in its full size, or in the width of this panel" });
+    parent.append(element("div", { class: "caption" }, this.caption, full), this.host);
     // The picture has a style of its own.
     this.shadow = this.host.attachShadow({ mode: "open" });
   }
@@ -35,9 +42,10 @@ export class Picture {
     if (settings.text.trim() === "") return this.say("");
     const { output } = await this.module.ask<{ output: string }>({ ask: "draw", ...draftOf(settings), plan: settings.plan || null });
     if (output === this.drawn) return;
-    const svg = new DOMParser().parseFromString(output, "image/svg+xml").documentElement;
+    const svg = document.importNode(new DOMParser().parseFromString(output, "image/svg+xml").documentElement, true);
+    svg.style.setProperty("--natural", `${Number(svg.getAttribute("width"))}px`);
     this.drawn = output;
-    this.shadow.replaceChildren(element("style", {}, STYLE), document.importNode(svg, true));
+    this.shadow.replaceChildren(element("style", {}, STYLE), svg);
     this.atom = null;
     this.boxes = [...this.shadow.querySelectorAll("svg > g")];
     this.visits = this.boxes.map((box) => {

@@ -16,10 +16,21 @@ export class Player {
 
   constructor(private show: (run: Run, turn: number) => void) {
     this.play.addEventListener("click", () => this.toggle());
-    byId("back").addEventListener("click", () => this.go(this.turn - 1));
-    byId("forward").addEventListener("click", () => this.go(this.turn + 1));
-    byId("previous").addEventListener("click", () => this.go(this.run?.transitions.findLast((turn) => turn < this.turn) ?? this.turn));
-    byId("next").addEventListener("click", () => this.go(this.run?.transitions.find((turn) => turn > this.turn) ?? this.turn));
+    const move = {
+      back: () => this.go(this.turn - 1),
+      forward: () => this.go(this.turn + 1),
+      previous: () => this.go(this.run?.transitions.findLast((turn) => turn < this.turn) ?? this.turn),
+      next: () => this.go(this.run?.transitions.find((turn) => turn > this.turn) ?? this.turn),
+    };
+    for (const [id, act] of Object.entries(move)) byId(id).addEventListener("click", act);
+    document.addEventListener("keydown", (event) => {
+      const { code, altKey, ctrlKey, metaKey, shiftKey } = event;
+      // Some keyboards type a letter of a plan with this key.
+      if (!altKey || ctrlKey || metaKey || !["Comma", "Period"].includes(code) || /[≤≥]/.test(event.key)) return;
+      event.preventDefault();
+      if (code === "Comma") (shiftKey ? move.previous : move.back)();
+      else (shiftKey ? move.next : move.forward)();
+    });
     this.slider.addEventListener("input", () => this.go(Number(this.slider.value)));
   }
 

@@ -47,6 +47,14 @@ export function isName(name: string): boolean {
   return name.length <= 100 && name !== FILE && /^(?:[\p{L}\p{Nd}_-][\p{L}\p{Nd}_.-]*\/)*[\p{L}\p{Nd}_-][\p{L}\p{Nd}_.-]*\.mdle$/u.test(name);
 }
 
+/** Says what is wrong with a name that is none of a file beside the one that is run. */
+export function wrongName(name: string): string {
+  if (name === "") return "A file needs a name, such as part.mdle.";
+  if (!name.endsWith(".mdle")) return `The name of a file ends in .mdle: ${name}.mdle`;
+  if (name.length > 100) return "The name of a file has at most 100 letters.";
+  return "The name of a file has letters, digits, _, - and points, and perhaps folders before a /, as leg/part.mdle.";
+}
+
 /** Returns `true` if two settings have the same value under this key. */
 export function isSame(key: keyof Settings, one: Settings, other: Settings): boolean {
   return key === "files" ? JSON.stringify(one.files) === JSON.stringify(other.files) : one[key] === other[key];
