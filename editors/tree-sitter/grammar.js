@@ -63,8 +63,9 @@ module.exports = grammar({
 
   conflicts: ($) => [
     [$._string],
-    [$.reference, $.call],
+    [$._reference, $._call_of],
     [$._primary, $._call],
+    [$._primary, $._quark],
     [$.parameter, $.label],
     [$._literal_call, $._argument],
   ],
@@ -80,7 +81,9 @@ module.exports = grammar({
       seq(
         optional(seq($.plan_label, '=')),
         $._open,
-        field('name', $.name),
+        optional($.group),
+        // `Group` is a name where no bracket follows it.
+        field('name', choice($.name, alias('Group', $.name))),
         optional(field('parameters', $.parameters)),
         choice(
           seq(field('condition', alias($._head_condition, $.condition)), optional($._elements)),
@@ -90,6 +93,11 @@ module.exports = grammar({
         optional($.sigma_null),
         $._close,
       ),
+
+    // The robots of the plan of a group.
+    group: ($) => seq('Group', '[', optional(seq($._robot, repeat(seq(optional(','), $._robot)))), ']'),
+
+    _robot: ($) => alias($.name, $.robot),
 
     // A plan as the paper prints it, without braces.
     printed_plan: ($) =>
@@ -172,7 +180,7 @@ module.exports = grammar({
     not: ($) => seq(choice('NOT', 'not'), $._test),
     rising: ($) => seq(choice('RISING', 'rising'), $._test),
 
-    _test: ($) => choice($.condition, $._call, $.comparison, $.null, $.after),
+    _test: ($) => choice($.condition, $._quark, $.comparison, $.null, $.after),
 
     null: () => 'null',
 
@@ -180,9 +188,9 @@ module.exports = grammar({
 
     comparison: ($) =>
       seq(
-        field('left', $._call),
+        field('left', $._quark),
         field('operator', choice('==', '<', '<=', '≤', '\\leq', '>', '>=', '≥', '\\geq')),
-        field('right', choice($._call, $.number, $.infinity)),
+        field('right', choice($._quark, $.number, $.infinity)),
       ),
 
     // ---- Calls ----
@@ -191,11 +199,19 @@ module.exports = grammar({
 
     _call: ($) => choice($.reference, $.call),
 
+    // In a condition of a group, the name of a robot and a dot come first.
+    _quark: ($) => choice($.reference, $.call, alias($._owned_reference, $.reference), alias($._owned_call, $.call)),
+    _owned_reference: ($) => seq($.owner, $._reference),
+    _owned_call: ($) => seq($.owner, $._call_of),
+    owner: () => token(prec(1, /[\p{L}_][\p{L}\p{M}\p{Nd}_]*\./)),
+
     // A name, perhaps with arguments in parentheses that touch it.
-    reference: ($) =>
+    reference: ($) => $._reference,
+    _reference: ($) =>
       seq(field('name', $.name), optional(seq(touching($), optional(seq($._argument, repeat(seq(optional(','), $._argument)))), ')'))),
 
-    call: ($) => seq(field('name', $.name), repeat1($._argument)),
+    call: ($) => $._call_of,
+    _call_of: ($) => seq(field('name', $.name), repeat1($._argument)),
 
     _literal_call: ($) =>
       seq(field('name', $.name), choice($._number, $.infinity, $.text), repeat($._argument)),

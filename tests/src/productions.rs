@@ -66,7 +66,13 @@ impl<'t> Counter<'t> {
 
     fn plan(&mut self, plan: &Plan<'_>) {
         self.met("Plan = (Label \"=\")? \"{\" Head Elements? \"sigma_null\"? \"}\"");
-        self.met("Head = Name Params? HeadCondition?");
+        match plan.group {
+            None => self.met("Head = Name Params? HeadCondition?"),
+            Some(robots) => {
+                self.met("Head = \"Group\" \"[\" ArgList? \"]\" Name Params? HeadCondition?");
+                self.robots(robots);
+            }
+        }
         self.met("Plan … Elements?");
         if plan.label.is_some() {
             self.met("Plan … (Label \"=\")?");
@@ -87,6 +93,19 @@ impl<'t> Counter<'t> {
             self.or(condition);
         }
         self.elements(plan.elements);
+    }
+
+    /// The robots of a group, between its brackets.
+    fn robots(&mut self, robots: &[Arg<'_>]) {
+        if !robots.is_empty() {
+            self.met("Head … ArgList?");
+        }
+        self.list(robots.len(), "ArgList = Arg", "ArgList = ArgList \",\"? Arg");
+        for robot in robots {
+            if let Arg::Name(_) = robot {
+                self.met("Arg = Name");
+            }
+        }
     }
 
     fn param(&mut self, param: &Param<'_>) {

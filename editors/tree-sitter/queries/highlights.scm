@@ -8,6 +8,7 @@
 
 ["use" "FRAME" "here" "module"] @keyword
 ["Atom"] @keyword
+["Group"] @keyword
 ["ExecPlan"] @keyword.repeat
 ["OR" "or" "AND" "and" "NOT" "not" "RISING" "rising" "after"] @keyword.operator
 (null) @constant.builtin
@@ -29,6 +30,8 @@
 (label name: (name) @label)
 (after label: (name) @label)
 (module name: (name) @variable)
+(robot) @variable
+(owner) @variable
 (argument) @variable.parameter
 (element (reference name: (name) @type))
 (loop (reference name: (name) @type))

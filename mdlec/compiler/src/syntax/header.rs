@@ -21,8 +21,8 @@ pub(super) enum Begins<'s> {
 pub(super) fn mark(tokens: &mut [Token<'_>]) {
     let mut plans = None;
     for brace in 0..tokens.len() {
-        if is(tokens, brace, Tok::LBrace) && !is_loop(tokens, brace) && is_name(tokens, brace + 1) {
-            mark_header(tokens, brace + 2, &mut plans);
+        if let Some(name) = name_of(tokens, brace).filter(|_| is(tokens, brace, Tok::LBrace)) {
+            mark_header(tokens, name + 1, &mut plans);
         }
     }
 }
@@ -38,11 +38,19 @@ fn mark_header<'s>(tokens: &mut [Token<'s>], at: usize, plans: &mut Option<BTree
 /// Index of the last token of the header of the plan whose opening brace is at `brace`; `None` for the brace of a loop,
 /// or without a name.
 pub(super) fn end<'s>(tokens: &[Token<'s>], brace: usize, plans: &mut Option<BTreeSet<&'s str>>) -> Option<usize> {
-    if is_loop(tokens, brace) || !is_name(tokens, brace + 1) {
-        return None;
+    let name = name_of(tokens, brace)?;
+    let mut groups = groups(tokens, name + 1, plans).into_iter().flatten().filter(|(_, kind)| *kind != Tok::LParen);
+    Some(groups.next_back().map_or(name, |(at, _)| end_of_group(tokens, at)))
+}
+
+/// Index of the name of the plan whose opening brace is at `brace`: the next token, or in the plan of a group the one
+/// after its robots; `None` for the brace of a loop, or without a name.
+fn name_of(tokens: &[Token<'_>], brace: usize) -> Option<usize> {
+    let mut name = brace + 1;
+    if is(tokens, name, Tok::Group) {
+        name += tokens.get(name..)?.iter().position(|token| token.kind == Tok::RBracket)? + 1;
     }
-    let mut groups = groups(tokens, brace + 2, plans).into_iter().flatten().filter(|(_, kind)| *kind != Tok::LParen);
-    Some(groups.next_back().map_or(brace + 1, |(at, _)| end_of_group(tokens, at)))
+    (is_name(tokens, name) && !is_loop(tokens, brace)).then_some(name)
 }
 
 /// The parentheses that follow the name of a plan at `at`, at most two, each with the token that it becomes.
@@ -71,6 +79,7 @@ fn groups<'s>(tokens: &[Token<'s>], at: usize, plans: &mut Option<BTreeSet<&'s s
 pub(super) fn names<'s>(tokens: &[Token<'s>]) -> BTreeSet<&'s str> {
     let named = tokens.windows(2).filter_map(|pair| match pair {
         [Token { kind: Tok::LBrace, .. }, Token { kind: Tok::Name(name), .. }] => Some(*name),
+        [Token { kind: Tok::RBracket, .. }, Token { kind: Tok::Name(name), .. }] => Some(*name),
         _ => None,
     });
     named.collect()

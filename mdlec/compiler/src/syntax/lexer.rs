@@ -23,8 +23,15 @@ pub(super) struct Lexed<'s> {
 
 /// The tokens of a text, its doc comments and its lexical errors.
 pub(super) fn lex(source: Source<'_>) -> Lexed<'_> {
-    let mut reader =
-        Reader { source, lexed: Lexed::default(), text_ends: usize::MAX, touches: 0, run: None, skipped: 0 };
+    let mut reader = Reader {
+        source,
+        lexed: Lexed::default(),
+        text_ends: usize::MAX,
+        touches: 0,
+        run: None,
+        skipped: 0,
+        dots: None,
+    };
     let mut lexer = Tok::lexer(source.text);
     while let Some(token) = lexer.next() {
         let token = token.map(|kind| labelled(kind, &mut lexer));
@@ -33,6 +40,7 @@ pub(super) fn lex(source: Source<'_>) -> Lexed<'_> {
             continue;
         }
         match token {
+            Ok(Tok::Dot) => reader.dot(place),
             Ok(kind) => reader.token(Token { kind, place }),
             Err(()) => match split(source.slice(place)) {
                 ("", _) => reader.character(place),
@@ -66,6 +74,17 @@ struct Reader<'s> {
     run: Option<Place>,
     /// The end of a file name that was read although it is not between double quotes.
     skipped: usize,
+    /// The dots of signals, once the head of a group was read.
+    dots: Option<Dots>,
+}
+
+/// State of the dots in `robot1.x`.
+#[derive(Default)]
+struct Dots {
+    /// Number of open parentheses: a signal is in a condition.
+    depth: usize,
+    /// The dot after the last token, if a word touches both sides of it.
+    last: Option<Place>,
 }
 
 impl<'s> Reader<'s> {
@@ -94,6 +113,13 @@ impl<'s> Reader<'s> {
     fn token(&mut self, token: Token<'s>) {
         self.end_run();
         let Place { start, end } = token.place;
+        if let Some(dot) = self.dots.as_mut().and_then(|dots| dots.last.take()) {
+            if matches!(token.kind, Tok::Name(_)) {
+                return self.join(end);
+            }
+            self.report(lexical::characters(self.source, dot));
+        }
+        self.count(token.kind);
         #[allow(clippy::wildcard_enum_match_arm, reason = "only what the parser must not see is named")]
         match token.kind {
             Tok::RBrace if start == self.text_ends => self.typesetting(token.place),
@@ -101,8 +127,14 @@ impl<'s> Reader<'s> {
             Tok::Doc(text) => self.lexed.docs.push((self.lexed.tokens.len(), text)),
             Tok::Command => self.report(lexical::command(self.source, token.place)),
             Tok::Comment => self.report(lexical::comment(self.source, token.place)),
+            Tok::LBracket if self.begins_group() => {
+                self.dots = Some(Dots::default());
+                self.push(token.kind, token.place);
+            }
             Tok::Name("here") if self.after_frame() => self.push(Tok::Here, token.place),
-            Tok::LParen if start == self.touches && self.after_name() => self.push(Tok::TouchParen, token.place),
+            Tok::LParen if start == self.touches && self.after_name() && !self.after_law_of_formation() => {
+                self.push(Tok::TouchParen, token.place)
+            }
             Tok::Str(text) => {
                 if end - start != text.len() + 2 {
                     self.report(lexical::string(self.source, token.place));
@@ -111,6 +143,49 @@ impl<'s> Reader<'s> {
             }
             kind => self.push(kind, token.place),
         }
+    }
+
+    /// Counts the parentheses of the plans after the head of a group.
+    fn count(&mut self, kind: Tok<'s>) {
+        let Some(dots) = &mut self.dots else { return };
+        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are no parentheses")]
+        match kind {
+            Tok::LParen => dots.depth += 1,
+            Tok::RParen => dots.depth = dots.depth.saturating_sub(1),
+            Tok::LBrace | Tok::RBrace => dots.depth = 0,
+            _ => {}
+        }
+    }
+
+    /// Processes a dot: in a file with a group it may be between a robot and its signal.
+    fn dot(&mut self, place: Place) {
+        let is_name = self.touches == place.start && self.after_name();
+        let rest = self.source.text.get(place.end..).unwrap_or("");
+        let behind = rest.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_').trim_start();
+        let is_label = behind.len() == rest.len() || behind.starts_with(':');
+        match self.dots.as_mut().filter(|dots| is_name && !is_label && dots.depth > 0) {
+            Some(dots) => dots.last = Some(place),
+            None => self.character(place),
+        }
+    }
+
+    /// Joins the name that ends at `end` to the name before the dot.
+    fn join(&mut self, end: usize) {
+        let Some(token) = self.lexed.tokens.last_mut() else { return };
+        token.place.end = end;
+        token.kind = Tok::Name(self.source.slice(token.place));
+        self.touches = end;
+    }
+
+    /// Returns `true`, and marks the keyword, after `{ Group`.
+    fn begins_group(&mut self) -> bool {
+        let [.., Token { kind: Tok::LBrace, .. }, word @ Token { kind: Tok::Name("Group"), .. }] =
+            self.lexed.tokens.as_mut_slice()
+        else {
+            return false;
+        };
+        word.kind = Tok::Group;
+        true
     }
 
     fn push(&mut self, kind: Tok<'s>, place: Place) {
@@ -124,6 +199,16 @@ impl<'s> Reader<'s> {
 
     fn after_name(&self) -> bool {
         matches!(self.lexed.tokens.last(), Some(Token { kind: Tok::Name(_), .. }))
+    }
+
+    /// Returns `true` after the law of a formation, all of whose words are arguments: `formation line 1m goAvoid`.
+    fn after_law_of_formation(&self) -> bool {
+        let is_word = |token: &&Token<'_>| !matches!(token.kind, Tok::LParen | Tok::TouchParen | Tok::Comma);
+        let mut words = self.lexed.tokens.iter().rev().filter(is_word).map(|token| token.kind);
+        self.dots.is_some()
+            && matches!(words.next(), Some(Tok::Name(_)))
+            && matches!((words.next(), words.next()), (Some(Tok::Number(_)), Some(Tok::Name(_))))
+            && words.next() == Some(Tok::Name("formation"))
     }
 
     fn after_frame(&self) -> bool {

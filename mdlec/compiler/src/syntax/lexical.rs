@@ -55,6 +55,10 @@ fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, plac
             diagnostic.help("text is written between plain double quotes: `\"path.txt\"`")
         }
         "−" | "–" | "—" => sign(diagnostic, source, "-", place),
+        // Plans begin with a capital.
+        "." if ends_name(source, place.start) && next.is_some_and(char::is_lowercase) => {
+            diagnostic.help("in a condition of a group, a dot is between a robot and its signal: `robot1.x > 7m`")
+        }
         "." if ends_name(source, place.start) && next.is_some_and(char::is_alphabetic) => {
             diagnostic.help("a plan of a file that is used is called by its name alone: `Leg(3m)`")
         }

@@ -4,6 +4,7 @@ mod atoms;
 mod calls;
 mod conditions;
 mod files;
+mod groups;
 mod labels;
 mod parameters;
 mod plan_names;
@@ -16,12 +17,14 @@ use atoms::{atom_condition, atom_law};
 use calls::{apart, bare_call, decimal_comma, element_touches, square_brackets, touching_parenthesis, unit_apart};
 use conditions::condition;
 use files::at_file_level;
+use groups::head_of_group;
 use labels::{label_and_equals, label_behind, label_in_quotes, label_of_after};
 use parameters::parameters;
 
 /// Returns the message about the first known mistake that fits.
 pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 20] = [
+    let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 21] = [
+        head_of_group,
         square_brackets,
         decimal_comma,
         at_file_level,

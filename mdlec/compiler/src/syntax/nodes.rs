@@ -26,6 +26,7 @@ pub(super) type Recovery<'s> = ErrorRecovery<Location, Tok<'s>, std::convert::In
 #[derive(Default, Clone, Copy)]
 pub(super) struct Head<'s> {
     pub(super) name: Option<Name<'s>>,
+    pub(super) group: Option<&'s [Arg<'s>]>,
     pub(super) params: &'s [Param<'s>],
     pub(super) condition: Option<Condition<'s>>,
 }
@@ -85,7 +86,7 @@ impl<'t, 's> Nodes<'t, 's> {
         end: Location,
     ) -> &'s Plan<'s> {
         let span = self.between(start, end);
-        let Head { name, params, condition } = *head;
+        let Head { name, group, params, condition } = *head;
         if let (None, Some(name)) = (first, &name) {
             let message = format!("plan `{}` has nothing to run", name.node);
             let help = "give it an atom: `(Atom (wait 5) stop)`";
@@ -99,7 +100,7 @@ impl<'t, 's> Nodes<'t, 's> {
             [Element { primary: Primary::String(_), .. }, behind @ ..] if is_headless => behind,
             all => all,
         };
-        self.put(Plan { docs, label, name, params, condition, elements, span })
+        self.put(Plan { docs, label, name, group, params, condition, elements, span })
     }
 
     pub(super) fn head(&mut self, name: Name<'s>, condition: Option<Condition<'s>>) -> &'s Head<'s> {
@@ -107,7 +108,19 @@ impl<'t, 's> Nodes<'t, 's> {
             [] => &[],
             [..] => complete(&mut self.waiting.params, 0, self.arena),
         };
-        self.put(Head { name: Some(name), params, condition })
+        self.put(Head { name: Some(name), group: None, params, condition })
+    }
+
+    /// Head of the plan of a group, whose robots wait from `first` on.
+    pub(super) fn group_head(
+        &mut self,
+        first: Option<First>,
+        name: Name<'s>,
+        condition: Option<Condition<'s>>,
+    ) -> &'s Head<'s> {
+        let robots = first.map_or(&[][..], |first| complete(&mut self.waiting.args, first, self.arena));
+        let head = *self.head(name, condition);
+        self.put(Head { group: Some(robots), ..head })
     }
 
     pub(super) fn param(&mut self, name: Name<'s>, type_name: Name<'s>) {

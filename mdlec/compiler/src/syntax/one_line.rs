@@ -19,8 +19,11 @@ pub fn one_line<const N: usize>(text: &str, ends: [Option<usize>; N]) -> (String
     }
     let (mut line, mut places, mut last) = (String::new(), [None; N], None);
     for token in tokens.get(range).into_iter().flatten() {
-        if last.is_some_and(|end| end < token.place.start) {
-            line.push(' ');
+        match last.and_then(|end| text.get(end..token.place.start)) {
+            None | Some("") => {}
+            // Only in a group a dot is a part of a name.
+            Some(".") => line.push('.'),
+            Some(_) => line.push(' '),
         }
         line += text.get(token.place.start..token.place.end).unwrap_or("");
         last = Some(token.place.end);
@@ -60,6 +63,7 @@ mod tests {
         assert_eq!(lines("( (r1<40cm))"), "r1<40cm");
         assert_eq!(lines("(a) OR (b)"), "(a) OR (b)");
         assert_eq!(lines("NOT (a OR b)"), "NOT (a OR b)");
+        assert_eq!(lines("(robot1.x  > 7m)"), "robot1.x > 7m");
         assert_eq!(lines(""), "");
     }
 

@@ -29,7 +29,9 @@ impl Outline {
         let params = if params.is_empty() { String::new() } else { format!("({})", params.join(", ")) };
         let when = plan.condition.as_ref().map(|when| format!(" when {}", condition(when))).unwrap_or_default();
         plan.docs.iter().for_each(|doc| self.line(&format!("///{doc}")));
-        self.line(&format!("plan {label}{}{params}{when}", plan.name.node));
+        let robots = plan.group.map(|robots| robots.iter().map(arg).collect::<Vec<_>>().join(" "));
+        let group = robots.map(|robots| format!(" of the group {robots}")).unwrap_or_default();
+        self.line(&format!("plan {label}{}{group}{params}{when}", plan.name.node));
         self.elements(plan.elements);
     }
 

@@ -18,6 +18,18 @@ impl<'s> Nodes<'_, 's> {
         self.put(Head::default())
     }
 
+    /// Keeps the robots of a group that were read.
+    pub(super) fn broken_robots(
+        &mut self,
+        first: Option<First>,
+        error: Recovery<'s>,
+        name: Name<'s>,
+        condition: Option<Condition<'s>>,
+    ) -> &'s Head<'s> {
+        self.errors.push(error);
+        self.group_head(first, name, condition)
+    }
+
     /// Keeps the parameters that were read.
     pub(super) fn broken_params(&mut self, error: Recovery<'s>) {
         self.errors.push(error);

@@ -226,7 +226,7 @@ impl<'s> Site<'_, 's> {
                 left.retain(|terminal| !parts.contains(terminal));
             }
         }
-        let minor = ["^", ":", "module", "sigma_null", "touching (", "parameters (", "condition ("];
+        let minor = ["Group", "^", ":", "module", "sigma_null", "touching (", "parameters (", "condition ("];
         let (small, large): (Vec<&str>, Vec<&str>) = left.into_iter().partition(|terminal| minor.contains(terminal));
         let left = if words.is_empty() && large.is_empty() { small } else { large };
         words.extend(left.into_iter().map(terminal_words));

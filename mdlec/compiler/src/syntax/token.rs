@@ -54,6 +54,11 @@ pub(super) enum Tok<'s> {
     SigmaNull,
     #[regex(r"[\p{L}_][\p{L}\p{M}\p{Nd}_]*")]
     Name(&'s str),
+    /// `Group` after a plan's brace and before a square bracket; a name anywhere else.
+    Group,
+    /// The dot between a robot and its signal; never reaches the parser.
+    #[token(".")]
+    Dot,
     /// A name or a command that goes on as a label; see [`super::label::label_length`].
     Label(&'s str),
     #[regex(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?", number)]

@@ -38,6 +38,8 @@ pub struct Plan<'s> {
     pub label: Option<Name<'s>>,
     /// Name of the plan.
     pub name: Name<'s>,
+    /// Robots of the plan of a group, as written between its brackets; `None` for the plan of one robot.
+    pub group: Option<&'s [Arg<'s>]>,
     /// Parameters of the plan.
     pub params: &'s [Param<'s>],
     /// Interrupt of the plan; `None` is the null interrupt.

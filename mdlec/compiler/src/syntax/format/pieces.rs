@@ -159,5 +159,5 @@ fn touch(before: Tok<'_>, token: Tok<'_>) -> bool {
         token,
         Tok::RParen | Tok::TouchParen | Tok::ParamParen | Tok::LBracket | Tok::RBracket | Tok::Comma | Tok::Colon
     );
-    opens || closes || token == Tok::Caret
+    (opens || closes || token == Tok::Caret) && before != Tok::Group
 }

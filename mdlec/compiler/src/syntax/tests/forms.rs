@@ -35,6 +35,20 @@ fn elements() {
 }
 
 #[test]
+fn groups() {
+    check(
+        "forms_groups",
+        &[
+            "{ Group [a b, c] R (any bumper OR wait 5) (Atom (a.x > 7m AND NOT b.r 3 < 1m) formation line 1m (go 5 0)) }",
+            "{ Group [a b] R(a.bumper) (Atom (wait 5) (formation(line, 1m, goAvoid(0, 7m, 20)))) S: (Atom (all c) stop) }",
+            "{ Group [] R S } { Group (bumper) S } { Group S } { S (a.b) T }",
+            "{ Group [a b S } { S T } { Group [a < b] S T } { Group [a b] (wait 5) S } { Group [a b] }",
+            "{ Group [a.b c] R (d. e OR f .g OR h.null OR k.l: m) n.o (p.q: S) }",
+        ],
+    );
+}
+
+#[test]
 fn headers() {
     check(
         "forms_headers",
