@@ -137,6 +137,36 @@ fn a_stage_is_the_same_in_a_file() {
 }
 
 #[test]
+fn the_plans_of_a_group_are_printed_and_check() {
+    let group =
+        "{ Group [a b] Pair (any bumper OR wait 1min) (Atom (all rendezvous) stop) (Atom (a.x > 1m) (go 20 0)) }\n";
+    let folder = with_plan("stage_projected", group);
+    let plans = emitted(&folder, "projected");
+    fs::write(folder.join("plans.mdle"), &plans).unwrap();
+    printed_alone(run_mdlec(&folder, &["check", "plans.mdle", "--target", "sim"]));
+    printed_alone(run_mdlec(&folder, &["fmt", "--check", "plans.mdle"]));
+    let emit =
+        |arguments: &[&str]| run_mdlec(&folder, &[arguments, &["--target", "sim", "--emit", "projected"]].concat());
+    let second = printed_alone(emit(&["plan.mdle", "--plan", "Pair_b"]));
+    assert!(plans.ends_with(&second) && second.starts_with("/// `b`") && second.len() < plans.len(), "{second}");
+    let refused = |output: Output, status: i32| {
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(status), "{message}");
+        message
+    };
+    let unknown = refused(emit(&["plan.mdle", "--plan", "Pair"]), 2);
+    assert!(unknown.contains("its plans are Pair_a, Pair_b"), "{unknown}");
+    assert!(refused(emit(&["plans.mdle"]), 2).contains("`plans.mdle` has no group of robots"));
+    fs::write(folder.join("bad.mdle"), group.replace("a.x", "b.x")).unwrap();
+    assert!(refused(emit(&["bad.mdle"]), 1).starts_with("error[E0209]"));
+    let built = refused(run_mdlec(&folder, &["plan.mdle", "--target", "scout"]), 1);
+    assert!(built.contains("error[E0403]: the group `Pair` needs the state link"), "{built}");
+    assert!(built.contains("`mdle run PLAN --target scout --link LINK.toml` runs the part"), "{built}");
+    let drawn = refused(run_mdlec(&folder, &["plan.mdle", "--emit", "dot"]), 2);
+    assert!(drawn.contains("the plan of a group, and has one for each robot: Pair_a, Pair_b"), "{drawn}");
+}
+
+#[test]
 fn an_fsm_file_has_the_keys_of_the_interfaces() {
     let folder = with_plan("fsm_keys", PLAN);
     let file: Value = serde_json::from_str(&emitted(&folder, "fsm")).expect("JSON");

@@ -48,6 +48,7 @@ fn prepared(test: &str) -> std::path::PathBuf {
     let folder = folder(test);
     let write = |name: &str, text: &str| fs::write(folder.join(hostile(name)), hostile(text)).unwrap();
     write("HOSTILE.mdle", GOOD);
+    write("group.mdle", "{ Group [a b] P (wait 9) // HOSTILE\n  (Atom (wait 2) path \"HOSTILE\")\n}\n");
     write("wrong.mdle", "use \"HOSTILE\"\n{ P (bumpr \"HOSTILE\")\n  (Atom (null) path \"HOSTILE\" 1)\n Q HOSTILE }\n");
     write("script.jsonl", "{\"t\": 0}\n{\"HOSTILE\n");
     write("good.jsonl", "{}\n{}\n");
@@ -80,6 +81,10 @@ fn no_command_prints_what_a_terminal_obeys() {
         let output = printable(&folder, &[plan, "--target", "sim", "--emit", emit]);
         assert!(output.status.success(), "{emit}: {}", String::from_utf8_lossy(&output.stderr));
     }
+    for good in [&["check", "group.mdle"][..], &["group.mdle", "--emit", "projected"]] {
+        assert!(printable(&folder, good).status.success(), "{good:?}");
+    }
+    assert!(!printable(&folder, &["group.mdle", "--emit", "dot"]).status.success());
     for good in [&["check", plan][..], &["check", "--target", "all", plan], &["analyze", plan], &["draw", plan]] {
         assert!(printable(&folder, good).status.success(), "{good:?}");
     }

@@ -1,7 +1,7 @@
 //! The compiler of MDLe: text in, Rust out.
 //!
 //! ```text
-//! text ─syntax→ tree ─plan::resolve→ Plan ─plan::remove_degeneracy→ Nondegenerate
+//! text ─syntax→ tree ─projection→ tree ─plan::resolve→ Plan ─plan::remove_degeneracy→ Nondegenerate
 //!      ─fsm::lower→ Machine ─rust::emit→ Rust
 //! ```
 //!
@@ -15,6 +15,7 @@ pub mod fsm;
 pub mod load;
 pub mod picture;
 pub mod plan;
+pub mod projection;
 pub mod rust;
 #[cfg(test)]
 mod samples;
@@ -33,6 +34,8 @@ pub struct Compiled {
     pub nondegenerate: plan::Nondegenerate,
     /// Plan as a state machine.
     pub machine: fsm::Machine,
+    /// Part of a group that the plan is, if it is one.
+    pub part: Option<projection::Part>,
 }
 
 /// Compiles a text to state machines: the plan `wanted`, or every plan that no other plan uses; [`rust::emit`] turns a
@@ -98,6 +101,8 @@ fn stages(
 ) -> (Vec<Compiled>, Vec<Diagnostic>) {
     let arena = syntax::arena_for(text);
     let (mut files, mut found) = syntax::parse_with(source, text, &arena, loader);
+    let (parts, groups) = projection::project(&mut files, &arena, alphabet);
+    found.extend(groups);
     found.extend(plan::untyped::complete(&mut files, &arena, alphabet));
     let (plans, names) = plan::resolve(&files, alphabet, wanted);
     found.extend(names);
@@ -117,7 +122,9 @@ fn stages(
             match fsm::lower(&nondegenerate) {
                 Ok(machine) => {
                     found.extend(analysis::lints(&machine));
-                    compiled.extend(kept.map(|plan| Compiled { plan, nondegenerate, machine }));
+                    let part = kept.as_ref().and_then(|plan| parts.iter().find(|part| part.plan == plan.root.name));
+                    let part = part.cloned();
+                    compiled.extend(kept.map(|plan| Compiled { plan, nondegenerate, machine, part }));
                 }
                 Err(too_large) => found.push(too_large),
             }
@@ -127,7 +134,17 @@ fn stages(
         compiled.clear();
     }
     diagnostic::sort(&mut found);
-    // What several plans copy is found in each of them.
-    found.dedup();
-    (compiled, found)
+    (compiled, once_each(found))
+}
+
+/// Leaves out the repetitions among sorted diagnostics: what several plans copy is found in each of them.
+fn once_each(found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let mut kept: Vec<Diagnostic> = Vec::with_capacity(found.len());
+    for diagnostic in found {
+        let mut there = kept.iter().rev().take_while(|other| other.span() == diagnostic.span());
+        if there.all(|other| *other != diagnostic) {
+            kept.push(diagnostic);
+        }
+    }
+    kept
 }

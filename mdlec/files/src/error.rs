@@ -33,6 +33,13 @@ pub enum InputError {
         /// Names of the file's plans.
         plans: Vec<String>,
     },
+    /// The file is the plan of a group, and the robot was not named.
+    Group {
+        /// Name of the file.
+        file: String,
+        /// Names of the plans of the robots.
+        plans: Vec<String>,
+    },
     /// The choice of a plan is not clear: none was named, and the file has no plan, or several, that no other plan
     /// uses.
     NotOnePlan {
@@ -87,6 +94,7 @@ impl InputError {
             | Self::NoTarget
             | Self::UnknownTarget(_)
             | Self::UnknownPlan { .. }
+            | Self::Group { .. }
             | Self::NotOnePlan { .. } => None,
         }
     }
@@ -115,6 +123,12 @@ impl InputError {
                 let near = did_you_mean(name, &known);
                 format!("`{file}` has no plan `{name}`{near}\nhelp: its plans are {}", plans.join(", "))
             }
+            Self::Group { file, plans } => format!(
+                "`{file}` is the plan of a group, and has one for each robot: {}\nhelp: name one of them, as in `{}`; \
+                 `mdle run SCENARIO.toml` runs all of them, simulated",
+                plans.join(", "),
+                spelling.option("plan", plans.first().map_or("NAME", String::as_str)),
+            ),
             Self::NotOnePlan { file, plans } => match plans.first() {
                 None => format!(
                     "every plan of `{file}` is used by another or takes parameters\nhelp: name one of them, as in `{}`, \

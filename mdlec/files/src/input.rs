@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use mdle_compiler::alphabet::{Alphabet, nearest};
 use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources};
+use mdle_compiler::projection::{Part, part_name, projected};
 use mdle_compiler::rust::{self, Header};
+use mdle_compiler::syntax::tree::{Arg, Plan};
 use mdle_compiler::{Compiled, Limit, check_with, compile_within, syntax};
 
 use crate::read::Unread;
@@ -25,6 +27,25 @@ pub struct Input {
     read: BTreeMap<PathBuf, SourceId>,
     /// Texts that are used in place of files.
     unsaved: Unsaved,
+    /// Parts of groups among the plans that were compiled last.
+    parts: Vec<Part>,
+}
+
+/// A group of robots: the name of its plan, and its robots in order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Group {
+    /// Name of the group's plan.
+    pub name: String,
+    /// Names of the robots.
+    pub robots: Vec<String>,
+}
+
+impl Group {
+    /// Returns the name of the plan of this robot, if the robot is one of the group.
+    #[must_use]
+    pub fn plan_of(&self, robot: &str) -> Option<String> {
+        self.robots.iter().any(|known| known == robot).then(|| part_name(&self.name, robot))
+    }
 }
 
 impl Input {
@@ -53,7 +74,29 @@ impl Input {
         limit: Limit,
     ) -> (Vec<Compiled>, Vec<Diagnostic>) {
         let text = self.sources.text(self.source).to_owned();
-        compile_within(self.source, &text, alphabet, wanted, self, limit)
+        let compiled = compile_within(self.source, &text, alphabet, wanted, self, limit);
+        self.parts = compiled.0.iter().filter_map(|compiled| compiled.part.clone()).collect();
+        compiled
+    }
+
+    /// Returns the plans of the robots of the file's groups as MDLe text, or only that called `wanted`; empty without a
+    /// group.
+    pub fn projected(&mut self, alphabet: &Alphabet, wanted: Option<&str>) -> String {
+        let text = self.sources.text(self.source).to_owned();
+        projected(self.source, &text, alphabet, wanted, self)
+    }
+
+    /// Returns the group whose plan is called `wanted`, or that is the only plan of the file itself.
+    pub fn group(&mut self, wanted: Option<&str>) -> Option<Group> {
+        let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
+        let (files, _) = syntax::parse_with(self.source, &text, &arena, self);
+        let own = files.plans.get(..files.own).unwrap_or(&[]);
+        let plan = match (wanted, own) {
+            (Some(wanted), _) => files.plans.iter().find(|plan| plan.name.node == wanted && plan.group.is_some()),
+            (None, [only]) => Some(only),
+            (None, _) => None,
+        }?;
+        Some(Group { name: plan.name.node.to_owned(), robots: robots(plan)? })
     }
 
     /// Returns the diagnostics of the file.
@@ -78,11 +121,15 @@ impl Input {
         self.files().map(named).chain(target.files()).collect()
     }
 
-    /// Names of the plans in the file and in the files that it uses.
+    /// Names of the plans in the file and in the files that it uses; a group has one for each robot.
     pub fn plan_names(&mut self) -> Vec<String> {
         let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
         let (files, _) = syntax::parse_with(self.source, &text, &arena, self);
-        files.plans.iter().map(|plan| plan.name.node.to_owned()).collect()
+        let names = files.plans.iter().flat_map(|plan| match robots(plan) {
+            Some(robots) => robots.iter().map(|robot| part_name(plan.name.node, robot)).collect(),
+            None => vec![plan.name.node.to_owned()],
+        });
+        names.collect()
     }
 
     /// Labels of the plans in the file and in the files that it uses, as `Γ_from^to`, with the names of the plans.
@@ -115,8 +162,13 @@ impl Input {
         match (plans.pop(), plans.len()) {
             (Some((_, only)), 0) => Ok(only),
             (last, _) => {
-                let plans = plans.into_iter().chain(last).map(|(name, _)| name).collect();
-                Err(InputError::NotOnePlan { file: self.sources.name(self.source).to_owned(), plans })
+                let plans: Vec<_> = plans.into_iter().chain(last).map(|(name, _)| name).collect();
+                let file = self.sources.name(self.source).to_owned();
+                let is_part = |name: &String| self.parts.iter().any(|part| part.plan == *name);
+                Err(match !plans.is_empty() && plans.iter().all(is_part) {
+                    true => InputError::Group { file, plans },
+                    false => InputError::NotOnePlan { file, plans },
+                })
             }
         }
     }
@@ -185,7 +237,16 @@ pub fn plan(path: &Path, text: String, target: &Target) -> Result<Input, InputEr
     let source = add(&mut sources, path, text)?;
     let paths = BTreeMap::from([(source, path.to_owned())]);
     let read = unsaved::place(path).map(|place| (place, source)).into_iter().collect();
-    Ok(Input { sources, source, paths, read, unsaved: Unsaved::default() })
+    Ok(Input { sources, source, paths, read, unsaved: Unsaved::default(), parts: Vec::new() })
+}
+
+/// Names of the robots of a group's plan; `None` for the plan of one robot.
+fn robots(plan: &Plan<'_>) -> Option<Vec<String>> {
+    let names = plan.group?.iter().filter_map(|robot| match robot {
+        Arg::Name(name) => Some(name.node.to_owned()),
+        Arg::Number(_) | Arg::Infinity(_) | Arg::String(_) | Arg::Module(_) => None,
+    });
+    Some(names.collect())
 }
 
 /// Adds the text of a plan file.

@@ -13,7 +13,7 @@ mod text;
 mod unsaved;
 
 pub use error::{FaultyFile, InputError, Spelling};
-pub use input::{Input, add, plan, read_plan};
+pub use input::{Group, Input, add, plan, read_plan};
 pub use settings::{Known, NamedProcess, RunOption, Settings, file_beside};
 pub use target::{Target, alphabet, bound, out_of_date, target};
 pub use text::{read_text, without_mark};

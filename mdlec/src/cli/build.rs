@@ -8,7 +8,7 @@ use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, matrices,
 use crate::link;
 use mdle_compiler::syntax::outline;
 use mdle_compiler::{Limit, fsm, picture, rust, syntax};
-use mdle_files::{Settings, read_plan};
+use mdle_files::{Input, Settings, Target, read_plan};
 
 /// Runs a command line without a command.
 pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
@@ -72,7 +72,9 @@ pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
 /// Returns the limit on the size of plans that have this form.
 fn limit(kind: EmitKind) -> Limit {
     match kind {
-        EmitKind::Tree | EmitKind::Plan | EmitKind::Nondegenerate | EmitKind::Formal => |_| Ok(()),
+        EmitKind::Tree | EmitKind::Projected | EmitKind::Plan | EmitKind::Nondegenerate | EmitKind::Formal => {
+            |_| Ok(())
+        }
         EmitKind::Expanded | EmitKind::Fsm => fsm::expands,
         EmitKind::Matrices | EmitKind::Scxml => |plan| fsm::expanded_states(plan).map(drop),
         EmitKind::Dot | EmitKind::Mermaid => picture::fits,
@@ -91,6 +93,9 @@ fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, V
         let good = report::diagnostics(&input.sources, &found, options.deny_warnings);
         return if good { Ok((outline::outline(&tree), input.inputs(&target))) } else { Err(Failure::PLAN) };
     }
+    if kind == EmitKind::Projected {
+        return Ok((projected(&mut input, &target, options)?, input.inputs(&target)));
+    }
     let compiled = compile_one(&mut input, &target, options.name.as_deref(), options.deny_warnings, limit(kind))?;
     let nondegenerate = &compiled.nondegenerate;
     let text = match kind {
@@ -102,7 +107,7 @@ fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, V
         EmitKind::Dot => picture::dot(&compiled.machine),
         EmitKind::Mermaid => picture::mermaid(&compiled.machine),
         EmitKind::Scxml => picture::scxml(nondegenerate),
-        EmitKind::Tree | EmitKind::Matrices | EmitKind::Rust | EmitKind::Exe => {
+        EmitKind::Tree | EmitKind::Projected | EmitKind::Matrices | EmitKind::Rust | EmitKind::Exe => {
             needs_target(settings.names_target(options.target.as_deref()))?;
             input.rust(&compiled, &target)
         }
@@ -112,4 +117,25 @@ fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, V
         Failure::PLAN
     })?;
     Ok((text, input.inputs(&target)))
+}
+
+/// Returns the plans of the robots of a group as text, after a check of them.
+fn projected(input: &mut Input, target: &Target, options: &Executable) -> Result<String, Failure> {
+    let wanted = options.name.as_deref();
+    if let Some(name) = wanted {
+        input.must_have(name)?;
+    }
+    let found = input.check(&target.alphabet);
+    if !report::diagnostics(&input.sources, &found, options.deny_warnings) {
+        return Err(Failure::PLAN);
+    }
+    let text = input.projected(&target.alphabet, wanted);
+    match text.is_empty() {
+        true => Err(Failure::usage(format!(
+            "`{}` has no group of robots, and `--emit projected` prints the plans of one\nhelp: a group begins with its \
+             robots: `{{ Group [robot1 robot2] Name … }}`",
+            input.sources.name(input.source)
+        ))),
+        false => Ok(text),
+    }
 }

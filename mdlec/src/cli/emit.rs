@@ -17,6 +17,8 @@ pub(super) struct Emit {
 pub(super) enum EmitKind {
     /// Syntax tree
     Tree,
+    /// Plans of the robots of a group, as MDLe
+    Projected,
     /// Plan with all names resolved
     Plan,
     /// Plan without repeated interrupts
@@ -45,7 +47,13 @@ impl EmitKind {
     /// Returns `true` if people rather than programs read this kind.
     pub(super) fn is_for_people(self) -> bool {
         match self {
-            Self::Tree | Self::Plan | Self::Nondegenerate | Self::Expanded | Self::Matrices | Self::Formal => true,
+            Self::Tree
+            | Self::Projected
+            | Self::Plan
+            | Self::Nondegenerate
+            | Self::Expanded
+            | Self::Matrices
+            | Self::Formal => true,
             Self::Fsm | Self::Dot | Self::Mermaid | Self::Scxml | Self::Rust | Self::Exe => false,
         }
     }

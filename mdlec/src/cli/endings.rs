@@ -37,6 +37,7 @@ pub(super) fn no_picture(file: &Path, kind: EmitKind, plan: &Path) -> Result<(),
         | EmitKind::Fsm
         | EmitKind::Scxml
         | EmitKind::Formal
+        | EmitKind::Projected
         | EmitKind::Rust => "text",
     };
     let picture: PathBuf = file.with_extension("svg");

@@ -154,6 +154,9 @@ impl<'a> Quarks<'a> {
         }
         let message = format!("there is no {what} called `{name}`");
         let report = Diagnostic::new(Code::E0201, message, call.name_span(), "not in the alphabet");
+        if matches!(name, "any" | "all" | "formation") {
+            return report.help(format!("only a group has `{name}`: `{{ Group [robot1 robot2] Name … }}`"));
+        }
         if matches!(name, "true" | "false" | "True" | "False") {
             return report
                 .help("an interrupt is true or false by itself: `bumper` or `NOT bumper`; `null` is never true");

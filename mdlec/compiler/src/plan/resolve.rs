@@ -147,7 +147,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
 
     fn scope(&mut self, plan: &tree::Plan<'a>, frame: Framing) -> (Scope, EndCauses) {
         let (interrupt, ends) = self.interrupt(plan.condition.as_ref(), plan.name.span);
-        let first = self.words_of_name(plan).max(self.bare_condition(plan));
+        let first = self.words_of_name(plan).max(self.bare_condition(plan)).max(self.robots_without_brackets(plan));
         let body = self.sequence(plan.elements.get(first..).unwrap_or(&[]), frame);
         let (name, span) = (plan.name.node.to_owned(), plan.name.span);
         (Scope { name, interrupt, body, here: frame.here, record: None, marks: Vec::new(), span }, ends)

@@ -30,6 +30,27 @@ impl<'a> Resolver<'_, 'a> {
         2
     }
 
+    /// Reports `{ Group robot1 robot2 Round (bumper) …`, robots without brackets; returns the number of elements that
+    /// belong to the mistake.
+    pub(super) fn robots_without_brackets(&mut self, plan: &tree::Plan<'a>) -> usize {
+        if plan.name.node != "Group" || plan.condition.is_some() {
+            return 0;
+        }
+        let name = |element: &Element<'a>| {
+            let Element { primary: Primary::Ref(call), marks: None, .. } = element else { return None };
+            (call.args.is_empty() && self.definitions.get(call.name).is_none()).then_some(*call)
+        };
+        let names: Vec<_> = plan.elements.iter().map_while(name).collect();
+        // The last one is the name of the group.
+        let Some((_, robots @ [first, .., last])) = names.split_last() else { return 0 };
+        let span = first.span.to(last.span);
+        let list = format!("[{}]", robots.iter().map(|robot| robot.name).collect::<Vec<_>>().join(" "));
+        let found = Diagnostic::new(Code::E0208, "no brackets are around the robots of this group", span, "robots");
+        self.found.push(found.fix("write {}", span, list));
+        // What looks like a condition in them follows the names.
+        plan.elements.len()
+    }
+
     /// Reports `{ Plan bumper (Atom …`, a condition without parentheses; returns the number of elements that belong to
     /// the mistake.
     pub(super) fn bare_condition(&mut self, plan: &tree::Plan<'a>) -> usize {

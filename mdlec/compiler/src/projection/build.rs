@@ -1,0 +1,94 @@
+//! Makes the nodes of projected plans.
+
+use crate::alphabet::Alphabet;
+use crate::diagnostic::{Diagnostic, Span};
+use crate::syntax::Arena;
+use crate::syntax::tree::{Arg, Atom, Call, Condition, ConditionNode, Element, Marks, Name, Number, Primary, Spanned};
+
+/// The group whose plans are being made, and the nodes and errors of them.
+pub(super) struct Build<'b, 's> {
+    pub(super) arena: &'s Arena,
+    pub(super) robots: &'b [Name<'s>],
+    pub(super) found: &'b mut Vec<Diagnostic>,
+    pub(super) alphabet: &'b Alphabet,
+    /// Name of the group's plan.
+    pub(super) group: &'s str,
+    /// For each atom of the group its number in the plans of the robots after the first; then that of their last stop.
+    pub(super) numbers: Vec<usize>,
+    /// Number of atoms that have been projected.
+    pub(super) done: usize,
+}
+
+/// The empty span at the start of a span.
+pub(super) fn begin(span: Span) -> Span {
+    Span { end: span.start, ..span }
+}
+
+impl<'s> Build<'_, 's> {
+    /// Number of the atom that is being projected, in the plans of the robots after the first.
+    pub(super) fn own_number(&self) -> usize {
+        self.numbers.get(self.done).copied().unwrap_or(1)
+    }
+
+    /// Number of the last stop in the plans of the robots after the first.
+    pub(super) fn last_number(&self) -> usize {
+        self.numbers.last().copied().unwrap_or(1)
+    }
+
+    pub(super) fn atom(
+        &self,
+        condition: Condition<'s>,
+        control: &'s Call<'s>,
+        marks: Option<&'s Marks<'s>>,
+        span: Span,
+    ) -> Element<'s> {
+        Element { primary: Primary::Atom(self.arena.alloc(Atom { condition, control })), marks, span }
+    }
+
+    pub(super) fn list(&self, elements: &[Element<'s>]) -> &'s [Element<'s>] {
+        self.arena.alloc_slice_copy(elements)
+    }
+
+    pub(super) fn call(&self, name: &'s str, args: &[Arg<'s>], span: Span) -> &'s Call<'s> {
+        self.arena.alloc(Call { name, args: self.arena.alloc_slice_copy(args), span })
+    }
+
+    /// `past ROBOT NUMBER`, as a condition at `span`. With an empty span, reports of runs show this text.
+    pub(super) fn past(&self, robot: &Name<'s>, number: usize, span: Span) -> Condition<'s> {
+        let number = Number::new(self.arena.alloc_str(&number.to_string()), span);
+        let call = self.call("past", &[Arg::Name(Name { node: robot.node, span }), Arg::Number(number)], span);
+        Condition { node: ConditionNode::Call(call), span }
+    }
+
+    /// The first robot is at this atom of its plan, or further.
+    pub(super) fn past_first(&self, number: usize, span: Span) -> Condition<'s> {
+        let first = self.robots.first().copied().unwrap_or(Spanned { node: "", span });
+        self.past(&first, number, begin(span))
+    }
+
+    /// Joins conditions by `join`; a single one stays as it is.
+    pub(super) fn join(
+        &self,
+        parts: &[Condition<'s>],
+        span: Span,
+        join: fn(&'s &'s [Condition<'s>]) -> ConditionNode<'s>,
+    ) -> Condition<'s> {
+        match parts {
+            [only] => *only,
+            _ => Condition { node: join(self.arena.alloc(&*self.arena.alloc_slice_copy(parts))), span },
+        }
+    }
+
+    /// A length in metres, to the millimetre, as an argument at `span`.
+    pub(super) fn length(&self, metres: f64, span: Span) -> Arg<'s> {
+        let digits = format!("{metres:.3}");
+        let digits = digits.trim_end_matches('0').trim_end_matches('.');
+        let digits = if digits == "-0" { "0" } else { digits };
+        Arg::Number(Number::new(self.arena.alloc_str(&format!("{digits}m")), span))
+    }
+
+    /// The first robot as an argument at `span`.
+    pub(super) fn first(&self, span: Span) -> Arg<'s> {
+        Arg::Name(Name { node: self.robots.first().map_or("", |first: &Spanned<&'s str>| first.node), span })
+    }
+}

@@ -1,0 +1,178 @@
+//! Makes the plans of a group's robots: the first robot has the group's conditions, and the atoms of each other one end
+//! when the first has gone on.
+
+use super::build::Build;
+use super::conditions;
+use super::formation::{self, FORMATION};
+use super::part_name;
+use super::robots::used;
+use crate::alphabet::{Alphabet, DeclarationKind};
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::syntax::Arena;
+use crate::syntax::tree::{Arg, Atom, Condition, ConditionNode, Element, Marks, Name, Number, Plan, Primary, Spanned};
+
+/// Time for which each robot stops at the end: a robot whose plan is over sends nothing more, and a state may be lost.
+const LAST_STOP: &str = "2s";
+
+/// Elements of each robot, in the order of the group.
+type Parts<'s> = Vec<Vec<Element<'s>>>;
+
+/// Returns the plans of the robots, in the order of the group.
+pub(super) fn plans<'s>(
+    plan: &Plan<'s>,
+    robots: &[Name<'s>],
+    arena: &'s Arena,
+    alphabet: &Alphabet,
+    found: &mut Vec<Diagnostic>,
+) -> Vec<Plan<'s>> {
+    let mut numbers = vec![1];
+    number(plan.elements, alphabet, &mut numbers);
+    let mut build = Build { arena, robots, found, alphabet, group: plan.name.node, numbers, done: 0 };
+    let guards = conditions::guards(plan, &mut build);
+    let parts = build.elements(plan.elements);
+    let mut plans = Vec::new();
+    for ((robot, guard), elements) in robots.iter().zip(guards).zip(parts) {
+        plans.push(build.plan(plan, *robot, guard, &elements));
+    }
+    plans
+}
+
+/// Adds the number of the atom after each of these: an atom whose law may complete is followed by one that waits.
+fn number(elements: &[Element<'_>], alphabet: &Alphabet, numbers: &mut Vec<usize>) {
+    for element in elements {
+        match element.primary {
+            Primary::Atom(atom) => {
+                let atoms = 1 + usize::from(completes(alphabet, atom.control.name));
+                numbers.push(numbers.last().map_or(1, |last| last + atoms));
+            }
+            Primary::Plan(plan) => number(plan.elements, alphabet, numbers),
+            Primary::String(body) => number(body, alphabet, numbers),
+            Primary::Ref(_) | Primary::Exec(_) | Primary::Formal(_) | Primary::Broken => {}
+        }
+    }
+}
+
+/// Returns `true` if a law of this name may complete by itself.
+fn completes(alphabet: &Alphabet, name: &str) -> bool {
+    let mut declarations = alphabet.declarations_of(name);
+    declarations.any(|declaration| declaration.kind == DeclarationKind::Control && declaration.completes)
+}
+
+impl<'s> Build<'_, 's> {
+    /// Makes the plan of a robot: its elements under its guard, and then the last stop.
+    fn plan(&self, plan: &Plan<'s>, robot: Name<'s>, guard: Option<Condition<'s>>, body: &[Element<'s>]) -> Plan<'s> {
+        let span = plan.name.span;
+        let body = self.list(body);
+        let guarded =
+            Plan { docs: &[], label: None, group: None, params: &[], condition: guard, elements: body, ..*plan };
+        let guarded = Element { primary: Primary::Plan(self.arena.alloc(guarded)), marks: None, span: plan.span };
+        let wait = self.call("wait", &[Arg::Number(Number::new(LAST_STOP, span))], span);
+        let condition = Condition { node: ConditionNode::Call(wait), span };
+        let stop = self.atom(condition, self.call("stop", &[], span), None, span);
+        let node = self.arena.alloc_str(&part_name(self.group, robot.node));
+        let elements = self.list(&[guarded, stop]);
+        let (docs, name) = (self.docs(robot), Spanned { node: &*node, span });
+        Plan { docs, label: None, name, group: None, params: &[], condition: None, elements, span: plan.span }
+    }
+
+    /// Comment of a robot's plan: the links that it needs.
+    fn docs(&self, robot: Name<'s>) -> &'s [&'s str] {
+        let (group, first) = (self.group, self.robots.first().map_or("", |first| first.node));
+        let others: Vec<_> = self.robots.iter().skip(1).map(|other| format!("`{}`", other.node)).collect();
+        let line = match robot.node == first {
+            true => format!(" `{first}` decides for the group {group}: it hears {}.", others.join(" and ")),
+            false => format!(" `{}` of the group {group} hears `{first}`.", robot.node),
+        };
+        self.arena.alloc_slice_copy(&[&*self.arena.alloc_str(&line)])
+    }
+
+    fn elements(&mut self, elements: &[Element<'s>]) -> Parts<'s> {
+        let mut parts = vec![Vec::new(); self.robots.len()];
+        for element in elements {
+            if let Some(power) = element.power() {
+                self.refuse("a group has no loops", power.span(), "write the elements as often as they run");
+            }
+            match element.primary {
+                Primary::Atom(atom) => self.group_atom(atom, element, &mut parts),
+                Primary::Plan(plan) if plan.group.is_none() => self.behavior(plan, element, &mut parts),
+                Primary::String(body) => {
+                    let inner = self.elements(body);
+                    self.joined(inner, element, &mut parts);
+                }
+                Primary::Ref(call) if call.name == self.group => self.found.push(used(call)),
+                Primary::Ref(call) => {
+                    let help = "write its elements here: the first robot decides when each of them ends";
+                    self.refuse("a group uses no plan by name", call.span, help);
+                }
+                Primary::Exec(exec) => {
+                    self.refuse("a group has no loops", exec.count.span(), "write the elements as often as they run");
+                }
+                Primary::Formal(formal) => {
+                    self.refuse(
+                        "a group has no formal notation",
+                        formal.condition.span,
+                        "write `(Atom (condition) law)`",
+                    );
+                }
+                // A group within a group is reported as within any plan.
+                Primary::Plan(_) | Primary::Broken => {}
+            }
+        }
+        parts
+    }
+
+    fn refuse(&mut self, message: &str, span: Span, help: &str) {
+        self.found.push(Diagnostic::new(Code::E0208, message, span, "not in a group").help(help));
+    }
+
+    /// Projects an atom: of the first robot with its condition, of each other one until the first has gone on.
+    fn group_atom(&mut self, atom: &Atom<'s>, element: &Element<'s>, parts: &mut Parts<'s>) {
+        let condition = conditions::of_atom(&atom.condition, self);
+        self.done += 1;
+        let laws = match atom.control.name {
+            FORMATION => formation::read(atom.control, self).map(|formation| (formation.first, formation.others)),
+            _ => Some((atom.control, vec![atom.control; self.robots.len().saturating_sub(1)])),
+        };
+        let Some((first, others)) = laws else { return };
+        let (span, until) = (element.span, self.past_first(self.done + 1, atom.condition.span));
+        let marks = element.marks.map(|marks| &*self.arena.alloc(Marks { label: None, ..*marks }));
+        for (part, law) in parts.iter_mut().zip(std::iter::once(first).chain(others)).skip(1) {
+            part.push(self.atom(until, law, marks, span));
+            if completes(self.alphabet, law.name) {
+                part.push(self.atom(until, self.call("stop", &[], law.span), None, span));
+            }
+        }
+        if let Some(part) = parts.first_mut() {
+            part.push(self.atom(condition, first, element.marks, span));
+        }
+    }
+
+    /// Projects a behavior in place, whose condition the first robot reads.
+    fn behavior(&mut self, plan: &Plan<'s>, element: &Element<'s>, parts: &mut Parts<'s>) {
+        if let [param, ..] = plan.params {
+            self.refuse("a plan in a group has no parameters", param.name.span, "write the value in each place");
+        }
+        let condition = plan.condition.as_ref().map(|condition| conditions::of_behavior(condition, self));
+        let mut inner = self.elements(plan.elements);
+        if let (Some(first), Some(part)) = (inner.first_mut(), parts.first_mut()) {
+            let plan = Plan { condition, params: &[], elements: self.list(first), ..*plan };
+            first.clear();
+            part.push(Element { primary: Primary::Plan(self.arena.alloc(plan)), ..*element });
+        }
+        self.joined(inner, element, parts);
+    }
+
+    /// Adds the elements of a string to those of each robot; they keep its frame.
+    fn joined(&self, inner: Parts<'s>, element: &Element<'s>, parts: &mut Parts<'s>) {
+        for (robot, (part, inner)) in parts.iter_mut().zip(inner).enumerate() {
+            let label = element.label().filter(|_| robot == 0);
+            if inner.is_empty() || element.frame().is_none() && label.is_none() {
+                part.extend(inner);
+                continue;
+            }
+            let marks = Marks { label, frame: element.frame().copied(), power: None };
+            let primary = Primary::String(self.arena.alloc(self.list(&inner)));
+            part.push(Element { primary, marks: Some(self.arena.alloc(marks)), span: element.span });
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Projects the plan of a group of robots: makes one plan for each robot (docs/src/reference/semantics.md, 2.7; paper,
+//! sections II-C and III-G).
+//!
+//! A projected plan is a tree whose spans are those of the group's text, so later stages need not know of groups.
+
+mod build;
+mod conditions;
+mod elements;
+mod formation;
+mod print;
+mod robots;
+#[cfg(test)]
+mod tests;
+
+use crate::alphabet::{Alphabet, Capability};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::tree::Plan;
+use crate::syntax::{Arena, Files};
+
+pub use print::projected;
+
+/// The plan of one robot of a group.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Part {
+    /// Name of the group's plan.
+    pub group: String,
+    /// Name of the robot.
+    pub robot: String,
+    /// Name of the robot's own plan.
+    pub plan: String,
+}
+
+/// Replaces the plan of each group by those of its robots, and returns these with the errors of the groups.
+pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet) -> (Vec<Part>, Vec<Diagnostic>) {
+    let mut found = robots::misplaced(files);
+    if files.plans.iter().all(|plan| plan.group.is_none()) {
+        return (Vec::new(), found);
+    }
+    let uses = robots::uses_of_groups(files);
+    // The uses are reported here, and not as those of plans that are not there.
+    files.is_incomplete |= !uses.is_empty();
+    found.extend(uses);
+    found.extend(robots::equal_names(files));
+    let (mut plans, mut parts, mut own) = (Vec::new(), Vec::new(), 0);
+    for (index, plan) in files.plans.iter().enumerate() {
+        let before = plans.len();
+        match plan.group {
+            None => plans.push(*plan),
+            Some(_) if lacks_link(alphabet) => found.push(no_link(plan, alphabet)),
+            Some(written) => match robots::named(plan, written, &mut found) {
+                Some(robots) => {
+                    let projected = elements::plans(plan, &robots, arena, alphabet, &mut found);
+                    parts.extend(projected.iter().zip(&robots).map(|(own, robot)| Part {
+                        group: plan.name.node.to_owned(),
+                        robot: robot.node.to_owned(),
+                        plan: own.name.node.to_owned(),
+                    }));
+                    plans.extend(projected);
+                }
+                None => files.is_incomplete = true,
+            },
+        }
+        if index < files.own {
+            own += plans.len() - before;
+        }
+    }
+    files.is_incomplete |= found.iter().any(|diagnostic| diagnostic.code == Code::E0403);
+    (files.plans, files.own) = (plans, own);
+    (parts, found)
+}
+
+/// Name of the plan of a robot of the group with this name.
+#[must_use]
+pub fn part_name(group: &str, robot: &str) -> String {
+    format!("{group}_{robot}")
+}
+
+/// Returns `true` if the plan is for an executable of a robot that has the state link in an engine alone.
+fn lacks_link(alphabet: &Alphabet) -> bool {
+    let link = Capability { name: "state_link".to_owned(), size: None };
+    !alphabet.has(&link) && alphabet.needs_engine(&link)
+}
+
+/// Reports a group whose plan is to become an executable.
+fn no_link(plan: &Plan<'_>, alphabet: &Alphabet) -> Diagnostic {
+    let name = plan.name.node;
+    let message = format!("the group `{name}` needs the state link, and an executable has none");
+    Diagnostic::new(Code::E0403, message, plan.name.span, "needs an engine").help(format!(
+        "`mdle run PLAN --target {} --link LINK.toml` runs the part of the robot that LINK.toml names; `mdle run SCENARIO.toml` \
+         runs all of them, simulated",
+        alphabet.name
+    ))
+}

@@ -1,0 +1,113 @@
+//! Checks the heads of groups, and where plans of groups are: each is a plan by itself.
+
+use std::collections::BTreeSet;
+
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::Files;
+use crate::syntax::tree::{Arg, Call, Element, Name, Plan, Primary};
+
+/// Returns the robots of a group, the first of which decides; `None` if they are no group.
+pub(super) fn named<'s>(plan: &Plan<'s>, written: &[Arg<'s>], found: &mut Vec<Diagnostic>) -> Option<Vec<Name<'s>>> {
+    let first = found.len();
+    if let [param, ..] = plan.params {
+        let report =
+            Diagnostic::new(Code::E0208, "the plan of a group has no parameters", param.name.span, "a parameter");
+        found.push(report.help("write the value in each place"));
+    }
+    let mut robots: Vec<Name<'s>> = Vec::new();
+    for robot in written {
+        let Arg::Name(name) = robot else {
+            let report = Diagnostic::new(Code::E0208, "expected the name of a robot", robot.span(), "not a name");
+            found.push(report.help("a group names its robots: `{ Group [robot1 robot2] Name … }`"));
+            continue;
+        };
+        match robots.iter().find(|known| known.node == name.node) {
+            Some(known) => {
+                let message = format!("the group names `{}` twice", name.node);
+                let report = Diagnostic::new(Code::E0208, message, name.span, "the second time");
+                found.push(report.also(known.span, "the first time").help("give each robot a name of its own"));
+            }
+            None => robots.push(*name),
+        }
+    }
+    if let ([] | [_], true) = (robots.as_slice(), found.len() == first) {
+        let name = plan.name.node;
+        let (count, span) = robots.first().map_or(("no robot", plan.name.span), |only| ("one robot", only.span));
+        let message = format!("the group `{name}` has {count}, and a group has two or more");
+        let report = Diagnostic::new(Code::E0208, message, span, "no other robot");
+        found.push(report.help(format!("for one robot leave the group out: `{{ {name} … }}`")));
+    }
+    (robots.len() > 1).then_some(robots)
+}
+
+/// Reports the plans of groups that are parts of other plans.
+pub(super) fn misplaced(files: &Files<'_>) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for plan in &files.plans {
+        visit(plan.elements, &mut |element| {
+            if let Primary::Plan(inner) = element.primary
+                && inner.group.is_some()
+            {
+                let message = format!("the group `{}` is within the plan `{}`", inner.name.node, plan.name.node);
+                let report = Diagnostic::new(Code::E0208, message, inner.name.span, "not expected here");
+                found.push(report.help("the plan of a group is not part of another one: put it outside of all braces"));
+            }
+        });
+    }
+    found
+}
+
+/// Reports the plans of groups that other plans use by name.
+pub(super) fn uses_of_groups(files: &Files<'_>) -> Vec<Diagnostic> {
+    let groups: BTreeSet<&str> =
+        files.plans.iter().filter(|plan| plan.group.is_some()).map(|plan| plan.name.node).collect();
+    let mut found = Vec::new();
+    for plan in files.plans.iter().filter(|plan| plan.group.is_none()) {
+        visit(plan.elements, &mut |element| {
+            if let Primary::Ref(call) = element.primary
+                && groups.contains(call.name)
+            {
+                found.push(used(call));
+            }
+        });
+    }
+    found
+}
+
+/// Reports the plans of groups that have the name of another plan: their robots' plans have other names.
+pub(super) fn equal_names(files: &Files<'_>) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for (index, plan) in files.plans.iter().enumerate() {
+        let before = files.plans.get(..index).unwrap_or(&[]);
+        let first = before
+            .iter()
+            .find(|other| other.name.node == plan.name.node && (other.group.is_some() != plan.group.is_some()));
+        if let Some(first) = first {
+            let message = format!("there are two plans called `{}`", plan.name.node);
+            let report = Diagnostic::new(Code::E0203, message, plan.name.span, "the second one");
+            found.push(report.also(first.name.span, "the first one").help("give one of them another name"));
+        }
+    }
+    found
+}
+
+/// Reports the use of a group's plan by name.
+pub(super) fn used(call: &Call<'_>) -> Diagnostic {
+    let message = format!("the group `{}` cannot be part of a plan", call.name);
+    let report = Diagnostic::new(Code::E0208, message, call.name_span(), "the plan of a group");
+    report.help("a group has plans for several robots, and runs by itself")
+}
+
+/// Calls `act` with each of these elements and all inside them.
+fn visit<'s>(elements: &[Element<'s>], act: &mut impl FnMut(&Element<'s>)) {
+    for element in elements {
+        act(element);
+        match element.primary {
+            Primary::Plan(plan) => visit(plan.elements, act),
+            Primary::Exec(exec) => visit(exec.body, act),
+            Primary::String(body) => visit(body, act),
+            Primary::Formal(formal) => visit(formal.body, act),
+            Primary::Atom(_) | Primary::Ref(_) | Primary::Broken => {}
+        }
+    }
+}
