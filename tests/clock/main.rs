@@ -2,6 +2,7 @@
 
 mod bad_line;
 mod faults;
+mod groups;
 mod links;
 mod phases;
 mod pursuits;

@@ -23,7 +23,7 @@ const PERIOD: f64 = 0.1;
 fn scenario(test: &str, more: &str) -> PathBuf {
     let folder = folder(test);
     let plans = root().join("plans/formation");
-    for file in ["first_robot.mdle", "second_robot.mdle", "third_robot.mdle", "floor.toml"] {
+    for file in ["triangle.mdle", "floor.toml"] {
         fs::copy(plans.join(file), folder.join(file)).unwrap();
     }
     let text = fs::read_to_string(plans.join("formation.toml")).unwrap();
@@ -117,7 +117,7 @@ fn a_contact_of_one_robot_stops_all() {
     fs::write(&file, text.replace("[3.5, 0.7]", "[-0.3, 0.6]")).unwrap();
     let report = String::from_utf8(run(&folder, 9_800_020, "log.jsonl").stdout).unwrap();
     let line = |robot: &str, words: &str| report.lines().any(|line| line.contains(robot) && line.contains(words));
-    assert!(line("robot2: stop", "<- bumper"), "{report}");
+    assert!(line("robot2: stop", "<- any bumper"), "{report}");
     assert!(line("robot1: stop", "<- past robot2 3"), "{report}");
     assert!(line("robot3: stop", "<- past robot1 3"), "{report}");
 }
@@ -127,4 +127,86 @@ fn the_same_seed_gives_the_same_run() {
     let folder = scenario("formation_bytes", "\n[link]\nlatency = \"0ms..200ms\"\nloss = 0.1\n");
     let bytes = |name: &str| (run(&folder, 5, name).stdout, fs::read(folder.join(name)).unwrap());
     assert!(bytes("one.jsonl") == bytes("other.jsonl"), "two runs of one seed differ");
+}
+
+/// A group of two, by whose plan robots that turn and drive end when the first one has.
+const PAIR: &str = "{ Group [robot1 robot2] Pair (any bumper OR wait 1min)
+  (Atom (null) (rotate 90))
+  (Atom (all rendezvous) stop)
+  (Atom (null) (advance 1m 20cm/s))
+}
+";
+
+/// A scenario of robots with these names, 2 m apart, that all run the plan `pair.mdle`.
+fn pair(test: &str, robots: &[&str], more: &str) -> PathBuf {
+    let folder = folder(test);
+    fs::write(folder.join("pair.mdle"), PAIR.to_owned() + more).unwrap();
+    let robot = |(number, name): (usize, &&str)| {
+        format!("[[robot]]\nname = \"{name}\"\nfile = \"pair.mdle\"\nstart = \"0, {}, 0\"\n", 2 * number)
+    };
+    let robots: Vec<_> = robots.iter().enumerate().map(robot).collect();
+    fs::write(folder.join("formation.toml"), robots.concat()).unwrap();
+    folder
+}
+
+#[test]
+fn robots_whose_laws_complete_wait_for_the_first() {
+    let folder = pair("formation_completes", &["robot1", "robot2"], "");
+    let output = run(&folder, 1, "log.jsonl");
+    let report = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{report}");
+    let lines: Vec<&str> = report.lines().filter(|line| line.contains("robot2: ")).collect();
+    assert!(lines[0].contains("robot2: stop (pair.mdle:2, Pair)  <- completed"), "{report}");
+    assert!(lines[1].contains("robot2: stop (pair.mdle:3, Pair)  <- past robot1 2 (pair.mdle:2"), "{report}");
+    assert!(lines[2].contains("robot2: advance 1 20 (pair.mdle:4, Pair)  <- past robot1 3 (pair.mdle:3"), "{report}");
+    let turns = turns(&folder.join("log.jsonl"));
+    for (robot, start) in [("robot1", 0.0), ("robot2", 2.0)] {
+        let y = number(&turns.last().unwrap()[robot], "y");
+        assert!((y - start - 1.0).abs() < 0.05, "{robot}: {y}");
+    }
+}
+
+/// Returns what `mdle` says on standard error, with its exit status.
+fn refused(folder: &Path, arguments: &[&str]) -> String {
+    let output = Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap();
+    format!("{}[{}]", String::from_utf8(output.stderr).unwrap(), output.status.code().unwrap())
+}
+
+#[test]
+fn a_scenario_has_the_robots_of_its_group() {
+    let refused =
+        |test: &str, robots: &[&str], more: &str| refused(&pair(test, robots, more), &["run", "formation.toml"]);
+    let lacks = refused("formation_lacks", &["robot1", "robot3"], "");
+    assert!(lacks.contains("the group `Pair` has the robot `robot2`, and the scenario has none"), "{lacks}");
+    let more = refused("formation_more", &["robot1", "robot2", "robot3"], "");
+    assert!(more.contains("the group `Pair` has no robot `robot3`"), "{more}");
+    assert!(more.contains("the robots of the group are robot1, robot2"), "{more}");
+    let several = "{ Other (wait 5) (Atom (null) stop) }\n";
+    let several = refused("formation_several", &["robot1", "robot2"], several);
+    assert!(several.contains("several plans that no other plan uses: Pair_robot1, Pair_robot2, Other"), "{several}");
+    assert!([lacks, more, several].iter().all(|message| message.ends_with("[2]")));
+}
+
+#[test]
+fn a_part_of_a_group_runs_by_the_name_of_its_robot() {
+    let folder = pair("formation_parts", &[], "");
+    let link = |name: &str| format!("name = \"{name}\"\nlisten = \"127.0.0.1:0\"\nkey = \"k\"\nrobot = []\n");
+    fs::write(folder.join("other.toml"), link("robot3")).unwrap();
+    fs::write(folder.join("own.toml"), link("robot2")).unwrap();
+    let run = |options: &[&str]| refused(&folder, &[&["run", "pair.mdle", "--target", "sim"], options].concat());
+    let alone = run(&[]);
+    assert!(alone.contains("`pair.mdle` is the plan of a group, and has one for each robot: Pair_robot1"), "{alone}");
+    let other = run(&["--link", "other.toml"]);
+    assert!(
+        other.contains("other.toml is the link of the robot `robot3`, which is not in the group `Pair`"),
+        "{other}"
+    );
+    for options in [&["--link", "own.toml"][..], &["--link", "own.toml", "--plan", "Pair"]] {
+        let own = run(options);
+        assert!(own.contains("the plan names the robot `robot1`, which is not in own.toml"), "{own}");
+    }
+    let first = run(&["--link", "own.toml", "--plan", "Pair_robot1"]);
+    assert!(first.contains("the plan names the robot `robot2`"), "{first}");
+    let unlinked = run(&["--plan", "Pair_robot1"]);
+    assert!(unlinked.contains("the plan names the robot `robot2`, and there is no link to it"), "{unlinked}");
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_engine::link::{StateLink, Tcp, TcpSettings};
+use mdle_files::Group;
 use mdle_host::Refusal;
 use mdle_runtime::Pose;
 use mdle_sim::Start;
@@ -60,6 +61,22 @@ impl LinkFile {
     /// Returns the path of the file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Returns the name of the plan that this robot runs of the plan of a group.
+    ///
+    /// # Errors
+    /// The robot is not in the group.
+    pub(crate) fn part(&self, group: &Group) -> Result<String, Failure> {
+        let own = &self.settings.name;
+        group.plan_of(own).ok_or_else(|| {
+            Failure::Usage(format!(
+                "{} is the link of the robot `{own}`, which is not in the group `{}`\nhelp: its robots are {}",
+                self.path.display(),
+                group.name,
+                group.robots.join(", ")
+            ))
+        })
     }
 
     /// Checks that the link knows the robots that a plan names.

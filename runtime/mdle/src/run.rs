@@ -36,7 +36,11 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
     let safety = arguments.safety.as_deref().map(SafetyFile::read).transpose()?;
     let link = arguments.link.as_deref().map(LinkFile::read).transpose()?;
     let mut input = read_plan(&arguments.file, &target)?;
-    let (plan, mut ready) = compiled(&arguments, &linked, &target, &mut input, safety.as_ref())?;
+    let named = arguments.plan.as_deref();
+    let group = link.as_ref().and_then(|link| Some((link, input.group(named)?)));
+    let part = group.map(|(link, group)| link.part(&group)).transpose()?;
+    let wanted = part.as_deref().or(named);
+    let (plan, mut ready) = compiled(&arguments, wanted, &linked, &target, &mut input, safety.as_ref())?;
     ready.hears(arguments.hearing()?);
     let linked_by = link.as_ref().map(|link| link.path().to_owned());
     ready.link(link)?;
@@ -102,12 +106,12 @@ fn beside(arguments: &Run, ready: &dyn Ready) -> String {
 /// Compiles the only plan to run and loads it; returns it with its name. Messages go to standard error.
 fn compiled(
     arguments: &Run,
+    wanted: Option<&str>,
     linked: &LinkedTarget,
     target: &Arc<Target>,
     input: &mut Input,
     safety: Option<&SafetyFile>,
 ) -> Result<(String, Box<dyn Ready>), Failure> {
-    let wanted = arguments.plan.as_deref();
     if let Some(name) = wanted {
         input.must_have(name)?;
     }

@@ -8,7 +8,7 @@ use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::diagnostic::judged;
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::link::Faults;
-use mdle_files::{Settings, read_plan};
+use mdle_files::{Group, Settings, read_plan};
 use mdle_host::{Quantity, Target as _, read_file, read_text, setpoints};
 use mdle_runtime::{Nanos, Plan as _, Pose, Setpoint};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
@@ -109,7 +109,7 @@ impl Scenario {
     /// Makes a robot, which may not stand in one of those before it.
     fn member(&self, text: &RobotText, path: &Path, names: &[&str]) -> Result<Member, SetupError> {
         let name = text.name.get_ref();
-        let (loaded, files) = plan(&text.file, text.plan.as_ref(), path)?;
+        let loaded = plan(&text.file, text.plan.as_ref(), path, Some((text, names)))?;
         let plan = loaded.plan();
         for other in plan.robots() {
             if other == name || !names.contains(other) {
@@ -159,15 +159,20 @@ impl Scenario {
     }
 }
 
-/// A plan with the names and the texts of its files, its own first.
-pub(super) type PlanWithFiles = (Arc<Loaded<SimAlphabet>>, Vec<(String, String)>);
-
-/// Compiles and loads the plan of a robot.
-pub(super) fn plan(file: &At<PathBuf>, name: Option<&At<String>>, path: &Path) -> Result<PlanWithFiles, SetupError> {
+/// Compiles and loads the plan of a robot; of the plan of a group, the part of the robot with these names of all.
+pub(super) fn plan(
+    file: &At<PathBuf>,
+    name: Option<&At<String>>,
+    path: &Path,
+    robot: Option<(&RobotText, &[&str])>,
+) -> Result<Arc<Loaded<SimAlphabet>>, SetupError> {
     let file = path.with_file_name("").join(file.get_ref());
     let target = Settings::beside(&file)?.target(Some(SIM))?;
     let mut input = read_plan(&file, &target)?;
-    let wanted = name.map(|plan| plan.get_ref().as_str());
+    let named = name.map(|plan| plan.get_ref().as_str());
+    let group = robot.and_then(|robot| Some((robot, input.group(named)?)));
+    let part = group.map(|((text, names), group)| part(text, names, &group)).transpose()?;
+    let wanted = part.as_deref().or(named);
     if let Some(name) = wanted {
         input.must_have(name)?;
     }
@@ -180,6 +185,25 @@ pub(super) fn plan(file: &At<PathBuf>, name: Option<&At<String>>, path: &Path) -
     let named = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine)).collect();
     let machine = input.only(named)?;
     Ok((Arc::new(load::load(&machine, &input.sources, &target.alphabet)?), texts(&input)))
+}
+
+/// Returns the name of a robot's part of the plan of a group, all of whose robots the scenario has to have.
+fn part(text: &RobotText, names: &[&str], group: &Group) -> Result<String, ScenarioError> {
+    let (own, name) = (text.name.get_ref(), &group.name);
+    let robots = group.robots.join(", ");
+    let Some(part) = group.plan_of(own) else {
+        let known: Vec<&str> = group.robots.iter().map(String::as_str).collect();
+        let message = format!("the group `{name}` has no robot `{own}`{}", did_you_mean(own, &known));
+        return Err(ScenarioError::at(text.name.span(), message).help(format!("the robots of the group are {robots}")));
+    };
+    match group.robots.iter().find(|robot| !names.contains(&robot.as_str())) {
+        None => Ok(part),
+        Some(lacking) => {
+            let near = did_you_mean(lacking, names);
+            let message = format!("the group `{name}` has the robot `{lacking}`, and the scenario has none{near}");
+            Err(ScenarioError::at(text.file.span(), message).help(format!("the robots of the group are {robots}")))
+        }
+    }
 }
 
 /// Returns the error about a robot that a plan names and that is not there.
