@@ -45,6 +45,10 @@ const SQUEEZES: Nanos = Nanos(30_000_000_000);
 const GOES_ROUND: Nanos = Nanos(60_000_000_000);
 /// Time without progress after which the robot follows ways on its map.
 const HELD_UP: Nanos = Nanos(1_200_000_000);
+/// Time without progress after which the robot, kept from coming nearer, is near enough by what odometry may have
+/// drifted, and that drift as a part of the way driven.
+const DRIFTS_AFTER: Nanos = Nanos(10_000_000_000);
+const DRIFTS: f64 = 0.02;
 
 /// Drives to the point at a bearing and range from where the atom begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,6 +86,8 @@ pub struct GoingRound {
     look_ahead: Meters,
     /// Distance from the goal at which the robot is near enough.
     near: Meters,
+    /// Length of the way driven, in metres, and the last place.
+    driven: (f64, Pose),
     previous: Option<Radians>,
     /// Time at which the robot first headed in the direction that it had chosen, after the turn with which it begins.
     headed: Option<Nanos>,
@@ -129,11 +135,17 @@ impl GoingRound {
         Radians(libm::atan2(self.goal.y.0 - here.y.0, self.goal.x.0 - here.x.0))
     }
 
+    /// Returns the distance from the goal at which the robot is near enough if something keeps it from coming nearer.
+    fn near(&self, here: Pose, t: Nanos) -> Meters {
+        let has_drifted = self.progress.stalled(here, &self.goal, t) > DRIFTS_AFTER;
+        Meters(self.near.0 + if has_drifted { DRIFTS * self.driven.0 } else { 0.0 })
+    }
+
     /// Notes whether something keeps the robot, which is near the goal, from coming nearer.
     fn notice(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) {
         let Meters(distance) = here.distance(&self.goal);
         let is_in_the_way = obstacles.free(self.direction(here)).0 < distance - ARRIVED.0 || self.narrow.stands();
-        let is_kept_off = distance <= self.near.0 && is_in_the_way;
+        let is_kept_off = distance <= self.near(here, t).0 && is_in_the_way;
         self.kept_off = self.kept_off.or(Some(t)).filter(|_| is_kept_off);
     }
 
@@ -245,7 +257,8 @@ impl GoingRound {
         let from = self.detour.map_or(distance, |detour| Meters(detour.from.0.min(distance.0)));
         let free = chosen.to_goal.map(|free| (free, asked));
         let chosen = chosen.direction;
-        let ahead = Ahead { goal: self.goal, from, chosen, free, speed: self.speed, before: None };
+        let near = self.near(here, t);
+        let ahead = Ahead { goal: self.goal, near, from, chosen, free, speed: self.speed, before: None };
         self.narrow.input(y, here, t, ahead)
     }
 }
@@ -267,6 +280,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
             speed: self.speed,
             look_ahead: Gains::of(y).look_ahead,
             near: Meters(y.body_radius().0 + NEAR),
+            driven: (0.0, here),
             previous: None,
             headed: None,
             detour: None,
@@ -283,6 +297,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
 
     fn input(&mut self, y: &Y, t: Nanos) -> Twist {
         let here = y.pose();
+        self.driven = (self.driven.0 + here.distance(&self.driven.1).0, here);
         // Beside obstacles that the robot passes closely, walls are no hallway.
         if !self.narrow.follows() {
             self.turn_goal(y.drift(self.axis), here);
@@ -376,6 +391,25 @@ mod tests {
         law.turn_goal(quarter, at(2.0, 0.0));
         law.turn_goal(Radians(0.0), at(2.0, 0.0));
         assert!(law.goal.distance(&at(4.0, 1.0)).0 < 1e-12, "{:?}", law.goal);
+    }
+
+    /// After 40 m by odometry, a goal may be 80 cm off: one in a wall is reached where the wall ends the way, but not
+    /// before the robot has tried for a while.
+    #[test]
+    fn a_goal_that_has_drifted_into_a_wall_is_reached() {
+        let mut y = Sensed::default();
+        (0..3).for_each(|_| y.ping(mdle_runtime::SonarId::new(0), Some(0.2)));
+        let mut law = quark(0.0, 0.9).begin(&y, begun());
+        let mut ends = |driven: f64| {
+            law.driven.0 = driven;
+            law.kept_off = None;
+            (0..300).map(|turn| Nanos(turn * 100_000_000)).find(|t| {
+                law.input(&y, *t);
+                law.completed(&y, *t)
+            })
+        };
+        assert_eq!(ends(1.0), None);
+        assert!(ends(40.0).is_some_and(|t| t > DRIFTS_AFTER));
     }
 
     /// An ATRV-mini between two walls begins with a turn of 170 degrees; no way on the map leads elsewhere meanwhile.

@@ -31,6 +31,21 @@ const PASSES: u32 = 12;
 const GAINS: f64 = 0.5;
 /// Distance of the far edge of the map, in metres, from which distances count.
 pub(crate) const EDGE: f64 = 2.4;
+
+/// The ends of ways on a map.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ends {
+    /// Place of the goal.
+    pub(crate) goal: Pose,
+    /// Distance from the goal at which the robot is near enough: a goal near a wall, or in it by odometry's drift, lies
+    /// where the body has no room.
+    pub(crate) near: Meters,
+    /// Distance of the goal from which a way must lead nearer before it leaves the map.
+    pub(crate) from: Meters,
+    /// Distance from the goal, in metres, from which distances count.
+    pub(crate) base: f64,
+}
+
 /// The distance of each cell from the end of the way, and its class.
 pub(crate) struct Wave {
     cells: [u16; SIDE * SIDE],
@@ -81,11 +96,11 @@ impl Wave {
     /// The wave before it starts.
     pub(crate) const NONE: Self = Self { cells: [DISTANCE; SIDE * SIDE] };
 
-    /// Lets a wave start from a goal, or from where it is nearer than `from` by a while, over the way of this body.
-    pub(crate) fn start<Y: DiffDrive>(&mut self, map: &Map, goal: &Pose, from: Meters, base: f64, y: &Y) {
+    /// Lets a wave start from the ends of ways over the map of this body.
+    pub(crate) fn start<Y: DiffDrive>(&mut self, map: &Map, ends: &Ends, y: &Y) {
         self.measure(map, y);
-        let rows = self.seed(map, goal, from.0, base);
-        self.spread(rows);
+        self.seed(map, ends);
+        self.spread();
     }
 
     /// Returns the centimetres, by cost, from a cell to the goal, less those from which distances count; `None` if no
@@ -198,22 +213,20 @@ impl Wave {
         changes
     }
 
-    /// Sets the distances where ways end; returns the rows that may change by it.
-    fn seed(&mut self, map: &Map, goal: &Pose, from: f64, base: f64) -> Rows {
-        let (corner, end, mut rows) = (map.corner, Cell::of(goal.x.0, goal.y.0), Rows::NONE);
-        let is_edge = |at: i32| at == 0 || at == CELLS - 1;
-        let of_row = |y: i32| (0..CELLS).filter(move |x| is_edge(*x) || is_edge(y)).map(move |x| (x, y));
-        let goals = Some((end.x - corner.x, end.y - corner.y)).filter(|_| map.contains(end));
-        for (x, y) in (0..CELLS).flat_map(of_row).chain(goals) {
+    /// Sets the distances where ways end.
+    fn seed(&mut self, map: &Map, Ends { goal, near, from, base }: &Ends) {
+        let corner = map.corner;
+        for (x, y, place) in all() {
+            let is_border = x == 0 || y == 0 || x == CELLS - 1 || y == CELLS - 1;
             let at = Cell { x: corner.x + x, y: corner.y + y };
-            let (is_goal, place) = (at == end, index(x, y));
             let value = self.at(place);
-            if factor(value) == 0 {
+            let (x, y) = at.centre();
+            let left = libm::hypot(goal.x.0 - x, goal.y.0 - y);
+            let is_end = at == Cell::of(goal.x.0, goal.y.0) || left < near.0;
+            if !(is_end || is_border) || factor(value) == 0 {
                 continue;
             }
-            let centre = at.centre();
-            let left = libm::hypot(goal.x.0 - centre.0, goal.y.0 - centre.1);
-            if is_goal || left < from - GAINS {
+            if is_end || left < from.0 - GAINS {
                 let distance = libm::round(100.0 * (left - base)).max(0.0) as u16;
                 self.set(place, value & !DISTANCE | distance.min(DISTANCE));
                 rows.changes(y);

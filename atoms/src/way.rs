@@ -6,7 +6,7 @@ use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians};
 
 use crate::map::{CELLS, Cell, Map};
-use crate::wave::{EDGE, SIDE, Wave, index};
+use crate::wave::{EDGE, Ends, SIDE, Wave, index};
 
 /// Most centimetres, by cost, that a way may be longer than the straight one.
 const LONGER: i32 = 600;
@@ -28,6 +28,8 @@ const KEEPS: i32 = 80;
 pub(crate) struct Ahead {
     /// Place of the goal.
     pub(crate) goal: Pose,
+    /// Distance from the goal at which the robot is near enough.
+    pub(crate) near: Meters,
     /// Distance of the goal from which a way must lead nearer.
     pub(crate) from: Meters,
     /// Direction that the rule has chosen.
@@ -59,7 +61,7 @@ pub(crate) fn way<Y: DiffDrive>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> 
     let base = (straight - EDGE).max(0.0);
     // Made where it stays: a copy would take as much of the stack again.
     let mut wave = Wave::NONE;
-    wave.start(map, goal, ahead.from, base, y);
+    wave.start(map, &Ends { goal: *goal, near: ahead.near, from: ahead.from, base }, y);
     let way = Way { wave: &wave, here: index(CELLS / 2, CELLS / 2) };
     if way.wave.left(way.here)? > libm::round(100.0 * (straight - base)) as i32 + LONGER {
         return None;
@@ -156,6 +158,19 @@ mod tests {
     use super::*;
     use crate::trial::{Sensed, sized};
 
+    /// The state of a rule that has chosen the way straight ahead to a goal, 5 m away at first.
+    fn ahead(goal: Pose, before: Option<Next>) -> Ahead {
+        Ahead {
+            goal,
+            near: Meters(0.0),
+            from: Meters(5.0),
+            chosen: Radians(0.0),
+            free: None,
+            speed: MetersPerSecond(0.2),
+            before,
+        }
+    }
+
     /// Returns the place to drive to first, past a wall 0.6 m ahead with a gap of this width, in metres, whose middle
     /// is 0.3 m to the left.
     fn through(gap: f64, y: &Sensed) -> Option<(f64, f64)> {
@@ -163,9 +178,7 @@ mod tests {
         map.occupy((0.6, 0.3 + gap / 2.0), (0.6, 1.55));
         map.occupy((0.6, 0.3 - gap / 2.0), (0.6, -1.55));
         let goal = Pose { x: Meters(5.0), ..Pose::ORIGIN };
-        let speed = MetersPerSecond(0.2);
-        let ahead = Ahead { goal, from: Meters(5.0), chosen: Radians(0.0), free: None, speed, before: None };
-        way(&map, Pose::ORIGIN, &ahead, y).map(|next| (next.x, next.y))
+        way(&map, Pose::ORIGIN, &ahead(goal, None), y).map(|next| (next.x, next.y))
     }
 
     #[test]
@@ -186,14 +199,7 @@ mod tests {
     #[test]
     fn a_goal_on_the_map_is_driven_to() {
         let goal = Pose { x: Meters(0.2), y: Meters(0.1), ..Pose::ORIGIN };
-        let ahead = Ahead {
-            goal,
-            from: Meters(0.22),
-            chosen: Radians(0.0),
-            free: None,
-            speed: MetersPerSecond(0.2),
-            before: None,
-        };
+        let ahead = Ahead { from: Meters(0.22), ..ahead(goal, None) };
         let mut map = Map::EMPTY;
         map.occupy((1.0, 1.0), (1.0, 1.0));
         let next = Some(Next { x: 0.2, y: 0.1, is_straight: false });
@@ -207,9 +213,7 @@ mod tests {
             map.occupy((distance, 0.35 * side), (distance, 1.55 * side));
         }
         let goal = Pose { x: Meters(5.0), ..Pose::ORIGIN };
-        let (chosen, speed) = (Radians(0.0), MetersPerSecond(0.2));
-        let ahead = Ahead { goal, from: Meters(5.0), chosen, free: None, speed, before };
-        way(&map, Pose::ORIGIN, &ahead, &sized(0.315, 0.27)).expect("a way")
+        way(&map, Pose::ORIGIN, &ahead(goal, before), &sized(0.315, 0.27)).expect("a way")
     }
 
     #[test]
@@ -232,10 +236,22 @@ mod tests {
         let next = |left: f64| {
             let before = Some(Next { x: 0.3, y: left, is_straight: false });
             let goal = Pose { x: Meters(5.0), ..Pose::ORIGIN };
-            let (chosen, speed) = (Radians(0.0), MetersPerSecond(0.2));
-            let ahead = Ahead { goal, from: Meters(5.0), chosen, free: None, speed, before };
-            way(&map, Pose::ORIGIN, &ahead, &sized(0.315, 0.27)).expect("a way").y
+            way(&map, Pose::ORIGIN, &ahead(goal, before), &sized(0.315, 0.27)).expect("a way").y
         };
         assert!(next(0.3) > 0.1 && next(-0.3) < -0.1);
+    }
+
+    /// A body has no room at a goal 10 cm before a wall: the robot drives to where it is near enough.
+    #[test]
+    fn a_goal_beside_a_wall_has_a_way() {
+        let mut map = Map::EMPTY;
+        map.occupy((1.2, -1.55), (1.2, 1.55));
+        let goal = Pose { x: Meters(1.1), ..Pose::ORIGIN };
+        let next = |near| {
+            let ahead = Ahead { near: Meters(near), from: Meters(1.1), ..ahead(goal, None) };
+            way(&map, Pose::ORIGIN, &ahead, &sized(0.315, 0.27))
+        };
+        assert_eq!(next(0.1), None);
+        assert!(next(0.5).is_some_and(|next| next.x > 0.3 && next.y.abs() < 0.1));
     }
 }
