@@ -99,8 +99,8 @@ impl Wave {
     /// Lets a wave start from the ends of ways over the map of this body.
     pub(crate) fn start<Y: DiffDrive>(&mut self, map: &Map, ends: &Ends, y: &Y) {
         self.measure(map, y);
-        self.seed(map, ends);
-        self.spread();
+        let rows = self.seed(map, ends);
+        self.spread(rows);
     }
 
     /// Returns the centimetres, by cost, from a cell to the goal, less those from which distances count; `None` if no
@@ -213,23 +213,24 @@ impl Wave {
         changes
     }
 
-    /// Sets the distances where ways end.
-    fn seed(&mut self, map: &Map, Ends { goal, near, from, base }: &Ends) {
-        let corner = map.corner;
-        for (x, y, place) in all() {
-            let is_border = x == 0 || y == 0 || x == CELLS - 1 || y == CELLS - 1;
-            let at = Cell { x: corner.x + x, y: corner.y + y };
-            let value = self.at(place);
+    /// Sets the distances where ways end; returns the rows that may change by it.
+    fn seed(&mut self, map: &Map, Ends { goal, near, from, base }: &Ends) -> Rows {
+        let (corner, end, mut rows) = (map.corner, Cell::of(goal.x.0, goal.y.0), Rows::NONE);
+        for (column, row, place) in all() {
+            let is_border = column == 0 || row == 0 || column == CELLS - 1 || row == CELLS - 1;
+            let at = Cell { x: corner.x + column, y: corner.y + row };
             let (x, y) = at.centre();
-            let left = libm::hypot(goal.x.0 - x, goal.y.0 - y);
-            let is_end = at == Cell::of(goal.x.0, goal.y.0) || left < near.0;
-            if !(is_end || is_border) || factor(value) == 0 {
+            let (ahead, aside) = (goal.x.0 - x, goal.y.0 - y);
+            let is_near = ahead.abs() < near.0 && aside.abs() < near.0;
+            let value = self.at(place);
+            if !(at == end || is_near || is_border) || factor(value) == 0 {
                 continue;
             }
-            if is_end || left < from.0 - GAINS {
+            let left = libm::hypot(ahead, aside);
+            if at == end || left < near.0 || is_border && left < from.0 - GAINS {
                 let distance = libm::round(100.0 * (left - base)).max(0.0) as u16;
                 self.set(place, value & !DISTANCE | distance.min(DISTANCE));
-                rows.changes(y);
+                rows.changes(row);
             }
         }
         rows
@@ -274,7 +275,8 @@ mod tests {
         }
         let goal = Pose { x: Meters(5.0), ..Pose::ORIGIN };
         let mut wave = Wave::NONE;
-        wave.start(&map, &goal, Meters(5.0), 2.6, &Sensed::default());
+        let ends = Ends { goal, near: Meters(0.0), from: Meters(5.0), base: 2.6 };
+        wave.start(&map, &ends, &Sensed::default());
         let here = index(CELLS / 2, CELLS / 2);
         assert!(wave.left(here).is_some_and(|left| left > 300), "a way round the walls");
         let (before, mut rows) = (wave.cells, Rows::NONE);

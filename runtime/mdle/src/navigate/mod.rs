@@ -57,7 +57,7 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
     }
     options.extend(arguments.options.iter().cloned());
     let files = texts(looks.map_or(&first.input, |look| &look.input));
-    let recorded = RecordedPlan { files, beside: String::new(), safety: None };
+    let recorded = RecordedPlan { files, ..RecordedPlan::default() };
     let read = input.inputs(&target);
     (linked.navigate)(&Route { legs, look }, &target, Call { recorded, read, ..call(&arguments, options) }, library)
 }

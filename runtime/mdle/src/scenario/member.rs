@@ -29,6 +29,8 @@ pub(super) struct Runner {
     passes: Passes,
     killed: Option<Nanos>,
     recorder: Option<WayRecorder>,
+    /// The path that was replaced in the turn before.
+    replaced: Option<StoredPath>,
     /// Its ears, and the way from them to the module `heading`.
     ears: Option<(RobotEars, Microphones)>,
 }
@@ -85,7 +87,10 @@ impl Runner {
         let added = hearing.map(|hearing| hearing.added(library, &microphones));
         let engine =
             Engine::new(plan, added.as_ref().unwrap_or(library), &terms).map_err(|refusal| format!("{refusal:?}"))?;
-        let engine = engine.linked(StateLink::new(Box::new(air), &name, start));
+        let mut engine = engine.linked(StateLink::new(Box::new(air), &name, start));
+        if is_recorded {
+            engine.record();
+        }
         let stored =
             |(name, setpoints): (&'static str, Vec<Setpoint>)| StoredPath { name, setpoints: setpoints.leak() };
         let mut stored: Vec<StoredPath> = paths.into_iter().map(stored).collect();
@@ -101,6 +106,7 @@ impl Runner {
             passes: Passes::default(),
             killed,
             recorder: records.zip(Sim::PATHS).map(|(path, replays)| WayRecorder::new(path, replays.fastest)),
+            replaced: None,
             ears: ears.map(|(ears, _)| (ears, microphones)),
         })
     }

@@ -109,7 +109,7 @@ impl Scenario {
     /// Makes a robot, which may not stand in one of those before it.
     fn member(&self, text: &RobotText, path: &Path, names: &[&str]) -> Result<Member, SetupError> {
         let name = text.name.get_ref();
-        let loaded = plan(&text.file, text.plan.as_ref(), path, Some((text, names)))?;
+        let (loaded, files) = plan(&text.file, text.plan.as_ref(), path, Some((text, names)))?;
         let plan = loaded.plan();
         for other in plan.robots() {
             if other == name || !names.contains(other) {
@@ -137,7 +137,7 @@ impl Scenario {
         let killed = text.killed.as_ref().map(|killed| duration(killed, 0.0, 1e9)).transpose()?;
         let killed = killed.map(|killed| Nanos(u64::try_from(killed.as_nanos()).unwrap_or(u64::MAX)));
         let ears = text.ears.as_ref().map(|ears| self.ears(ears, seed.unwrap_or_default())).transpose()?;
-        Ok(Member { name: name.clone(), body, robot, start, loaded, paths, records, killed, ears })
+        Ok(Member { name: name.clone(), body, robot, start, loaded, files, paths, records, killed, ears })
     }
 
     /// Returns the ears of a robot, and the radius of its head.
@@ -159,13 +159,16 @@ impl Scenario {
     }
 }
 
+/// A plan with the names and the texts of its files, its own first.
+pub(super) type PlanWithFiles = (Arc<Loaded<SimAlphabet>>, Vec<(String, String)>);
+
 /// Compiles and loads the plan of a robot; of the plan of a group, the part of the robot with these names of all.
 pub(super) fn plan(
     file: &At<PathBuf>,
     name: Option<&At<String>>,
     path: &Path,
     robot: Option<(&RobotText, &[&str])>,
-) -> Result<Arc<Loaded<SimAlphabet>>, SetupError> {
+) -> Result<PlanWithFiles, SetupError> {
     let file = path.with_file_name("").join(file.get_ref());
     let target = Settings::beside(&file)?.target(Some(SIM))?;
     let mut input = read_plan(&file, &target)?;

@@ -52,7 +52,7 @@ impl CrowdSetup {
             let message = format!("a crowd has from 1 to {ROBOTS_MOST} robots");
             return Err(ScenarioError::at(crowd.robots.span(), message).into());
         }
-        let plan = setup::plan(&crowd.file, crowd.plan.as_ref(), path, None)?;
+        let (plan, files) = setup::plan(&crowd.file, crowd.plan.as_ref(), path, None)?;
         check(&plan, crowd)?;
         let period = file.period.as_ref().map(|period| duration(period, 0.001, 1.0)).transpose()?;
         let period = period.unwrap_or(Sim::PERIOD);
