@@ -1,14 +1,15 @@
-//! The power supply that a battery message describes.
+//! Conversion of a battery message to the power supply of an output.
 
 use mdle_runtime::{Supply, Volts};
 
 use crate::messages::BatteryState;
 
-/// Values of `power_supply_status` with a charger.
+/// Value of `power_supply_status` while the battery is charging.
 const CHARGING: u8 = 1;
 const FULL: u8 = 4;
 
-/// Returns the supply; a battery without a charge is never low.
+/// Returns the power supply that `message` reports. The battery is low if its charge, from 0 to 1, is below `low`; a
+/// charge that is not a number is never low.
 #[must_use]
 pub fn supply(message: &BatteryState, low: f64) -> Supply {
     let charge = f64::from(message.percentage);

@@ -1,14 +1,15 @@
-//! Capabilities that a configuration gives a robot, and the quarks of a plan that need others.
+//! Capabilities that a configuration gives a robot, and the quarks of a plan that need a missing capability.
 
 use std::fmt;
 
 use crate::choices::BumperSource;
 use crate::config::Config;
 
-/// The declarations of this robot's quarks, and of the shared ones.
+/// Text of the alphabets that declare this robot's quarks: its own alphabet and the shared one.
 const DECLARATIONS: [&str; 2] = [include_str!("../alphabet.mdle"), include_str!("../../../atoms/alphabet.mdle")];
 
-/// Capabilities that a configuration gives or takes away, each with the keys that would give it.
+/// Optional capabilities, each with `true` if the configuration provides it, and the configuration keys that would
+/// provide it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Capabilities {
     optional: [(&'static str, bool, &'static str); 3],
@@ -28,10 +29,10 @@ impl Capabilities {
         }
     }
 
-    /// Checks that these texts, the laws and conditions of a plan, need no capability that is missing.
+    /// Checks that the laws and conditions of a plan, given as `texts`, need no missing capability.
     ///
     /// # Errors
-    /// A sentence with the quark, the missing capability, and the key that gives it.
+    /// Returns a sentence that names the quark, the missing capability, and the configuration key that provides it.
     pub fn suffice(&self, texts: &[&str]) -> Result<(), String> {
         for (capability, _, key) in self.optional.iter().filter(|(_, is_there, _)| !is_there) {
             let needing = quarks(capability);
@@ -47,7 +48,8 @@ impl Capabilities {
     }
 }
 
-/// Prints comments that follow the configuration.
+/// Prints the robot's capabilities, and the optional ones that it lacks, as TOML comments that follow the
+/// configuration.
 impl fmt::Display for Capabilities {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let given = self.optional.iter().filter(|(_, is_there, _)| *is_there).map(|(name, _, _)| *name);
@@ -73,7 +75,7 @@ fn quarks(capability: &str) -> Vec<&'static str> {
     names
 }
 
-/// Returns the words of a text outside of quotes; a sonar is `r3` and its quark `r`.
+/// Returns the words of `text` that are not in quotes. The sonar `r3` yields its quark `r`.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     let is_inside = |letter: char| letter.is_alphanumeric() || letter == '_';
     let words = text.split('"').step_by(2).flat_map(move |part| part.split(move |letter| !is_inside(letter)));

@@ -1,37 +1,37 @@
-//! The bytes of a message: Common Data Representation, as ROS 2 sends it over DDS (XCDR1, either byte order).
+//! Encoding of messages in Common Data Representation, as ROS 2 sends them over DDS (XCDR1, either byte order).
 
 use rustdds::RepresentationIdentifier;
 use rustdds::serialization::{deserialize_from_cdr_with_rep_id, to_writer_with_rep_id};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Maximum number of bytes after a message that are padding.
+/// Maximum number of padding bytes after a message.
 const PADDING: usize = 3;
 
-/// Bytes of a message, without the header that names their encoding.
+/// An encoded message, without the header that names the encoding.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Payload {
-    /// The bytes.
+    /// Bytes of the encoded message.
     pub bytes: Vec<u8>,
-    /// Byte order and format.
+    /// Byte order and format of the bytes.
     pub encoding: RepresentationIdentifier,
 }
 
 impl Payload {
-    /// Returns the message as little-endian CDR.
+    /// Encodes `message` as little-endian CDR.
     ///
     /// # Errors
-    /// The message has no representation, such as a list of unknown length.
+    /// The message has no CDR representation, for example because it contains a list of unknown length.
     pub fn of<T: Serialize>(message: &T) -> Result<Self, String> {
         let (mut bytes, encoding) = (Vec::new(), RepresentationIdentifier::CDR_LE);
         to_writer_with_rep_id(&mut bytes, message, encoding).map_err(|error| error.to_string())?;
         Ok(Self { bytes, encoding })
     }
 
-    /// Reads a message.
+    /// Decodes the bytes as a message of type `T`.
     ///
     /// # Errors
-    /// The bytes are damaged, or of a message with other fields: a phrase that says so.
+    /// Returns a phrase that gives the reason if the bytes are damaged or belong to a message with other fields.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, String> {
         let (message, length) = deserialize_from_cdr_with_rep_id(&self.bytes, self.encoding)
             .map_err(|error| format!("{} bytes that cannot be read ({error})", self.bytes.len()))?;

@@ -1,29 +1,29 @@
-//! Values of the configuration that are one of a few words, and places on the body.
+//! Configuration values that are one of a few words, and places of sensors on the body.
 
 use std::fmt;
 
 use mdle_serial::{Key, Setting, one_of};
 use serde::Deserialize;
 
-/// Distribution of ROS 2, by the layout of its messages.
+/// Distribution of ROS 2, which determines the layout of messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Distribution {
-    /// Humble Hawksbill.
+    /// The distribution Humble Hawksbill.
     Humble,
-    /// Jazzy Jalisco.
+    /// The distribution Jazzy Jalisco.
     Jazzy,
-    /// Kilted Kaiju, whose messages have the layouts of Jazzy.
+    /// The distribution Kilted Kaiju, whose messages have the layouts of Jazzy.
     Kilted,
 }
 
 /// Type of the velocity command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stamped {
-    /// The type that the subscriber on the graph has.
+    /// The type to which a program on the graph subscribes.
     Auto,
-    /// `geometry_msgs/msg/TwistStamped`.
+    /// The type `geometry_msgs/msg/TwistStamped`.
     Yes,
-    /// `geometry_msgs/msg/Twist`.
+    /// The type `geometry_msgs/msg/Twist`.
     No,
 }
 
@@ -32,15 +32,15 @@ pub enum Stamped {
 pub enum BumperSource {
     /// The robot has no bumper.
     None,
-    /// `std_msgs/msg/Bool`.
+    /// A topic of type `std_msgs/msg/Bool`.
     Bool,
-    /// `irobot_create_msgs/msg/HazardDetectionVector`.
+    /// A topic of type `irobot_create_msgs/msg/HazardDetectionVector`.
     Hazard,
-    /// Rays of the scan that are shorter than the body and a margin.
+    /// The scan: a ray that is shorter than the body and its margin presses a switch.
     Scan,
 }
 
-/// Declares the words of an enumeration.
+/// Implements [`Setting`] for enumerations, each variant with the word that selects it in the configuration.
 macro_rules! words {
     ($($type:ident: $($word:literal $variant:ident),*;)*) => {
         $(impl Setting for $type {
@@ -58,13 +58,13 @@ words! {
     BumperSource: "none" None, "bool" Bool, "hazard" Hazard, "scan" Scan;
 }
 
-/// `stamped` as it is written: `true`, `false` or a word.
+/// Value of the key `stamped` in a configuration file: `true`, `false` or a word.
 #[derive(Clone, Deserialize)]
 #[serde(untagged)]
 pub enum WrittenStamped {
-    /// `true` or `false`.
+    /// The value `true` or `false`.
     Flag(bool),
-    /// A word.
+    /// A word, such as `auto`.
     Word(String),
 }
 
@@ -96,20 +96,20 @@ impl Setting for Stamped {
 #[derive(Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RangeSensor {
-    /// Topic of its `sensor_msgs/msg/Range`.
+    /// Topic of the sensor's `sensor_msgs/msg/Range` messages.
     pub topic: String,
-    /// Distance ahead of the centre, in metres.
+    /// Distance of the sensor ahead of the body's centre, in metres.
     #[serde(default)]
     pub x: f64,
-    /// Distance to the left of the centre, in metres.
+    /// Distance of the sensor to the left of the body's centre, in metres.
     #[serde(default)]
     pub y: f64,
-    /// Direction of its axis, in radians, counter-clockwise from the front.
+    /// Direction of the sensor's axis, in radians, counter-clockwise from the front.
     #[serde(default)]
     pub yaw: f64,
 }
 
-/// Prints the sensor as TOML.
+/// Prints the sensor as an inline table of TOML.
 impl fmt::Debug for RangeSensor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { topic, x, y, yaw } = self;
@@ -121,7 +121,7 @@ impl fmt::Debug for RangeSensor {
 #[derive(Debug, Clone, PartialEq)]
 pub struct RangeSensors(pub Vec<RangeSensor>);
 
-/// Maximum number of range sensors.
+/// Maximum number of range sensors in a configuration.
 const MOST: usize = 64;
 
 impl Setting for RangeSensors {

@@ -12,24 +12,24 @@ use serde::Deserialize;
 use crate::choices::{BumperSource, Distribution, RangeSensors, Stamped};
 use crate::names::absolute;
 
-/// Maximum number of a domain: the ports of higher ones do not exist.
+/// Maximum id of a DDS domain: higher ids have no ports.
 const LAST_DOMAIN: u64 = 232;
 
-/// Declares the configuration: a line for each key, `name: type = default, in range, "unit" "help";`.
+/// Declares the configuration. Each line declares one key: `name: type = default, in range, "unit" "help";`.
 macro_rules! configuration {
     ($(
         $(#[$meta:meta])*
         $key:ident: $type:ty = $default:expr, $(in $least:literal..=$most:literal,)? $unit:literal $help:literal;
     )*) => {
-        /// Properties of one robot, and its place on the graph.
+        /// Properties of a robot, and its place on the ROS graph.
         #[derive(Debug, Clone, PartialEq)]
         pub struct Config {
             $($(#[$meta])* pub $key: $type,)*
-            /// The gains with which laws steer.
+            /// Gains with which laws steer.
             pub steering: Steering,
         }
 
-        /// The configuration file; a key that is missing keeps its value.
+        /// Contents of a configuration file; a missing key keeps its default value.
         #[derive(Default, Deserialize)]
         #[serde(deny_unknown_fields, rename_all = "kebab-case")]
         struct File {
@@ -39,7 +39,7 @@ macro_rules! configuration {
             avoid_gain: Option<f64>,
         }
 
-        /// Returns the values of the file, for the rest the defaults.
+        /// Returns the values of `file`, and the default of each key that is missing in `file`.
         fn values(file: File, settings: &mut Settings) -> Result<Config, String> {
             Ok(Config {
                 $($key: settings.value(
@@ -64,7 +64,7 @@ macro_rules! configuration {
 configuration! {
     /// Distribution of ROS 2 on the robot.
     distribution: Distribution = "jazzy".to_owned(), "" "humble, jazzy or kilted";
-    /// Number of the domain; the variable ROS_DOMAIN_ID is the default.
+    /// DDS domain id; the default is the value of the environment variable `ROS_DOMAIN_ID`.
     domain: u64 = given_domain().unwrap_or_default(), in 0..=232, "" "domain id; its default is that of ROS_DOMAIN_ID";
     /// Namespace of relative topics.
     namespace: String = String::new(), "" "namespace of topics without a slash in front";
@@ -79,33 +79,33 @@ configuration! {
     frame_id: String = "base_link".to_owned(), "" "frame of stamped commands";
     /// Topic of the odometry.
     odom: String = "odom".to_owned(), "" "topic of nav_msgs/Odometry";
-    /// Topic of the scan; empty without one.
+    /// Topic of the laser scan; empty if the robot has no scanner.
     scan: String = "scan".to_owned(), "" "topic of sensor_msgs/LaserScan; empty without one";
-    /// Place of the scanner ahead of the centre, in metres.
+    /// Distance from the body's centre ahead to the scanner, in metres.
     scan_x: f64 = 0.0, in -10..=10, "m" "from the centre ahead to the scanner";
-    /// Place of the scanner to the left of the centre, in metres.
+    /// Distance from the body's centre to the left to the scanner, in metres.
     scan_y: f64 = 0.0, in -10..=10, "m" "from the centre to the left to the scanner";
-    /// Direction of the scanner's zero, in radians.
+    /// Direction of the scanner's zero angle, in radians, counter-clockwise from the front.
     scan_yaw: f64 = 0.0, in -6.3..=6.3, "rad" "from the front to the scanner's zero, counter-clockwise";
-    /// `true` if the scanner reports 0 where nothing echoes.
+    /// `true` if the scanner reports a range of 0 where nothing echoes.
     scan_zero_is_free: bool = false, "" "a range of 0 means that nothing echoes";
-    /// Range sensors with topics of their own.
+    /// Range sensors, each with its own topic.
     ranges: RangeSensors = Vec::new(), "" "range sensors: { topic, x, y, yaw } in m and rad";
-    /// Source of the bumper.
+    /// Source of the bumper switches.
     bumper_type: BumperSource = "none".to_owned(), "" "none, bool, hazard or scan";
-    /// Topic of the bumper.
+    /// Topic of the bumper, if its messages are of type `Bool` or `HazardDetectionVector`.
     bumper: String = "bumper".to_owned(), "" "topic of a bumper that is bool or hazard";
     /// Margin around the body within which a ray of the scan is a contact, in metres.
     bumper_margin: f64 = 0.02, in 0.0..=1.0, "m" "around the body, for a bumper by scan";
-    /// Topic of the battery; empty without one.
+    /// Topic of the battery; empty if no battery is read.
     battery: String = String::new(), "" "topic of sensor_msgs/BatteryState; empty without one";
-    /// Charge below which the battery is low, as a part of the whole.
+    /// Charge below which the battery is low, from 0 to 1.
     low_battery: f64 = 0.15, in 0.0..=1.0, "" "of the charge, below which the battery is low";
     /// Radius of the smallest circle around the body, in metres.
     body_radius: f64 = 0.18, in 0.01..=5.0, "m" "radius of the smallest circle around the body";
-    /// Half the length of the body, in metres; 0 for a round one.
+    /// Half the length of the body, in metres; 0 for a round body.
     half_length: f64 = 0.0, in 0.0..=5.0, "m" "half the length of the body; 0 for a round one";
-    /// Half the width of the body, in metres; 0 for a round one.
+    /// Half the width of the body, in metres; 0 for a round body.
     half_width: f64 = 0.0, in 0.0..=5.0, "m" "half the width of the body; 0 for a round one";
     /// Distance between the wheels, in metres.
     wheel_base: f64 = 0.23, in 0.01..=5.0, "m" "between the wheels";
@@ -115,33 +115,34 @@ configuration! {
     fastest: f64 = 0.3, in 0.01..=2.0, "m/s" "maximum speed";
     /// Maximum turn rate, in rad/s.
     fastest_turn: f64 = 1.5, in 0.01..=6.0, "rad/s" "maximum turn rate";
-    /// Maximum age of the odometry, in milliseconds.
+    /// Time without odometry after which the robot is stopped, in milliseconds.
     stale_odom: u64 = 500, in 50..=60_000, "ms" "without odometry until the robot is stopped";
-    /// Maximum age of the scan and of ranges, in milliseconds.
+    /// Time without a scan or a range after which the robot is stopped, in milliseconds.
     stale_scan: u64 = 1000, in 50..=60_000, "ms" "without a scan or a range until the robot is stopped";
-    /// Maximum age of the bumper, in milliseconds; 0 for a bumper that reports changes only.
+    /// Time without a bumper message after which the robot is stopped, in milliseconds; 0 for no limit.
     stale_bumper: u64 = 0, in 0..=60_000, "ms" "without the bumper until the robot is stopped; 0 for no limit";
-    /// Maximum distance that the odometry may jump, in metres.
+    /// Distance by which odometry may differ from the longest way that the robot can have driven, in metres.
     jump: f64 = 0.3, in 0.01..=100.0, "m" "by which odometry may differ from the fastest way";
-    /// Maximum time to find the robot, in milliseconds.
+    /// Maximum time to find all topics of the robot, in milliseconds.
     discovery: u64 = 10_000, in 100..=600_000, "ms" "to find all topics";
-    /// `true` if time is that of `/clock`.
+    /// `true` if the topic `/clock` gives the time.
     use_sim_time: bool = false, "" "time is that of the topic /clock";
-    /// Topic of the plan's state as text; empty for none.
+    /// Topic of the plan's state as JSON text; empty if it is not published.
     state: String = "mdle/state".to_owned(), "" "topic of the plan's state, as JSON; empty for none";
-    /// Topic of the plan's state as a diagnostic array; empty for none.
+    /// Topic of the plan's state as a diagnostic array; empty if it is not published.
     diagnostics: String = "/diagnostics".to_owned(), "" "topic of the plan's state, as diagnostics; empty for none";
 }
 
-/// Returns the domain of the variable that all programs of ROS 2 read, or 0.
+/// Returns the domain id in the environment variable `ROS_DOMAIN_ID`, which all ROS 2 programs read; 0 if it is not
+/// set.
 ///
 /// # Errors
-/// The sentence that says that the variable's value is no domain.
+/// Returns a sentence if the variable's value is not a domain id.
 fn given_domain() -> Result<u64, String> {
     domain_of(&std::env::var_os("ROS_DOMAIN_ID").unwrap_or_default().to_string_lossy())
 }
 
-/// Returns the domain that the text of the variable names, or 0 if it is empty.
+/// Returns the domain id in `text`, the value of `ROS_DOMAIN_ID`; 0 if `text` is empty.
 fn domain_of(text: &str) -> Result<u64, String> {
     let number = if text.trim().is_empty() { Ok(0) } else { text.trim().parse() };
     number.ok().filter(|domain| *domain <= LAST_DOMAIN).ok_or_else(|| {
@@ -152,19 +153,20 @@ fn domain_of(text: &str) -> Result<u64, String> {
     })
 }
 
-/// A configuration with the source of each of its values.
+/// A configuration, with the source of each value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Configured {
-    /// The values.
+    /// Values of the configuration.
     pub config: Config,
     settings: Settings,
 }
 
 impl Configured {
-    /// Reads the file, if there is one.
+    /// Reads the configuration file `file`; without a file, returns the defaults.
     ///
     /// # Errors
-    /// The file cannot be read, is no TOML, has a key that there is not, or a value that makes no sense: where and why.
+    /// The file cannot be read, is not TOML, or has an unknown key or an invalid value. The sentence gives the place
+    /// and reason.
     pub fn read(file: Option<&Path>) -> Result<Self, String> {
         let (file, mut settings) = Settings::read::<File>(file)?;
         if file.domain.is_none() {
@@ -176,7 +178,7 @@ impl Configured {
     }
 }
 
-/// Returns the configuration as TOML, which `--config` reads.
+/// Prints the configuration as TOML that `--config` can read.
 impl fmt::Display for Configured {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.settings.fmt(f)
@@ -184,7 +186,7 @@ impl fmt::Display for Configured {
 }
 
 impl Config {
-    /// Checks the conditions that a value's range cannot express.
+    /// Checks the conditions that the ranges of single values cannot express.
     fn check(&self) -> Result<(), String> {
         if !self.network.is_empty() && self.network.parse::<IpAddr>().is_err() {
             return Err(format!("`network` is `{}`, and has to be an address such as 192.168.1.5", self.network));
@@ -202,15 +204,15 @@ impl Config {
         Ok(())
     }
 
-    /// Returns the absolute name of a topic.
+    /// Returns the absolute name of the topic `name`.
     ///
     /// # Errors
-    /// A sentence that says why this is no name.
+    /// Returns a sentence with the reason if `name` is not a valid topic name.
     pub fn topic(&self, name: &str) -> Result<String, String> {
         absolute(&self.namespace, name)
     }
 
-    /// Returns the body, as laws need it.
+    /// Returns the shape of the body, as laws use it.
     #[must_use]
     pub fn shape(&self) -> Shape {
         let half = |length: f64| Meters(if length > 0.0 { length } else { self.body_radius });
@@ -227,7 +229,7 @@ impl Config {
     }
 }
 
-/// Returns `true` if this bumper has a topic of its own.
+/// Returns `true` if `bumper` has a topic of its own.
 pub(crate) fn has_topic(bumper: BumperSource) -> bool {
     match bumper {
         BumperSource::Bool | BumperSource::Hazard => true,

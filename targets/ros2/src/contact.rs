@@ -1,16 +1,17 @@
-//! The bumper switches that a message of a robot presses.
+//! Bumper switches that a message presses.
 
 use crate::config::Config;
 use crate::messages::HazardDetectionVector;
 use crate::scan::Scanner;
 
-/// `type` of a hazard that is a contact.
+/// Value of a hazard's field `type` that means contact.
 const BUMP: u8 = 1;
 
-/// Frames of the zones of a Create 3's bumper, from the left to the right: the order of its switches.
+/// Frames of the zones of a Create 3's bumper from left to right, which is the order of the switches.
 const ZONES: [&str; 5] = ["bump_left", "bump_front_left", "bump_front_center", "bump_front_right", "bump_right"];
 
-/// Returns the switches that these hazards press: a bit for each zone of a Create 3, and one for contacts elsewhere.
+/// Returns the switches that `hazards` press: one bit for each bumper zone of a Create 3, and one bit for other
+/// contacts.
 #[must_use]
 pub fn of_hazards(hazards: &HazardDetectionVector) -> u32 {
     let bumps = hazards.detections.iter().filter(|hazard| hazard.kind == BUMP);
@@ -20,8 +21,8 @@ pub fn of_hazards(hazards: &HazardDetectionVector) -> u32 {
     })
 }
 
-/// Returns the switches that these rays press: those of obstacles within the body and its margin, a bit for each
-/// quarter, which are front, left, back and right.
+/// Returns the switches that the rays of `scan` press: one bit for each quarter of the body (front, left, back and
+/// right) in which an obstacle is closer to the body than the margin.
 #[must_use]
 pub fn of_scan(config: &Config, scanner: &Scanner, scan: &crate::messages::LaserScan) -> u32 {
     let (margin, shape) = (config.bumper_margin, config.shape());

@@ -1,4 +1,4 @@
-//! The link over DDS: finds the robot's topics, sends velocities and takes messages.
+//! The link to the robot over DDS: finds the robot's topics, sends velocities and receives messages.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -25,23 +25,23 @@ use crate::sensing::Sensing;
 use crate::source::{Input, Source};
 use crate::stamp::ros_now;
 
-/// The time between two looks at the graph.
+/// Time between two checks of the graph for topics.
 const GRAPH: Duration = Duration::from_millis(50);
-/// The time between two zero velocities.
+/// Time between two repetitions of the zero velocity.
 const AGAIN: Duration = Duration::from_millis(100);
 
-/// A link over DDS.
+/// A link to the robot over DDS.
 pub struct DdsLink {
     participant: Participant,
     readers: Vec<(Input, Reader)>,
     commands: Commands,
     state: Option<Writer>,
     diagnostics: Option<Writer>,
-    /// Tells the graph about the node; it must live as long as the node.
+    /// Writer that announces the node to the graph, kept for as long as the node exists.
     node: Option<Writer>,
-    /// The publisher of the odometry.
+    /// Id of the program that publishes the odometry.
     odometer: Option<[u8; 16]>,
-    /// Time of `/clock` in nanoseconds, for the headers of commands; `None` for the system's.
+    /// Time of `/clock` in nanoseconds, for the headers of commands; `None` if headers have the system's time.
     clock: Option<i64>,
 }
 
@@ -54,7 +54,7 @@ struct Commands {
 }
 
 impl DdsLink {
-    /// Joins the domain, and waits until all topics of a configuration have been found.
+    /// Joins the domain, and waits until all topics of the configuration have been found.
     ///
     /// # Errors
     /// Topics are missing, or the middleware does not work.
@@ -87,7 +87,7 @@ impl DdsLink {
         Ok((link, sensing))
     }
 
-    /// Tells the graph which node the readers and writers are of.
+    /// Announces to the graph the node that owns the readers and writers.
     fn announce(&self, config: &Config) -> Result<Option<Writer>, Fault> {
         let is_long = match config.distribution {
             Distribution::Humble => true,
@@ -109,7 +109,7 @@ impl DdsLink {
     }
 }
 
-/// Waits until all topics have been found, and returns the writer of velocity commands.
+/// Waits until all topics of the robot have been found, and returns the writer of velocity commands.
 fn find(
     config: &Config,
     participant: &Participant,
@@ -164,7 +164,8 @@ fn find(
     }
 }
 
-/// Returns `true` if commands have a stamp; `None` if the subscriber that decides has not been found.
+/// Returns `true` if velocity commands have a time stamp; `None` if that depends on a subscriber that has not been
+/// found.
 fn is_stamped(config: &Config, graph: &Graph, topic: &str) -> Option<bool> {
     match config.stamped {
         Stamped::Yes => Some(true),
@@ -177,7 +178,7 @@ fn is_stamped(config: &Config, graph: &Graph, topic: &str) -> Option<bool> {
     }
 }
 
-/// Checks that the odometry has one publisher.
+/// Returns a fault if several programs publish the odometry.
 fn several(sensing: &Sensing, graph: &Graph) -> Result<(), Fault> {
     let odometry = sensing.inputs().find(|input| input.source == Source::Odometry);
     match odometry.map(|input| (input, graph.publishers(input))) {
@@ -186,10 +187,10 @@ fn several(sensing: &Sensing, graph: &Graph) -> Result<(), Fault> {
     }
 }
 
-/// Takes a message: the index of its topic, its bytes, and the id of its publisher.
+/// A function that receives a message: the index of its topic, its bytes, and the id of its publisher.
 type Take<'a> = dyn FnMut(usize, &Payload, [u8; 16]) -> Result<(), Fault> + 'a;
 
-/// Calls `take` with each message that has come.
+/// Calls `take` with each message that has arrived.
 fn receive(readers: &[(Input, Reader)], take: &mut Take<'_>) -> Result<(), Fault> {
     for (index, (_, reader)) in readers.iter().enumerate() {
         while let Some(arrival) = reader.take() {
@@ -205,7 +206,7 @@ fn kind_of(is_stamped: bool) -> &'static str {
 }
 
 impl Commands {
-    /// Returns the type of the commands.
+    /// Returns the type of the velocity commands.
     fn kind(&self) -> &'static str {
         kind_of(self.is_stamped)
     }

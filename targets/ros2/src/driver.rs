@@ -1,4 +1,5 @@
-//! The robot as a kinetic state machine: each input is a velocity command, and the last messages are the output.
+//! The driver of a robot that speaks ROS 2, as a kinetic state machine: the input is a velocity command, and the output
+//! consists of the last messages.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -15,18 +16,18 @@ use crate::report::PlanState;
 use crate::sensing::Sensing;
 use crate::stamp::ros_now;
 
-/// The time between two looks for messages.
+/// Time between two checks for messages.
 pub(crate) const LOOK: Duration = Duration::from_micros(500);
-/// Maximum time without an answer of a robot whose time is not the host's.
+/// Maximum real time to wait for a robot whose time is not the host's clock.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Maximum time for which a zero velocity is repeated.
+/// Maximum time for which the zero velocity is repeated.
 const HALTING: Duration = Duration::from_millis(500);
-/// Speeds below which a robot rests.
+/// Speeds below which the robot counts as being at rest.
 const REST: Twist = Twist { v: MetersPerSecond(0.02), omega: RadiansPerSecond(0.05) };
-/// The time between two messages of the plan's state without a change.
+/// Time after which an unchanged state of the plan is published again.
 const REPEAT: Nanos = Nanos(1_000_000_000);
 
-/// A robot that speaks ROS 2, behind a link.
+/// A robot that speaks ROS 2 and is reached through the link `L`.
 #[derive(Debug)]
 pub struct Ros2<L> {
     link: L,
@@ -37,26 +38,27 @@ pub struct Ros2<L> {
     /// Time at which the robot was found.
     begun: Moment,
     request: StopRequest,
-    /// Time of `/clock` at the first exchange, in nanoseconds.
+    /// Time of `/clock` at the first turn, in nanoseconds.
     origin: Option<i64>,
     turns: u32,
-    /// Number of the atom, and time, of the last published state.
+    /// Number of the atom and time of the turn in the last published state.
     published: Option<(u64, Nanos)>,
 }
 
 impl<L: Link> Ros2<L> {
-    /// Returns the robot of a link, whose first messages `sensing` has.
+    /// Returns the driver of the robot that `link` reaches; `sensing` holds the robot's first messages.
     pub fn new(config: Config, link: L, sensing: Sensing, pacing: Pacing, request: StopRequest, begun: Moment) -> Self {
         let times = Times::new(pacing.clock());
         Self { link, config, sensing, pacing, times, begun, request, origin: None, turns: 0, published: None }
     }
 
-    /// Stores the paths that the plan replays.
+    /// Stores the recorded paths that the plan replays.
     pub fn take_paths(&mut self, paths: PathStore) {
         self.sensing.paths = paths;
     }
 
-    /// Returns the velocity to send: both speeds are reduced by the same factor, so that the robot stays on its curve.
+    /// Returns `input` within the maximum speeds: both speeds are reduced by the same factor, so that the robot stays
+    /// on its curve.
     fn limited(&self, input: &Twist) -> Result<Twist, Fault> {
         if !(input.v.0.is_finite() && input.omega.0.is_finite()) {
             return Err(Fault::NoNumber);
@@ -66,7 +68,7 @@ impl<L: Link> Ros2<L> {
         Ok(Twist { v: MetersPerSecond(input.v.0 * scale), omega: RadiansPerSecond(input.omega.0 * scale) })
     }
 
-    /// Returns the time by which the age of messages counts.
+    /// Returns the current time for the age of messages.
     fn now(&self) -> Duration {
         match self.pacing {
             Pacing::Wall => self.begun.elapsed(),
@@ -75,14 +77,14 @@ impl<L: Link> Ros2<L> {
         }
     }
 
-    /// Takes the messages that have come.
+    /// Passes the messages that have arrived to the robot's sensing.
     fn receive(&mut self, at: Nanos) -> Result<(), Fault> {
         let now = self.now();
         let sensing = &mut self.sensing;
         self.link.receive(&mut |index, payload| sensing.take(index, payload, now, at))
     }
 
-    /// Takes messages until `is_there`, or until the run is asked to end.
+    /// Receives messages until `is_there` returns `true` or the run is asked to end.
     fn wait(&mut self, at: Nanos, topic: &str, is_there: impl Fn(&Sensing) -> bool) -> Result<(), Fault> {
         let mut last = (self.sensing.clock(), Instant::now());
         loop {
@@ -102,7 +104,7 @@ impl<L: Link> Ros2<L> {
         }
     }
 
-    /// Sends a velocity, and takes the messages that answer it.
+    /// Sends a velocity, and receives the messages that answer it.
     fn turn(&mut self, twist: Twist, at: Nanos) -> Result<(), Fault> {
         self.turns = self.turns.saturating_add(1);
         match self.pacing {
@@ -131,14 +133,14 @@ impl<L: Link> Ros2<L> {
         }
     }
 
-    /// Returns `true` if the last odometry is that of a robot at rest.
+    /// Returns `true` if the last odometry reports a robot at rest.
     fn rests(&mut self) -> bool {
         let is_received = self.receive(Nanos::ZERO).is_ok() && self.sensing.check(self.now()).is_ok();
         let velocity = self.sensing.sensed(Nanos::ZERO).map(|sensed| sensed.velocity);
         is_received && velocity.is_ok_and(|twist| twist.v.0.abs() < REST.v.0 && twist.omega.0.abs() < REST.omega.0)
     }
 
-    /// Publishes the state of the plan; without it the plan runs as well.
+    /// Publishes the state of the plan. A state that cannot be encoded is not published, and the plan continues.
     fn tell(&mut self, state: &PlanState) {
         let stamp = if self.config.use_sim_time { self.sensing.clock() } else { ros_now() };
         if let Ok(messages) = state.messages(stamp) {

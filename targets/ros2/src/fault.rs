@@ -4,51 +4,51 @@ use std::fmt;
 
 use mdle_host::Refusal;
 
-/// Reason why the run ends.
+/// Reason why the driver ends a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fault {
-    /// The middleware does not work: a sentence.
+    /// The middleware does not work, for the reason in this sentence.
     Middleware(String),
-    /// Topics are missing: sentences with the missing topics and those on the graph.
+    /// Topics are missing; the sentences name these topics and those on the graph.
     Missing(String),
-    /// The run was asked to end while the robot was sought.
+    /// The run was asked to end while the driver was searching for the robot.
     Ended,
-    /// A law has asked for a speed that is no number.
+    /// A law has requested a speed that is not a number.
     NoNumber,
     /// The odometry has no valid pose.
     NoPose,
     /// Odometry went back in time by this many seconds.
     Backwards(f64),
-    /// Odometry jumped.
+    /// Odometry jumped farther than the robot can have moved.
     Jumped {
-        /// Distance, in metres.
+        /// Distance of the jump, in metres.
         way: f64,
-        /// Angle, in degrees.
+        /// Angle of the jump, in degrees.
         degrees: f64,
         /// Time between the two messages, in seconds.
         seconds: f64,
     },
-    /// Several publishers of a topic.
+    /// Several programs publish a topic that may have one publisher only.
     Several {
         /// Name of the topic.
         topic: String,
         /// Number of publishers.
         count: usize,
     },
-    /// A topic is stale.
+    /// The last message of a topic is too old.
     Stale {
         /// Name of the topic.
         topic: String,
         /// Age of the last message, in milliseconds.
         age: u128,
-        /// Limit, in milliseconds.
+        /// Maximum age, in milliseconds.
         limit: u64,
-        /// Reason why the last message was not taken; empty if none came.
+        /// Reason why the last message was rejected; empty if no message arrived.
         why: String,
     },
-    /// Nobody subscribes to velocity commands any more.
+    /// No program subscribes to velocity commands any longer; the text is the topic's name.
     Unheard(String),
-    /// No subscriber of velocity commands has acknowledged the zero velocity.
+    /// No subscriber of velocity commands has acknowledged the zero velocity; the text is the topic's name.
     Unacknowledged(String),
 }
 

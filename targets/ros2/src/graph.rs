@@ -1,4 +1,4 @@
-//! The topics of other programs, as the driver sees them, and sentences about those that are missing.
+//! The topics of other programs on the graph, and sentences about missing topics.
 
 use crate::config::Config;
 use crate::names::{dds_topic, dds_type, ros_topic, ros_type};
@@ -7,17 +7,17 @@ use crate::source::Input;
 /// Type of a velocity command without a time stamp.
 pub(crate) const TWIST: &str = "geometry_msgs/msg/Twist";
 pub(crate) const TWIST_STAMPED: &str = "geometry_msgs/msg/TwistStamped";
-/// Maximum number of topics that a sentence lists.
+/// Maximum number of topics in a sentence.
 const LISTED: usize = 30;
 
 /// A reader or writer of another program.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Endpoint {
-    /// Topic, by its name in DDS.
+    /// Name of the topic in DDS.
     pub topic: String,
-    /// Type, by its name in DDS.
+    /// Name of the message type in DDS.
     pub kind: String,
-    /// `true` if it acknowledges messages, or waits for acknowledgements.
+    /// `true` if the reader acknowledges messages, or the writer waits for acknowledgements.
     pub is_reliable: bool,
     /// Quality of service that does not match the driver's.
     pub mismatch: Option<String>,
@@ -26,33 +26,34 @@ pub struct Endpoint {
 /// The readers and writers of other programs.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Graph {
-    /// Readers.
+    /// Readers of other programs.
     pub readers: Vec<Endpoint>,
-    /// Writers.
+    /// Writers of other programs.
     pub writers: Vec<Endpoint>,
 }
 
 impl Graph {
-    /// Returns the readers of an absolute topic.
+    /// Returns the readers of the topic with this absolute name.
     pub fn readers_of(&self, topic: &str) -> impl Iterator<Item = &Endpoint> {
         let name = dds_topic(topic);
         self.readers.iter().filter(move |reader| reader.topic == name)
     }
 
-    /// Returns the writers of an absolute topic.
+    /// Returns the writers of the topic with this absolute name.
     pub fn writers_of(&self, topic: &str) -> impl Iterator<Item = &Endpoint> {
         let name = dds_topic(topic);
         self.writers.iter().filter(move |writer| writer.topic == name)
     }
 
-    /// Returns the number of writers of a topic that have its type.
+    /// Returns the number of writers of the topic of `input` that have its type.
     #[must_use]
     pub fn publishers(&self, input: &Input) -> usize {
         let kind = dds_type(input.kind);
         self.writers_of(&input.topic).filter(|writer| writer.kind == kind).count()
     }
 
-    /// Returns the sentence about a topic without a message that could be taken.
+    /// Returns a sentence about a topic from which no message could be read; `left_out` is the reason why a message was
+    /// rejected.
     #[must_use]
     pub fn about_input(&self, input: &Input, left_out: &str) -> String {
         let Input { topic, kind, .. } = input;
@@ -70,7 +71,7 @@ impl Graph {
         }
     }
 
-    /// Returns the sentence about velocity commands that nobody takes.
+    /// Returns a sentence about velocity commands to which no program subscribes.
     #[must_use]
     pub fn about_commands(&self, topic: &str, kind: &str) -> String {
         let readers: Vec<_> = self.readers_of(topic).collect();
@@ -85,8 +86,8 @@ impl Graph {
         }
     }
 
-    /// Returns the sentences about all that is missing, and about what is on the graph instead. Where no program
-    /// answers, nothing else is worth a sentence.
+    /// Returns sentences about all missing topics and about the topics that are on the graph instead. If no program
+    /// answers, the text says only that.
     #[must_use]
     pub fn about_missing(&self, missing: &[String], config: &Config) -> String {
         let is_empty = !self.readers.iter().chain(&self.writers).any(|endpoint| ros_topic(&endpoint.topic).is_some());
@@ -94,8 +95,8 @@ impl Graph {
         if is_empty { listed } else { format!("{}; {listed}", missing.join("; ")) }
     }
 
-    /// Returns the line with what to write into the configuration for each missing topic whose type has one other
-    /// topic; empty if there is none.
+    /// Returns a help line with the configuration entry for each missing topic, where the graph has one other topic of
+    /// the same type; empty if there is no such topic.
     #[must_use]
     pub fn help<'i>(&self, inputs: impl Iterator<Item = &'i Input>, commands: &str) -> String {
         let mut entries: Vec<_> = inputs
@@ -108,7 +109,7 @@ impl Graph {
         format!("\nhelp: write {} into the file of --config", entries.join(" and "))
     }
 
-    /// Returns the sentence about all topics on the graph.
+    /// Returns a sentence that lists all topics on the graph.
     #[must_use]
     pub fn listed(&self, config: &Config) -> String {
         let mut topics: Vec<_> = self
@@ -136,8 +137,8 @@ impl Graph {
     }
 }
 
-/// Returns the entry of the configuration that names the only topic with one of these types; `None` if `topic` is
-/// there, or if there are several.
+/// Returns the configuration entry that names the only topic with one of the types `kinds`; `None` if `topic` is on the
+/// graph, or if several topics have such a type.
 fn proposed(endpoints: &[Endpoint], topic: &str, kinds: &[&str], key: &str) -> Option<String> {
     let name = dds_topic(topic);
     if endpoints.iter().any(|endpoint| endpoint.topic == name) {

@@ -1,8 +1,8 @@
-//! A robot that speaks ROS 2 as a target: its topics, its driver, and its alphabet.
+//! The target of a robot that speaks ROS 2: its topics, its driver, and its alphabet.
 //!
-//! For generated code: [`Target`], which the host runs a plan on, and [`alphabet`], the quarks that this robot has. The
-//! messages of topics become the output of a turn in [`sensing`], without input and output; the middleware is behind
-//! [`Link`].
+//! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], the quarks that this robot has. The
+//! module [`sensing`] turns the messages of topics into the output of a turn, without input or output of its own.
+//! [`Link`] hides the middleware.
 #![forbid(unsafe_code)]
 
 pub mod alphabet;
@@ -36,9 +36,9 @@ pub use driver::Ros2;
 pub use fault::Fault;
 pub use graph::{Endpoint, Graph};
 pub use link::Link;
-/// The robot's output.
+/// Output of the robot.
 pub use mdle_runtime::Sensed as Output;
-/// The robot's input.
+/// Input of the robot.
 pub use mdle_runtime::Twist as Input;
 pub use pacing::Pacing;
 pub use target::Target;

@@ -1,4 +1,4 @@
-//! The link to the robot, behind which is the middleware, or a test.
+//! The interface between the driver and the middleware, which a test can replace.
 
 use std::time::Duration;
 
@@ -10,22 +10,22 @@ use crate::report::StateMessages;
 
 /// A link to a robot whose topics have been found.
 pub trait Link {
-    /// Sends a velocity.
+    /// Sends a velocity command.
     ///
     /// # Errors
-    /// Nobody takes it.
+    /// No program subscribes to velocity commands.
     fn command(&mut self, twist: Twist) -> Result<(), Fault>;
 
     /// Calls `take` with each message since the last call: the index of its topic, and its bytes.
     ///
     /// # Errors
-    /// Those of `take`; or several programs publish the odometry.
+    /// `take` failed, or several programs publish the odometry.
     fn receive(&mut self, take: &mut dyn FnMut(usize, &Payload) -> Result<(), Fault>) -> Result<(), Fault>;
 
-    /// Sends a zero velocity until all subscribers that acknowledge have done so, or for this time.
+    /// Sends a zero velocity until all subscribers that acknowledge messages have done so, or until `limit` has passed.
     ///
     /// # Errors
-    /// No subscriber has acknowledged it.
+    /// No subscriber has acknowledged the zero velocity.
     fn halt(&mut self, limit: Duration) -> Result<(), Fault>;
 
     /// Publishes the state of the plan.

@@ -1,4 +1,4 @@
-//! The messages of ROS 2 that the driver sends and reads: fields in the order of their definitions.
+//! ROS 2 messages that the driver sends and reads, with fields in the order of their definitions.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Nanoseconds in a second.
 const NANOS: i64 = 1_000_000_000;
 
-/// Declares messages whose fields are public, named as in their definitions.
+/// Declares message types with public fields, which are named as in the definitions of ROS 2.
 macro_rules! messages {
     ($($(#[$meta:meta])* $name:ident { $($field:ident: $type:ty,)* })*) => {
         $(
@@ -22,31 +22,31 @@ macro_rules! messages {
 }
 
 messages! {
-    /// `builtin_interfaces/msg/Time`.
+    /// The message `builtin_interfaces/msg/Time`.
     Time { sec: i32, nanosec: u32, }
-    /// `std_msgs/msg/Header`.
+    /// The message `std_msgs/msg/Header`.
     Header { stamp: Time, frame_id: String, }
-    /// `std_msgs/msg/Bool`.
+    /// The message `std_msgs/msg/Bool`.
     Bool { data: bool, }
-    /// `std_msgs/msg/String`.
+    /// The message `std_msgs/msg/String`.
     Text { data: String, }
-    /// `geometry_msgs/msg/Vector3`, and `geometry_msgs/msg/Point`, which has the same fields.
+    /// The messages `geometry_msgs/msg/Vector3` and `geometry_msgs/msg/Point`, which have the same fields.
     Vector3 { x: f64, y: f64, z: f64, }
-    /// `geometry_msgs/msg/Quaternion`.
+    /// The message `geometry_msgs/msg/Quaternion`.
     Quaternion { x: f64, y: f64, z: f64, w: f64, }
-    /// `geometry_msgs/msg/Twist`.
+    /// The message `geometry_msgs/msg/Twist`.
     TwistMessage { linear: Vector3, angular: Vector3, }
-    /// `geometry_msgs/msg/TwistStamped`.
+    /// The message `geometry_msgs/msg/TwistStamped`.
     TwistStamped { header: Header, twist: TwistMessage, }
-    /// `geometry_msgs/msg/Pose`.
+    /// The message `geometry_msgs/msg/Pose`.
     PoseMessage { position: Vector3, orientation: Quaternion, }
-    /// `geometry_msgs/msg/PoseWithCovariance`.
+    /// The message `geometry_msgs/msg/PoseWithCovariance`.
     PoseWithCovariance { pose: PoseMessage, covariance: Covariance, }
-    /// `geometry_msgs/msg/TwistWithCovariance`.
+    /// The message `geometry_msgs/msg/TwistWithCovariance`.
     TwistWithCovariance { twist: TwistMessage, covariance: Covariance, }
-    /// `nav_msgs/msg/Odometry`.
+    /// The message `nav_msgs/msg/Odometry`.
     Odometry { header: Header, child_frame_id: String, pose: PoseWithCovariance, twist: TwistWithCovariance, }
-    /// `sensor_msgs/msg/LaserScan`.
+    /// The message `sensor_msgs/msg/LaserScan`.
     LaserScan {
         header: Header,
         angle_min: f32,
@@ -59,7 +59,7 @@ messages! {
         ranges: Vec<f32>,
         intensities: Vec<f32>,
     }
-    /// `sensor_msgs/msg/Range` of Humble and before.
+    /// The message `sensor_msgs/msg/Range` up to the distribution Humble.
     ShortRange {
         header: Header,
         radiation_type: u8,
@@ -68,7 +68,7 @@ messages! {
         max_range: f32,
         range: f32,
     }
-    /// `sensor_msgs/msg/Range` from Iron on.
+    /// The message `sensor_msgs/msg/Range` since the distribution Iron.
     Range {
         header: Header,
         radiation_type: u8,
@@ -78,11 +78,11 @@ messages! {
         range: f32,
         variance: f32,
     }
-    /// `irobot_create_msgs/msg/HazardDetection`; field `type` is called `kind` here.
+    /// The message `irobot_create_msgs/msg/HazardDetection`; its field `type` is called `kind` here.
     HazardDetection { header: Header, kind: u8, }
-    /// `irobot_create_msgs/msg/HazardDetectionVector`.
+    /// The message `irobot_create_msgs/msg/HazardDetectionVector`.
     HazardDetectionVector { header: Header, detections: Vec<HazardDetection>, }
-    /// `sensor_msgs/msg/BatteryState`.
+    /// The message `sensor_msgs/msg/BatteryState`.
     BatteryState {
         header: Header,
         voltage: f32,
@@ -101,22 +101,22 @@ messages! {
         location: String,
         serial_number: String,
     }
-    /// `rosgraph_msgs/msg/Clock`.
+    /// The message `rosgraph_msgs/msg/Clock`.
     ClockMessage { clock: Time, }
-    /// `diagnostic_msgs/msg/KeyValue`.
+    /// The message `diagnostic_msgs/msg/KeyValue`.
     KeyValue { key: String, value: String, }
-    /// `diagnostic_msgs/msg/DiagnosticStatus`.
+    /// The message `diagnostic_msgs/msg/DiagnosticStatus`.
     DiagnosticStatus { level: u8, name: String, message: String, hardware_id: String, values: Vec<KeyValue>, }
-    /// `diagnostic_msgs/msg/DiagnosticArray`.
+    /// The message `diagnostic_msgs/msg/DiagnosticArray`.
     DiagnosticArray { header: Header, status: Vec<DiagnosticStatus>, }
-    /// `rmw_dds_common/msg/NodeEntitiesInfo`, with ids of `N` bytes.
+    /// The message `rmw_dds_common/msg/NodeEntitiesInfo`, with ids of `N` bytes.
     NodeEntitiesInfo {
         node_namespace: String,
         node_name: String,
         reader_gid_seq: Vec<Gid>,
         writer_gid_seq: Vec<Gid>,
     }
-    /// `rmw_dds_common/msg/ParticipantEntitiesInfo`: the nodes of a program, which `ros2 node list` shows.
+    /// The message `rmw_dds_common/msg/ParticipantEntitiesInfo`: the nodes of a program, which `ros2 node list` shows.
     ParticipantEntitiesInfo { gid: Gid, node_entities_info_seq: Vec<NodeEntitiesInfo>, }
 }
 
@@ -134,7 +134,7 @@ impl Time {
         i64::from(self.sec) * NANOS + i64::from(self.nanosec)
     }
 
-    /// Returns the time this many nanoseconds after the epoch; a time out of range is its nearest end.
+    /// Returns the time `nanos` nanoseconds after the epoch. A time out of range becomes the nearest time in range.
     #[must_use]
     pub fn of(nanos: i64) -> Self {
         let sec = i32::try_from(nanos.div_euclid(NANOS)).unwrap_or(if nanos < 0 { i32::MIN } else { i32::MAX });
@@ -142,7 +142,7 @@ impl Time {
     }
 }
 
-/// A covariance matrix of six dimensions, row by row.
+/// A six-dimensional covariance matrix, row by row.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Covariance(pub [f64; 36]);
 
@@ -190,12 +190,12 @@ impl<'de> Deserialize<'de> for Covariance {
     }
 }
 
-/// Id of a participant, reader or writer: its 16 bytes, followed by 8 zeros up to Humble.
+/// Id of a participant, reader or writer: 16 bytes, which 8 zeros follow up to the distribution Humble.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Gid {
-    /// The bytes of the id.
+    /// First 16 bytes of the id.
     pub bytes: [u8; 16],
-    /// `true` for the layout of Humble.
+    /// `true` for the layout of Humble, with 8 zeros after the id.
     pub is_long: bool,
 }
 
@@ -209,7 +209,7 @@ impl Serialize for Gid {
 }
 
 impl<'de> Deserialize<'de> for Gid {
-    /// Reads the layout from Iron on.
+    /// Reads the 16 bytes of the layout since the distribution Iron.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         <[u8; 16]>::deserialize(deserializer).map(|bytes| Self { bytes, is_long: false })
     }

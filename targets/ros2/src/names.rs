@@ -1,9 +1,9 @@
 //! Names of topics and types, as ROS 2 and DDS write them.
 
-/// Returns the name of a topic from the root on: a relative name is one of the namespace.
+/// Returns the absolute name of a topic; a relative name belongs to `namespace`.
 ///
 /// # Errors
-/// A sentence that says why this is no name.
+/// Returns a sentence with the reason if `name` is not a valid topic name.
 pub fn absolute(namespace: &str, name: &str) -> Result<String, String> {
     let whole = match namespace.trim_matches('/') {
         _ if name.starts_with('/') => name.to_owned(),
@@ -21,7 +21,7 @@ pub fn absolute(namespace: &str, name: &str) -> Result<String, String> {
     }
 }
 
-/// Returns the DDS topic of an absolute name.
+/// Returns the DDS topic of the ROS topic with this absolute name.
 #[must_use]
 pub fn dds_topic(absolute: &str) -> String {
     format!("rt{absolute}")
@@ -37,13 +37,13 @@ pub fn dds_type(ros: &str) -> String {
     }
 }
 
-/// Returns the name of a topic as users know it, if a DDS topic is one of ROS 2.
+/// Returns the ROS name of a DDS topic; `None` if the topic does not belong to ROS 2.
 #[must_use]
 pub fn ros_topic(dds: &str) -> Option<&str> {
     dds.strip_prefix("rt").filter(|name| name.starts_with('/'))
 }
 
-/// Returns the name of a type as users know it; unchanged if it is none of ROS 2.
+/// Returns the ROS name of a DDS type; a type that does not belong to ROS 2 keeps its name.
 #[must_use]
 pub fn ros_type(dds: &str) -> String {
     dds.replace("::dds_::", "::").trim_end_matches('_').replace("::", "/")

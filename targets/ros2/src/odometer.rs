@@ -1,4 +1,4 @@
-//! The pose and the speed that odometry reports, and what makes them unbelievable.
+//! The pose and speed that odometry reports, with checks that they are plausible.
 
 use std::collections::VecDeque;
 
@@ -8,24 +8,24 @@ use crate::config::Config;
 use crate::fault::Fault;
 use crate::messages::{Odometry, Time};
 
-/// Nanoseconds by which odometry may go back in time before it is that of another run.
+/// Maximum step back in the time of odometry, in nanoseconds; after a larger step the run ends with a fault.
 const BACK: i64 = 1_000_000_000;
-/// Number of poses that are kept, to find the one of a scan.
+/// Number of stored poses, among which the pose of a scan is found.
 const KEPT: usize = 32;
-/// Factor of the fastest speeds that a robot may reach.
+/// Tolerance of the plausibility check: a robot may move at its maximum speeds times this factor.
 const OVERSHOOT: f64 = 1.5;
-/// Angle by which a heading may jump besides.
+/// Angle by which a heading may jump beyond the possible turn, in radians.
 const JUMP: f64 = 0.6;
 
-/// A pose with its time.
+/// A pose with the time of its message.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Timed {
-    /// Time of the message, in nanoseconds; 0 for a robot without a clock.
+    /// Time of the message, in nanoseconds; 0 if the robot has no clock.
     stamp: i64,
     pose: Pose,
 }
 
-/// The last poses of a robot.
+/// The last poses and the current speed of a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Odometer {
     poses: VecDeque<Timed>,
@@ -35,17 +35,18 @@ pub struct Odometer {
 }
 
 impl Odometer {
-    /// Returns the odometer before the first message.
+    /// Returns an odometer that has received no message yet.
     #[must_use]
     pub fn new(config: &Config) -> Self {
         let fastest = Twist { v: MetersPerSecond(config.fastest), omega: RadiansPerSecond(config.fastest_turn) };
         Self { poses: VecDeque::new(), velocity: Twist::default(), fastest, jump: config.jump }
     }
 
-    /// Takes a message that came `since` seconds after the one before; returns `false` if it is older than that one.
+    /// Stores a message that arrived `since` seconds after the previous message; returns `false` if it is not newer
+    /// than that.
     ///
     /// # Errors
-    /// The pose is no pose, it has jumped, or time has gone back.
+    /// The pose is invalid, has jumped, or the time has gone back.
     pub fn take(&mut self, message: &Odometry, since: f64) -> Result<bool, Fault> {
         let next = Timed { stamp: message.header.stamp.nanos(), pose: pose(message)? };
         if let Some(last) = self.poses.back() {
@@ -68,7 +69,7 @@ impl Odometer {
         Ok(true)
     }
 
-    /// Checks that the robot can have moved from one pose to the next in this many seconds.
+    /// Checks that the robot can have moved from pose `last` to `next` within `seconds`.
     fn believe(&self, last: Pose, next: Pose, seconds: f64) -> Result<(), Fault> {
         let way = last.distance(&next).0;
         let turn = Radians(next.theta.0 - last.theta.0).wrapped().0.abs();
@@ -91,7 +92,7 @@ impl Odometer {
         self.poses.back().map_or(0, |last| last.stamp)
     }
 
-    /// Returns the pose nearest to a time, which is the last one for a message without a time.
+    /// Returns the stored pose nearest to the time `stamp`; the last pose if `stamp` is 0.
     #[must_use]
     pub fn pose_at(&self, stamp: &Time) -> Option<Pose> {
         let stamp = stamp.nanos();
@@ -101,7 +102,7 @@ impl Odometer {
     }
 }
 
-/// Returns the pose on the floor of a message.
+/// Returns the pose on the floor that `message` reports.
 fn pose(message: &Odometry) -> Result<Pose, Fault> {
     let (position, q) = (&message.pose.pose.position, &message.pose.pose.orientation);
     let norm = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
@@ -112,7 +113,7 @@ fn pose(message: &Odometry) -> Result<Pose, Fault> {
     Ok(Pose { x: Meters(position.x), y: Meters(position.y), theta: Radians(theta) })
 }
 
-/// Returns the speed of a message.
+/// Returns the speed that `message` reports.
 fn velocity(message: &Odometry) -> Result<Twist, Fault> {
     let twist = &message.twist.twist;
     let velocity = Twist { v: MetersPerSecond(twist.linear.x), omega: RadiansPerSecond(twist.angular.z) };

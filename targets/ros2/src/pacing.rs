@@ -1,4 +1,4 @@
-//! The time of a run: the host's clock, steps of a robot in lockstep, or the clock of a simulation.
+//! Source of the time of a run: the host's clock, steps of a robot in lockstep, or the clock of a simulation.
 
 use std::time::Duration;
 
@@ -10,14 +10,14 @@ use mdle_serial::Clock;
 pub enum Pacing {
     /// The clock of the host.
     Wall,
-    /// A period for each turn, which begins when all topics have answered the last command.
+    /// Lockstep: each turn lasts this period, and begins when all topics have answered the last command.
     Lockstep(Duration),
-    /// A period for each turn, which begins when `/clock` has advanced by it.
+    /// The clock of a simulation: each turn lasts this period, and begins when `/clock` has advanced by it.
     Simulated(Duration),
 }
 
 impl Pacing {
-    /// Returns the clock of outputs.
+    /// Returns the clock by which outputs are timed.
     #[must_use]
     pub fn clock(self) -> Clock {
         match self {
@@ -26,7 +26,7 @@ impl Pacing {
         }
     }
 
-    /// Returns the time of the host.
+    /// Returns the time by which the host paces the turns.
     #[must_use]
     pub fn time(self) -> Time {
         match self {

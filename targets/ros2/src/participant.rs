@@ -1,4 +1,4 @@
-//! The driver's place on the graph: a participant of DDS with its readers and writers.
+//! The driver's DDS participant, with its readers and writers.
 
 use std::net::IpAddr;
 use std::time::Duration;
@@ -17,17 +17,18 @@ use crate::graph::{Endpoint, Graph};
 use crate::names::{dds_topic, dds_type};
 use crate::payload_adapter::PayloadAdapter;
 
-/// Number of messages that a reader keeps between two turns.
+/// Maximum number of messages that a reader stores between two turns.
 const KEPT: i32 = 16;
-/// Number of commands that a subscriber may leave unacknowledged before the next one is refused: at 50 Hz those of
-/// 20 s, after which a program that has died is off the graph.
+/// Maximum number of commands that a subscriber may leave unacknowledged before the next command is refused. At 50 Hz
+/// these are the commands of 20 s, after which a dead program has left the graph.
 const UNACKNOWLEDGED: i32 = 1000;
-/// Number of states of the plan that a subscriber may leave unacknowledged, and that a late one gets.
+/// Maximum number of states of the plan that a subscriber may leave unacknowledged, and that a late subscriber
+/// receives.
 const STATES: i32 = 8;
-/// Time for which a writer waits for space.
+/// Maximum time for which a writer waits for space.
 const BLOCKING: rustdds::Duration = rustdds::Duration::from_millis(1);
 
-/// A participant of DDS.
+/// A DDS participant.
 pub(crate) struct Participant {
     participant: DomainParticipant,
     publisher: Publisher,
@@ -40,25 +41,25 @@ pub(crate) struct Reader(SimpleDataReader<Payload, PayloadAdapter>);
 /// A writer of one topic.
 pub(crate) struct Writer {
     writer: DataWriter<Payload, PayloadAdapter>,
-    /// Number of subscribers that are matched now.
+    /// Number of subscribers that are matched at present.
     matched: i32,
 }
 
-/// A message, and the id of its writer.
+/// A message, with the id of its writer.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Arrival {
     pub(crate) payload: Payload,
     pub(crate) writer: [u8; 16],
 }
 
-/// Delivery of a topic.
+/// Delivery of a topic's messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Delivery {
-    /// The newest message counts, and each may be lost.
+    /// Best effort: only the newest message counts, and each message may be lost.
     BestEffort,
-    /// Every message arrives.
+    /// Reliable: every message arrives.
     Reliable,
-    /// Every message arrives, and the last one also at subscribers that come later.
+    /// Reliable and latched: every message arrives, and the last message reaches also later subscribers.
     Latched,
 }
 
@@ -75,7 +76,7 @@ impl Delivery {
 }
 
 impl Participant {
-    /// Joins the domain of a configuration.
+    /// Joins the DDS domain of `config`.
     pub(crate) fn join(config: &Config) -> Result<Self, Fault> {
         let failed = |what: &str| {
             let domain = config.domain;
@@ -93,7 +94,7 @@ impl Participant {
         Ok(Self { participant, publisher, subscriber })
     }
 
-    /// Subscribes to an absolute topic.
+    /// Subscribes to the topic with this absolute name.
     pub(crate) fn reader(&self, topic: &str, kind: &str, delivery: Delivery) -> Result<Reader, Fault> {
         let qos = delivery.qos(KEPT);
         let dds = self.topic(&dds_topic(topic), kind, &qos)?;
@@ -101,12 +102,12 @@ impl Participant {
         reader.map(Reader).map_err(|error| refused(topic, &error.to_string()))
     }
 
-    /// Publishes an absolute topic.
+    /// Returns a writer for the topic with this absolute name.
     pub(crate) fn writer(&self, topic: &str, kind: &str, delivery: Delivery) -> Result<Writer, Fault> {
         self.dds_writer(&dds_topic(topic), kind, delivery)
     }
 
-    /// Publishes a topic by its name in DDS.
+    /// Returns a writer for the topic with this name in DDS.
     pub(crate) fn dds_writer(&self, topic: &str, kind: &str, delivery: Delivery) -> Result<Writer, Fault> {
         let qos = match delivery {
             Delivery::BestEffort | Delivery::Reliable => delivery.qos(UNACKNOWLEDGED),
@@ -155,13 +156,13 @@ impl Participant {
     }
 }
 
-/// Returns the fault of a topic that could not be made.
+/// Returns the fault of a topic that the middleware refused to create.
 fn refused(topic: &str, why: &str) -> Fault {
     Fault::Middleware(format!("`{topic}` cannot be used: {why}"))
 }
 
 impl Reader {
-    /// Returns the next message, if one has come.
+    /// Returns the next message, if a message has arrived.
     pub(crate) fn take(&self) -> Option<Arrival> {
         self.0.drain_read_notifications();
         loop {
@@ -189,12 +190,12 @@ impl Writer {
         self.writer.write(payload, None).map_err(|error| error.to_string())
     }
 
-    /// Waits until all reliable subscribers have acknowledged all messages; returns `false` if they have not in time.
+    /// Waits until all reliable subscribers have acknowledged all messages; returns `false` if `within` passes first.
     pub(crate) fn is_acknowledged(&self, within: Duration) -> bool {
         self.writer.wait_for_acknowledgments(within).unwrap_or(false)
     }
 
-    /// Returns the number of subscribers that are matched.
+    /// Returns the number of matched subscribers.
     pub(crate) fn matched(&mut self) -> i32 {
         while let Some(status) = self.writer.try_recv_status() {
             if let DataWriterStatus::PublicationMatched { current, .. } = status {

@@ -1,4 +1,4 @@
-//! Hands the bytes of messages to and from RustDDS as they are: what they mean is read elsewhere.
+//! Adapter that passes the bytes of messages to and from RustDDS unchanged; other modules decode them.
 
 use std::convert::Infallible;
 
@@ -8,10 +8,10 @@ use rustdds::no_key::{Decode, DefaultDecoder, DeserializerAdapter, SerializerAda
 
 use crate::cdr::Payload;
 
-/// Encodings of plain CDR.
+/// Accepted encodings: plain CDR in either byte order.
 static ENCODINGS: [RepresentationIdentifier; 2] = [RepresentationIdentifier::CDR_LE, RepresentationIdentifier::CDR_BE];
 
-/// Adapter of payloads.
+/// Adapter between RustDDS and encoded messages.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PayloadAdapter;
 

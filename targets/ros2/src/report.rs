@@ -1,4 +1,4 @@
-//! The state of the plan as messages, so that the tools of ROS 2 show it.
+//! The state of the plan as messages that ROS 2 tools can show.
 
 use mdle_host::{Ended, PlanPosition};
 use serde_json::json;
@@ -9,28 +9,28 @@ use crate::messages::{DiagnosticArray, DiagnosticStatus, Header, KeyValue, Text,
 /// The state of a plan as text and as a diagnostic array.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StateMessages {
-    /// `std_msgs/msg/String` with JSON.
+    /// Message `std_msgs/msg/String` with the state as JSON.
     pub text: Payload,
-    /// `diagnostic_msgs/msg/DiagnosticArray`.
+    /// Message `diagnostic_msgs/msg/DiagnosticArray` with the state.
     pub diagnostics: Payload,
 }
 
 /// The state of a plan.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct PlanState {
-    /// `running`, `over` or `stopped`.
+    /// The word `running`, `over` or `stopped`.
     status: &'static str,
     /// Time of the run, in seconds.
     t: String,
     /// Name of the plan.
     plan: String,
-    /// Law of the atom.
+    /// Law of the current atom.
     law: String,
-    /// Place of the atom.
+    /// Place of the current atom in the plan.
     place: String,
-    /// Reason for which the atom runs, or why the plan has ended.
+    /// Reason why the atom runs, or why the plan has ended.
     cause: String,
-    /// Names of the named scopes around the atom, the plan first.
+    /// Names of the named scopes that enclose the atom, beginning with the plan.
     scopes: Vec<String>,
 }
 
@@ -51,7 +51,7 @@ impl PlanState {
         }
     }
 
-    /// Returns the state after the end.
+    /// Returns the state after the end of the plan.
     #[must_use]
     pub fn after(ended: &Ended<'_>) -> Self {
         Self {
@@ -63,10 +63,10 @@ impl PlanState {
         }
     }
 
-    /// Returns the messages, with this time of ROS in nanoseconds.
+    /// Returns the messages, with the time stamp `stamp` in nanoseconds.
     ///
     /// # Errors
-    /// A text has no representation.
+    /// A text cannot be encoded.
     pub fn messages(&self, stamp: i64) -> Result<StateMessages, String> {
         let text = json!({
             "status": self.status, "t": self.t.parse::<f64>().unwrap_or_default(), "plan": self.plan, "atom": self.law,

@@ -1,38 +1,38 @@
-//! Converts the rays of a laser scanner to ranges in the sixteen directions of a robot.
+//! Conversion of a laser scan to ranges in the sixteen directions of a robot.
 
 use mdle_runtime::{Meters, Mount, Pose, Radians, SONARS, SonarId};
 
 use crate::config::Config;
 use crate::messages::LaserScan;
 
-/// A direction as a scan shows it.
+/// Content of one direction in a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Direction {
-    /// No valid ray looked there.
+    /// No ray in this direction was valid.
     #[default]
     Unknown,
-    /// All valid rays there met nothing.
+    /// All valid rays in this direction met nothing.
     Free,
-    /// The nearest obstacle.
+    /// A ray in this direction met an obstacle; the nearest counts.
     Echo {
-        /// Range from the ring of virtual sonars, in metres.
+        /// Range of the obstacle from the ring of virtual sonars, in metres.
         range: Meters,
-        /// Bearing of the obstacle, as the mount of a sonar that looks at it.
+        /// Bearing of the obstacle, as the mount of a virtual sonar that points at it.
         mount: Mount,
     },
 }
 
-/// Place of a scanner on the body, and its habits.
+/// Mounting and settings of a laser scanner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scanner {
-    /// Place and direction, on the body.
+    /// Pose of the scanner on the body.
     mount: Pose,
     ring_radius: f64,
     zero_is_free: bool,
 }
 
 impl Scanner {
-    /// Returns the scanner of a configuration.
+    /// Returns the scanner that `config` describes.
     #[must_use]
     pub fn of(config: &Config) -> Self {
         let (x, y, theta) = (Meters(config.scan_x), Meters(config.scan_y), Radians(config.scan_yaw));
@@ -40,7 +40,7 @@ impl Scanner {
         Self { mount: Pose { x, y, theta }, ring_radius, zero_is_free }
     }
 
-    /// Returns the sixteen directions of a scan.
+    /// Returns the content of each of the sixteen directions of `scan`.
     #[must_use]
     pub fn directions(&self, scan: &LaserScan) -> [Direction; SONARS] {
         let mut directions = [Direction::Unknown; SONARS];
@@ -68,18 +68,19 @@ impl Scanner {
         directions
     }
 
-    /// Returns the places of obstacles on the body, in metres ahead and to the left of its centre.
+    /// Returns the positions of obstacles relative to the body, in metres ahead of its centre and to the left of it.
     pub fn obstacles<'s>(&'s self, scan: &'s LaserScan) -> impl Iterator<Item = (f64, f64)> + 's {
         self.rays(scan).filter_map(|(angle, range)| Some(self.place(angle, range?)))
     }
 
-    /// Returns the place of an obstacle on the body.
+    /// Returns the position, in metres relative to the body, of an obstacle at this angle and range.
     fn place(&self, angle: Radians, range: f64) -> (f64, f64) {
         let (sin, cos) = libm::sincos(angle.0);
         (self.mount.x.0 + range * cos, self.mount.y.0 + range * sin)
     }
 
-    /// Returns the valid rays: their angle on the body, and their range; `None` for a ray that met nothing.
+    /// Returns the valid rays of `scan`: their angle on the body, and their range in metres; `None` for a ray that met
+    /// nothing.
     fn rays<'s>(&'s self, scan: &'s LaserScan) -> impl Iterator<Item = (Radians, Option<f64>)> + 's {
         let (first, step) = (f64::from(scan.angle_min), f64::from(scan.angle_increment));
         let (least, most) = (f64::from(scan.range_min), f64::from(scan.range_max));
@@ -93,7 +94,7 @@ impl Scanner {
     }
 }
 
-/// Returns the sonar that looks nearest to a bearing.
+/// Returns the virtual sonar whose direction is nearest to `bearing`.
 pub(crate) fn sonar_at(bearing: Radians) -> SonarId {
     let places = SONARS as f64 * bearing.0 / std::f64::consts::TAU;
     SonarId::new(libm::round(places).rem_euclid(SONARS as f64) as u8)

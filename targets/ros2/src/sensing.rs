@@ -1,4 +1,4 @@
-//! The last messages of all topics, and the output that they make.
+//! The last messages of all topics, combined to the output of a turn.
 
 #[cfg(test)]
 mod tests;
@@ -22,19 +22,19 @@ use crate::odometer::Odometer;
 use crate::scan::{Direction, Scanner, sonar_at};
 use crate::source::{Input, Source, has_variance, inputs};
 
-/// A topic, and its last message that was taken.
+/// A topic, with the last message that was accepted.
 #[derive(Debug, Clone)]
 struct Seen {
     input: Input,
-    /// Time at which it was taken; `None` before the first.
+    /// Host's time at which the last message was accepted; `None` before the first message.
     at: Option<Duration>,
-    /// Time of the message by its own stamp, in nanoseconds.
+    /// Time stamp of the last accepted message, in nanoseconds.
     stamp: i64,
-    /// Reason why a later message was left out; empty if there was none.
+    /// Reason why the last message was rejected; empty if it was accepted or none has arrived.
     left_out: String,
 }
 
-/// The senses of a robot.
+/// The data that all topics of a robot have reported.
 #[derive(Debug, Clone)]
 pub struct Sensing {
     config: Config,
@@ -43,21 +43,21 @@ pub struct Sensing {
     seen: Vec<Seen>,
     odometer: Odometer,
     pings: [Pings; SONARS],
-    /// Time at which each direction was last known.
+    /// Host's time at which each direction was last known.
     known: [Duration; SONARS],
     switches: u32,
     supply: Supply,
-    /// Time of `/clock`, in nanoseconds.
+    /// Last time of `/clock`, in nanoseconds.
     clock: i64,
     /// Recorded paths that the plan can replay.
     pub paths: PathStore,
 }
 
 impl Sensing {
-    /// Returns the senses before the first message.
+    /// Returns the data of a robot that has sent no message yet.
     ///
     /// # Errors
-    /// A sentence about a topic whose name is none.
+    /// Returns a sentence if the configuration has an invalid topic name.
     pub fn new(config: &Config) -> Result<Self, String> {
         let seen = |input| Seen { input, at: None, stamp: 0, left_out: String::new() };
         Ok(Self {
@@ -75,12 +75,13 @@ impl Sensing {
         })
     }
 
-    /// Takes the message of the input of this index. `now` is the time of the host, and `at` that of the output.
+    /// Stores a message of the topic with this index. `now` is the time for the age of messages, and `at` that of the
+    /// output.
     ///
-    /// A message that cannot be read is left out: if no other comes, its topic becomes stale.
+    /// A message that cannot be read is rejected: if no other message follows, the topic becomes stale.
     ///
     /// # Errors
-    /// The odometry is none, has jumped, or has gone back in time.
+    /// The odometry is invalid, has jumped, or has gone back in time.
     pub fn take(&mut self, index: usize, payload: &Payload, now: Duration, at: Nanos) -> Result<(), Fault> {
         let Some(seen) = self.seen.get(index) else { return Ok(()) };
         let (source, since) = (seen.input.source, seen.at.map_or(now, |at| now.saturating_sub(at)));
@@ -111,7 +112,7 @@ impl Sensing {
         Ok(())
     }
 
-    /// Takes the time of a simulation. Messages that came before its first are as old as that.
+    /// Stores the time of a simulation. Messages that arrived before the first time of `/clock` get that time.
     fn take_clock(&mut self, clock: i64) {
         let is_first = self.clock == 0;
         self.clock = clock;
@@ -156,7 +157,7 @@ impl Sensing {
         if is_echo || is_free { Ok(range) } else { Err(format!("its range is {}", range.range)) }
     }
 
-    /// Takes a valid range: beyond the maximum, or infinite, it met nothing.
+    /// Stores a valid range. A range beyond the sensor's maximum, or an infinite one, means that nothing echoed.
     fn take_range(&mut self, number: usize, message: &Range, at: Nanos) -> i64 {
         let pose = self.pose_of(&message.header);
         if let Some(sensor) = self.config.ranges.0.get(number) {
@@ -185,24 +186,25 @@ impl Sensing {
         Ok(stamp)
     }
 
-    /// Returns the pose at the time of a message.
+    /// Returns the robot's pose at the time of a message.
     fn pose_of(&self, header: &Header) -> Pose {
         self.odometer.pose_at(&header.stamp).unwrap_or(Pose::ORIGIN)
     }
 
-    /// Returns the topics that are read.
+    /// Returns the topics that the robot reads.
     pub fn inputs(&self) -> impl Iterator<Item = &Input> {
         self.seen.iter().map(|seen| &seen.input)
     }
 
-    /// Returns the topics that lack a first message, with the reason why one was left out; not those that report
-    /// changes only.
+    /// Returns the topics that lack a first message, each with the reason why a message was rejected. Topics that
+    /// report changes only are left out.
     pub fn awaited(&self) -> impl Iterator<Item = (&Input, &str)> {
         let awaited = self.seen.iter().filter(|seen| seen.at.is_none() && !reports_changes(&seen.input));
         awaited.map(|seen| (&seen.input, seen.left_out.as_str()))
     }
 
-    /// Returns the times of the last odometry and of the oldest of the scan and ranges, by their stamps.
+    /// Returns two time stamps in nanoseconds: of the last odometry, and of the oldest topic among the scan and the
+    /// ranges.
     #[must_use]
     pub fn stamps(&self) -> (i64, i64) {
         let looks = |source| match source {
@@ -219,16 +221,16 @@ impl Sensing {
         self.clock
     }
 
-    /// Returns the time of `/clock`, since its beginning.
+    /// Returns the time of `/clock` as a duration since its zero.
     #[must_use]
     pub fn simulated(&self) -> Duration {
         Duration::from_nanos(self.clock.try_into().unwrap_or(0))
     }
 
-    /// Checks that no topic is stale.
+    /// Checks that no topic has stale data.
     ///
     /// # Errors
-    /// The first topic that is.
+    /// Returns the fault of the first topic with stale data.
     pub fn check(&self, now: Duration) -> Result<(), Fault> {
         for seen in self.seen.iter().filter(|seen| seen.input.limit > 0) {
             let age = now.saturating_sub(seen.at.unwrap_or(Duration::ZERO)).as_millis();
@@ -240,10 +242,10 @@ impl Sensing {
         Ok(())
     }
 
-    /// Returns the output at `at`.
+    /// Returns the output of the robot at the time `at`.
     ///
     /// # Errors
-    /// There has been no odometry.
+    /// No odometry has arrived yet.
     pub fn sensed(&self, at: Nanos) -> Result<Sensed, Fault> {
         let (odometry, velocity) = self.odometer.last().ok_or(Fault::NoPose)?;
         Ok(Sensed {
@@ -261,7 +263,8 @@ impl Sensing {
     }
 }
 
-/// Returns `true` if a topic may be silent from the start: the plan begins once it has a publisher.
+/// Returns `true` if a topic reports changes only: the plan may begin once the topic has a publisher, without a
+/// message.
 fn reports_changes(input: &Input) -> bool {
     match input.source {
         Source::Bumper | Source::Battery => input.limit == 0,

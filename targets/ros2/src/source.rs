@@ -6,23 +6,24 @@ use crate::config::{Config, has_topic};
 /// The purpose of a topic that the driver reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
-    /// `nav_msgs/msg/Odometry`.
+    /// Odometry, of type `nav_msgs/msg/Odometry`.
     Odometry,
-    /// `sensor_msgs/msg/LaserScan`.
+    /// Laser scan, of type `sensor_msgs/msg/LaserScan`.
     Scan,
-    /// `sensor_msgs/msg/Range` of the sensor of this index in the configuration.
+    /// Range of type `sensor_msgs/msg/Range`, from the sensor with this index in the configuration.
     Range(usize),
-    /// The bumper.
+    /// Bumper switches, of a type that the configuration names.
     Bumper,
-    /// `sensor_msgs/msg/BatteryState`.
+    /// Battery, of type `sensor_msgs/msg/BatteryState`.
     Battery,
-    /// `rosgraph_msgs/msg/Clock`.
+    /// Clock of a simulation, of type `rosgraph_msgs/msg/Clock`.
     Clock,
 }
 
 impl Source {
-    /// Returns the key of the configuration that names the topic, if another topic of its type can be proposed:
-    /// sensors of ranges have tables, the clock has one name, and the type of a bumper may mean anything.
+    /// Returns the configuration key that names the topic; `None` if no other topic of its type can be proposed. This
+    /// holds for range sensors, which are in tables, for the clock, whose name is fixed, and for the bumper, whose type
+    /// is common.
     #[must_use]
     pub const fn key(self) -> Option<&'static str> {
         match self {
@@ -39,18 +40,18 @@ impl Source {
 pub struct Input {
     /// Purpose of the topic.
     pub source: Source,
-    /// Absolute name.
+    /// Absolute name of the topic.
     pub topic: String,
-    /// Type, such as `std_msgs/msg/Bool`.
+    /// Type of the messages, such as `std_msgs/msg/Bool`.
     pub kind: &'static str,
-    /// Maximum age of its last message, in milliseconds; 0 for no limit.
+    /// Maximum age of the last message, in milliseconds; 0 for no limit.
     pub limit: u64,
 }
 
-/// Returns the topics that a configuration reads, in the order in which a turn takes their messages.
+/// Returns the topics that `config` reads, in the order in which a turn reads their messages.
 ///
 /// # Errors
-/// A sentence about a name that is none.
+/// Returns a sentence if a topic name is invalid.
 pub fn inputs(config: &Config) -> Result<Vec<Input>, String> {
     let mut inputs = Vec::new();
     let mut add = |source, name: &str, kind, limit| {

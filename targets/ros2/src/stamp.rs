@@ -1,8 +1,8 @@
-//! The time of ROS without a simulation: that of the system.
+//! The time stamp of ROS messages without a simulation: the system's time.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Returns the time since the epoch in nanoseconds, for the headers of messages.
+/// Returns the time since the epoch, in nanoseconds, for the headers of messages.
 #[must_use]
 pub(crate) fn ros_now() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();

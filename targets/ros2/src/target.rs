@@ -1,4 +1,4 @@
-//! The target `ros2`, as the host runs plans on it.
+//! The target `ros2`, on which the host runs plans.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -15,7 +15,7 @@ use crate::dds_link::DdsLink;
 use crate::driver::Ros2;
 use crate::pacing::Pacing;
 
-/// The target that the host runs plans on.
+/// The target `ros2`.
 #[derive(Debug, Clone, Copy)]
 pub struct Target;
 
@@ -88,17 +88,17 @@ impl mdle_host::Target for Target {
     }
 }
 
-/// Returns the file of `--config`, if it was given.
+/// Returns the file of the option `--config`, if the option is present.
 fn config(matches: &ArgMatches) -> Option<&Path> {
     matches.get_one::<PathBuf>("config").map(PathBuf::as_path)
 }
 
-/// Returns the configuration that the options ask for.
+/// Returns the configuration that the options select.
 fn configured(matches: &ArgMatches) -> Result<Configured, Refusal> {
     Configured::read(config(matches)).map_err(Refusal::Usage)
 }
 
-/// Returns the source of the time of turns.
+/// Returns the source of the time of turns that the options select.
 fn pacing(matches: &ArgMatches, period: Duration) -> Result<Pacing, Refusal> {
     if matches.get_flag("lockstep") {
         return Ok(Pacing::Lockstep(period));
