@@ -1,4 +1,4 @@
-//! An emulated robot that serves its line while a test drives it.
+//! An emulated robot that serves its serial line while a test drives it.
 
 use std::io;
 use std::path::Path;
@@ -8,18 +8,19 @@ use std::thread;
 use crate::port::Port;
 use crate::serve::{Emulated, Pace, serve};
 
-/// A robot that was driven.
+/// An emulated robot after a drive, with the results.
 #[derive(Debug)]
 pub struct Driven<R, T> {
     /// The result of the drive.
     pub result: T,
     /// The result of serving the line: an error if the robot closed it.
     pub served: io::Result<()>,
-    /// The robot.
+    /// The emulated robot.
     pub robot: R,
 }
 
-/// Sets the flag when it is dropped, also by a panic, which would otherwise wait for ever for the robot's thread.
+/// Guard that sets its flag when dropped, also in a panic: otherwise the test would wait forever for the thread of the
+/// robot.
 struct SetAtTheEnd<'f>(&'f AtomicBool);
 
 impl Drop for SetAtTheEnd<'_> {
@@ -28,7 +29,7 @@ impl Drop for SetAtTheEnd<'_> {
     }
 }
 
-/// Serves a line with `robot` on a thread while `drive`, which gets the path of its device, runs.
+/// Serves the robot's line on a thread while `drive` runs; `drive` receives the path of the line's device.
 ///
 /// # Errors
 /// The system has no more pseudo-terminals.

@@ -1,5 +1,5 @@
-//! The effects of faults: one test of every robot on a line, which compares each run with a faulty robot with the row
-//! of the robot's table.
+//! A test of faults for every robot on a serial line: runs the robot with each fault, and compares the run with the
+//! effects in the robot's table.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -16,36 +16,36 @@ use crate::trial::{FinishedRun, Motion, Trial, ran, started};
 
 /// World time at which a fault begins, in seconds.
 const BEGINS: u64 = 3;
-/// The longest time for which a driver goes on giving orders, from the first order to stand after the fault.
+/// Maximum time from the first order to stop after the fault to the driver's last order.
 const STOPPING: Duration = Duration::from_millis(2500);
-/// Number of runs at the same time: most of them wait for an answer that never comes.
+/// Number of simultaneous runs; most of them wait for an answer that never arrives.
 const AT_ONCE: usize = 32;
 
-/// The speed that a driver asks for, in turns of 100 ms.
+/// The speed that a driver requests, in turns of 100 ms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Speed {
-    /// 0.2 m/s.
+    /// The robot moves ahead at 0.2 m/s.
     Ahead,
-    /// 0.2 m/s for three seconds, until the fault begins, and then none.
+    /// The robot moves ahead at 0.2 m/s for three seconds, until the fault begins, and then stops.
     Halts,
-    /// None.
+    /// The robot stays at rest.
     Rests,
 }
 
-/// The output of a driver whose robot goes ahead, after five seconds.
+/// The expected output after five seconds of a robot that is driven ahead.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Feels {
-    /// A metre straight ahead, and a wall before the robot.
+    /// The robot has moved a metre straight ahead, and hears the wall before it.
     Well,
-    /// A metre straight ahead, with a contact.
+    /// The robot has moved a metre straight ahead, and reports a contact.
     Contact,
-    /// A metre straight ahead, without an echo.
+    /// The robot has moved a metre straight ahead, and hears no echo.
     NoEcho,
-    /// A turn to the right.
+    /// The robot has turned to the right.
     Turn,
 }
 
-/// The effect of faults on a run. The faults begin after three seconds, unless they have a time of their own.
+/// The expected effect of faults on a run. A fault without a time of its own begins after three seconds.
 #[derive(Debug, Clone, Copy)]
 pub struct Effect {
     faults: &'static [&'static str],
@@ -53,15 +53,16 @@ pub struct Effect {
     turns: u32,
     output: Result<Feels, &'static str>,
     stop: Result<(), &'static str>,
-    /// `true` if the stop may succeed as well.
+    /// `true` if the stop may also succeed.
     may_stop: bool,
     motion: Motion,
     orders: &'static [Order],
 }
 
 impl Effect {
-    /// Returns an effect of `faults` on five seconds ahead: the driver notices nothing and can stop the robot, which
-    /// then moves as in `motion`; the last orders that it has received are `orders`.
+    /// Returns the effect of `faults` on a robot that is driven ahead for five seconds: the driver notices nothing and
+    /// can stop the robot. Then the robot's wheels move as in `motion`, and the last orders that it has received are
+    /// `orders`.
     #[must_use]
     pub const fn of(faults: &'static [&'static str], motion: Motion, orders: &'static [Order]) -> Self {
         Self {
@@ -76,25 +77,25 @@ impl Effect {
         }
     }
 
-    /// Sets the speed that the driver asks for, and the number of turns of 100 ms.
+    /// Sets the speed that the driver requests, and the number of turns of 100 ms.
     #[must_use]
     pub const fn asked(self, speed: Speed, turns: u32) -> Self {
         Self { speed, turns, ..self }
     }
 
-    /// The run ends with a fault whose sentence contains `words`.
+    /// Expects that the run ends with a fault whose sentence contains `words`.
     #[must_use]
     pub const fn fails(self, words: &'static str) -> Self {
         Self { output: Err(words), ..self }
     }
 
-    /// The stop fails with a sentence that contains `words`.
+    /// Expects that the stop fails with a sentence that contains `words`.
     #[must_use]
     pub const fn stop_fails(self, words: &'static str) -> Self {
         Self { stop: Err(words), ..self }
     }
 
-    /// The stop may succeed as well: it depends on the moment of a question whether the line loses its answer.
+    /// Allows the stop to succeed as well: the moment of a request decides whether its answer is lost.
     #[must_use]
     pub const fn may_stop(self) -> Self {
         Self { may_stop: true, ..self }
@@ -106,19 +107,19 @@ impl Effect {
         Self { output: Ok(Feels::Contact), ..self }
     }
 
-    /// The sonar ahead hears nothing.
+    /// Expects that the sonar at the front hears nothing.
     #[must_use]
     pub const fn hears_nothing_ahead(self) -> Self {
         Self { output: Ok(Feels::NoEcho), ..self }
     }
 
-    /// The robot turns to the right.
+    /// Expects that the robot turns to the right.
     #[must_use]
     pub const fn turns_right(self) -> Self {
         Self { output: Ok(Feels::Turn), ..self }
     }
 
-    /// Runs the robot, and returns the differences from this effect.
+    /// Runs the robot, and returns a sentence about a difference from this effect.
     fn differences<T: Trial>(&self) -> Result<(), String> {
         let faults: Vec<String> = self.faults.iter().map(|fault| begun(fault)).collect();
         let faults: Vec<&str> = faults.iter().map(String::as_str).collect();
@@ -138,7 +139,8 @@ impl Effect {
         [output, stop, motion, self.ordered(&orders)].into_iter().collect()
     }
 
-    /// Compares the last orders, and requires that they end soon after the fault.
+    /// Compares the last orders with the expected ones, and checks that no order follows long after the first order to
+    /// stop.
     fn ordered(&self, orders: &[(Duration, Order)]) -> Result<(), String> {
         let kinds: Vec<Order> = orders.iter().map(|(_, order)| *order).collect();
         if !kinds.ends_with(self.orders) {
@@ -165,7 +167,7 @@ impl Speed {
 }
 
 impl Feels {
-    /// Compares an output, and returns a sentence if it differs.
+    /// Compares `y` with the expected output, and returns a sentence about a difference.
     fn check(self, y: &Sensed) -> Result<(), String> {
         let (way, heading) = (y.pose().x.0, y.pose().theta.degrees());
         let echo = y.pings(SonarId::new(0)).newest_first().next().and_then(|ping| ping.range);
@@ -181,12 +183,12 @@ impl Feels {
     }
 }
 
-/// Returns the fault with its time.
+/// Returns the fault with its time; the default time is that at which faults begin.
 fn begun(fault: &str) -> String {
     if fault.contains('@') { fault.to_owned() } else { format!("{fault}@{BEGINS}") }
 }
 
-/// Compares a result with the words that the sentence of its fault has to contain.
+/// Compares a result with the expected one; the sentence of an expected fault has to contain the given words.
 fn same<F: std::fmt::Display>(expected: Result<(), &str>, result: Result<(), F>) -> Result<(), String> {
     match (expected, result.map_err(|fault| fault.to_string())) {
         (Ok(()), Ok(())) => Ok(()),
@@ -195,9 +197,9 @@ fn same<F: std::fmt::Display>(expected: Result<(), &str>, result: Result<(), F>)
     }
 }
 
-/// Runs the robot with the faults of each row, and starts it with each of the faults of `refusals`, which the driver
-/// has to refuse with a sentence that contains the words beside it. Returns a sentence for each row that does not
-/// hold, and for each fault of the emulator that no row has.
+/// Runs the robot with the faults of each row, and starts it with each fault of `refusals`; the driver has to refuse
+/// the start with a sentence that contains the words beside the fault. Returns a sentence for each row that differs
+/// from its run, and for each fault of the emulator that is in no row.
 #[must_use]
 pub fn untrue_effects<T: Trial>(effects: &[Effect], refusals: &[(&'static str, &'static str)]) -> Vec<String> {
     let run = |effect: &Effect| effect.differences::<T>().map_err(|error| format!("{:?}: {error}", effect.faults));
@@ -223,8 +225,8 @@ pub fn untrue_effects<T: Trial>(effects: &[Effect], refusals: &[(&'static str, &
     untrue.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Returns a sentence for each fault that the robot can have, but that is in no row. Late frames are not among them,
-/// since they need a clock, which robots in lockstep do not have.
+/// Returns a sentence for each fault that the robot can have and that is in no row. Late frames are left out: they need
+/// a clock, which robots in lockstep do not have.
 fn missing<T: Trial>(effects: &[Effect]) -> Vec<String> {
     let faults = effects.iter().flat_map(|effect| effect.faults).filter_map(|fault| fault.parse::<At>().ok());
     let names: Vec<String> = faults.map(|at| at.fault.to_string()).collect();

@@ -1,4 +1,4 @@
-//! Faults of a robot on command: on its line, in any language, or in its body.
+//! Faults that a user can order from an emulated robot: on its line, in any language, or in its body.
 
 use std::fmt;
 use std::mem::discriminant;
@@ -9,42 +9,42 @@ use mdle_host::Quantity;
 
 /// The latest time at which a fault can begin.
 const LATEST: Duration = Duration::from_secs(1_000_000);
-/// Maximum number of a fault: bytes of noise, milliseconds of delay.
+/// Maximum number of a fault: bytes of noise, or milliseconds of delay.
 const MOST: u32 = 60_000;
 
-/// A fault of the line, or of the body.
+/// A fault of the line or of the robot's body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
-    /// This number of random bytes precedes each frame.
+    /// Random bytes, in this number, precede each frame.
     Noise(u32),
-    /// Frames come byte by byte.
+    /// Frames arrive byte by byte.
     Dribble,
     /// One bit of each frame is inverted.
     Check,
-    /// Each frame but every third is lost.
+    /// Two of three frames are lost.
     Lose,
     /// Each frame is sent twice.
     Double,
-    /// Each frame comes this many milliseconds late.
+    /// Each frame arrives late by this number of milliseconds.
     Late(u32),
-    /// No frame comes: the line from the robot is cut.
+    /// No frame arrives: the line from the robot is cut.
     Silence,
     /// The line is closed.
     Close,
-    /// Fault of the body.
+    /// The robot's body has this fault.
     Body(Ailment),
 }
 
-/// A fault of the robot itself.
+/// A fault of the robot's body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ailment {
     /// The robot receives nothing: the line to it is cut.
     Deaf,
-    /// The robot keeps its speed, against all commands and its own watchdog.
+    /// The robot keeps its speed, whatever commands arrive; its watchdog does not stop it.
     Runaway,
-    /// The right side does not move.
+    /// The right wheels do not move.
     StuckWheel,
-    /// The sonar in front hears nothing.
+    /// The sonar at the front hears nothing.
     DeadSonar,
     /// The first bumper is in contact.
     Bumper,
@@ -54,25 +54,25 @@ pub enum Ailment {
     LowBattery,
     /// The charger is plugged in.
     PluggedIn,
-    /// Each frame contains filler, which a reader must skip.
+    /// Each frame contains filler bytes, which a reader must skip.
     Filler,
-    /// The robot repeats the same report.
+    /// The robot repeats the same report again and again.
     Hang,
     /// The sonars no longer ping.
     NoPings,
     /// The robot no longer reports its bumpers.
     NoBumpers,
-    /// The robot no longer reports the distance driven.
+    /// The robot no longer reports its driven distance.
     NoTranslation,
-    /// The robot no longer reports the angle turned.
+    /// The robot no longer reports its turned angle.
     NoRotation,
     /// The robot no longer answers requests about its brake and battery.
     NoStatus,
-    /// Each position that it reports is metres away from the one before.
+    /// Each reported position is metres away from the previous position.
     Leap,
 }
 
-/// All faults with the names that `--fault` gives them, and the numbers of those that take one.
+/// Name of each fault in the option `--fault`, with its default number if it takes a number.
 const KINDS: [(&str, Fault); 24] = [
     ("noise", Fault::Noise(3)),
     ("dribble", Fault::Dribble),
@@ -100,24 +100,24 @@ const KINDS: [(&str, Fault); 24] = [
     ("leap", Fault::Body(Ailment::Leap)),
 ];
 
-/// A fault, and how long after the robot was switched on it begins, by the time of its world.
+/// A fault with the time at which it begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct At {
     /// The fault.
     pub fault: Fault,
-    /// Time at which the fault begins, by the clock of the robot's world.
+    /// Time since the robot was switched on at which the fault begins, by the clock of the robot's world.
     pub time: Duration,
 }
 
 impl Fault {
-    /// Returns the faults of all robots, with their usual numbers.
+    /// Returns the faults of all robots, with their default numbers.
     #[cfg(feature = "trial")]
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         KINDS.into_iter().map(|(_, fault)| fault)
     }
 
-    /// Returns the fault with the number of `text` in place of its usual number; `None` if it takes no number, or none
-    /// of this size.
+    /// Returns the fault with the number in `text` instead of its default number; `None` if the fault takes no number,
+    /// or the number is invalid or too large.
     fn numbered(self, text: &str) -> Option<Self> {
         match self {
             Self::Noise(_) => text.parse().ok().filter(|number| *number <= MOST).map(Self::Noise),

@@ -1,4 +1,4 @@
-//! A robot with which something goes wrong on command.
+//! An emulated robot with faults that begin at given times.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -8,29 +8,29 @@ use mdle_simulator::Footprint;
 use crate::fault::{Ailment, At, Fault};
 use crate::serve::{Embodied, Emulated};
 
-/// Noise of a line without shield, again and again.
+/// Bytes of noise on an unshielded line, which are repeated as often as needed.
 const NOISE: [u8; 3] = [0xFF, 0x00, 0xA5];
 
-/// A robot with which something goes wrong.
+/// An emulated robot with faults.
 #[allow(missing_debug_implementations, reason = "a robot need not have one")]
 pub struct Faulty<R> {
     robot: R,
-    /// The faults that are still to come, and those that have begun.
+    /// Faults that have not begun yet.
     coming: Vec<At>,
     begun: Vec<Fault>,
-    /// The time since the robot was switched on.
+    /// Time since the robot was switched on.
     age: Duration,
     /// The number of frames that the robot has sent.
     count: u32,
-    /// Pieces of frames that come late, each with the age at which it does.
+    /// Pieces of late frames, each with the age of the robot at which it arrives.
     late: VecDeque<(Duration, Vec<u8>)>,
 }
 
 impl<R: Emulated> Faulty<R> {
-    /// Returns a robot that has just been switched on.
+    /// Returns a robot that has just been switched on and will have `faults`.
     ///
     /// # Errors
-    /// The robot cannot have one of these faults.
+    /// The robot cannot have one of the faults.
     pub fn new(robot: R, faults: &[At]) -> Result<Self, String> {
         let cannot = faults.iter().find(|at| matches!(at.fault, Fault::Body(ailment) if !R::can_suffer(ailment)));
         if let Some(At { fault, .. }) = cannot {
@@ -48,19 +48,19 @@ impl<R: Emulated> Faulty<R> {
         Ok(faulty)
     }
 
-    /// The robot.
+    /// Returns the robot that has the faults.
     #[must_use]
     pub fn robot(&self) -> &R {
         &self.robot
     }
 
-    /// Hands the robot back.
+    /// Returns the robot, and ends its faults.
     #[must_use]
     pub fn into_robot(self) -> R {
         self.robot
     }
 
-    /// Returns `true` if the line is closed.
+    /// Returns `true` if the fault that closes the line has begun.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.has(Fault::Close)
@@ -70,7 +70,7 @@ impl<R: Emulated> Faulty<R> {
         self.begun.contains(&fault)
     }
 
-    /// Returns the number of the fault that `of` picks out, if that has begun.
+    /// Returns the number of the first fault that has begun and for which `of` returns a number.
     fn number(&self, of: fn(Fault) -> Option<u32>) -> Option<u32> {
         self.begun.iter().find_map(|fault| of(*fault))
     }
@@ -85,7 +85,7 @@ impl<R: Emulated> Faulty<R> {
         }
     }
 
-    /// Returns a frame as it arrives over the faulty line, in pieces.
+    /// Returns the pieces in which `frame` arrives over the faulty line.
     fn sent(&mut self, mut frame: Vec<u8>) -> Vec<Vec<u8>> {
         self.count = self.count.wrapping_add(1);
         if self.has(Fault::Silence) || self.has(Fault::Lose) && !self.count.is_multiple_of(3) {

@@ -1,4 +1,4 @@
-//! Shared code of robot emulators in any language: the pseudo-terminal, the passing of time, and their programs.
+//! Shared code of robot emulators in any language: pseudo-terminals, the advance of time, and the emulators' programs.
 #![forbid(unsafe_code)]
 
 mod driven;

@@ -1,4 +1,4 @@
-//! The options of all robot emulators.
+//! Command-line options of all robot emulators.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -10,7 +10,7 @@ use mdle_simulator::{Start, StartError};
 
 use crate::fault::At;
 
-/// Options that every robot emulator has, as read from its arguments.
+/// Values of the options that every robot emulator has.
 #[derive(Debug)]
 pub struct Options {
     pub(crate) world: String,
@@ -23,13 +23,13 @@ pub struct Options {
 }
 
 impl Options {
-    /// Adds the options to `command`.
+    /// Returns `command` with the options of all robot emulators.
     #[must_use]
     pub fn arguments(command: Command) -> Command {
         of_behavior(of_robots(command))
     }
 
-    /// Returns the options that `matches` of a command with [`Options::arguments`] contains.
+    /// Returns the options in `matches`, which come from a command with [`Options::arguments`].
     #[must_use]
     pub fn of(matches: &ArgMatches) -> Self {
         Self {
@@ -48,7 +48,7 @@ fn option(name: &'static str, value: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value)
 }
 
-/// Adds the options about the world and the robots in it.
+/// Returns `command` with the options about the world and its robots.
 fn of_robots(command: Command) -> Command {
     command
         .arg(
@@ -82,7 +82,7 @@ fn of_robots(command: Command) -> Command {
         )
 }
 
-/// Adds the options about lines, time and faults.
+/// Returns `command` with the options about lines, time and faults.
 fn of_behavior(command: Command) -> Command {
     command
         .arg(option("link", "PATH").help("Path for a symbolic link to the device").value_parser(value_parser!(PathBuf)))
@@ -119,7 +119,7 @@ fn of_behavior(command: Command) -> Command {
         )
 }
 
-/// The time that a command lets pass with `--lockstep`.
+/// Returns the period of `--lockstep`, which passes with each command.
 fn step_of_lockstep(text: &str) -> Result<Duration, String> {
     Quantity::duration(text, "ms", Duration::from_millis(1), Duration::from_secs(10))
 }

@@ -1,4 +1,4 @@
-//! The motion commands that an emulated robot has received, which tests read after a run.
+//! Motion commands that an emulated robot has received, which tests read after a run.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -6,25 +6,25 @@ use std::time::Duration;
 /// Maximum number of stored orders.
 const KEPT: usize = 64;
 
-/// The meaning of a motion command.
+/// Meaning of a motion command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
-    /// Order to move.
+    /// The command moves the robot.
     Drive,
-    /// Order to stop.
+    /// The command stops the robot.
     Stand,
-    /// Order to switch off the motors' current.
+    /// The command switches off the motors' current.
     LetGo,
-    /// Order to set the brake.
+    /// The command sets the brake.
     Brake,
 }
 
-/// The last 64 orders that have arrived, oldest first, each with the age of the robot's world.
+/// The last 64 orders that the robot has received, oldest first, each with the age of the robot's world.
 #[derive(Debug, Clone, Default)]
 pub struct Orders(VecDeque<(Duration, Order)>);
 
 impl Orders {
-    /// Records an order that has arrived at this age.
+    /// Stores an order that has arrived at the age `age` of the robot's world.
     pub fn push(&mut self, age: Duration, order: Order) {
         if self.0.len() >= KEPT {
             self.0.pop_front();
@@ -37,7 +37,7 @@ impl Orders {
         self.0.iter().copied()
     }
 
-    /// Returns the last order, and the age at which it arrived.
+    /// Returns the last order, with the age of the world at which it arrived.
     #[must_use]
     pub fn last(&self) -> Option<(Duration, Order)> {
         self.0.back().copied()

@@ -1,4 +1,4 @@
-//! The pseudo-terminal on which the robot is found.
+//! The pseudo-terminal at which a driver reaches an emulated robot.
 
 use std::os::fd::OwnedFd;
 use std::os::unix::fs::OpenOptionsExt as _;
@@ -12,18 +12,18 @@ use rustix::io::Errno;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
-/// Both ends of a line, and the path of the driver's end.
+/// A serial line: both ends of a pseudo-terminal, and the path of the driver's end.
 #[derive(Debug)]
 pub struct Port {
     ours: OwnedFd,
-    /// Kept open, so that the line outlives its users.
+    /// The driver's end, kept open so that the line remains when a driver closes it.
     _theirs: fs::File,
     path: PathBuf,
     link: Option<PathBuf>,
 }
 
 impl Port {
-    /// A new line.
+    /// Opens a new pseudo-terminal.
     ///
     /// # Errors
     /// The system has no more pseudo-terminals.
@@ -45,10 +45,11 @@ impl Port {
         Ok(Self { ours, _theirs: theirs, path, link: None })
     }
 
-    /// Puts a symbolic link to the device here, in place of one that is there; it goes with the line.
+    /// Creates a symbolic link to the device at `link`, and replaces a symbolic link that is there. The link is removed
+    /// with the line.
     ///
     /// # Errors
-    /// Something else is there, or nothing can be.
+    /// A file that is not a symbolic link is there, or the link cannot be created.
     pub fn link(&mut self, link: &Path) -> io::Result<()> {
         if fs::symlink_metadata(link).is_ok_and(|known| known.file_type().is_symlink()) {
             fs::remove_file(link)?;
@@ -58,7 +59,7 @@ impl Port {
         Ok(())
     }
 
-    /// The device that a driver opens.
+    /// Returns the path of the device that a driver opens.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -69,7 +70,7 @@ impl Port {
         &self.ours
     }
 
-    /// Waits for bytes until `limit` has passed, and passes them to `take`; returns `true` if there were any.
+    /// Waits for bytes until `limit` has passed, and passes them to `take`; returns `true` if bytes arrived.
     ///
     /// # Errors
     /// The line failed.
@@ -89,7 +90,7 @@ impl Port {
         Ok(true)
     }
 
-    /// Sends bytes. Bytes without a reader are lost once the line is full, as on a wire.
+    /// Sends `bytes`. If nobody reads them, bytes are lost once the line is full, as on a wire.
     ///
     /// # Errors
     /// The line failed.

@@ -1,5 +1,4 @@
-//! Detection of the lines that have a driver at their other end: the system reports each opening and closing of a
-//! device.
+//! Detection of the lines to which a driver is connected: the system reports each opening and closing of a device.
 
 use std::mem::MaybeUninit;
 use std::os::fd::OwnedFd;
@@ -9,28 +8,28 @@ use std::{io, iter};
 use rustix::fs::inotify::{self, CreateFlags, ReadFlags, Reader, WatchFlags};
 use rustix::io::Errno;
 
-/// The lines, in their order.
+/// Presence of drivers at the lines, in the order of the lines.
 #[derive(Debug)]
 pub(crate) struct Presence {
     watch: OwnedFd,
     lines: Vec<Observation>,
 }
 
-/// The last observation of a line.
+/// The last observed state of a line.
 #[derive(Debug, Clone, Copy)]
 struct Observation {
-    /// Number by which the system's reports name the line.
+    /// Number by which the system's reports identify the line.
     number: i32,
-    /// Number of times that the line is open; `has_begun` is `true` if it ever was open.
+    /// Number of programs that have the line open; `has_begun` is `true` if any program has opened it.
     users: u32,
     has_begun: bool,
 }
 
 impl Presence {
-    /// Watches for drivers at these devices, from now on.
+    /// Watches for drivers at `devices` from now on.
     ///
     /// # Errors
-    /// The system cannot watch this many devices.
+    /// The system cannot watch this number of devices.
     pub(crate) fn of<'p>(devices: impl Iterator<Item = &'p Path>) -> io::Result<Self> {
         let watch = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
         let events = WatchFlags::OPEN | WatchFlags::CLOSE_WRITE | WatchFlags::CLOSE_NOWRITE;
@@ -40,15 +39,15 @@ impl Presence {
         Ok(Self { watch, lines })
     }
 
-    /// Returns a descriptor to wait for: it can be read when a driver has come or gone.
+    /// Returns a file descriptor that becomes readable when a driver has connected or disconnected.
     pub(crate) fn end(&self) -> &OwnedFd {
         &self.watch
     }
 
-    /// Reads which drivers have come and gone.
+    /// Reads which drivers have connected or disconnected.
     ///
     /// # Errors
-    /// The system reports no longer.
+    /// The system no longer reports.
     pub(crate) fn look(&mut self) -> io::Result<()> {
         let mut buffer = [MaybeUninit::uninit(); 1024];
         let mut reader = Reader::new(&self.watch, &mut buffer);
@@ -70,12 +69,12 @@ impl Presence {
         Ok(())
     }
 
-    /// Returns `true` if each line has had a driver.
+    /// Returns `true` if a driver has been connected to each line.
     pub(crate) fn all_have_begun(&self) -> bool {
         self.lines.iter().all(|line| line.has_begun)
     }
 
-    /// Returns for each line, in order, `true` if it has a driver now.
+    /// Returns, for each line in order, `true` if a driver is connected to it.
     pub(crate) fn are_open(&self) -> impl Iterator<Item = bool> {
         self.lines.iter().map(|line| line.users > 0)
     }

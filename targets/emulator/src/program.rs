@@ -1,4 +1,4 @@
-//! The program of an emulated robot: its world, its lines, and its end.
+//! The program of an emulated robot: creates its world and lines, and serves them until a signal arrives.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -17,11 +17,11 @@ use crate::port::Port;
 use crate::serve::{Embodied, Emulated, Pace};
 use crate::several::{Seat, Several};
 
-/// Maximum size of the file of a world, in bytes.
+/// Maximum size of a world file, in bytes.
 const LARGEST: u64 = 64_000_000;
 
-/// Runs the robots that `made` makes of their bodies, until a signal comes. `name` is the robot's, as in `the Scout`;
-/// `step` returns the time step of its body for a pace.
+/// Runs the robots that `made` creates from their bodies, until a signal arrives. `name` is the name of the robot type,
+/// such as `the Scout`; `step` returns the time step of a body at a pace.
 pub fn program<R: Emulated + Embodied>(
     name: &str,
     body: Body,
@@ -74,7 +74,7 @@ fn run<R: Emulated + Embodied>(
     line.map_err(|error| format!("the line failed: {error}"))
 }
 
-/// Returns the bodies that the options ask for, with their names if they have names. Each body has the places of the
+/// Returns the bodies that the options define, each with its name if it has one. Each body knows the places of the
 /// others.
 fn bodies(
     options: &Options,
@@ -107,7 +107,7 @@ fn bodies(
     Ok(bodies)
 }
 
-/// Refuses a robot with the name of another one, or in its place.
+/// Returns an error if another robot has this name, or if it overlaps this robot's body.
 fn refuse(name: &str, body: &Simulated, others: &[(Option<String>, Simulated)]) -> Result<(), String> {
     for (other, known) in others {
         if other.as_deref() == Some(name) {

@@ -1,4 +1,4 @@
-//! A robot at its line: requests come, answers go, and the world passes on meanwhile.
+//! Serves an emulated robot at its line: receives requests, sends answers, and advances the world.
 
 use std::io;
 use std::time::{Duration, Instant};
@@ -8,37 +8,37 @@ use mdle_simulator::Footprint;
 use crate::fault::Ailment;
 use crate::port::Port;
 
-/// A step of the world in real time.
+/// Time step of the world in real time.
 pub const STEP: Duration = Duration::from_millis(10);
-/// Maximum wait between two checks of the request to stop.
+/// Maximum time between two checks of the request to stop.
 pub(crate) const SLICE: Duration = Duration::from_millis(5);
 
-/// A robot emulator: its language and its body.
+/// A robot emulator: the robot's language and body.
 pub trait Emulated {
     /// Receives bytes from the line.
     fn push(&mut self, bytes: &[u8]);
 
-    /// Executes the next complete request; `None` if there is no such request. In lockstep a period passes after a
-    /// request for which this returns `true`, before the answer is sent.
+    /// Executes the next complete request; returns `None` if there is no complete request. In lockstep, a period passes
+    /// after a request for which this returns `true`, before the answer is sent.
     fn obey(&mut self) -> Option<bool>;
 
-    /// Lets `time` pass.
+    /// Advances the robot's world by `time`.
     ///
     /// # Errors
-    /// The world's sentence about an input that it cannot take; no input here is of this kind.
+    /// Returns the world's sentence about an input that it cannot accept; no input here is of this kind.
     fn pass(&mut self, time: Duration) -> Result<(), String>;
 
     /// Returns the frames that the robot has to send since the last call.
     fn take_frames(&mut self) -> Vec<Vec<u8>>;
 
-    /// Returns `true` if this robot can have this ailment.
+    /// Returns `true` if this kind of robot can have `ailment`.
     fn can_suffer(ailment: Ailment) -> bool;
 
-    /// Begins this ailment.
+    /// Begins the fault `ailment` of the body.
     fn suffer(&mut self, ailment: Ailment);
 }
 
-/// A robot that others in its world see and touch.
+/// A robot that other robots in its world hear and touch.
 pub trait Embodied {
     /// Returns the area that the robot's body covers.
     fn footprint(&self) -> Footprint;
@@ -47,7 +47,7 @@ pub trait Embodied {
     fn see(&mut self, others: &[Footprint]);
 }
 
-/// Pace of the world.
+/// Pace at which the world advances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pace {
     /// The world advances by this step with each command, independent of the clock.
@@ -57,7 +57,7 @@ pub enum Pace {
 }
 
 impl Pace {
-    /// The step that the body has to be made for.
+    /// Returns the time step of the robot's body.
     #[must_use]
     pub const fn step(self) -> Duration {
         match self {
@@ -70,7 +70,7 @@ impl Pace {
 /// Serves the robot at this line while `goes_on` returns `true`, and then until it has executed its earlier commands.
 ///
 /// # Errors
-/// The line failed, or the world did.
+/// The line or the robot's world failed.
 pub fn serve<R: Emulated>(robot: &mut R, port: &Port, pace: Pace, goes_on: &dyn Fn() -> bool) -> io::Result<()> {
     let mut next = Instant::now() + STEP;
     loop {

@@ -1,8 +1,9 @@
-//! Several robots in one world, each at its own line: they hear and touch each other.
+//! Several robots in one world, each at its own line: the robots hear and touch each other.
 //!
-//! In lockstep the world advances by a step once each robot with a driver has got its command for that step. It begins
-//! when each robot has had a driver; a robot whose driver has gone no longer blocks the others, and its own watchdog
-//! stops it. In a step the robots move one after another, in their order.
+//! In lockstep the world advances by a step when each robot with a connected driver has received its command for that
+//! step. The first step waits until a driver has been connected to each robot. A robot whose driver has disconnected no
+//! longer blocks the others, and its own watchdog stops it. In a step the robots move one after another, in their
+//! order.
 
 use std::io;
 use std::time::{Duration, Instant};
@@ -35,13 +36,13 @@ impl<R> Several<R> {
     /// Returns the robots, and watches from now on for drivers at their lines.
     ///
     /// # Errors
-    /// The system cannot watch this many lines.
+    /// The system cannot watch this number of lines.
     pub fn of(seats: Vec<Seat<R>>) -> io::Result<Self> {
         let presence = Presence::of(seats.iter().map(|seat| seat.port.path()))?;
         Ok(Self { seats, presence })
     }
 
-    /// The robots at their lines.
+    /// Returns the robots, each with its line.
     #[must_use]
     pub fn seats(&self) -> &[Seat<R>] {
         &self.seats
@@ -52,7 +53,7 @@ impl<R: Emulated + Embodied> Several<R> {
     /// Serves all robots while `goes_on` returns `true`, and then until they have executed their earlier commands.
     ///
     /// # Errors
-    /// A line failed, or the world did.
+    /// A line or the world of a robot failed.
     pub fn serve(&mut self, pace: Pace, goes_on: &dyn Fn() -> bool) -> io::Result<()> {
         let Self { seats, presence } = self;
         match seats.as_mut_slice() {
@@ -109,7 +110,7 @@ fn serve_several<R: Emulated + Embodied>(
     }
 }
 
-/// Waits until a driver sends something, comes or goes, or until `limit` has passed.
+/// Waits until a driver sends bytes, connects or disconnects, or until `limit` has passed.
 fn wait<R>(seats: &[Seat<R>], presence: &Presence, limit: Duration) -> io::Result<()> {
     let timeout = Timespec { tv_sec: limit.as_secs() as i64, tv_nsec: i64::from(limit.subsec_nanos()) };
     let ends = seats.iter().map(|seat| seat.port.end()).chain([presence.end()]);
@@ -120,7 +121,7 @@ fn wait<R>(seats: &[Seat<R>], presence: &Presence, limit: Duration) -> io::Resul
     }
 }
 
-/// Lets a robot execute its requests, up to its command for the coming step.
+/// Executes the requests of a robot until its command for the next step, which sets `has_command`.
 fn hear<R: Emulated>(seat: &mut Seat<R>, pace: Pace, has_command: &mut bool) -> io::Result<()> {
     while !*has_command {
         match seat.robot.obey() {
@@ -132,14 +133,14 @@ fn hear<R: Emulated>(seat: &mut Seat<R>, pace: Pace, has_command: &mut bool) -> 
     Ok(())
 }
 
-/// Returns `true` if the world is to advance.
+/// Returns `true` if the world must advance: each robot has had a driver, and no connected driver owes a command.
 fn is_due(presence: &Presence, have_commands: &[bool]) -> bool {
     let nobody_is_waited_for =
         presence.are_open().zip(have_commands).all(|(is_open, has_command)| *has_command || !is_open);
     presence.all_have_begun() && nobody_is_waited_for && have_commands.contains(&true)
 }
 
-/// Lets the world advance; each robot finds the others at their current places.
+/// Advances the world by a step; each robot sees the other robots at their current places.
 fn pass<R: Emulated + Embodied>(seats: &mut [Seat<R>], step: Duration) -> io::Result<()> {
     let mut footprints: Vec<Footprint> = seats.iter().map(|seat| seat.robot.footprint()).collect();
     for (number, Seat { robot, port }) in seats.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! An emulated robot on a stage: it serves its line in a thread, in lockstep, while a test watches what becomes of it.
+//! An emulated robot that serves its line on a thread, in lockstep, while a test observes its state.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::fault::Ailment;
 use crate::port::Port;
 use crate::serve::{Emulated, Pace, serve};
 
-/// A robot at its line. It is switched off when this is dropped.
+/// An emulated robot at its line. Dropping this switches the robot off.
 #[derive(Debug)]
 pub struct Staged<T> {
     device: PathBuf,
@@ -19,18 +19,18 @@ pub struct Staged<T> {
     serving: Option<JoinHandle<io::Result<()>>>,
 }
 
-/// State of a robot as a test sees it, and requests to its world.
+/// State of a robot that a test observes, and requests to the robot's world.
 #[derive(Debug)]
 struct SharedState<T> {
     now: Mutex<T>,
-    /// Number of periods that are to pass without a command.
+    /// Number of periods that still pass without a command.
     idle: AtomicU32,
-    /// Ailment that begins next.
+    /// Fault of the body that begins next.
     ailment: Mutex<Option<Ailment>>,
     is_over: AtomicBool,
 }
 
-/// The robot as its line sees it.
+/// The robot with the state that it shares with the test.
 struct Watched<R, T> {
     robot: R,
     look: fn(&R) -> T,
@@ -40,7 +40,7 @@ struct Watched<R, T> {
 
 impl<T: Clone + Send + 'static> Staged<T> {
     /// Switches on a robot whose world advances by `period` with each command; `look` returns the state that a test
-    /// sees.
+    /// observes.
     ///
     /// # Errors
     /// The system has no more pseudo-terminals.
@@ -62,7 +62,7 @@ impl<T: Clone + Send + 'static> Staged<T> {
         Ok(Self { device, seen, serving: Some(serving) })
     }
 
-    /// The device that a driver opens.
+    /// Returns the path of the device that a driver opens.
     #[must_use]
     pub fn device(&self) -> &Path {
         &self.device
@@ -74,7 +74,7 @@ impl<T: Clone + Send + 'static> Staged<T> {
         self.seen.now.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Begins this ailment of the robot, from the end of the next period on.
+    /// Begins the fault `ailment` of the robot's body at the end of the next period.
     pub fn suffers(&self, ailment: Ailment) {
         *self.seen.ailment.lock().unwrap_or_else(PoisonError::into_inner) = Some(ailment);
     }

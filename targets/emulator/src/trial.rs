@@ -1,4 +1,4 @@
-//! A driver on its emulated robot: the tests that every robot on a line has to pass, and what they have in common.
+//! Tests of a driver with its emulated robot, which every robot on a serial line has to pass, and their shared code.
 
 use std::marker::PhantomData;
 use std::path::Path;
@@ -17,16 +17,16 @@ use crate::orders::Orders;
 use crate::serve::{Emulated, Pace};
 use crate::staged::Staged;
 
-/// The time that a driver waits for an answer where none fails to come, in milliseconds: longer than any machine takes.
+/// Timeout of the driver, in milliseconds, where every answer arrives: longer than any machine needs.
 const LONG: u64 = 60_000;
-/// The time that a driver waits for an answer where some do, in milliseconds.
+/// Timeout of the driver, in milliseconds, where some answers do not arrive.
 const PATIENCE: u64 = 3000;
 
-/// A wall 4 m before the robot, and others far away.
+/// World with a wall 4 m before the robot, and other walls far away.
 const HALL: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -3], [4, 3], [-3, 3], [-3, -3], [4, -3]]";
 
-/// The motion of a robot at the end of a run.
+/// Motion of a robot's wheels at the end of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Motion {
     /// The wheels turn.
@@ -37,26 +37,26 @@ pub enum Motion {
     Braked,
 }
 
-/// A robot with its driver.
+/// A kind of robot, with its driver and its emulator.
 pub trait Trial {
-    /// The driver.
+    /// Driver of the robot.
     type Driver: SerialRobot;
-    /// The alphabet of the driver's crate.
+    /// Alphabet of the driver's crate.
     type Alphabet: Alphabet<Output = Sensed, Input = Twist>;
-    /// The emulated robot.
+    /// Emulator of the robot.
     type Emulated: Emulated + Send + 'static;
-    /// The body that the robot has in the simulator.
+    /// Body of the robot in the simulator.
     const BODY: Body;
 
-    /// Returns the step of the robot's world.
+    /// Returns the time step of the robot's world at this pace.
     fn step(pace: Pace) -> Duration {
         pace.step()
     }
 
-    /// Returns a robot that has just been switched on, whose world passes on in such steps.
+    /// Returns a robot that has just been switched on, whose world advances in steps of `step`.
     ///
     /// # Errors
-    /// The world's sentence about an input that it cannot take, which none here is.
+    /// Returns the world's sentence about an input that it cannot accept; no input here is of this kind.
     fn emulated(body: Simulated, step: Duration) -> Result<Self::Emulated, String>;
 
     /// Returns the true pose of the robot.
@@ -69,19 +69,19 @@ pub trait Trial {
     fn orders(robot: &Self::Emulated) -> &Orders;
 }
 
-/// The period of the robot's turns.
+/// Returns the period of the robot's turns.
 fn period<T: Trial>() -> Duration {
     Duration::from_nanos(T::Driver::PERIOD.0)
 }
 
-/// Returns a robot of this world that has just been switched on.
+/// Returns a robot that has just been switched on at the pose `at` of `world`.
 fn switched_on<T: Trial>(world: &World, at: Pose, seed: Option<u64>) -> Result<T::Emulated, String> {
     let step = T::step(Pace::Lockstep(period::<T>()));
     let make = Make { body: T::BODY, without: Vec::new(), seed };
     T::emulated(Simulated::with(&make, world, at, step).map_err(|error| error.to_string())?, step)
 }
 
-/// Opens the robot at this device, whose answers may take `answer` milliseconds.
+/// Connects a driver to the robot at this device; the driver waits `answer` milliseconds for an answer.
 fn connected<T: Trial>(device: &Path, answer: u64) -> Result<Result<T::Driver, FaultOf<T>>, String> {
     let mut config = Configured::<<T::Driver as SerialRobot>::Config>::read(None, device.to_str())?.config;
     *T::Driver::answer(&mut config) = answer;
@@ -89,11 +89,11 @@ fn connected<T: Trial>(device: &Path, answer: u64) -> Result<Result<T::Driver, F
     Ok(T::Driver::connect(config, Clock::Stepped(period), period, &StopRequest::default()))
 }
 
-/// A fault of the driver.
+/// Fault type of the driver of `T`.
 type FaultOf<T> = <<T as Trial>::Driver as Robot>::Error;
 
-/// The stage of the conformance suite: the driver is at the line of the robot that is switched on now, whose sensors
-/// are exact and whose wheels do not slip.
+/// Stage of the conformance suite: connects the driver to the robot that is currently switched on, whose sensors are
+/// exact and whose wheels do not slip.
 #[derive(Debug)]
 pub struct OnItsLine<T>(Option<Staged<Pose>>, PhantomData<T>);
 
@@ -139,8 +139,8 @@ impl<T: Trial> Stage for OnItsLine<T> {
     }
 }
 
-/// Returns how often the driver asks for memory in fifty turns, by the number that `asked` has counted so far on this
-/// thread: long enough for each sonar to ping, and for whatever does not come in each turn.
+/// Returns the number of allocations of the driver in fifty turns, as `asked` counts them on this thread. Fifty turns
+/// are enough for each sonar to ping, and for all that does not happen in each turn.
 ///
 /// # Errors
 /// The robot or its driver failed.
@@ -161,21 +161,21 @@ pub fn memory_asked_for<T: Trial>(asked: fn() -> u64) -> Result<u64, String> {
     result
 }
 
-/// A run that is over, of a robot with faults in front of a wall.
+/// A finished run of a robot with faults in front of a wall.
 pub(crate) struct FinishedRun<T: Trial> {
     /// The last output, or the fault that ended the run.
     pub(crate) output: Result<Sensed, FaultOf<T>>,
     /// The result of the stop.
     pub(crate) stop: Result<(), FaultOf<T>>,
-    /// The robot.
+    /// The emulated robot after the run.
     pub(crate) robot: T::Emulated,
 }
 
-/// Runs a driver that asks for `speed`, in m/s, for this number of turns, and then stops, as the host always does.
+/// Runs a driver that requests `speed`, in m/s, for `turns` turns, and then stops it, as the host always does.
 ///
 /// # Errors
-/// There is no such fault, the driver could not connect, or the line was closed without a fault that closes it, or left
-/// open with one.
+/// A fault does not exist, the driver could not connect, the line was closed without a fault that closes it, or the
+/// line stayed open with such a fault.
 pub(crate) fn ran<T: Trial>(
     turns: u32,
     faults: &[&str],
@@ -196,7 +196,7 @@ pub(crate) fn ran<T: Trial>(
     Ok(FinishedRun { output, stop, robot: robot.into_robot() })
 }
 
-/// Returns what the driver says at the start of a robot that has this fault from the beginning.
+/// Returns the result of connecting a driver to a robot that has this fault from the beginning.
 ///
 /// # Errors
 /// There is no such fault, or the line failed.
@@ -208,7 +208,7 @@ pub(crate) fn started<T: Trial>(fault: &str) -> Result<Result<(), FaultOf<T>>, S
     result.map(|driver| driver.map(drop))
 }
 
-/// Returns a robot in the hall with these faults.
+/// Returns a robot with these faults in front of the wall of [`HALL`].
 fn faulty<T: Trial>(faults: &[&str]) -> Result<Faulty<T::Emulated>, String> {
     let world = World::parse("hall", HALL).map_err(|error| error.to_string())?;
     let faults: Vec<At> = faults.iter().map(|fault| fault.parse()).collect::<Result<_, _>>()?;
