@@ -1,4 +1,4 @@
-//! Commands to a Scout that a driver needs, as frames. See docs/src/reference/protocols.md, 1.3.
+//! Commands to a Scout that the driver uses, as frames. See docs/src/reference/protocols.md, 1.3.
 
 use crate::frame::{Arguments, Frame};
 use crate::number;
@@ -11,11 +11,11 @@ const SONARS: usize = 16;
 pub enum Command {
     /// Report the state (GS).
     State,
-    /// Stop and hold the position (ST).
+    /// Stop, and hold the position (ST).
     Stop,
-    /// Leave the motors without current (LP).
+    /// Switch off the motors' current (LP).
     Limp,
-    /// Position and heading are zero from now on (ZR).
+    /// Set the current position and heading to zero (ZR).
     Zero,
     /// Stop when no command has arrived for this number of seconds; 0 switches the watchdog off (CONF_TM).
     Watchdog(u8),
@@ -23,12 +23,12 @@ pub enum Command {
     Sonars(u8, [u8; SONARS]),
     /// Maximum accelerations of the right and the left wheel, a tenth of an inch per second squared (AC).
     Accelerations(u16, u16),
-    /// The speeds of the right and the left wheel (VM).
+    /// Speeds of the right and the left wheel (VM).
     Velocities(i16, i16),
 }
 
 impl Command {
-    /// Returns the command's type on the line, which its answer has as well.
+    /// Returns the type of the command on the line; its answer has the same type.
     #[must_use]
     pub const fn kind(&self) -> u8 {
         match self {

@@ -5,11 +5,11 @@ use std::time::Duration;
 /// Usual order in which a Scout's sonars ping.
 const ORDER: [u8; 16] = [0, 2, 15, 1, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8];
 
-/// A configuration with the source of each of its values.
+/// A configuration with the source of each value.
 pub type Configured = mdle_serial::Configured<Config>;
 
 mdle_serial::configuration! {
-    /// Properties of one robot.
+    /// Properties of a Scout.
     Config;
 
     /// Maximum speed of a wheel, in m/s.
@@ -28,18 +28,18 @@ mdle_serial::configuration! {
     /// 0 for no limit.
     disobey: u64 = 500, in 0..=60_000,
         "ms" "that it may move faster than commanded, or in the opposite direction, 0 for no limit", unverified;
-    /// Sonars that ping, in their order.
+    /// Sonars that ping, in the order of their pings.
     sonars: Vec<u8> = ORDER.to_vec(), "" "which ping, in this order";
-    /// The time between two pings, in milliseconds.
+    /// Time between two pings, in milliseconds.
     gap: u64 = 60, in 4..=1020, "ms" "between two pings";
-    /// The distance of the transducers from the centre, in metres.
+    /// Distance of the sonars from the body's centre, in metres.
     ring_radius: f64 = 0.19, in 0.0..=0.5, "m" "from the centre to a sonar", unverified;
-    /// Voltage below which the battery is low.
+    /// Voltage below which the battery is low, in volts.
     low_battery: f64 = 10.8, in 5.0..=12.0, "V" "below which the battery is low";
 }
 
 impl Config {
-    /// Checks the conditions that a value's range cannot express.
+    /// Checks the conditions that the ranges of single values cannot express.
     fn check(&self) -> Result<(), String> {
         if !self.gap.is_multiple_of(4) {
             return Err(format!("`gap` is {}, and the robot counts it in steps of 4 ms", self.gap));
@@ -53,7 +53,7 @@ impl Config {
         Ok(())
     }
 
-    /// Returns the order of the sonars in the robot's format: unused places hold 255.
+    /// Returns the order of the sonars in the robot's format: unused places contain 255.
     #[must_use]
     pub fn order(&self) -> [u8; 16] {
         std::array::from_fn(|place| self.sonars.get(place).copied().unwrap_or(255))

@@ -1,4 +1,5 @@
-//! The Scout as a kinetic state machine: each input is a velocity command, whose answer is the output (paper, Eq. 1).
+//! The driver of a Scout, as a kinetic state machine: each input is a velocity command, whose answer is the output
+//! (paper, Eq. 1).
 
 use std::time::{Duration, Instant};
 
@@ -17,24 +18,25 @@ use crate::ring::Ring;
 use crate::state::{self, State};
 use crate::wheels::{self, WHEEL_BASE};
 
-/// The radius of the body.
+/// Radius of the body, in metres.
 const RADIUS: Meters = Meters(0.205);
-/// Number of pings that must agree that a way is free on a robot whose sonars fire in turn.
+/// Number of consistent pings that confirm a free way on a robot whose sonars fire in turn.
 const CONFIRMATION: usize = 2;
-/// Minimum time that the robot is allowed for coming to rest before its motors are released; from 1 m/s it takes 0.5 s.
+/// Minimum time that the robot has to come to rest before its motors are released; from 1 m/s it needs 0.5 s.
 const STOPPING: Duration = Duration::from_millis(600);
 /// Maximum time for the last answer of a robot that has not answered before.
 const ANSWER: Duration = Duration::from_millis(150);
-/// A wheel that is held may jitter by this, in tenths of an inch per second.
+/// Maximum speed of a wheel that is held and jitters, in tenths of an inch per second.
 const JITTER: u16 = 4;
-/// The time between two checks for the robot being at rest.
+/// Time between two checks that the robot is at rest.
 const LOOK: Duration = Duration::from_millis(20);
-/// The time between two stop commands to a robot that does not answer.
+/// Time between two stop commands to a robot that does not answer.
 const AGAIN: Duration = Duration::from_millis(100);
-/// Maximum time for the robot to set its position to zero: newer versions of its maker's library wait much longer.
+/// Maximum time in which the robot sets its position to zero; newer versions of the manufacturer's library wait much
+/// longer.
 const ZEROING: Duration = Duration::from_secs(5);
 
-/// A Scout that answers.
+/// Driver of a Scout that answers.
 #[derive(Debug)]
 pub struct Scout {
     line: Line,
@@ -42,31 +44,31 @@ pub struct Scout {
     clock: Clock,
     odometer: Odometer,
     ring: Ring,
-    /// `true` if the robot has not been sent the order of its sonars yet.
+    /// `true` if the new order of the sonars has not been sent to the robot yet.
     is_reordered: bool,
-    /// Drift of the odometry, measured by walls.
+    /// Drift of the odometry, measured by means of walls.
     compass: Compass,
     freshness: Freshness,
     obedience: Obedience,
     times: Times,
-    /// The moment of the last command, until the robot is stopped.
+    /// Time of the last command, until the robot is stopped.
     commanded: Option<Moment>,
     /// Recorded paths that the plan can replay.
     pub(crate) paths: PathStore,
 }
 
-/// Returns the time that a turn takes on the line: a command, and the state that answers it.
+/// Returns the time that a turn needs on the line: a command, and the state that answers it.
 pub(crate) fn turn_takes() -> Duration {
     let command = Command::Velocities(0, 0).frame().bytes().len();
     time_of(command + state::LENGTH + frame::AROUND, SPEED)
 }
 
 impl Scout {
-    /// Opens the line and prepares the robot: it is at rest at position zero, its watchdog is armed, and each sonar has
-    /// pinged.
+    /// Opens the line and prepares the robot: the robot is at rest at position zero, its watchdog is armed, and each
+    /// sonar has pinged.
     ///
     /// # Errors
-    /// There is no line, no robot, or its emergency stop is pressed.
+    /// There is no line or no robot, or the robot's emergency stop is pressed.
     pub fn connect(config: Config, clock: Clock, period: Duration, request: &StopRequest) -> Result<Self, Fault> {
         let line = Line::open(&config.device)?;
         let ring = Ring::new(&config.sonars, Nanos(config.gap.saturating_mul(1_000_000)));
@@ -162,13 +164,13 @@ impl Scout {
         Err(Fault::Moves)
     }
 
-    /// Sends a command at the end of a run, whose answer may take as long as `patience`.
+    /// Sends a command at the end of a run; the robot has `patience` to answer.
     fn at_the_end(&mut self, command: Command, patience: Duration) -> Result<Frame, Fault> {
         self.line.ask(&command, Instant::now() + patience)
     }
 
-    /// Sends "stop" again and again to a robot that does not answer, for the time that it may take to come to rest: it
-    /// may receive commands even if its answers are lost.
+    /// Sends the stop command repeatedly to a robot that does not answer, for the time in which the robot comes to
+    /// rest: it may receive commands even if its answers are lost.
     fn insist(&mut self, begun: Instant, limit: Duration) {
         for attempts in 1.. {
             let deadline = Instant::now() + AGAIN;
@@ -179,13 +181,13 @@ impl Scout {
         }
     }
 
-    /// Returns `true` if the robot has stopped itself since the last command: it must not be driven off again without a
-    /// word.
+    /// Returns `true` if the robot's watchdog has stopped it since the last command: the robot must not move again
+    /// without a message to the user.
     fn has_overslept(&self) -> bool {
         self.clock == Clock::Wall && self.commanded.is_some_and(|last| last.elapsed() >= self.watchdog())
     }
 
-    /// Sends a command and reads the state that answers it.
+    /// Sends a command, and returns the state that answers it.
     fn command(&mut self, command: Command) -> Result<State, Fault> {
         if self.has_overslept() {
             return Err(Fault::Overslept(self.config.watchdog));
@@ -210,7 +212,7 @@ fn supply(state: &State, config: &Config) -> Supply {
     Supply { battery, is_low: battery.0 < config.low_battery, is_plugged: state.is_plugged() }
 }
 
-/// Name of the setting of the sonars' order.
+/// Name of the setting that orders the sonars.
 const SONARS: &str = "sonars";
 
 impl RobotSettings for Scout {

@@ -1,4 +1,4 @@
-//! Faults of a Scout, each with a sentence for the operator that says what to do.
+//! Faults of a Scout, each with a sentence that tells the operator how to fix it.
 
 use std::fmt;
 
@@ -9,34 +9,35 @@ use crate::frame::Garbled;
 /// Reason why the robot cannot be driven, or can no longer be driven.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fault {
-    /// The run was asked to end while the robot was prepared; if it could not be stopped, why.
+    /// The run was asked to end while the robot was being prepared. The fault is present if the robot could not be
+    /// stopped.
     Ended(Option<Box<Self>>),
-    /// The line cannot be opened, is cut, or nothing came in time.
+    /// The line cannot be opened, is closed, or no answer arrived in time.
     Line(LineFault),
     /// The received bytes are not a frame.
     Garbled(Garbled),
-    /// The answer to this command is of that type.
+    /// A command received an answer of another type.
     Wrong {
-        /// The type of the command.
+        /// Type of the command.
         asked: u8,
-        /// The type of the answer.
+        /// Type of the answer.
         answered: u8,
     },
-    /// The robot does not take commands of this type.
+    /// The robot refused a command of this type.
     Refused(u8),
-    /// The answer has the right type, and too few bytes to be a state.
+    /// The answer has the right type, but only this number of bytes, too few for a state.
     Short(usize),
     /// The robot's emergency stop is pressed.
     EmergencyStop,
-    /// The robot's clock has not advanced for this many milliseconds: it repeats the same state.
+    /// The robot's clock has not advanced for this number of milliseconds: the robot repeats the same state.
     Hung(u64),
-    /// The sonars no longer ping: they have reported the same ranges while the robot has moved too far.
+    /// The sonars no longer ping: their ranges have not changed although the robot has moved.
     Frozen,
-    /// The robot has moved faster than commanded, or in the opposite direction, for this many milliseconds.
+    /// The robot has moved faster than commanded, or in the opposite direction, for this number of milliseconds.
     Disobeys(u64),
     /// Consecutive positions are too far from each other.
     Leaps,
-    /// The robot has stopped itself, because no command has arrived for this number of seconds.
+    /// The robot has stopped itself because no command arrived for this number of seconds.
     Overslept(u8),
     /// The robot has not come to rest after the command to stop.
     Moves,

@@ -3,39 +3,39 @@
 
 use arrayvec::ArrayVec;
 
-/// The first byte of each frame.
+/// First byte of each frame.
 pub(crate) const START: u8 = 0x01;
-/// The last byte of each frame.
+/// Last byte of each frame.
 const END: u8 = 0x5C;
-/// Number of a frame's bytes besides its arguments: start, two bytes of length, type, sum, end.
+/// Number of bytes in a frame besides its arguments: start, two bytes of length, type, sum, end.
 pub(crate) const AROUND: usize = 6;
-/// Maximum length of a reply that is accepted: a garbled length must not be waited for, and replies are far shorter.
+/// Maximum accepted length of an answer. Real answers are far shorter; the reader must not wait for a damaged length.
 const LONGEST: usize = 255;
-/// Maximum number of argument bytes: type and sum count to the length.
+/// Maximum number of argument bytes: the length includes type and sum.
 const MOST: usize = LONGEST - 2;
 
-/// A frame's arguments; a turn allocates nothing.
+/// Arguments of a frame, stored without allocation.
 pub type Arguments = ArrayVec<u8, MOST>;
 
-/// A frame that has come in: its type, and its arguments in the order of the line.
+/// A received frame: its type, and its arguments in the order of the line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
-    /// The type of the command that the frame answers, or is.
+    /// Type of the command that the frame answers or contains.
     pub kind: u8,
-    /// The arguments.
+    /// Arguments of the frame.
     pub arguments: Arguments,
 }
 
 /// Reason why bytes are not a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Garbled {
-    /// The bytes begin with this one instead of the first byte of a frame.
+    /// The first byte is this byte instead of the start byte of a frame.
     Start(u8),
-    /// The frame gives this length, which no frame of a Scout has.
+    /// The frame has this length, which is invalid.
     Length(u16),
-    /// The sum of the bytes is the first number; the frame's own sum is the second.
+    /// The sum of the bytes is the first number, but the frame contains the second number.
     Sum(u8, u8),
-    /// This byte follows the sum instead of the last byte of a frame.
+    /// The byte after the sum is this byte instead of the end byte of a frame.
     End(u8),
 }
 
@@ -50,7 +50,7 @@ impl core::fmt::Display for Garbled {
     }
 }
 
-/// The sum of these bytes, modulo 256.
+/// Returns the sum of `bytes`, modulo 256.
 fn sum(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
 }
@@ -68,10 +68,11 @@ impl Frame {
         bytes
     }
 
-    /// Returns the frame at the beginning of `bytes` and its number of bytes, or `None` if it is not complete.
+    /// Returns the frame at the beginning of `bytes`, with the number of its bytes; `None` if the frame is not
+    /// complete.
     ///
     /// # Errors
-    /// These bytes do not begin a frame, whatever follows them.
+    /// The bytes do not begin a frame, whatever bytes follow.
     pub fn read(bytes: &[u8]) -> Result<Option<(Self, usize)>, Garbled> {
         match bytes.first() {
             None => return Ok(None),

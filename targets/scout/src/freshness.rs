@@ -1,9 +1,9 @@
 //! Detection of stale data: a Scout's clock has to advance, and its sonars' ranges have to change as the robot moves.
 //! See docs/src/reference/protocols.md, 1.8.
 //!
-//! A state answers a command and is as recent as the command, unless the controller repeats an old state, which its
-//! clock shows. No clock shows when the sonars pinged. But while the robot turns, or moves towards or away from
-//! something that it hears, at least one of the sonars reports a different range if they ping at all.
+//! A state answers a command, and is as recent as the command, unless the controller repeats an old state; the state's
+//! clock shows that. No clock shows when the sonars pinged. But while the robot turns, or moves towards or away from an
+//! object that a sonar hears, the range of at least one sonar changes if the sonars ping.
 
 use mdle_runtime::{Nanos, Pose, Radians};
 
@@ -13,24 +13,25 @@ use crate::state::State;
 
 /// Range that a sonar without an echo reports.
 const NOTHING: u8 = 255;
-/// Turn of the robot, in radians, after which at least one range must have changed: each sonar then looks where the
-/// sonar four places further looked before.
+/// Turn of the robot, in radians, after which at least one range must have changed: each sonar then points in the
+/// direction in which the sonar four places further pointed before.
 const TURN: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Last data of the robot that differed from those before.
+/// Last data of the robot that differed from the data before, and its motion since then.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Freshness {
     /// Time of the robot's clock, and the moment at which it was first received.
     clock: Option<(u32, Nanos)>,
     sonars: [u8; 16],
-    /// Last pose of the robot; and its distance and turn since a sonar's range changed, in metres and radians.
+    /// Last pose of the robot. The next fields are its distance and turn since a sonar's range changed, in metres and
+    /// radians.
     pose: Pose,
     way: f64,
     turn: f64,
 }
 
 impl Freshness {
-    /// Takes in the state that came at `at`, with the robot at `pose` by it.
+    /// Checks the state that arrived at `at` and reports the robot at `pose`.
     ///
     /// # Errors
     /// The clock has not advanced, or the sonars' ranges have not changed, for longer than the configuration allows.

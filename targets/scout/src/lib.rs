@@ -1,7 +1,7 @@
 //! The Nomadic Super Scout II as a target: its serial language, its driver, and its alphabet.
 //!
-//! For generated code: [`Target`], which the host runs a plan on, and [`alphabet`], the quarks this robot has. For
-//! tests and tools: the language ([`Command`], [`Frame`], [`State`]) and the driver, [`Scout`].
+//! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], the quarks that this robot has.
+//! Tests and tools use the language ([`Command`], [`Frame`], [`State`]) and the driver, [`Scout`].
 #![forbid(unsafe_code)]
 
 pub mod alphabet;
@@ -27,13 +27,13 @@ pub use driver::Scout;
 pub use fault::Fault;
 pub use frame::{Arguments, Frame, Garbled};
 pub use mdle_runtime::Sensed;
-/// The robot's output.
+/// Output of the robot.
 pub use mdle_runtime::Sensed as Output;
-/// The robot's input.
+/// Input of the robot.
 pub use mdle_runtime::Twist as Input;
 pub use mdle_serial::{Clock, LineFault};
 pub use reader::Reader;
 pub use state::State;
 
-/// The target that the host runs a plan on.
+/// The target `scout`, on which the host runs a plan.
 pub type Target = mdle_serial::SerialTarget<Scout>;

@@ -1,4 +1,4 @@
-//! The line to a Scout: questions and their answers.
+//! The serial line to a Scout, over which commands receive their answers.
 
 use std::time::{Duration, Instant};
 
@@ -9,14 +9,14 @@ use crate::fault::Fault;
 use crate::frame::Frame;
 use crate::reader::{CHUNK, Reader};
 
-/// Bits a second, 8N1.
+/// Speed of the line in bits per second, 8N1.
 pub(crate) const SPEED: u32 = 38_400;
-/// Silence after which an answer is over: the time of more than forty bytes.
+/// Silence that ends an answer: the time of more than forty bytes.
 const QUIET: Duration = Duration::from_millis(20);
-/// The type of the answer to a command that the robot does not take.
+/// Type of the answer to a command that the robot refuses.
 const REFUSED: u8 = 8;
 
-/// An open line.
+/// An open line to a Scout.
 #[derive(Debug)]
 pub(crate) struct Line {
     line: mdle_serial::Line,
@@ -24,29 +24,29 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// Opens a serial port, or `tcp:ADDRESS:PORT`. Nothing is sent.
+    /// Opens the serial port `device`, or `tcp:ADDRESS:PORT`. Nothing is sent.
     ///
     /// # Errors
-    /// The device is missing, busy or no terminal, or nothing listens at the address.
+    /// The device is missing, busy or not a terminal, or no program listens at the address.
     pub(crate) fn open(device: &str) -> Result<Self, Fault> {
         Ok(Self { line: mdle_serial::Line::open(device, SPEED)?, reader: Reader::default() })
     }
 
     /// Sends `command` and waits for its answer until `deadline`. Bytes received before are dropped, because a Scout
-    /// never speaks first, and noise around the answer is skipped. After an answer with a wrong sum the command is sent
-    /// once more, as each command can be sent twice; after silence it is not, because a late answer would be taken for
-    /// the next command's.
+    /// never sends bytes without a command; noise around the answer is skipped. After an answer with a wrong sum, the
+    /// command is sent once more, since each command can be repeated. After silence it is not repeated, because a late
+    /// answer would be taken for the answer to the next command.
     ///
     /// # Errors
-    /// The line is closed, or by the deadline there was no answer, or none that was whole.
+    /// The line is closed, or no complete answer arrived before the deadline.
     pub(crate) fn ask(&mut self, command: &Command, deadline: Instant) -> Result<Frame, Fault> {
         self.ask_while(command, deadline, &|| Ok(()))
     }
 
-    /// Sends `command` and waits for its answer as [`Line::ask`] does, as long as `go_on` is no error.
+    /// Sends `command` and waits for its answer like [`Line::ask`], while `go_on` returns no error.
     ///
     /// # Errors
-    /// Those of [`Line::ask`] and `go_on`.
+    /// [`Line::ask`] or `go_on` failed.
     pub(crate) fn ask_while(
         &mut self,
         command: &Command,
@@ -69,13 +69,13 @@ impl Line {
     /// Sends `command` without waiting for the answer.
     ///
     /// # Errors
-    /// The line is closed, or takes nothing until `deadline`.
+    /// The line is closed, or accepts no bytes until `deadline`.
     pub(crate) fn say(&mut self, command: &Command, deadline: Instant) -> Result<(), Fault> {
         Ok(self.line.write(&command.frame().bytes(), deadline)?)
     }
 
-    /// Sends `command` once. A whole answer that is wrong is an error as soon as the line is quiet, anything else at
-    /// the deadline.
+    /// Sends `command` once. A complete answer that is wrong is reported as soon as the line is quiet, any other error
+    /// at the deadline.
     fn ask_once(
         &mut self,
         command: &Command,
@@ -112,8 +112,8 @@ impl Line {
         }
     }
 
-    /// Returns the fault for a missing answer to `command`; `wrong` is the type of an answer to another command, if
-    /// any.
+    /// Returns the fault of a missing answer to `command`; `wrong` is the type of an answer to another command, if one
+    /// arrived.
     fn unanswered(&self, command: &Command, wrong: Option<u8>) -> Fault {
         let wrong = wrong.map(|answered| Fault::Wrong { asked: command.kind(), answered });
         let garbled = self.reader.garbled().map(Fault::Garbled);
@@ -133,7 +133,7 @@ impl Line {
         Ok(())
     }
 
-    /// Reads the bytes that have arrived; returns `true` if there were any.
+    /// Reads the bytes that have arrived; returns `true` if there were bytes.
     fn take_in(&mut self) -> Result<bool, Fault> {
         let mut chunk = [0; CHUNK];
         let count = self.line.read(&mut chunk)?;

@@ -1,17 +1,17 @@
-//! Whole numbers as the Scout writes them: the low byte first, and negative ones as a sign beside a magnitude.
-//! See docs/src/reference/protocols.md, 1.2.
+//! Whole numbers in the Scout's format: low byte first, and a sign bit with a magnitude. See
+//! docs/src/reference/protocols.md, 1.2.
 
-/// The bit of a high byte that says "negative".
+/// Bit of a high byte that marks a negative number.
 const SIGN: u8 = 0x80;
 
-/// A number from -32767 to 32767 as two bytes; -32768 becomes -32767.
+/// Returns the two bytes of a number from -32767 to 32767; -32768 becomes -32767.
 #[must_use]
 pub(crate) fn signed(number: i16) -> [u8; 2] {
     let [low, high] = number.unsigned_abs().min(i16::MAX as u16).to_le_bytes();
     [low, if number < 0 { high | SIGN } else { high }]
 }
 
-/// The number that these two bytes are. There are two zeros.
+/// Returns the number in two bytes. Zero has two representations.
 #[must_use]
 pub(crate) fn read([low, high]: [u8; 2]) -> i16 {
     // The sign taken away, it is below 32768.

@@ -1,4 +1,4 @@
-//! Odometry of a Scout beyond the 83 m at which its numbers wrap. See docs/src/reference/protocols.md, 1.8.
+//! Odometry of a Scout beyond 83 m, where the robot's position numbers wrap. See docs/src/reference/protocols.md, 1.8.
 
 use mdle_runtime::{Meters, Nanos, Pose, Radians};
 
@@ -9,15 +9,15 @@ use crate::wheels::UNIT;
 /// Count of the numbers in sign and magnitude, from -32767 to 32767.
 const NUMBERS: i32 = 65_535;
 
-/// Maximum distance between two states beyond what the robot can drive in the time between them, in metres; more is a
-/// leap.
+/// Maximum plausible distance between two states, beyond the distance that the robot can drive in the time between
+/// them, in metres; a larger distance is a leap.
 const LEAP: f64 = 1.0;
 /// Maximum ratio of a wheel's speed to its commanded speed.
 const FASTER: f64 = 2.0;
-/// Excess of leaps over steps at which the positions are taken to be meaningless.
+/// Maximum excess of leaps over normal steps; beyond it the positions are meaningless.
 const LEAPS: u8 = 4;
 
-/// Follows the numbers of the line from state to state.
+/// Odometry that follows the wrapping positions from state to state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Odometer {
     last: Option<(i16, i16)>,
@@ -28,12 +28,12 @@ pub(crate) struct Odometer {
 }
 
 impl Odometer {
-    /// Returns the pose of the robot in the state that arrived at `at`, while no wheel is commanded to go faster than
-    /// `fastest` m/s. A leap does not move the pose. Between two states the robot moves less than half of the range
-    /// that wraps.
+    /// Returns the pose of the robot in the state that arrived at `at`, while no wheel is commanded to move faster than
+    /// `fastest` m/s. A leap does not change the pose. Between two states the robot has to move less than half of the
+    /// range that wraps.
     ///
     /// # Errors
-    /// The positions leap again and again.
+    /// The positions leap repeatedly.
     pub(crate) fn pose(&mut self, state: &State, at: Nanos, fastest: f64) -> Result<Pose, Fault> {
         let (x, y) = self.last.replace((state.x, state.y)).unwrap_or((0, 0));
         let (x, y) = (unwrapped(x, state.x), unwrapped(y, state.y));
@@ -52,7 +52,7 @@ impl Odometer {
     }
 }
 
-/// Returns the difference from one number to the next, which may have wrapped.
+/// Returns the difference between two consecutive numbers, the second of which may have wrapped.
 fn unwrapped(from: i16, to: i16) -> i64 {
     let way = i32::from(to) - i32::from(from);
     let half = NUMBERS / 2;

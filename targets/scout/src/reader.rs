@@ -1,18 +1,18 @@
-//! Finds answers in the bytes of the line: what cannot be a frame is skipped, byte by byte.
+//! Finds answers in the bytes of the line: bytes that cannot begin a frame are skipped one by one.
 
 use crate::frame::{Frame, Garbled, START};
 
 /// Maximum number of bytes that are read from the line at once.
 pub(crate) const CHUNK: usize = 512;
 
-/// The bytes received since a command was sent, and the frames in them.
+/// Bytes received since a command was sent, with the frames in them.
 #[derive(Debug)]
 pub struct Reader {
-    /// Empty, or from where a frame may begin.
+    /// Bytes that have not been read as a frame; empty, or beginning with the first byte of a frame.
     waiting: Vec<u8>,
-    /// First defect of the bytes since the last good frame.
+    /// First defect in the bytes since the last valid frame.
     garbled: Option<Garbled>,
-    /// `true` after a defective frame whose length was right.
+    /// `true` after a defective frame of the right length.
     was_whole: bool,
 }
 
@@ -24,24 +24,24 @@ impl Default for Reader {
 }
 
 impl Reader {
-    /// Forgets all that has come in.
+    /// Discards all received bytes.
     pub fn clear(&mut self) {
         self.waiting.clear();
         (self.garbled, self.was_whole) = (None, false);
     }
 
-    /// Takes in more bytes.
+    /// Appends received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         self.waiting.extend_from_slice(bytes);
     }
 
-    /// Returns the number of bytes kept that may still become part of a report.
+    /// Returns the number of stored bytes that may still become part of a frame.
     #[must_use]
     pub fn kept(&self) -> usize {
         self.waiting.len()
     }
 
-    /// Takes out the next frame with a right sum. Bytes before it that cannot begin one are thrown away.
+    /// Removes and returns the next frame with a right sum. Bytes before it that cannot begin a frame are dropped.
     pub fn next_frame(&mut self) -> Option<Frame> {
         loop {
             match Frame::read(&self.waiting) {
@@ -60,9 +60,8 @@ impl Reader {
         }
     }
 
-    /// Takes out a frame of this type that comes after bytes that may still become another one: noise that looks like
-    /// the beginning of a frame. To be asked for when nothing more comes, or a part of a true frame could be taken for
-    /// one.
+    /// Removes and returns a frame of type `kind` that follows the incomplete beginning of another frame, which may be
+    /// noise. Call it only when no more bytes arrive: otherwise a part of a valid frame could be taken for a frame.
     pub fn after_false_start(&mut self, kind: u8) -> Option<Frame> {
         let found = (1..self.waiting.len()).find_map(|place| {
             let frame = Frame::read(self.waiting.get(place..)?).ok().flatten();
@@ -79,7 +78,7 @@ impl Reader {
         self.garbled
     }
 
-    /// Returns `true` if a whole frame was wrong: the robot has answered, and can be asked again.
+    /// Returns `true` if a complete frame was wrong: the robot has answered, and the command can be repeated.
     #[must_use]
     pub fn was_whole(&self) -> bool {
         self.was_whole

@@ -1,35 +1,36 @@
-//! Converts the bytes of the sixteen sonars to pings, and finds which of them are new and how old the others are. See
-//! docs/src/reference/protocols.md, 1.6.
+//! Converts the bytes of the sixteen sonars to pings, and determines which pings are new and how old the others are.
+//! See docs/src/reference/protocols.md, 1.6.
 
 use mdle_runtime::{Meters, Mount, Nanos, Ping, Pings, Pose, SONARS};
 
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
-/// Number of gaps by which a round may be late: a missing ping is better than one that did not happen.
+/// Number of gaps by which a round of pings may be late: to miss a ping is better than to report a ping that did not
+/// happen.
 const SLACK: usize = 2;
 /// Range that a sonar without an echo reports.
 const NOTHING: u8 = 255;
 
-/// The pings of the ring.
+/// Pings of the ring of sonars.
 ///
-/// The line does not say when a sonar pinged. One whose number has changed has pinged since the last state; one whose
-/// number stays has pinged again, and heard the same, once in the time that the ring takes to go round, and a little.
+/// The robot does not report when a sonar pinged. A sonar whose range has changed has pinged since the last state. A
+/// sonar whose range stays the same counts as having pinged again once per round of the ring, plus a tolerance.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     pings: [Pings; SONARS],
     last: [Option<(u8, Nanos)>; SONARS],
-    /// Set to `true` for each sonar that pings.
+    /// `true` for each sonar that pings.
     active: [bool; SONARS],
     /// Duration of one round of the ring.
     around: Nanos,
     /// Time after which an unchanged range is a new ping.
     again: Nanos,
-    /// The time between two pings.
+    /// Time between two pings.
     gap: Nanos,
 }
 
 impl Ring {
-    /// Creates a ring of these sonars, one after the other with `gap` between two pings.
+    /// Returns a ring of the sonars in `order`, which ping one after the other with `gap` between two pings.
     pub(crate) fn new(order: &[u8], gap: Nanos) -> Self {
         let (pings, last, active) = ([Pings::default(); SONARS], [None; SONARS], [false; SONARS]);
         let mut ring = Self { pings, last, active, around: Nanos::ZERO, again: Nanos::ZERO, gap };
@@ -37,19 +38,20 @@ impl Ring {
         ring
     }
 
-    /// Lets these sonars ping from now on, one after the other. The pings so far are kept.
+    /// Sets the sonars that ping from now on, one after the other. Earlier pings are kept.
     pub(crate) fn reorder(&mut self, order: &[u8]) {
         self.active = std::array::from_fn(|sonar| order.iter().any(|number| usize::from(*number) == sonar));
         let times = |count: usize| Nanos(self.gap.0.saturating_mul(count as u64));
         (self.around, self.again) = (times(order.len()), times(order.len() + SLACK));
     }
 
-    /// Returns the time until each sonar has pinged.
+    /// Returns the time in which each sonar pings once.
     pub(crate) fn around(&self) -> Nanos {
         self.around
     }
 
-    /// Takes in the ranges of the sonars at `at`, with the robot at `pose` by odometry.
+    /// Stores the ranges of the sonars at the time `at`, when odometry reports `pose`, and returns the pings of each
+    /// sonar.
     pub(crate) fn take_in(&mut self, sonars: &[u8; SONARS], at: Nanos, pose: Pose) -> [Pings; SONARS] {
         let all = self.pings.iter_mut().zip(&mut self.last).zip(sonars).zip(&self.active);
         for (((pings, last), heard), _) in all.filter(|(_, active)| **active) {

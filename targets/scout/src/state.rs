@@ -1,46 +1,46 @@
-//! State of a Scout, its answer to almost any command: 42 bytes in a fixed order. See docs/src/reference/protocols.md,
+//! State of a Scout, which answers almost any command: 42 bytes in a fixed order. See docs/src/reference/protocols.md,
 //! 1.4.
 
 use mdle_runtime::Volts;
 
 use crate::number;
 
-/// The length of the state, in bytes.
+/// Length of the state, in bytes.
 pub(crate) const LENGTH: usize = 42;
 
-/// The ends of the scales of both supplies, in volts.
+/// Upper ends of the scales of both supply voltages, in volts.
 const CPU_RANGE: f64 = 12.0;
 const MOTOR_RANGE: f64 = 12.85;
 
-/// The state, in the units of the line.
+/// The state of a Scout, in the units of the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct State {
-    /// The range that each sonar heard last, in inches; 255 when it heard nothing.
+    /// Last range of each sonar, in inches; 255 if the sonar heard nothing.
     pub sonars: [u8; 16],
     /// Bit `i` for bumper switch `i` in contact.
     pub bumper: u32,
-    /// Distance forward of the place where it was zeroed, in tenths of an inch; wraps at 83 m.
+    /// Distance forward of the place where the position was set to zero, in tenths of an inch; wraps at 83 m.
     pub x: i16,
-    /// Distance to the left of the place where it was zeroed, in tenths of an inch; wraps at 83 m.
+    /// Distance to the left of the place where the position was set to zero, in tenths of an inch; wraps at 83 m.
     pub y: i16,
     /// Heading, in tenths of a degree, counter-clockwise.
     pub heading: i16,
-    /// The speed of the right wheel, in tenths of an inch per second.
+    /// Speed of the right wheel, in tenths of an inch per second.
     pub right: i16,
-    /// The speed of the left wheel, in tenths of an inch per second.
+    /// Speed of the left wheel, in tenths of an inch per second.
     pub left: i16,
-    /// Motors, battery, charger and emergency stop, as bits.
+    /// Bits for motors, battery, charger and emergency stop.
     pub status: u8,
-    /// The controller's clock, in milliseconds.
+    /// Time of the controller's clock, in milliseconds.
     pub clock: u32,
-    /// The supply of its computer, raw.
+    /// Supply voltage of the robot's computer, as a raw measurement.
     pub cpu: u8,
-    /// The supply of its motors, raw.
+    /// Supply voltage of the robot's motors, as a raw measurement.
     pub motor: u8,
 }
 
 impl State {
-    /// The state that these arguments of an answer are; `None` if they are too few to be one.
+    /// Returns the state in the arguments of an answer; `None` if there are too few bytes.
     #[must_use]
     pub fn read(arguments: &[u8]) -> Option<Self> {
         let body: &[u8; LENGTH] = arguments.get(..LENGTH)?.try_into().ok()?;
@@ -95,13 +95,13 @@ impl State {
         self.status & 0b0100_0000 != 0
     }
 
-    /// Returns `true` if the charger is plugged in, or charges.
+    /// Returns `true` if the charger is plugged in or charging.
     #[must_use]
     pub const fn is_plugged(&self) -> bool {
         self.status & 0b0011_0000 != 0
     }
 
-    /// The voltages of the supplies of its computer and of its motors, each of which stays at the end of its scale.
+    /// Returns the supply voltages of the robot's computer and motors; each stays within the scale of its measurement.
     #[must_use]
     pub fn volts(&self) -> [Volts; 2] {
         let volts = |raw: u8, range: f64| Volts((2.0 + f64::from(raw) * (3.0 / 255.0)) * (range / 5.0));

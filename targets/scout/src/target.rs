@@ -1,4 +1,4 @@
-//! The target `scout`, as the host runs plans on it.
+//! The target `scout`, on which the host runs plans.
 
 use std::time::Duration;
 

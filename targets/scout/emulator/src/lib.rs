@@ -1,4 +1,4 @@
-//! A Super Scout that is not there: its language on a pseudo-terminal, its body in a simulated world.
+//! Robot emulator of a Super Scout: its language on a pseudo-terminal, its body in a simulated world.
 #![forbid(unsafe_code)]
 
 pub mod scout;
@@ -12,7 +12,7 @@ use mdle_simulator::Body;
 
 use scout::Scout;
 
-/// Runs the robot emulator with the arguments of this process, until a signal comes. Returns its exit status.
+/// Runs the robot emulator with the arguments of this process until a signal arrives; returns the exit status.
 pub fn main() -> ExitCode {
     let about = "Emulate a Nomadic Super Scout on a pseudo-terminal, in a simulated world";
     let matches = Options::arguments(Command::new("scout-emulator").about(about)).get_matches();

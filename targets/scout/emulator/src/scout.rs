@@ -1,4 +1,4 @@
-//! A Super Scout in a simulated world: what each request does to it, and the state it answers with.
+//! A Super Scout in a simulated world: the effect of each request, and the state with which the robot answers.
 
 use std::time::Duration;
 
@@ -11,34 +11,34 @@ use crate::wire::{Incoming, Request, answer, number, two_bytes};
 
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
-/// Inches that a wheel makes for each degree of a turn on the spot.
+/// Distance that a wheel moves for each degree of a turn on the spot, in inches.
 const INCHES_A_DEGREE: f64 = 0.118_597;
 /// Deceleration of a robot whose motors are limp, in tenths of an inch per second squared: 0.3 m/s².
 const ROLLING: f64 = 120.0;
-/// Raw measurements of both supplies at 10.5 V.
+/// Raw measurements of both supply voltages at 10.5 V, as a report contains them.
 const LOW: [u8; 2] = [202, 177];
-/// The distance of each position from the one before when they leap, in tenths of an inch: 3 m.
+/// Distance between consecutive reported positions of a robot with the fault `leap`, in tenths of an inch: 3 m.
 const LEAP: i64 = 1181;
 /// Type of the answer to a command that a Scout does not know.
 const REFUSED: u8 = 8;
 
-/// The robot.
+/// The emulated Scout.
 #[allow(missing_debug_implementations, reason = "its body has none")]
 pub struct Scout {
     body: Simulated,
     sensed: Output,
     incoming: Incoming,
-    /// Last request, until it is answered, with `true` if the robot knows the command.
+    /// Last request that has not been answered, with `true` if the robot knows the command.
     asked: Option<(Request, bool)>,
     /// Commanded speeds of the wheels, in tenths of an inch per second.
     wheels: (i32, i32),
-    /// Set to `true` while the motors are limp: the robot then rolls on.
+    /// `true` while the motors have no current: the robot then rolls on.
     limp: bool,
     /// Pose at which the reported position and heading are zero.
     zero: Pose,
-    /// The sonars that ping, bit by bit.
+    /// Sonars that ping: bit `i` for sonar `i`.
     active: u16,
-    /// Last range of each sonar, as reported.
+    /// Last range of each sonar, as in a report.
     heard: [u8; 16],
     /// Time without a request after which the robot stops; `None` for never.
     watchdog: Option<Duration>,
@@ -47,8 +47,8 @@ pub struct Scout {
     age: Duration,
     /// `true` while the emergency stop is pressed.
     pub emergency: bool,
-    /// Ailments: a stuck right wheel, a dead front sonar, a pressed first bumper, a low battery, a plugged charger, and
-    /// sonars that do not ping.
+    /// Faults of the body: a stuck right wheel, a dead front sonar, a pressed first bumper, a low battery, a plugged-in
+    /// charger, and sonars that do not ping.
     is_stuck: bool,
     is_deaf: bool,
     is_pressed: bool,
@@ -58,7 +58,7 @@ pub struct Scout {
     /// State that a hung robot repeats.
     hung: Option<Vec<u8>>,
     is_cut_off: bool,
-    /// The speeds that the wheels keep, regardless of commands.
+    /// Wheel speeds of a robot that ignores all commands.
     runaway: Option<(i32, i32)>,
     /// Offset of the reported positions, in tenths of an inch, which grows while `leaps` is `true`.
     off: i64,
@@ -67,10 +67,10 @@ pub struct Scout {
 }
 
 impl Scout {
-    /// Creates a robot that has just been switched on.
+    /// Returns a robot that has just been switched on.
     ///
     /// # Errors
-    /// The world's error about an input that it cannot take, which does not occur here.
+    /// Returns the world's error about an input that it cannot accept, which does not occur here.
     pub fn new(mut body: Simulated) -> Result<Self, String> {
         let sensed = body.exchange(&Twist::default()).map_err(|error| error.to_string())?;
         let zero = sensed.pose();
@@ -111,7 +111,7 @@ impl Scout {
         self.body.pose()
     }
 
-    /// Returns the motion commands that have reached it.
+    /// Returns the motion commands that the robot has received.
     #[must_use]
     pub fn orders(&self) -> &Orders {
         &self.orders
@@ -123,7 +123,7 @@ impl Scout {
         self.rolling() == (0, 0)
     }
 
-    /// Takes down a request that is a motion command.
+    /// Records a request that is a motion command.
     fn note(&mut self, request: &Request) {
         let order = match (request.command, &*request.data) {
             (5, [r0, r1, l0, l1, ..]) if (number(*r0, *r1), number(*l0, *l1)) != (0, 0) => Order::Drive,
@@ -134,7 +134,7 @@ impl Scout {
         self.orders.push(self.age, order);
     }
 
-    /// Takes over the last echoes of the sonars that have pinged.
+    /// Stores the last echoes of the sonars that have pinged.
     fn listen(&mut self) {
         if self.is_mute {
             return;
@@ -213,7 +213,8 @@ impl Scout {
     }
 }
 
-/// Converts a voltage of a supply into its byte in a report: 0 at two fifths of the scale, 255 at its end.
+/// Converts a battery voltage to the bytes of both supplies in a report: 0 at two fifths of a supply's scale, 255 at
+/// the end of the scale.
 fn volts(battery: Volts) -> [u8; 2] {
     [12.0, 12.85].map(|range| ((battery.0 * 5.0 / range - 2.0) * (255.0 / 3.0)).round().clamp(0.0, 255.0) as u8)
 }

@@ -1,34 +1,35 @@
-//! The Scout's language as the robot speaks it: requests out of bytes, answers into bytes.
+//! The Scout's language as the robot uses it: reads requests from bytes, and writes answers to bytes.
 //!
-//! It shares nothing with the driver's: what one of them gets wrong about the language, the other one finds.
+//! The code is independent of the driver's code for this language, so that an error in one of the two shows up in
+//! tests.
 
-/// A request: which command, with which arguments.
+/// A request: a command with its arguments.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Request {
-    /// The command's type.
+    /// Type of the command.
     pub command: u8,
     /// Arguments of the command.
     pub data: Vec<u8>,
 }
 
-/// Received bytes, and the requests in them.
+/// Received bytes, which may contain requests.
 #[derive(Debug, Default)]
 pub struct Incoming(Vec<u8>);
 
 impl Incoming {
-    /// Takes in more bytes.
+    /// Appends received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         self.0.extend_from_slice(bytes);
     }
 
-    /// Returns the number of bytes that are kept for a request that is not complete.
+    /// Returns the number of bytes that are stored for an incomplete request.
     #[must_use]
     pub fn kept(&self) -> usize {
         self.0.len()
     }
 
-    /// The next request that is whole. What cannot be a request is skipped, a byte at a time, as a robot does that
-    /// waits for the beginning of one.
+    /// Returns the next complete request. Bytes that cannot begin a request are skipped one by one, as a robot does
+    /// that waits for a first byte.
     pub fn next_request(&mut self) -> Option<Request> {
         loop {
             let Some(begin) = self.0.iter().position(|byte| *byte == 1) else {
@@ -61,7 +62,7 @@ impl Incoming {
     }
 }
 
-/// An answer of this type with these bytes.
+/// Returns the frame of an answer of type `kind` with the bytes `body`.
 #[must_use]
 pub fn answer(kind: u8, body: &[u8]) -> Vec<u8> {
     let length = (body.len() + 2).min(usize::from(u8::MAX));
@@ -73,14 +74,14 @@ pub fn answer(kind: u8, body: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The number in two bytes: fifteen bits, and a sixteenth for the sign.
+/// Returns the number in two bytes, with 15 bits of magnitude and one sign bit.
 #[must_use]
 pub fn number(low: u8, high: u8) -> i32 {
     let size = i32::from(high % 128) * 256 + i32::from(low);
     if high >= 128 { -size } else { size }
 }
 
-/// Returns the two bytes of a number in sign and magnitude, modulo the 65,535 numbers that they can express.
+/// Returns the two bytes of a number in sign and magnitude, modulo 65,535, the count of numbers in this form.
 #[must_use]
 pub fn two_bytes(number: i64) -> [u8; 2] {
     let number = (number + 32_767).rem_euclid(65_535) - 32_767;
