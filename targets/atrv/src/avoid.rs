@@ -1,13 +1,13 @@
-//! Numbers without a byte 1B: what is sent to a controller that may not understand one.
-//! See docs/src/reference/protocols.md, 2.2.
+//! Numbers without a byte 1B, for controllers that may not accept this byte as a value. See
+//! docs/src/reference/protocols.md, 2.2.
 //!
-//! Every program that is known to drive an rFLEX sends its bytes unmarked, and changes a turn rate whose bytes would
-//! hold a 1B to the nearest one without. Here that is done to every number, and to every byte of it.
+//! Every known program that drives an rFLEX sends its bytes unmarked, and changes a turn rate with a byte 1B to the
+//! nearest turn rate without. This module does the same for every byte of every number.
 
-/// The byte.
+/// The byte 1B, which begins a mark on the line.
 pub(crate) const ESCAPE: u8 = 0x1B;
 
-/// The number nearest to this one none of whose four bytes is 1B; the lower one of two.
+/// Returns the nearest number in which none of the four bytes is 1B; if two numbers are equally near, the lower one.
 #[must_use]
 pub fn avoided(number: u32) -> u32 {
     let bytes = number.to_be_bytes();

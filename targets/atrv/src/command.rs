@@ -1,26 +1,26 @@
-//! Commands to an rFLEX controller that a driver needs, as frames. See docs/src/reference/protocols.md, 2.3.
+//! Commands to an rFLEX controller that the driver uses, as frames. See docs/src/reference/protocols.md, 2.3.
 
 use crate::avoid::{ESCAPE, avoided};
 use crate::frame::{FrameBytes, Packet, check};
 
 /// Maximum number of data bytes of a command.
 const MOST: usize = 14;
-/// Maximum by which a number is reduced to keep the frame's check from being 1B.
+/// Maximum amount by which a number is reduced so that the frame's check is not 1B.
 const NUDGES: u32 = 8;
 
 /// An axis of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
-    /// Forward.
+    /// Motion forward and backward; forward is positive.
     Translation,
-    /// Counter-clockwise.
+    /// Turn; counter-clockwise is positive.
     Rotation,
 }
 
-/// Motion of an axis, in the controller's own units.
+/// Motion of an axis, in the controller's units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Motion {
-    /// Velocity; forward or counter-clockwise is positive.
+    /// Velocity of the axis; forward or counter-clockwise is positive.
     pub velocity: i32,
     /// Maximum change of the velocity per second.
     pub acceleration: u32,
@@ -28,12 +28,12 @@ pub struct Motion {
     pub torque: u32,
 }
 
-/// A command. Times are microseconds.
+/// A command. Times are in microseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Command {
     /// Report the battery's voltage and the state of the brake.
     Status,
-    /// Go at this velocity.
+    /// Move the axis as given.
     Move(Axis, Motion),
     /// Restore the default settings.
     Defaults,
@@ -41,22 +41,22 @@ pub enum Command {
     Brake,
     /// Release the brake.
     Release,
-    /// Report the positions of both axes at this interval; 0 for never.
+    /// Report the positions of both axes at this interval; 0 stops the reports.
     Reports(u32),
-    /// Report the digital inputs at this interval; 0 for never.
+    /// Report the digital inputs at this interval; 0 stops the reports.
     Inputs(u32),
-    /// Run the sonars, each of which waits this long for its echo.
+    /// Run the sonars, and let each sonar wait this long for its echo.
     Sonars(u32),
     /// Switch the sonars off.
     Deaf,
 }
 
-/// Treatment of bytes that are 1B.
+/// Treatment of bytes with the value 1B.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Escape {
-    /// Numbers are changed so that none of their bytes is 1B.
+    /// Numbers are changed so that no byte has the value 1B.
     Avoid,
-    /// Bytes that are 1B are marked.
+    /// Bytes with the value 1B are marked.
     Mark,
 }
 
@@ -77,7 +77,7 @@ impl Command {
         }
     }
 
-    /// Returns port, opcode and data; the data's first number that can be changed is reduced by `nudge`.
+    /// Returns port, opcode and data of the command. The first number that can be changed is reduced by `nudge`.
     fn data(&self, escape: Escape, nudge: u32) -> (u8, u8, Data) {
         let mut data = Data { escape, nudge, bytes: [0; MOST], count: 0 };
         let (port, opcode) = match *self {
@@ -123,10 +123,10 @@ impl Command {
     }
 }
 
-/// The data of a command, as it is put together.
+/// Data of a command under construction.
 struct Data {
     escape: Escape,
-    /// Amount by which the first number above [`NUDGES`] is reduced; smaller numbers, such as 0, are sent as they are.
+    /// Amount by which the first number above [`NUDGES`] is reduced; smaller numbers, such as 0, stay unchanged.
     nudge: u32,
     bytes: [u8; MOST],
     count: usize,

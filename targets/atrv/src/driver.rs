@@ -1,5 +1,5 @@
-//! The ATRV as a kinetic state machine: each input is two velocity commands, and the output is what its reports say by
-//! then (paper, Eq. 1).
+//! The driver of an ATRV, as a kinetic state machine: each input is sent as two velocity commands, and the output is
+//! the content of the last reports (paper, Eq. 1).
 
 use std::time::{Duration, Instant};
 
@@ -15,34 +15,36 @@ use crate::motion;
 use crate::receiver::Hearing;
 use crate::sender::Mouth;
 
-/// Bits a second, 8N1.
+/// Speed of the line in bits per second, 8N1.
 const SPEED: u32 = 115_200;
-/// Half the length and half the width of the body, and the radius of the smallest circle around it.
+/// Half the length of the body, in metres. The next two constants are half its width and the radius of the smallest
+/// circle around it.
 const HALF_LENGTH: Meters = Meters(0.315);
 const HALF_WIDTH: Meters = Meters(0.27);
 const RADIUS: Meters = Meters(0.415);
-/// Distance between the places of a wall beside the robot that the sonars 18° off the direction to it hear.
+/// Distance, in metres, between the two points of a wall beside the robot that the sonars 18° from the wall's direction
+/// hear.
 const SONARS_APART: Meters = Meters(0.33);
-/// Number of pings that must agree that a way is free on a robot whose sonars fire in turn.
+/// Number of consistent pings that confirm a free way on a robot whose sonars fire in turn.
 const CONFIRMATION: usize = 2;
-/// Maximum time for the robot to release its brake, and for each of its sonars to ping a few times.
+/// Maximum time in which the robot releases its brake, and each sonar pings a few times.
 const STARTING: Duration = Duration::from_millis(1000);
-/// Minimum time that the robot is allowed for coming to rest before its brake is set; from 0.2 m/s it takes 0.2 s.
+/// Minimum time that the robot has to come to rest before its brake is set; from 0.2 m/s it needs 0.2 s.
 const STOPPING: Duration = Duration::from_millis(800);
 /// Maximum time in lockstep for a report during a stop, and for the line to accept the last commands.
 const ANSWER: Duration = Duration::from_millis(150);
 /// Maximum time from the command to brake until the robot reports that its brake is set.
 const BRAKING: Duration = Duration::from_millis(500);
-/// The time between two commands to brake.
+/// Time between two commands to brake.
 const AGAIN: Duration = Duration::from_millis(100);
-/// The time between two checks for the robot being at rest.
+/// Time between two checks that the robot is at rest.
 const LOOK: Duration = Duration::from_millis(50);
-/// Maximum speed of a robot that is at rest, in m/s and rad/s.
+/// Maximum speed of a robot that counts as being at rest, in m/s and rad/s.
 const STANDS: f64 = 0.01;
-/// Interval of the bumper reports, in microseconds: the one that other drivers request.
+/// Interval of the bumper reports, in microseconds; other drivers request the same interval.
 const INPUTS: u32 = 100_000;
 
-/// An ATRV that reports its position.
+/// Driver of an ATRV that reports its position.
 #[derive(Debug)]
 pub struct Atrv {
     mouth: Mouth,
@@ -50,10 +52,10 @@ pub struct Atrv {
     clock: Clock,
     times: Times,
     hearing: Hearing,
-    /// Drift of the odometry, measured by walls.
+    /// Drift of the odometry, measured by means of walls.
     compass: Compass,
     obedience: Obedience,
-    /// Interval of the position reports; in lockstep, `a_turn` is their number in a turn.
+    /// Interval of the position reports. `a_turn` is the number of reports in a turn in lockstep.
     reports: Duration,
     a_turn: u32,
     /// Time of the last request for the state of the brake.
@@ -62,7 +64,7 @@ pub struct Atrv {
     pub(crate) paths: PathStore,
 }
 
-/// Returns the time that all commands of a turn take on the line, with the pause after each of them.
+/// Returns the time that all commands of a turn need on the line, with the pause after each command.
 pub(crate) fn turn_takes(config: &Config) -> Duration {
     let [along, round] = motion::commands(&Twist::default(), config);
     let commands = [Command::Status, along, round];
@@ -71,11 +73,11 @@ pub(crate) fn turn_takes(config: &Config) -> Duration {
 }
 
 impl Atrv {
-    /// Opens the line and prepares the robot: it is at rest, its brake is released, it reports its position, and each
-    /// sonar has pinged.
+    /// Opens the line and prepares the robot: the robot is at rest, its brake is released, it reports its position, and
+    /// each sonar has pinged.
     ///
     /// # Errors
-    /// There is no line, no robot, its brake is set, or its sonars are silent.
+    /// There is no line or no robot, its brake is set, or its sonars do not report.
     pub fn connect(config: Config, clock: Clock, period: Duration, request: &StopRequest) -> Result<Self, Fault> {
         let line = Line::open(&config.device, SPEED)?;
         let watchdog = match clock {
@@ -142,7 +144,7 @@ impl Atrv {
         }
     }
 
-    /// Commands a motion, and returns the speeds of the robot's right and left side for it, in m/s.
+    /// Commands a motion, and returns the resulting speeds of the robot's right and left side, in m/s.
     fn move_on(&mut self, input: &Twist) -> Result<[f64; 2], Fault> {
         let commands = motion::commands(input, &self.config);
         for command in &commands {
@@ -160,12 +162,12 @@ impl Atrv {
         Ok(())
     }
 
-    /// Controllers want to be left alone for a moment after each command.
+    /// Pauses, because controllers need a moment after each command.
     fn rest(&self) {
         self.clock.pass(Duration::from_millis(self.config.pause));
     }
 
-    /// Takes in the reports of the robot; in lockstep, all of this turn.
+    /// Reads the reports that have arrived; in lockstep, waits for all reports of the turn.
     fn hear(&mut self, at: Nanos, patience: Duration) -> Result<(), Fault> {
         self.hearing.take(self.mouth.line(), at, self.a_turn, patience)
     }
@@ -174,7 +176,7 @@ impl Atrv {
     /// if its reports are lost.
     ///
     /// # Errors
-    /// Nothing can be sent, or within the time limit the robot has not reported, or has not reported that it is at
+    /// No command can be sent, or the robot has not reported within the time limit, or has not reported that it is at
     /// rest.
     fn stands(&mut self) -> Result<(), Fault> {
         let (begun, limit) = (Instant::now(), self.obedience.time_to_stand(STOPPING));
@@ -206,12 +208,12 @@ impl Atrv {
         Err(Fault::Moves)
     }
 
-    /// Sets the brake, repeatedly, until the robot reports that it is set: a report of being at rest may come from a
-    /// robot that receives no commands, and has stopped itself.
+    /// Sets the brake, repeatedly, until the robot reports that the brake is set: a robot that receives no commands and
+    /// has stopped itself also reports that it is at rest.
     ///
     /// # Errors
-    /// Nothing can be sent, or within the time limit the robot has not answered, or has not reported that its brake is
-    /// set.
+    /// No command can be sent, or the robot has not answered within the time limit, or has not reported that its brake
+    /// is set.
     fn brakes(&mut self) -> Result<(), Fault> {
         self.hearing.forget_brake();
         let end = Instant::now() + self.clock.patience(BRAKING);
@@ -226,7 +228,7 @@ impl Atrv {
         }
     }
 
-    /// Returns `true` if the robot's reports since the stop began show it at rest.
+    /// Returns `true` if the robot's reports since the beginning of the stop show that it is at rest.
     fn is_at_rest(&mut self, patience: Duration) -> Result<bool, Fault> {
         let deadline = Instant::now() + patience;
         let Twist { v, omega } = self.hearing.speed(self.mouth.line(), self.a_turn.max(1), deadline)?;

@@ -1,4 +1,4 @@
-//! Faults of an ATRV, each with a sentence for the operator that says what to do.
+//! Faults of an ATRV, each with a sentence that tells the operator how to fix it.
 
 use std::fmt;
 
@@ -11,29 +11,30 @@ use crate::report::Unreadable;
 /// Reason why the robot cannot be driven, or can no longer be driven.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fault {
-    /// The run was asked to end while the robot was prepared; if it could not be stopped, why.
+    /// The run was asked to end while the robot was being prepared. The fault is present if the robot could not be
+    /// stopped.
     Ended(Option<Box<Self>>),
-    /// The line cannot be opened, is cut, or nothing came in time.
+    /// The line cannot be opened, is closed, or no report arrived in time.
     Line(LineFault),
-    /// The received bytes are not a frame, and no position report arrived either.
+    /// The received bytes are not a frame, and no position report arrived.
     Garbled(Garbled),
-    /// A received frame is not a report that a driver can read.
+    /// A received frame is not a report that the driver can read.
     Unreadable(Unreadable),
-    /// The robot repeats its last report of its position: its clock does not advance.
+    /// The robot repeats its last position report: the time in the report does not advance.
     Repeated,
     /// The brake holds the robot, although the command to release it was sent.
     Braked,
-    /// The sonars of this direction, one of sixteen, do not report.
+    /// The sonars of this direction, from 0 to 15, do not report.
     Deaf(u8),
-    /// The watchdog has stopped the robot, because no motion was commanded for this many milliseconds.
+    /// The watchdog has stopped the robot because no motion was commanded for this number of milliseconds.
     Overslept(u64),
-    /// The robot reports, but does not answer requests: the line to it is cut.
+    /// The robot reports, but does not answer requests: the line from the driver to the robot is cut.
     Unheard,
     /// The robot does not report this axis.
     NoAxis(Axis),
     /// The robot does not report this bumper.
     Numb(u8),
-    /// The robot has moved faster than commanded, or in the opposite direction, for this many milliseconds.
+    /// The robot has moved faster than commanded, or in the opposite direction, for this number of milliseconds.
     Disobeys(u64),
     /// Consecutive positions are too far from each other.
     Leaps,

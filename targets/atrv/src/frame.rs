@@ -1,25 +1,25 @@
-//! Frames on the rFLEX line: start, port, id, opcode, length, data, check and end, with every 1B between them marked.
-//! See docs/src/reference/protocols.md, 2.2.
+//! Frames on the rFLEX line: start, port, id, opcode, length, data, check and end. Each byte 1B inside a frame is
+//! marked. See docs/src/reference/protocols.md, 2.2.
 //!
-//! A 1B that is a value is followed by 00; 1B 02 begins a frame, 1B 03 ends it, 1B 01 is filler and means nothing.
+//! The bytes 1B 00 mean the value 1B; 1B 02 begins a frame, 1B 03 ends it, and 1B 01 is filler without a meaning.
 
 /// First byte of a two-byte mark.
 const ESCAPE: u8 = 0x1B;
-/// Second byte of filler, which has no meaning.
+/// Second byte of a filler, which has no meaning.
 const FILLER: u8 = 0x01;
 /// Second byte of the mark that begins a frame.
 const START: u8 = 0x02;
 /// Second byte of the mark that ends a frame.
 const END: u8 = 0x03;
-/// Second byte of the mark for a data byte that is 1B.
+/// Second byte of the mark for the value 1B.
 const LITERAL: u8 = 0x00;
-/// Port, id, opcode and length.
+/// Number of bytes in a packet's head: port, id, opcode and length.
 const HEAD: usize = 4;
-/// Maximum length of a packet: its head, 255 bytes of data, the check.
+/// Maximum length of a packet, in bytes: its head, 255 bytes of data, and the check.
 const LONGEST: usize = HEAD + 255 + 1;
-/// Maximum number of data bytes of a packet that is written.
+/// Maximum number of data bytes in a packet that the driver writes.
 const MOST: usize = 32;
-/// Length on the line of a packet with [`MOST`] bytes of data, if every byte of it had to be marked.
+/// Maximum length on the line of a packet with [`MOST`] data bytes, in bytes, if every byte is marked.
 const ROOM: usize = 2 * (HEAD + MOST + 1) + 4;
 
 /// Content of a frame.
@@ -27,15 +27,15 @@ const ROOM: usize = 2 * (HEAD + MOST + 1) + 4;
 pub struct Packet<'a> {
     /// The part of the robot that receives or sends the packet.
     pub port: u8,
-    /// A number that the robot counts up, and that a driver ignores.
+    /// Number that the robot increments for each packet, and that the driver ignores.
     pub id: u8,
-    /// Number of the command or report, among those of the port.
+    /// Number of the command or report among those of the port.
     pub opcode: u8,
     /// Bytes after the packet's head.
     pub data: &'a [u8],
 }
 
-/// A frame's bytes on the line.
+/// Bytes of a frame on the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FrameBytes {
     bytes: [u8; ROOM],
@@ -45,11 +45,11 @@ pub struct FrameBytes {
 /// Reason why bytes are not a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Garbled {
-    /// Length mismatch: the data length that the frame states, and the number of bytes received.
+    /// Length mismatch: the frame states the first number of data bytes, and the second number was received.
     Length(usize, usize),
-    /// The check of the bytes is the first number; the frame's own check is the second.
+    /// The check of the received bytes is the first number, but the frame contains the second number.
     Check(u8, u8),
-    /// This byte follows 1B, but is not a mark.
+    /// This byte follows 1B, but the two do not form a mark.
     Mark(u8),
     /// This byte is outside of any frame.
     Outside(u8),
@@ -68,14 +68,14 @@ impl core::fmt::Display for Garbled {
     }
 }
 
-/// The check of these bytes.
+/// Returns the check of `bytes`.
 pub(crate) fn check(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |check, byte| check ^ byte)
 }
 
 impl Packet<'_> {
-    /// Returns the frame's bytes on the line. Only the first 32 bytes of the data are sent. Bytes that are 1B are
-    /// marked if `marks` is `true`.
+    /// Returns the frame's bytes on the line, with at most 32 bytes of data. With `marks`, bytes with the value 1B are
+    /// marked.
     #[must_use]
     pub fn written(&self, marks: bool) -> FrameBytes {
         let data = self.data.get(..self.data.len().min(MOST)).unwrap_or_default();
@@ -104,7 +104,7 @@ impl FrameBytes {
         }
     }
 
-    /// The bytes.
+    /// Returns the bytes of the frame.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         self.bytes.get(..self.count).unwrap_or_default()
@@ -114,10 +114,10 @@ impl FrameBytes {
 /// State of a reader within the stream of bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ReaderState {
-    /// Outside of any frame. `after_escape`: the last byte was 1B; `is_reported`: an error was
+    /// Outside of any frame. `after_escape` is `true` if the last byte was 1B; `is_reported` is `true` if an error was
     /// returned for these bytes.
     Outside { after_escape: bool, is_reported: bool },
-    /// Inside a frame. `after_escape`: the last byte was 1B.
+    /// Inside a frame. `after_escape` is `true` if the last byte was 1B.
     Inside { after_escape: bool },
 }
 
@@ -136,10 +136,10 @@ impl Default for Reader {
 }
 
 impl Reader {
-    /// Takes in the next byte, and returns the packet that it completes, if any.
+    /// Reads the next byte, and returns the packet that the byte completes, if any.
     ///
     /// # Errors
-    /// The bytes so far are not a frame. The reader waits for the next one to begin.
+    /// The bytes so far are not a frame. The reader then waits for the beginning of the next frame.
     pub fn take(&mut self, byte: u8) -> Result<Option<Packet<'_>>, Garbled> {
         match (self.place, byte) {
             (ReaderState::Outside { after_escape: true, .. }, START)
@@ -191,7 +191,7 @@ impl Reader {
         Ok(None)
     }
 
-    /// A value of the packet.
+    /// Stores a value of the packet.
     fn keep(&mut self, byte: u8) -> Result<Option<Packet<'_>>, Garbled> {
         match self.bytes.get_mut(self.count) {
             Some(place) => {
@@ -206,12 +206,12 @@ impl Reader {
         }
     }
 
-    /// The length that the packet says its data has.
+    /// Returns the length of the data that the packet's head declares.
     fn declared_length(&self) -> usize {
         self.bytes.get(HEAD - 1).copied().map_or(0, usize::from)
     }
 
-    /// The packet that has ended.
+    /// Returns the packet whose end has been read.
     fn packet(&self) -> Result<Packet<'_>, Garbled> {
         let whole = self.bytes.get(..self.count).unwrap_or_default();
         let [checked @ .., check_byte] = whole else { return Err(Garbled::Length(0, 0)) };

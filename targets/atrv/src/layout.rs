@@ -1,10 +1,11 @@
-//! Directions of the sonars of the two known ATRV-minis, and the paper's sixteen directions that each sonar stands for.
+//! Places and directions of the sonars of the two known ATRV-minis, and the paper's sixteen directions that each sonar
+//! serves.
 
 use mdle_runtime::{Mount, Radians, SONARS, SonarId};
 
 /// Maximum number of sonars that an ATRV-mini has.
 pub(crate) const MOST: usize = 24;
-/// The distance from the centre at which laws take the sonars to be, in metres.
+/// Distance from the centre at which laws assume the sonars, in metres.
 pub(crate) const RING_RADIUS: f64 = 0.28;
 
 /// A sonar on the body.
@@ -12,16 +13,17 @@ pub(crate) const RING_RADIUS: f64 = 0.28;
 pub(crate) struct Transducer {
     /// Board of the sonar, times 16, plus its channel.
     pub(crate) id: u8,
-    /// Forward and to the left of the centre, in metres.
+    /// Distance of the sonar forward of the centre, in metres. The next field is the distance to the left.
     x: f64,
     y: f64,
-    /// Counter-clockwise from the front.
+    /// Direction of the sonar's axis, in degrees counter-clockwise from the front.
     degrees: f64,
-    /// The directions for which the sonar pings: bit `i` for direction `i`.
+    /// Directions that the sonar serves: bit `i` for direction `i`.
     pub(crate) directions: u16,
 }
 
-/// The six sonars at the front on the left, in millimetres and degrees, with the direction that each speaks for.
+/// Sonars of the front left board of a robot with 24 sonars: x and y in millimetres, axis in degrees, and the direction
+/// that each sonar serves.
 const QUARTER: [(f64, f64, f64, usize); 6] = [
     (258.17, 114.70, 0.0, 0),
     (252.24, 152.17, 18.0, 1),
@@ -31,8 +33,8 @@ const QUARTER: [(f64, f64, f64, usize); 6] = [
     (136.91, 235.97, 90.0, 4),
 ];
 
-/// The eight on the left of the robot with sixteen, with the directions that each speaks for: between 90° and 180°
-/// there is one alone.
+/// Sonars of the left board of a robot with 16 sonars: x and y in millimetres, axis in degrees, and the directions that
+/// each sonar serves. Between 90° and 180° there is only one sonar.
 const HALF: [(f64, f64, f64, &[usize]); 8] = [
     (258.17, 114.70, 0.0, &[0]),
     (252.24, 152.17, 18.0, &[1]),
@@ -44,7 +46,7 @@ const HALF: [(f64, f64, f64, &[usize]); 8] = [
     (-225.43, 230.03, 90.0, &[4, 5, 6]),
 ];
 
-/// Returns all sonars of a robot that has this number of sonars.
+/// Returns all sonars of a robot with this number of sonars.
 pub(crate) fn transducers(sonars: u8) -> [Option<Transducer>; MOST] {
     let mut all = [None; MOST];
     let known = if sonars == 16 { two_boards } else { four_boards };
@@ -54,7 +56,7 @@ pub(crate) fn transducers(sonars: u8) -> [Option<Transducer>; MOST] {
     all
 }
 
-/// Four boards of six: the front left, and from it the rear left, the rear right and the front right.
+/// Returns a sonar of the robot with four boards of six sonars: front left, rear left, rear right, front right.
 fn four_boards(number: usize) -> Option<Transducer> {
     let (x, y, degrees, direction) = *QUARTER.get(number % 6)?;
     let board = number / 6;
@@ -67,7 +69,7 @@ fn four_boards(number: usize) -> Option<Transducer> {
     Some(at(board * 16 + number % 6, (x, y, degrees), &[direction]))
 }
 
-/// Returns the directions of two boards of eight sonars; the right board mirrors the left one.
+/// Returns a sonar of the robot with two boards of eight sonars; the right board mirrors the left one.
 fn two_boards(number: usize) -> Option<Transducer> {
     let (board, channel) = (number / 8, number % 8);
     // The last two are the other way round on the right.
@@ -93,14 +95,14 @@ fn at(id: usize, (x, y, degrees): (f64, f64, f64), directions: &[usize]) -> Tran
 }
 
 impl Transducer {
-    /// Returns a range of this sonar as one from the ring: along the sonar's axis from the place nearest to the centre,
-    /// less the ring's radius.
+    /// Converts a range of this sonar, in metres, to a range from the ring: along the sonar's axis, from the point of
+    /// the axis nearest to the centre, less the ring's radius.
     pub(crate) fn on_the_ring(&self, range: f64) -> f64 {
         let (sin, cos) = libm::sincos(self.degrees.to_radians());
         (self.x * cos + self.y * sin + range - RING_RADIUS).max(0.0)
     }
 
-    /// Returns the mount of this sonar as one that speaks for a direction.
+    /// Returns the mount of this sonar as a sonar that serves `direction`.
     pub(crate) fn mount(&self, direction: usize) -> Mount {
         Mount::of(self.x, self.y, Radians::from_degrees(self.degrees), SonarId::new(direction as u8))
     }

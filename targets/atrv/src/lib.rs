@@ -1,7 +1,7 @@
 //! The iRobot ATRV-mini as a target: the language of its rFLEX controller, its driver, and its alphabet.
 //!
-//! For generated code: [`Target`], which the host runs a plan on, and [`alphabet`], the quarks this robot has. For
-//! tests and tools: the language ([`Command`], [`Packet`], [`Report`]) and the driver, [`Atrv`].
+//! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], the quarks that this robot has.
+//! Tests and tools use the language ([`Command`], [`Packet`], [`Report`]) and the driver, [`Atrv`].
 #![forbid(unsafe_code)]
 
 pub mod alphabet;
@@ -27,12 +27,12 @@ pub use driver::Atrv;
 pub use fault::Fault;
 pub use frame::{FrameBytes, Garbled, Packet, Reader};
 pub use mdle_runtime::Sensed;
-/// The robot's output.
+/// Output of the robot.
 pub use mdle_runtime::Sensed as Output;
-/// The robot's input.
+/// Input of the robot.
 pub use mdle_runtime::Twist as Input;
 pub use mdle_serial::{Clock, LineFault};
 pub use report::{Echoes, Report, Unreadable};
 
-/// The target that the host runs a plan on.
+/// The target `atrv`, on which the host runs a plan.
 pub type Target = mdle_serial::SerialTarget<Atrv>;

@@ -1,18 +1,18 @@
-//! Conversion between the robot's speeds and the controller's units, and odometry from the positions of the axes. See
-//! docs/src/reference/protocols.md, 2.5.
+//! Converts the robot's speeds to the controller's units and back, and computes odometry from the positions of the
+//! axes. See docs/src/reference/protocols.md, 2.5.
 
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
 
 use crate::command::{Axis, Command, Motion};
 use crate::config::Config;
 
-/// Maximum way of a robot between two reports, in metres; a greater difference of positions is not accepted.
+/// Maximum distance between two position reports, in metres; a greater difference of positions is rejected as a leap.
 const LEAP: f64 = 1.0;
-/// Excess of leaps over steps at which the positions are taken to be meaningless.
+/// Maximum excess of leaps over normal steps; beyond it the positions are meaningless.
 const LEAPS: u8 = 4;
 
-/// The commands for this input, translation first, no side above the fastest: both axes are slowed down alike, so that
-/// the robot stays on its curve. An input that is no number stops the robot.
+/// Returns the commands for `input`, translation first. Both axes are slowed down by the same factor so that no side
+/// exceeds the maximum speed and the robot stays on its curve. An input that is not a number stops the robot.
 pub(crate) fn commands(input: &Twist, config: &Config) -> [Command; 2] {
     let side = input.v.0.abs() + input.omega.0.abs() * (config.wheel_base / 2.0);
     let scale = if side.is_finite() { (config.fastest / side).min(1.0) } else { 0.0 };
@@ -35,7 +35,7 @@ pub(crate) fn commands(input: &Twist, config: &Config) -> [Command; 2] {
     [Command::Move(Axis::Translation, translation), Command::Move(Axis::Rotation, rotation)]
 }
 
-/// The robot's pose by the positions of its axes, from the first report on.
+/// Odometry of the robot from the positions of its axes, beginning with the first report.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Odometer {
     last: Option<(i32, i32)>,
@@ -44,7 +44,7 @@ pub(crate) struct Odometer {
 }
 
 impl Odometer {
-    /// The axes are at these positions now. Numbers go on at the other end where their 32 bits end.
+    /// Stores the current positions of the axes, which wrap at 32 bits.
     pub(crate) fn take(&mut self, along: i32, round: i32, config: &Config) {
         let (was_along, was_round) = self.last.replace((along, round)).unwrap_or((along, round));
         let way = f64::from(along.wrapping_sub(was_along)) / config.units_per_metre;
@@ -57,32 +57,33 @@ impl Odometer {
         }
     }
 
-    /// Returns `true` if the positions leap again and again, so that they mean nothing.
+    /// Returns `true` if the positions leap repeatedly and are therefore meaningless.
     pub(crate) fn leaps(&self) -> bool {
         self.leaps > LEAPS
     }
 }
 
-/// Returns the speeds of the right and the left side of a robot that moves like this, in m/s.
+/// Returns the speeds of the right and the left side of a robot with this motion, in m/s.
 pub(crate) fn sides(motion: &Twist, config: &Config) -> [f64; 2] {
     let across = motion.omega.0 * (config.wheel_base / 2.0);
     [motion.v.0 + across, motion.v.0 - across]
 }
 
-/// Returns the speeds of both sides that these commands ask for, in m/s.
+/// Returns the speeds of both sides that `commands` request, in m/s.
 pub(crate) fn asked(commands: &[Command; 2], config: &Config) -> [f64; 2] {
     let velocity = |command: &Command| if let Command::Move(_, motion) = command { motion.velocity } else { 0 };
     let [along, round] = commands;
     sides(&twist(velocity(along), velocity(round), config), config)
 }
 
-/// Returns the deceleration of both sides where they go the same way and where they go against each other, in m/s².
+/// Returns two decelerations of the sides, in m/s²: for sides that move in the same direction, and for sides that move
+/// in opposite directions.
 pub(crate) fn brakes(config: &Config) -> [f64; 2] {
     let turning = f64::from(config.rotation_acceleration) / config.units_per_radian;
     [config.acceleration, turning * (config.wheel_base / 2.0)]
 }
 
-/// The speed of the robot whose axes have these velocities.
+/// Returns the speed of a robot whose axes have these velocities.
 pub(crate) fn twist(along: i32, round: i32, config: &Config) -> Twist {
     Twist {
         v: MetersPerSecond(f64::from(along) / config.units_per_metre),

@@ -1,3 +1,3 @@
-//! The quarks that this robot's alphabet declares itself, for their ranges: their laws are the shared ones.
+//! Quarks that this robot's alphabet declares itself because their ranges differ; their laws are the shared ones.
 
 pub use mdle_atoms::{Advance, Go, GoAvoid};

@@ -1,4 +1,4 @@
-//! Reception of the robot's reports: the state that they give, and the faults in them.
+//! Reception of the robot's reports: the state that the reports contain, and the faults in them.
 
 use std::time::{Duration, Instant};
 
@@ -13,14 +13,15 @@ use crate::motion::{Odometer, twist};
 use crate::report::Report;
 use crate::ring::Ring;
 
-/// Maximum number of bytes that are read at once.
+/// Maximum number of bytes that are read from the line at once.
 const CHUNK: usize = 512;
-/// Maximum delay of an answer, beyond twice the time between two requests.
+/// Maximum delay of an answer, in addition to twice the time between two requests.
 const LATE: Duration = Duration::from_millis(300);
-/// Maximum number of reads before the caller checks whether enough has arrived: a robot may send without end.
+/// Maximum number of consecutive reads, after which the caller can check whether enough reports have arrived: a robot
+/// may send without end.
 const READS: usize = 64;
 
-/// Reader of the robot's reports, with the state of the robot according to them.
+/// Reader of the robot's reports, with the robot's state according to the reports.
 #[derive(Debug)]
 pub(crate) struct Hearing {
     reader: Reader,
@@ -39,16 +40,17 @@ struct Known {
     config: Config,
     odometer: Odometer,
     ring: Ring,
-    /// Position and velocity of the translation, which are reported before those of the rotation; `None` after use.
+    /// Position and velocity of the translation, which are reported before those of the rotation; `None` once they are
+    /// used.
     along: Option<(i32, i32)>,
     velocity: Twist,
     /// Time of the last position report, by the controller's clock.
     time: Option<u32>,
-    /// Bit 0 for the front bumper, bit 1 for the rear one.
+    /// Bumpers in contact: bit 0 for the front bumper, bit 1 for the rear bumper.
     switches: u32,
     /// Time of the last report of each bumper.
     felt: [Option<Nanos>; 2],
-    /// `true` if the brake is set, `None` before the first report; and the time of the last report.
+    /// `true` if the brake is set, `None` before the first report. The next field is the time of the last report.
     is_braked: Option<bool>,
     answered: Nanos,
     /// Battery voltage at the last report of the brake.
@@ -56,7 +58,7 @@ struct Known {
 }
 
 impl Hearing {
-    /// Creates the state before the first report, of a robot whose brake is requested at most once in `period`.
+    /// Returns the state before the first report of a robot whose brake is requested at most once in `period`.
     pub(crate) fn new(config: &Config, period: Duration) -> Self {
         let known = Known {
             config: config.clone(),
@@ -76,11 +78,11 @@ impl Hearing {
         Self { reader: Reader::default(), known, last_report: None, trouble: None, unanswered }
     }
 
-    /// Takes in the reports that have arrived, and waits for `count` position reports, or, for a `count` of 0, until
-    /// one has arrived within the last `patience`.
+    /// Reads the reports that have arrived, and waits for `count` position reports; if `count` is 0, waits until a
+    /// position report has arrived within the last `patience`.
     ///
     /// # Errors
-    /// The line is closed, or no such report has arrived within `patience`.
+    /// The line is closed, or the position reports have not arrived within `patience`.
     pub(crate) fn take(&mut self, line: &Line, at: Nanos, count: u32, patience: Duration) -> Result<(), Fault> {
         let begun = Instant::now();
         let mut reports = 0;
@@ -100,8 +102,8 @@ impl Hearing {
         }
     }
 
-    /// Takes in the reports that have arrived, and forgets the time and the fault of the last ones, but not the state
-    /// that they gave.
+    /// Reads the reports that have arrived, and clears the time and the fault of the last reports; the reported state
+    /// is kept.
     ///
     /// # Errors
     /// The line is closed.
@@ -111,11 +113,11 @@ impl Hearing {
         Ok(())
     }
 
-    /// Takes in the reports that have arrived, and waits until `deadline` for `count` position reports. Returns the
-    /// velocity of the last position report since [`Self::forget`].
+    /// Reads the reports that have arrived, and waits until `deadline` for `count` position reports. Returns the
+    /// velocity in the last position report since [`Self::forget`].
     ///
     /// # Errors
-    /// The line is closed, or no position has been reported since then.
+    /// The line is closed, or no position has been reported since [`Self::forget`].
     pub(crate) fn speed(&mut self, line: &Line, count: u32, deadline: Instant) -> Result<Twist, Fault> {
         let mut reports = 0;
         loop {
@@ -133,7 +135,7 @@ impl Hearing {
         if self.last_report.is_some() { Ok(self.velocity()) } else { Err(silent()) }
     }
 
-    /// Forgets what the robot has reported of its brake.
+    /// Clears the reported state of the brake.
     pub(crate) fn forget_brake(&mut self) {
         self.known.is_braked = None;
     }
@@ -141,8 +143,8 @@ impl Hearing {
     /// Waits until the robot reports that its brake is set.
     ///
     /// # Errors
-    /// The line is closed, or by `deadline` the robot has not reported its brake since it was forgotten, or that it is
-    /// not set.
+    /// The line is closed, or until `deadline` the robot has not reported its brake since [`Self::forget_brake`], or
+    /// has reported that it is not set.
     pub(crate) fn brake(&mut self, line: &Line, deadline: Instant) -> Result<(), Fault> {
         loop {
             self.drain(line, Nanos::ZERO)?;
@@ -158,7 +160,7 @@ impl Hearing {
         }
     }
 
-    /// Returns the fault that fails the start if the report that is still missing does not arrive, or `None` if all
+    /// Returns the fault with which the start fails if the first missing report does not arrive; `None` if all reports
     /// have arrived.
     pub(crate) fn waits_for(&self) -> Option<Fault> {
         match self.known.is_braked {
@@ -171,10 +173,10 @@ impl Hearing {
         }
     }
 
-    /// Checks that the robot can go on at the time of this output.
+    /// Checks that the robot can continue at the time `at` of an output.
     ///
     /// # Errors
-    /// The robot is braked, its positions leap, or one of its reports is overdue.
+    /// The brake is set, the positions leap, or a report is overdue.
     pub(crate) fn fault(&self, at: Nanos) -> Result<(), Fault> {
         let known = &self.known;
         if known.is_braked == Some(true) {
@@ -210,14 +212,14 @@ impl Hearing {
         &self.known.ring.pings
     }
 
-    /// Returns the battery's voltage and state; the voltage alone shows that it is being charged.
+    /// Returns the battery's voltage and state. A high voltage alone shows that the battery is being charged.
     pub(crate) fn supply(&self) -> Supply {
         let Known { battery, config, .. } = &self.known;
         let is_plugged = battery.0 > config.plugged_above;
         Supply { battery: *battery, is_low: battery.0 < config.low_battery, is_plugged }
     }
 
-    /// Takes in the reports that have arrived, and returns the number of position reports among them.
+    /// Reads the reports that have arrived, and returns the number of position reports among them.
     fn drain(&mut self, line: &Line, at: Nanos) -> Result<u32, Fault> {
         let mut reports = 0;
         for _ in 0..READS {
@@ -247,7 +249,7 @@ impl Hearing {
 }
 
 impl Known {
-    /// Takes in a packet, and returns `true` if it completes a position report.
+    /// Stores the content of a packet, and returns `true` if the packet completes a position report.
     fn take(&mut self, packet: &Packet<'_>, at: Nanos) -> Result<bool, Fault> {
         match Report::read(packet).map_err(Fault::Unreadable)? {
             Report::Axis { axis: Axis::Translation, position, velocity, .. } => {
@@ -280,7 +282,7 @@ impl Known {
         Ok(false)
     }
 
-    /// Takes in the state of a digital input.
+    /// Stores the state of a digital input.
     fn feel(&mut self, address: u8, state: u16, at: Nanos) {
         match (address.wrapping_sub(self.config.bumper_address), self.config.bumpers) {
             (0, Bumpers::Bits) => (self.switches, self.felt) = (u32::from(state & 0b11), [Some(at); 2]),
@@ -295,7 +297,7 @@ impl Known {
         }
     }
 
-    /// Returns the first bumper whose last report is too old, or `None` if the configuration sets no limit.
+    /// Returns the first bumper whose last report is missing or too old; `None` if there is no such bumper or no limit.
     fn numb(&self, at: Nanos) -> Option<u8> {
         let limit = Nanos(self.config.inputs.saturating_mul(1_000_000));
         let is_old = |felt: &Option<Nanos>| felt.is_none_or(|felt| at.since(felt) > limit);

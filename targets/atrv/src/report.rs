@@ -7,20 +7,20 @@ use crate::frame::Packet;
 /// Content of a packet from the robot, in the controller's units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Report<'a> {
-    /// Position of an axis relative to that at switch-on, and its velocity.
+    /// Position of an axis relative to its position at switch-on, and its velocity.
     Axis {
         /// Axis that the report is about.
         axis: Axis,
-        /// Position of the axis; it wraps at 32 bits.
+        /// Position of the axis, in the controller's units; it wraps at 32 bits.
         position: i32,
-        /// Velocity of the axis, per second.
+        /// Velocity of the axis, in the controller's units per second.
         velocity: i32,
         /// Time of the report by the controller's clock, in milliseconds.
         time: u32,
     },
-    /// Echoes of some of the sonars.
+    /// Echoes of some sonars.
     Sonars(Echoes<'a>),
-    /// A digital input: a bumper, or something else.
+    /// A digital input, which may be a bumper.
     Input {
         /// Address of the input.
         address: u8,
@@ -29,25 +29,25 @@ pub enum Report<'a> {
     },
     /// The battery and the brake.
     Status {
-        /// Voltage in hundredths of a volt, less the drop across the electronics.
+        /// Voltage of the battery, in hundredths of a volt, less the drop across the electronics.
         battery: u32,
-        /// Set to `true` if the brake holds the robot.
+        /// `true` if the brake holds the robot.
         is_braked: bool,
     },
-    /// A report that a driver does not need.
+    /// A report that the driver does not use.
     Other,
 }
 
 /// Reason why a packet cannot be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unreadable {
-    /// No part of an rFLEX sends a packet of this port and opcode.
+    /// No part of an rFLEX sends a packet with this port and opcode.
     Unknown(u8, u8),
-    /// A report of this port and opcode has only this number of data bytes.
+    /// A report with this port and opcode has only this number of data bytes.
     Short(u8, u8, usize),
 }
 
-/// Echoes of sonars, three bytes for each.
+/// Echoes of sonars, in three bytes each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Echoes<'a>(&'a [u8]);
 
@@ -62,10 +62,10 @@ impl Echoes<'_> {
 }
 
 impl<'a> Report<'a> {
-    /// Returns the content of this packet.
+    /// Returns the content of `packet`.
     ///
     /// # Errors
-    /// The packet is of a kind that no rFLEX sends, or too short for its content.
+    /// No rFLEX sends packets of this kind, or the packet is too short for its content.
     pub fn read(packet: &Packet<'a>) -> Result<Self, Unreadable> {
         let short = || Unreadable::Short(packet.port, packet.opcode, packet.data.len());
         match (packet.port, packet.opcode) {
@@ -79,7 +79,8 @@ impl<'a> Report<'a> {
     }
 }
 
-/// Reads a return value, the time, the axis, its position and its velocity; the rest repeats the controller's commands.
+/// Reads a return value, the time, the axis, its position and its velocity. The other bytes repeat the controller's
+/// commands.
 fn axis(data: &[u8]) -> Option<Report<'static>> {
     // Twenty-five bytes have come, or it is not what it says.
     let [_, _, _, _, t0, t1, t2, t3, axis, p0, p1, p2, p3, v0, v1, v2, v3, _, _, _, _, _, _, _, _, ..] = data else {
@@ -95,7 +96,7 @@ fn axis(data: &[u8]) -> Option<Report<'static>> {
     Some(Report::Axis { axis, position, velocity: i32::from_be_bytes([*v0, *v1, *v2, *v3]), time })
 }
 
-/// Reads the time, an address and the state there, of which some controllers leave a byte out.
+/// Reads the time, the address of an input and its state. Some controllers leave out one byte of the state.
 fn input(data: &[u8]) -> Option<Report<'static>> {
     match data {
         [_, _, _, _, address, high, low] => {
@@ -106,7 +107,7 @@ fn input(data: &[u8]) -> Option<Report<'static>> {
     }
 }
 
-/// Reads the time, the voltage and the brake.
+/// Reads the time, the battery's voltage and the state of the brake.
 fn status(data: &[u8]) -> Option<Report<'static>> {
     let [_, _, _, _, b0, b1, b2, b3, brake, ..] = data else { return None };
     Some(Report::Status { battery: u32::from_be_bytes([*b0, *b1, *b2, *b3]), is_braked: *brake != 0 })

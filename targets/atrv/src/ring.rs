@@ -6,27 +6,27 @@ use mdle_runtime::{Meters, Mount, Nanos, PINGS_KEPT, Ping, Pings, Pose, SONARS};
 use crate::config::Config;
 use crate::layout::{MOST, Transducer, transducers};
 
-/// Time without a ping after which a direction counts as defective; a sweep takes a fifth of it.
+/// Time without a ping after which a direction counts as defective; a sweep of all sonars takes a fifth of this time.
 const DEAF: Nanos = Nanos(1_000_000_000);
 
 /// State of the sonars and their pings.
 ///
-/// A direction has pinged when each of its sonars has reported since it pinged last, or when one of them reports a
-/// second time before another has: a report may be lost.
+/// A direction pings when each sonar that serves it has reported since the direction's last ping, or when one of these
+/// sonars reports a second time before another sonar has reported: a report may be lost.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     transducers: [Option<Transducer>; MOST],
-    /// Last range of each transducer, measured from the ring.
+    /// Last range of each sonar, in metres from the ring.
     ranges: [Option<f64>; MOST],
     pub(crate) pings: [Pings; SONARS],
-    /// Transducers that have reported since each direction pinged last: bit `i` for number `i`.
+    /// Sonars that have reported since each direction's last ping: bit `i` for sonar `i`.
     reported: [u32; SONARS],
     counts_per_metre: f64,
     reach: f64,
 }
 
 impl Ring {
-    /// Creates the state before the first report.
+    /// Returns the state before the first report.
     pub(crate) fn new(config: &Config) -> Self {
         Self {
             transducers: transducers(config.sonars),
@@ -38,9 +38,8 @@ impl Ring {
         }
     }
 
-    /// Takes in the echo of the sonar with this id, with the robot at `pose` by odometry. An id without a sonar is
-    /// another
-    /// channel of a board.
+    /// Stores the echo of the sonar with this id, when odometry reports `pose`. An id without a sonar belongs to an
+    /// unused channel of a board.
     pub(crate) fn take(&mut self, id: u8, counts: u16, at: Nanos, pose: Pose) {
         let found = self.transducers.iter().zip(0..).find(|(sonar, _)| sonar.is_some_and(|sonar| sonar.id == id));
         let Some((Some(sonar), number)) = found else { return };
@@ -66,13 +65,13 @@ impl Ring {
         }
     }
 
-    /// Returns the lowest direction that has not yet pinged as often as pings are stored.
+    /// Returns the lowest direction that has fewer pings than can be stored.
     pub(crate) fn unheard(&self) -> Option<u8> {
         let all = (0..).zip(&self.pings);
         all.filter(|(_, pings)| pings.newest_first().count() < PINGS_KEPT).map(|(direction, _)| direction).next()
     }
 
-    /// Returns the lowest direction whose last ping is too old.
+    /// Returns the lowest direction whose last ping is too old or missing.
     pub(crate) fn deaf(&self, now: Nanos) -> Option<u8> {
         let all = (0..).zip(&self.pings);
         let is_old = |pings: &Pings| pings.newest_first().next().is_none_or(|ping| now.since(ping.at) > DEAF);
@@ -83,14 +82,14 @@ impl Ring {
         self.reported.get(direction).copied().unwrap_or(0)
     }
 
-    /// The transducers that speak for this direction.
+    /// Returns the sonars that serve this direction: bit `i` for sonar `i`.
     fn members(&self, direction: usize) -> u32 {
         let all = (0..).zip(&self.transducers);
         let speaks = |sonar: &Option<Transducer>| sonar.is_some_and(|sonar| sonar.directions & (1 << direction) != 0);
         all.filter(|(_, sonar)| speaks(sonar)).fold(0, |bits, (number, _): (u32, _)| bits | 1 << number)
     }
 
-    /// Returns the ping with the smallest range of all transducers of this direction.
+    /// Stores a ping of this direction with the smallest range of its sonars.
     fn ping(&mut self, direction: usize, at: Nanos, pose: Pose) {
         let (Some(reported), Some(pings)) = (self.reported.get_mut(direction), self.pings.get_mut(direction)) else {
             return;

@@ -1,8 +1,7 @@
-//! Output of commands to the line, and the watchdog, which stops the robot when no motion has been commanded for too
-//! long.
+//! Sends commands to the robot, with a watchdog that stops the robot if no motion is commanded for too long.
 //!
-//! The controller stops a robot whose line has fallen silent, after a time that nobody states. So a thread of this
-//! program does it as well, and only if the program dies the controller is what stops the robot.
+//! The controller stops a robot whose line falls silent, but no document says after what time. A thread of this program
+//! therefore stops the robot earlier. Only if the program dies does the controller stop the robot.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -16,7 +15,7 @@ use crate::frame::FrameBytes;
 /// Maximum time for the line to accept the watchdog's commands.
 const STOPPING: Duration = Duration::from_millis(100);
 
-/// The line, and the watchdog over the commands on it.
+/// The line to the robot, with the watchdog over the motion commands.
 #[derive(Debug)]
 pub(crate) struct Mouth {
     shared: Arc<Shared>,
@@ -35,9 +34,9 @@ struct Shared {
 /// State of the watchdog.
 #[derive(Debug)]
 struct Watch {
-    /// Time of the last motion command; `None` while no further one is due.
+    /// Time of the last motion command; `None` while no further motion command is due.
     last_motion: Option<Moment>,
-    /// Set to `true` when the watchdog has stopped the robot.
+    /// `true` if the watchdog has stopped the robot.
     has_bitten: bool,
     is_over: bool,
 }
@@ -50,8 +49,8 @@ impl Shared {
 }
 
 impl Mouth {
-    /// Creates the output to `line`. With a limit, the watchdog sends `stop` when no motion command follows another
-    /// within the limit.
+    /// Returns the sender of commands to `line`. With a limit, the watchdog sends `stop` if the next motion command
+    /// does not follow within the limit.
     pub(crate) fn new(line: Line, watchdog: Option<(Duration, [FrameBytes; 2])>) -> Self {
         let watch = Watch { last_motion: None, has_bitten: false, is_over: false };
         let limit = watchdog.as_ref().map(|(limit, _)| *limit);
@@ -73,17 +72,17 @@ impl Mouth {
     /// Sends a command that is not a motion.
     ///
     /// # Errors
-    /// The line is closed, or takes nothing until `deadline`.
+    /// The line is closed, or accepts no bytes until `deadline`.
     pub(crate) fn say(&self, frame: &FrameBytes, deadline: Instant) -> Result<(), Fault> {
         // No command of the watchdog's is to come into the middle of it.
         let _watch = self.shared.watch();
         Ok(self.shared.line.write(frame.bytes(), deadline)?)
     }
 
-    /// Sends a motion command. From then on the watchdog waits for the next one.
+    /// Sends a motion command. The watchdog then waits for the next motion command.
     ///
     /// # Errors
-    /// The line is closed, or takes nothing until `deadline`, or the watchdog has stopped the robot.
+    /// The line is closed or accepts no bytes until `deadline`, or the watchdog has stopped the robot.
     pub(crate) fn say_motion(&self, frame: &FrameBytes, deadline: Instant) -> Result<(), Fault> {
         let mut watch = self.shared.watch();
         self.is_in_time(&watch)?;
@@ -124,7 +123,7 @@ impl Drop for Mouth {
     }
 }
 
-/// Runs the watchdog until the output is dropped.
+/// Runs the watchdog until the sender is dropped.
 fn keep_watch(shared: &Shared, limit: Duration, stop: &[FrameBytes; 2]) {
     let mut watch = shared.watch();
     while !watch.is_over {

@@ -1,4 +1,4 @@
-//! The target `atrv`, as the host runs plans on it.
+//! The target `atrv`, on which the host runs plans.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use crate::config::Config;
 use crate::driver::{Atrv, turn_takes};
 use crate::fault::Fault;
 
-/// Margin by which a period has to be shorter than the watchdog's limit, for turns that are late.
+/// Minimum difference between the watchdog's limit and the period, for turns that are late.
 const SLACK: Duration = Duration::from_millis(50);
 
 impl SerialRobot for Atrv {

@@ -1,4 +1,4 @@
-//! An ATRV-mini in a simulated world: the effect of each command, and the reports that it sends as time passes.
+//! An ATRV-mini in a simulated world: the effect of each command, and the reports that the robot sends as time passes.
 
 mod reports;
 
@@ -11,15 +11,15 @@ use mdle_simulator::{Footprint, Output, Simulated};
 use crate::wire::{Incoming, Request, number};
 use reports::Schedule;
 
-/// Controller's units per metre and per radian.
+/// Units of the controller per metre.
 const A_METRE: f64 = 139_654.7;
 const A_RADIAN: f64 = 49_784.5;
-/// Default time without a command after which the robot stops by itself.
+/// Default time without a command after which the robot stops itself.
 const FAILSAFE: Duration = Duration::from_secs(1);
 /// Difference between the battery's voltage and the controller's report of it, in volts.
 const ABOVE: f64 = 1.82;
-/// Reported voltages of a low battery and of a battery on its charger, in hundredths of a volt: the charger's voltage
-/// is higher than that of any battery.
+/// Voltages that the robot reports for a low battery and for a battery on its charger, in hundredths of a volt. The
+/// charger's voltage is higher than that of any battery.
 const LOW: u32 = 1850;
 const PLUGGED: u32 = 2650;
 /// Distance between the robot's sides, in metres, as in the model of its body.
@@ -32,21 +32,21 @@ pub fn step(pace: Pace) -> Duration {
     step / step.as_nanos().div_ceil(STEP.as_nanos()).max(1) as u32
 }
 
-/// The robot.
+/// The emulated ATRV-mini.
 #[allow(missing_debug_implementations, reason = "its body has none")]
 pub struct Atrv {
     body: Simulated,
     step: Duration,
     sensed: Output,
     incoming: Incoming,
-    /// Reports that are still to be sent; `count` is the number of the last report.
+    /// Reports that have not been sent yet; `count` is the number of the last report.
     outgoing: Vec<Vec<u8>>,
     count: u8,
-    /// The commands, forward and turning, in the robot's units per second, and the last command that arrived.
+    /// Commanded speeds, forward and turning, in the robot's units per second, and the last command that arrived.
     command: (i32, i32),
     last_command: (i32, i32),
     orders: Orders,
-    /// Distances of both axes, in the controller's units.
+    /// Positions of both axes, in the controller's units.
     gone: (f64, f64),
     axes: Schedule,
     inputs: Schedule,
@@ -60,18 +60,19 @@ pub struct Atrv {
     age: Duration,
     /// `true` while the emergency stop is pressed.
     pub emergency: bool,
-    /// Ailments that the robot suffers from.
+    /// Faults of the body that have begun.
     ailments: Vec<Ailment>,
-    /// Time without a command after which the robot stops by itself.
+    /// Time without a command after which the robot stops itself.
     pub failsafe: Duration,
 }
 
 impl Atrv {
-    /// Creates a robot that has just been switched on, whose body's time passes in steps of `step`. `marks` is as for
+    /// Returns a robot that has just been switched on and whose body's time advances in steps of `step`. `marks` is
+    /// passed to
     /// [`Incoming::new`].
     ///
     /// # Errors
-    /// The world's error about an input that it cannot take, which does not occur here.
+    /// Returns the world's error about an input that it cannot accept, which does not occur here.
     pub fn new(mut body: Simulated, step: Duration, marks: bool) -> Result<Self, String> {
         let sensed = body.exchange(&Twist::default()).map_err(|error| error.to_string())?;
         Ok(Self {
@@ -116,13 +117,13 @@ impl Atrv {
         self.is_braked || self.emergency
     }
 
-    /// Returns the motion commands that have reached it.
+    /// Returns the motion commands that the robot has received.
     #[must_use]
     pub fn orders(&self) -> &Orders {
         &self.orders
     }
 
-    /// Executes a command, and returns `true` if it is one to turn, which is the second half of a motion.
+    /// Executes a command, and returns `true` for the command of a turn rate, which is the second half of a motion.
     fn does(&mut self, request: &Request) -> bool {
         if self.has(Ailment::Deaf) {
             return request.port == 2 && request.code == 7 && request.data.first() == Some(&1);
@@ -167,7 +168,7 @@ impl Atrv {
         false
     }
 
-    /// Takes in a velocity of an axis. Rotation is the second half of a motion command.
+    /// Sets the commanded velocity of an axis. Rotation is the second half of a motion command.
     fn moves(&mut self, axis: u8, velocity: i32) {
         match axis {
             0 => self.last_command.0 = velocity,
@@ -187,7 +188,7 @@ impl Atrv {
         }
     }
 
-    /// Advances the world by one step, at whose end the robot's age is `age`.
+    /// Advances the world by one step; `age` is the robot's age at the end of the step.
     fn tick(&mut self, age: Duration) -> Result<(), String> {
         self.silence += age.saturating_sub(self.age);
         self.age = age;
@@ -215,7 +216,7 @@ impl Atrv {
         Ok(())
     }
 
-    /// Moves the axes by the way from `before` to the pose of the odometry.
+    /// Moves the axes by the distance from the pose `before` to the current pose of the odometry.
     fn goes(&mut self, before: &Pose) {
         let after = &self.sensed.odometry;
         let turn = (after.theta.0 - before.theta.0 + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
@@ -227,7 +228,7 @@ impl Atrv {
         self.gone = (self.gone.0 + way * A_METRE, self.gone.1 + turn * A_RADIAN);
     }
 
-    /// Returns the battery's voltage as reported, in hundredths of a volt. On the charger it is never low.
+    /// Returns the reported voltage of the battery, in hundredths of a volt. On the charger it is never low.
     fn battery(&self) -> u32 {
         let supply = self.body.supplied();
         if self.has(Ailment::PluggedIn) || supply.is_plugged {
@@ -244,7 +245,7 @@ impl Atrv {
     }
 }
 
-/// Returns the motion of a body whose right side does not move.
+/// Returns the motion of a body whose right wheels do not move.
 fn left_alone(input: &Twist) -> Twist {
     let left = input.v.0 - input.omega.0 * (BETWEEN / 2.0);
     Twist { v: MetersPerSecond(left / 2.0), omega: RadiansPerSecond(-left / BETWEEN) }

@@ -1,4 +1,4 @@
-//! An ATRV-mini that is not there: its language on a pseudo-terminal, its body in a simulated world.
+//! Robot emulator of an ATRV-mini: its language on a pseudo-terminal, its body in a simulated world.
 #![forbid(unsafe_code)]
 
 pub mod atrv;
@@ -12,7 +12,7 @@ use mdle_simulator::Body;
 
 use atrv::{Atrv, step};
 
-/// Runs the robot emulator with the arguments of this process, until a signal comes. Returns its exit status.
+/// Runs the robot emulator with the arguments of this process until a signal arrives; returns the exit status.
 pub fn main() -> ExitCode {
     let about = "Emulate an iRobot ATRV-mini on a pseudo-terminal, in a simulated world";
     let marks = Arg::new("marks").long("marks").action(ArgAction::SetTrue);

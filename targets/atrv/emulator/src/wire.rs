@@ -1,49 +1,50 @@
-//! The rFLEX language as the controller speaks it: commands out of bytes, reports into bytes.
+//! The rFLEX language as the controller uses it: reads commands from bytes, and writes reports to bytes.
 //!
-//! It shares nothing with the driver's: what one of them gets wrong about the language, the other one finds.
+//! The code is independent of the driver's code for this language, so that an error in one of the two shows up in
+//! tests.
 
-/// Maximum length of a command, in bytes. In a longer one the end mark was lost on the line.
+/// Maximum length of a command, in bytes. A longer command has lost its end mark on the line.
 const LONGEST: usize = 1000;
 
-/// A command: for which part of the robot, what, with which arguments.
+/// A command: the part of the robot that executes it, its number and its arguments.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Request {
-    /// The part: 1 system, 2 motors, 4 sonars, 5 digital inputs.
+    /// Part of the robot: 1 system, 2 motors, 4 sonars, 5 digital inputs.
     pub port: u8,
-    /// Number of the command, among those of the part.
+    /// Number of the command among the commands of the part.
     pub code: u8,
     /// Arguments of the command.
     pub data: Vec<u8>,
 }
 
-/// Received bytes, and the commands in them.
+/// Received bytes, which may contain commands.
 #[derive(Debug, Default)]
 pub struct Incoming {
     bytes: Vec<u8>,
-    /// Set to `true` if `1B 00` is taken as a value.
+    /// `true` if `1B 00` means the value 1B.
     marks: bool,
 }
 
 impl Incoming {
-    /// Creates an empty buffer. `marks` is `true` if `1B 00` is taken as a value, which no known controller does.
+    /// Returns an empty buffer. With `marks`, `1B 00` means the value 1B, which no known controller supports.
     #[must_use]
     pub const fn new(marks: bool) -> Self {
         Self { bytes: Vec::new(), marks }
     }
 
-    /// Takes in more bytes.
+    /// Appends received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// Returns the number of bytes that are kept for a command that is not complete.
+    /// Returns the number of bytes that are stored for an incomplete command.
     #[must_use]
     pub fn kept(&self) -> usize {
         self.bytes.len()
     }
 
     /// Returns the next complete command. A command with a wrong length or check, or with an unknown mark after 1B, is
-    /// lost.
+    /// skipped.
     pub fn next_request(&mut self) -> Option<Request> {
         loop {
             let Some(begin) = self.bytes.windows(2).position(|two| two == [0x1B, 0x02]) else {
@@ -69,7 +70,7 @@ impl Incoming {
         }
     }
 
-    /// Returns the bytes between the marks of the command at the beginning of the kept bytes.
+    /// Returns the bytes between the start and end marks of the command at the beginning of the stored bytes.
     fn body(&self) -> Body {
         let mut body = Vec::new();
         let mut at = 2;
@@ -97,15 +98,16 @@ impl Incoming {
 }
 
 enum Body {
-    /// The command has not ended yet.
+    /// The command is not complete yet.
     Open,
-    /// Number of bytes that do not belong to a command.
+    /// The first bytes, in this number, do not belong to a command.
     Lost(usize),
-    /// The command's bytes, and the number of bytes that it takes on the line.
+    /// The bytes of a complete command, and the number of bytes that it takes on the line.
     Whole(Vec<u8>, usize),
 }
 
-/// A report with this number, in this way: values of 1B are followed by a 00. `filler` goes in between.
+/// Returns the bytes on the line of a report with this number; a value 1B is followed by 00. `filler` is inserted
+/// between the bytes.
 #[must_use]
 pub fn report(port: u8, number: u8, code: u8, data: &[u8], filler: &[u8]) -> Vec<u8> {
     let data = data.get(..data.len().min(255)).unwrap_or_default();
@@ -126,7 +128,7 @@ pub fn report(port: u8, number: u8, code: u8, data: &[u8], filler: &[u8]) -> Vec
     bytes
 }
 
-/// The number in four bytes, the highest first.
+/// Returns the number in four bytes, the highest byte first.
 #[must_use]
 pub fn number(bytes: &[u8]) -> u32 {
     bytes.iter().take(4).fold(0, |number, byte| number << 8 | u32::from(*byte))

@@ -1,5 +1,5 @@
-//! Reports that the robot sends by itself: the positions of its axes, the echoes of its sonars, its bumpers; and their
-//! schedule.
+//! Reports that the robot sends by itself, about the positions of its axes, the echoes of its sonars, and its bumpers;
+//! and the schedule of these reports.
 
 use std::time::Duration;
 
@@ -9,21 +9,21 @@ use mdle_runtime::Twist;
 use super::{A_METRE, A_RADIAN, Atrv};
 use crate::wire::report;
 
-/// Sonar's counts per metre.
+/// Number of counts of a sonar per metre.
 const A_RANGE: f64 = 1550.0;
-/// The boards with the body's sonars, six on each: front left, rear left, front right, rear right.
+/// Boards of the body's sonars, six on each: front left, rear left, front right, rear right.
 const BOARDS: [u8; 4] = [0, 1, 3, 2];
 /// Range that a sonar without an echo reports, in the sonar's counts.
 const NOTHING: u16 = 32_766;
-/// The distance of each position from the one before when they leap, in metres.
+/// Distance between consecutive reported positions of a robot with the fault `leap`, in metres.
 const LEAP: f64 = 3.0;
-/// Number of reports from one with filler to the next one with filler.
+/// Number of reports from one report with filler to the next.
 const FILLED: u8 = 7;
 
 /// Schedule of a report that is sent periodically.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Schedule {
-    /// Interval of the report; zero for never.
+    /// Period of the report; zero if it is never sent.
     period: Duration,
     due: Duration,
 }
@@ -54,7 +54,7 @@ impl Atrv {
         [&[0; 4][..], &self.time(), &[axis], &position.to_be_bytes(), &speed.to_be_bytes(), &[0; 8]].concat()
     }
 
-    /// Reports the sonars that have pinged since the last such report, if any have.
+    /// Reports the sonars that have pinged since the last report of sonars, if there are such sonars.
     pub(super) fn report_pings(&mut self) {
         let is_dead = self.has(Ailment::DeadSonar);
         let is_mute = self.has(Ailment::NoPings);
