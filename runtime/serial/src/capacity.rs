@@ -1,20 +1,20 @@
-//! Capacity of a line in a turn.
+//! Capacity of a serial line in a turn.
 
 use std::time::Duration;
 
-/// Bits of a byte on the line: eight, a start and a stop.
+/// Number of bits of a byte on the line: a start bit, eight data bits and a stop bit.
 const BITS: f64 = 10.0;
 
-/// Returns the time that `bytes` bytes take on a line of `speed` bits per second.
+/// Returns the time that `bytes` bytes need on a line with `speed` bits per second.
 #[must_use]
 pub fn time_of(bytes: usize, speed: u32) -> Duration {
     Duration::from_secs_f64(bytes as f64 * BITS / f64::from(speed.max(1)))
 }
 
-/// Checks that turns of this period are long enough for their transmission, which takes `takes`.
+/// Checks that a turn of `period` is long enough for its transmission, which needs `takes`.
 ///
 /// # Errors
-/// Fails with a sentence for the operator if they are too short.
+/// Returns a sentence for the operator if the period is too short.
 pub fn carries(period: Duration, takes: Duration) -> Result<(), String> {
     if takes <= period {
         return Ok(());

@@ -1,4 +1,4 @@
-//! The time of a robot's outputs, by the clock or in lockstep.
+//! The time of a robot's outputs: by the computer's clock or in lockstep.
 
 use std::time::{Duration, Instant};
 
@@ -8,17 +8,17 @@ use mdle_runtime::Nanos;
 /// Source of the time of an output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clock {
-    /// The time that has passed since the first output.
+    /// The computer's clock: the time since the first output.
     Wall,
-    /// Time advances by this duration with each output, as for a robot in lockstep.
+    /// Lockstep: time advances by this duration with each output.
     Stepped(Duration),
 }
 
-/// Factor of patience in lockstep: there a robot takes as long as its machine needs, and stands still meanwhile.
+/// Factor of timeouts in lockstep: there a robot needs as long as its machine needs, and stands still meanwhile.
 const LONGER: u32 = 10;
 
 impl Clock {
-    /// Returns the time to wait, by the clock, for an action that may take a robot `limit`.
+    /// Returns the time to wait, by the computer's clock, for an action for which a robot has `limit`.
     #[must_use]
     pub const fn patience(self, limit: Duration) -> Duration {
         match self {
@@ -27,8 +27,8 @@ impl Clock {
         }
     }
 
-    /// Returns `true` if `limit` has passed for the robot since `begun`, when it has got `commands` commands since
-    /// then.
+    /// Returns `true` if `limit` has passed for the robot since `begun`; the robot has received `commands` commands
+    /// since then.
     #[must_use]
     pub fn is_past(self, limit: Duration, begun: Instant, commands: u32) -> bool {
         match self {
@@ -37,7 +37,7 @@ impl Clock {
         }
     }
 
-    /// Lets time pass, unless it passes with the commands to the robot.
+    /// Waits for `time`, unless the clock advances with the commands to the robot.
     pub fn pass(self, time: Duration) {
         match self {
             Self::Wall => std::thread::sleep(time),
@@ -45,7 +45,7 @@ impl Clock {
         }
     }
 
-    /// Lets time pass as [`Clock::pass`] does, but not after `request` is made.
+    /// Waits for `time` like [`Clock::pass`], but at most until `request` is made.
     pub fn pass_unless(self, request: &StopRequest, time: Duration) {
         match self {
             Self::Wall => request.wait(time),
@@ -54,23 +54,23 @@ impl Clock {
     }
 }
 
-/// The times of outputs, from the first one on.
+/// Clock of the outputs of a run.
 #[derive(Debug)]
 pub struct Times {
     clock: Clock,
-    /// Time of the first output; `outputs` is the number of outputs so far.
+    /// Moment of the first output, by the computer's clock. The next field is the number of outputs so far.
     first: Option<Instant>,
     outputs: u64,
 }
 
 impl Times {
-    /// Returns the times of a robot before its first output.
+    /// Returns the clock of a run before its first output.
     #[must_use]
     pub const fn new(clock: Clock) -> Self {
         Self { clock, first: None, outputs: 0 }
     }
 
-    /// The time of the output that has just come.
+    /// Returns the time of the output that has just arrived.
     pub fn now(&mut self) -> Nanos {
         let outputs = self.outputs;
         self.outputs = outputs.saturating_add(1);

@@ -1,49 +1,50 @@
-//! The configuration of a robot as one table: [`configuration!`](crate::configuration!) makes of each line a field, its
-//! reader, its check and its line of `--print-config`.
+//! The configuration of a robot as one table: [`configuration!`](crate::configuration!) turns each line into a field,
+//! with its reader, its check and its line of `--print-config`.
 
 use std::fmt;
 use std::path::Path;
 
 use crate::settings::Settings;
 
-/// The values by which robots of one kind differ.
+/// Values in which robots of one kind differ.
 pub trait Configuration: Sized {
-    /// Returns the values of the file, if there is one, and `device`, if it was given; for the rest the defaults.
+    /// Returns the values of the configuration file and of `device`, and defaults for all other values.
     ///
     /// # Errors
-    /// The file cannot be read, is no TOML, has a key that there is not, or a value that makes no sense: where and why.
+    /// The file cannot be read, is not TOML, or has an unknown key or an invalid value. The sentence gives the place
+    /// and reason.
     fn read(file: Option<&Path>, device: Option<&str>) -> Result<(Self, Settings), String>;
 }
 
-/// A configuration, and where each of its values came from.
+/// A configuration, with the source of each value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Configured<C> {
-    /// The values.
+    /// Values of the configuration.
     pub config: C,
     settings: Settings,
 }
 
 impl<C: Configuration> Configured<C> {
-    /// Reads the configuration, as [`Configuration::read`] does.
+    /// Reads the configuration like [`Configuration::read`].
     ///
     /// # Errors
-    /// Those of [`Configuration::read`].
+    /// [`Configuration::read`] failed.
     pub fn read(file: Option<&Path>, device: Option<&str>) -> Result<Self, String> {
         C::read(file, device).map(|(config, settings)| Self { config, settings })
     }
 }
 
-/// Returns the configuration as TOML, which `--config` reads.
+/// Prints the configuration as TOML that `--config` can read.
 impl<C> fmt::Display for Configured<C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.settings.fmt(f)
     }
 }
 
-/// Declares a configuration, a line for each of its keys: `name: type = default, in range, "unit" "help", confidence;`.
+/// Declares a configuration, with one line for each key: `name: type = default, in range, "unit" "help", confidence;`.
 ///
-/// Every configuration has a `device` in front, and how hard laws steer at the end. The type has a function `check`,
-/// which says what is wrong with values that are good each by itself.
+/// Every configuration begins with a `device` and ends with the gains with which laws steer. The type has a function
+/// `check`, which reports values that are valid each by itself but not together.
 #[macro_export]
 macro_rules! configuration {
     (
@@ -58,10 +59,10 @@ macro_rules! configuration {
         $(#[$meta])*
         #[derive(Debug, Clone, PartialEq)]
         pub struct $config {
-            /// The serial port, or `tcp:ADDRESS:PORT`.
+            /// Serial port of the robot, or `tcp:ADDRESS:PORT`.
             pub device: String,
             $($(#[$field_meta])* pub $key: $type,)*
-            /// The gains with which laws steer.
+            /// Gains with which laws steer.
             pub steering: $crate::Steering,
         }
 
@@ -70,7 +71,7 @@ macro_rules! configuration {
                 file: Option<&::std::path::Path>,
                 device: Option<&str>,
             ) -> Result<(Self, $crate::Settings), String> {
-                /// The configuration file; a key that is missing keeps its value.
+                /// Contents of a configuration file; a missing key keeps its default value.
                 #[derive(Default, $crate::serde::Deserialize)]
                 #[serde(crate = "mdle_serial::serde", deny_unknown_fields, rename_all = "kebab-case")]
                 struct File {

@@ -1,4 +1,4 @@
-//! A key of a configuration, and the types that its value can have.
+//! A key of a configuration, and the types of its value.
 
 use std::fmt;
 
@@ -7,11 +7,11 @@ use serde::de::DeserializeOwned;
 /// A key of a configuration, as its table declares it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Key {
-    /// The name of the field.
+    /// Name of the field.
     pub name: &'static str,
-    /// The unit; empty for a value without one.
+    /// Unit of the value; empty if the value has no unit.
     pub unit: &'static str,
-    /// A few words on the value, after the unit.
+    /// Short description of the value, which follows the unit.
     pub help: &'static str,
     /// `true` if the default has been compared with a real robot.
     pub is_verified: bool,
@@ -20,17 +20,17 @@ pub struct Key {
 }
 
 impl Key {
-    /// A key without a range, whose default is verified.
+    /// Returns a key without a range, whose default is verified.
     pub(crate) const fn of(name: &'static str, unit: &'static str, help: &'static str) -> Self {
         Self { name, unit, help, is_verified: true, range: None }
     }
 
-    /// Returns the name in a file.
+    /// Returns the name of the key in a configuration file.
     pub(crate) fn in_a_file(&self) -> String {
         self.name.replace('_', "-")
     }
 
-    /// Returns the words on the value that `--print-config` shows.
+    /// Returns the description of the value that `--print-config` shows.
     pub(crate) fn about(&self) -> String {
         let words: Vec<_> = [self.unit, self.help].into_iter().filter(|words| !words.is_empty()).collect();
         format!("{}{}", words.join(" "), if self.is_verified { "" } else { "; unverified" })
@@ -42,10 +42,10 @@ pub trait Setting: Sized {
     /// Type of the value in a file, and of its default.
     type Written: DeserializeOwned + fmt::Debug;
 
-    /// Returns the value.
+    /// Converts a written value to a value of this type.
     ///
     /// # Errors
-    /// The sentence that says why `key` cannot have it.
+    /// Returns a sentence with the reason if `key` cannot have this value.
     fn of(key: &Key, written: Self::Written) -> Result<Self, String>;
 }
 
@@ -74,10 +74,10 @@ written_as_it_is! {
     Vec<u8>, value, None::<f64>;
 }
 
-/// Returns the one of `choices` that has this name.
+/// Returns the value in `choices` whose name is `written`.
 ///
 /// # Errors
-/// The sentence that says which there are.
+/// Returns a sentence with all names if no choice has this name.
 pub fn one_of<T: Copy>(key: &Key, written: &str, choices: &[(&str, T)]) -> Result<T, String> {
     choices.iter().find(|(name, _)| *name == written).map(|(_, choice)| *choice).ok_or_else(|| {
         let names: Vec<_> = choices.iter().map(|(name, _)| format!("{name:?}")).collect();
@@ -85,10 +85,10 @@ pub fn one_of<T: Copy>(key: &Key, written: &str, choices: &[(&str, T)]) -> Resul
     })
 }
 
-/// Checks that a value is from `least` to `most`.
+/// Checks that `value` is between `least` and `most`, ends included.
 ///
 /// # Errors
-/// The sentence that says that it is not.
+/// Returns a sentence if the value is out of range.
 pub fn within(name: &str, value: f64, least: f64, most: f64) -> Result<(), String> {
     if (least..=most).contains(&value) {
         Ok(())

@@ -1,4 +1,4 @@
-//! A line to a robot: a serial port, 8N1 without flow control, or TCP to a literal address.
+//! A line to a robot: a serial port, 8N1 without flow control, or a TCP connection to a numeric address.
 
 use std::fmt;
 use std::fs::{File, OpenOptions};
@@ -14,10 +14,10 @@ use rustix::fs::{FlockOperation, OFlags};
 use rustix::io::Errno;
 use rustix::termios::{self, OptionalActions};
 
-/// Maximum time that a robot may take to accept a connection.
+/// Maximum time in which a robot accepts a connection.
 const CONNECT: Duration = Duration::from_secs(1);
 
-/// An open line.
+/// An open line to a robot.
 #[derive(Debug)]
 pub struct Line {
     port: OwnedFd,
@@ -28,15 +28,15 @@ pub struct Line {
 pub enum LineFault {
     /// A device cannot be opened: its name, and the reason.
     Open(String, String),
-    /// Another program has this device.
+    /// Another program uses this device.
     Busy(String),
     /// This device is not a serial port.
     NotSerial(String),
-    /// Nothing arrived, or could be sent, in time.
+    /// No bytes arrived, or none could be sent, in time.
     Silent,
     /// The line was closed at the other end.
     Closed,
-    /// The line failed.
+    /// The line failed for this reason.
     Failed(String),
 }
 
@@ -49,10 +49,10 @@ impl LineFault {
         }
     }
 
-    /// The sentence for the operator of this robot, as in `the Scout`.
+    /// Writes the sentence about this fault for the operator; `robot` names the robot, as in `the Scout`.
     ///
     /// # Errors
-    /// As everything that writes.
+    /// The formatter failed.
     pub fn tell(&self, robot: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Open(device, why) => {
@@ -71,7 +71,7 @@ impl Line {
     /// Opens a serial port at `speed` bits per second, or `tcp:ADDRESS:PORT`. Nothing is sent.
     ///
     /// # Errors
-    /// The device is missing, busy or no terminal, or nothing listens at the address.
+    /// The device is missing, busy or not a terminal, or no program listens at the address.
     pub fn open(device: &str, speed: u32) -> Result<Self, LineFault> {
         let port = match device.strip_prefix("tcp:") {
             Some(address) => connect(address)?,
@@ -80,10 +80,10 @@ impl Line {
         Ok(Self { port })
     }
 
-    /// Sends all of these bytes.
+    /// Sends all of `bytes`.
     ///
     /// # Errors
-    /// The line is closed, or takes nothing until `deadline`.
+    /// The line is closed, or does not accept all bytes before `deadline`.
     pub fn write(&self, bytes: &[u8], deadline: Instant) -> Result<(), LineFault> {
         let mut left = bytes;
         while !left.is_empty() {
@@ -97,7 +97,7 @@ impl Line {
         Ok(())
     }
 
-    /// Reads the bytes that have arrived, as many as `into` has room for; returns their number.
+    /// Reads the bytes that have arrived, up to the length of `into`; returns their number.
     ///
     /// # Errors
     /// The line is closed.
@@ -110,15 +110,15 @@ impl Line {
         }
     }
 
-    /// Waits until there is something to be read.
+    /// Waits until bytes have arrived.
     ///
     /// # Errors
-    /// There is nothing by `deadline`, or the line failed.
+    /// No bytes have arrived before `deadline`, or the line failed.
     pub fn hear(&self, deadline: Instant) -> Result<(), LineFault> {
         self.wait(PollFlags::IN, deadline)
     }
 
-    /// Waits until the line is ready for this.
+    /// Waits until the line is ready for the operation `what`.
     fn wait(&self, what: PollFlags, deadline: Instant) -> Result<(), LineFault> {
         loop {
             let left = deadline.saturating_duration_since(Instant::now());
@@ -136,7 +136,7 @@ impl Line {
     }
 }
 
-/// Opens a serial port, raw, and locks it against other programs that ask for a lock.
+/// Opens a serial port in raw mode, and locks it against other programs that request a lock.
 fn serial(path: &Path, speed: u32) -> Result<OwnedFd, LineFault> {
     let device = path.display().to_string();
     // Without waiting for a carrier, and without making it this program's terminal.
@@ -163,7 +163,7 @@ fn serial(path: &Path, speed: u32) -> Result<OwnedFd, LineFault> {
     Ok(file.into())
 }
 
-/// Connects to a literal address.
+/// Connects to a numeric address.
 fn connect(address: &str) -> Result<OwnedFd, LineFault> {
     let name = format!("tcp:{address}");
     let address: SocketAddr = address.parse().map_err(|_| {

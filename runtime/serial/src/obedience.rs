@@ -1,23 +1,23 @@
-//! Detects a robot that does not move as commanded: faster, or in the other direction. See
+//! Detects a robot that does not move as commanded, but faster or in the opposite direction. See
 //! docs/src/reference/protocols.md, 3.
 //!
-//! A robot that an obstacle blocks, or one of whose sides is stuck, moves less than commanded, which is no
-//! disobedience. The measured speeds of both sides have to stay within the band that the commands so far allow. The
-//! band contains zero and at once the last two commands, and shrinks from earlier commands only as fast as the robot
-//! brakes.
+//! A robot that is blocked by an obstacle, or with a stuck side, moves less than commanded; that is not disobedience.
+//! The measured speeds of both sides have to stay within the band that the commands so far allow. The band always
+//! contains zero and the last two commands. It shrinks from earlier commands only as fast as the robot brakes.
 
 use std::time::Duration;
 
 use mdle_runtime::Nanos;
 
-/// Part of the commanded deceleration that a robot must reach.
+/// Part of the commanded deceleration that a robot must achieve.
 const PART: f64 = 0.5;
-/// A side may be this far outside of the band: in m/s, and as a part of the fastest speed in the band.
+/// Tolerated distance of a side's speed from the band: in m/s, and (next constant) as a part of the highest speed in
+/// the band.
 const ERROR: f64 = 0.05;
 const ERROR_PART: f64 = 0.2;
 /// Maximum time for a robot to stop.
 const LONGEST: Duration = Duration::from_secs(5);
-/// The time that it may take until it begins to brake.
+/// Maximum time until a robot begins to brake.
 const REACTION: Duration = Duration::from_millis(100);
 
 /// Compares measured speeds with commands, turn by turn.
@@ -25,17 +25,17 @@ const REACTION: Duration = Duration::from_millis(100);
 pub struct Obedience {
     /// Maximum time for which the speeds may be outside the band; zero for no limit.
     limit: Nanos,
-    /// Bands of the common speed of both sides, and of half their difference.
+    /// Band of the common speed of both sides. The next field is the band of half their difference.
     forward: Band,
     turning: Band,
     last: Option<Nanos>,
     /// Speed of the faster side at the last measurement, in m/s.
     measured: f64,
-    /// Since when the speeds have been outside of the band.
+    /// Time since which the speeds have been outside of the band.
     since: Option<Nanos>,
 }
 
-/// The speeds that commands allow, in m/s.
+/// Range of speeds that the commands allow, in m/s.
 #[derive(Debug, Clone, Copy)]
 struct Band {
     /// Ends of the band: `low` is at most zero, `high` at least zero.
@@ -43,14 +43,14 @@ struct Band {
     high: f64,
     /// Last commanded speed, in m/s.
     command: f64,
-    /// The rate at which the band narrows, in m/s².
+    /// Rate at which the band narrows, in m/s².
     brakes: f64,
 }
 
 impl Obedience {
-    /// Returns the state of a robot that stands still, whose sides brake with `forward` m/s² where both go the same way
-    /// and with `turning` m/s² where they go against each other. It may disobey for less than `limit`; for ever if that
-    /// is zero.
+    /// Returns the state of a robot at rest. Its sides brake with `forward` m/s² when they move in the same direction,
+    /// and with `turning` m/s² when they move in opposite directions. The robot may disobey for less than `limit`, or
+    /// without limit if `limit` is zero.
     #[must_use]
     pub const fn new(forward: f64, turning: f64, limit: Duration) -> Self {
         Self {
@@ -63,8 +63,8 @@ impl Obedience {
         }
     }
 
-    /// Notes the speeds of the right and the left side at `at`, in m/s, with the command of this turn; returns `true`
-    /// if the robot has disobeyed for the whole limit.
+    /// Records the speeds of the right and the left side at `at`, in m/s, and the command of this turn; returns `true`
+    /// if the robot has disobeyed for the whole time limit.
     pub fn is_broken(&mut self, at: Nanos, command: [f64; 2], measured: [f64; 2]) -> bool {
         let seconds = at.since(self.last.replace(at).unwrap_or(at)).seconds();
         let [right, left] = command;
@@ -81,8 +81,8 @@ impl Obedience {
         self.limit > Nanos::ZERO && since.is_some_and(|since| at.since(since) >= self.limit)
     }
 
-    /// Returns how long the robot may take to stop: twice the braking time at the commanded deceleration from the
-    /// fastest speed that it may have, but at least `least` and at most five seconds.
+    /// Returns the maximum time in which the robot stops: twice the braking time at the commanded deceleration from the
+    /// highest speed that it may have, at least `least` and at most five seconds.
     #[must_use]
     pub fn time_to_stand(&self, least: Duration) -> Duration {
         let time = |band: &Band| band.fastest().max(self.measured) / band.brakes;
@@ -98,7 +98,7 @@ impl Band {
         Self { low: 0.0, high: 0.0, command: 0.0, brakes }
     }
 
-    /// Narrows the band by the braking of the robot in `seconds` seconds, but not within the last two commands.
+    /// Narrows the band by the braking of the robot in `seconds` seconds; the band keeps the last two commands.
     fn tell(&mut self, command: f64, seconds: f64) {
         let before = std::mem::replace(&mut self.command, command);
         let by = self.brakes * seconds;

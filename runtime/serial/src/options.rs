@@ -1,4 +1,4 @@
-//! The options of an executable for a robot on a line.
+//! Command-line options of an executable for a robot on a serial line.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -8,7 +8,7 @@ use mdle_host::{NamedFile, Pace, Time};
 
 use crate::clock::Clock;
 
-/// Adds the options of a robot on a serial line to `command`.
+/// Returns `command` with the options of a robot on a serial line.
 #[must_use]
 pub fn arguments(command: Command) -> Command {
     command
@@ -43,38 +43,38 @@ pub fn arguments(command: Command) -> Command {
         )
 }
 
-/// Returns the value of `--device`, if it was given.
+/// Returns the value of `--device`, if the option is present.
 #[must_use]
 pub fn device(matches: &ArgMatches) -> Option<&str> {
     matches.get_one::<String>("device").map(String::as_str)
 }
 
-/// Returns the file of `--config`, if it was given.
+/// Returns the file of `--config`, if the option is present.
 #[must_use]
 pub fn config(matches: &ArgMatches) -> Option<&Path> {
     matches.get_one::<PathBuf>("config").map(PathBuf::as_path)
 }
 
-/// Returns the files that these options name.
+/// Returns the files that the options name.
 #[must_use]
 pub fn files(matches: &ArgMatches) -> Vec<NamedFile> {
     let config = config(matches).map(|path| NamedFile { option: "--config", path: path.to_owned(), is_written: false });
     config.into_iter().collect()
 }
 
-/// Returns `true` if `--print-config` was given.
+/// Returns `true` if the option `--print-config` is present.
 #[must_use]
 pub fn prints_config(matches: &ArgMatches) -> bool {
     matches.get_flag("print-config")
 }
 
-/// Returns the clock of the host: that of the computer, or as fast as possible with `--lockstep`.
+/// Returns the clock of the host: the computer's clock, or with `--lockstep` a clock that advances as fast as possible.
 #[must_use]
 pub fn time(matches: &ArgMatches) -> Time {
     if matches.get_flag("lockstep") { Time::Stepped(Pace::Max) } else { Time::Wall }
 }
 
-/// Returns the clock of the robot's outputs: that of the computer, or one `period` per turn with `--lockstep`.
+/// Returns the clock of the robot's outputs: the computer's clock, or with `--lockstep` one `period` per turn.
 #[must_use]
 pub fn clock(matches: &ArgMatches, period: Duration) -> Clock {
     if matches.get_flag("lockstep") { Clock::Stepped(period) } else { Clock::Wall }

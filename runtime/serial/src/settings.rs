@@ -1,4 +1,4 @@
-//! A robot's configuration: a TOML file, the defaults, and the origin of each value.
+//! Values of a robot's configuration from a TOML file or the defaults, with the origin of each value.
 
 use std::fmt;
 use std::path::Path;
@@ -9,10 +9,10 @@ use serde::de::DeserializeOwned;
 
 use crate::key::{Key, Setting};
 
-/// Maximum size of a configuration that is read, in bytes.
+/// Maximum size of a configuration file, in bytes.
 const LARGEST: u64 = 1_000_000;
 
-/// A key with its value, and where that came from.
+/// A key with its value, and the origin of the value.
 #[derive(Debug, Clone, PartialEq)]
 struct Entry {
     key: Key,
@@ -20,7 +20,7 @@ struct Entry {
     from: String,
 }
 
-/// The values that were chosen, with the name of the file.
+/// Values of the configuration in use, with the name of the file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings {
     file: Option<String>,
@@ -28,10 +28,12 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Reads the file, if there is one; a value that the file lacks is `None` in a type whose fields are options.
+    /// Reads the configuration file, if there is one. `F` is a type whose fields are options; a missing value is
+    /// `None`.
     ///
     /// # Errors
-    /// The file cannot be read, is no TOML, or has a key or a value that it cannot have: where and why.
+    /// The file cannot be read, is not TOML, or has an unknown key or an invalid value. The sentence gives the place
+    /// and reason.
     pub fn read<F: DeserializeOwned + Default>(file: Option<&Path>) -> Result<(F, Self), String> {
         let Some(path) = file else { return Ok((F::default(), Self::default())) };
         let name = path.display().to_string();
@@ -40,10 +42,10 @@ impl Settings {
         Ok((values, Self { file: Some(name), entries: Vec::new() }))
     }
 
-    /// Returns the value that the file has for this key, or the default.
+    /// Returns the value of `key` in the file, or the default.
     ///
     /// # Errors
-    /// The sentence that says why the key cannot have this value, after the file's name if there is one.
+    /// Returns a sentence with the file's name and the reason if the key cannot have this value.
     pub fn value<T: Setting>(
         &mut self,
         key: Key,
@@ -54,7 +56,7 @@ impl Settings {
         T::of(&key, written).map_err(|why| self.blamed(&why))
     }
 
-    /// Returns the device: the one of the command line, else of the file, else the first serial port.
+    /// Returns the device on the command line; if there is none, the device in the file, or else the first serial port.
     pub fn device(&mut self, given: Option<&str>, written: Option<String>) -> String {
         let key = Key::of("device", "", "the serial port, or tcp:ADDRESS:PORT");
         match given {
@@ -63,11 +65,11 @@ impl Settings {
         }
     }
 
-    /// Returns how hard laws steer: `rotate`, `align` and `avoid` of the file, for the rest the usual gains. With less
-    /// than a tenth a robot hardly turns, with more than ten it swings.
+    /// Returns the steering gains: `rotate`, `align` and `avoid` of the file, and the default for each missing gain.
+    /// With a gain below 0.1 a robot hardly turns; with a gain above 10 it oscillates.
     ///
     /// # Errors
-    /// The sentence that says which gain is too small or too great.
+    /// Returns a sentence about a gain that is too small or too large.
     pub fn steering(&mut self, [rotate, align, avoid]: [Option<f64>; 3]) -> Result<Steering, String> {
         let usual = Steering::USUAL;
         let gain = |name, help| Key { range: Some((0.1, 10.0)), ..Key::of(name, "rad/s", help) };
@@ -82,13 +84,13 @@ impl Settings {
         })
     }
 
-    /// Returns the message about a value, with the file's name if there is one.
+    /// Returns the message `why` about a value, with the file's name if there is a file.
     #[must_use]
     pub fn blamed(&self, why: &str) -> String {
         self.file.as_ref().map_or_else(|| why.to_owned(), |file| format!("{file}: {why}"))
     }
 
-    /// Returns the value of the file, or else the default, and records it for `--print-config`.
+    /// Returns the value in the file or the default, and records it for `--print-config`.
     fn chosen<W: fmt::Debug>(&mut self, key: Key, written: Option<W>, default: W) -> W {
         let file = self.file.as_deref().filter(|_| written.is_some());
         let from = file.unwrap_or("default").to_owned();
@@ -102,7 +104,7 @@ impl Settings {
     }
 }
 
-/// Prints TOML that can be given back with `--config`, with the meaning and the origin of each value.
+/// Prints TOML that `--config` can read, with the meaning and the origin of each value.
 impl fmt::Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for Entry { key, value, from } in &self.entries {

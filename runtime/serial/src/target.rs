@@ -1,4 +1,4 @@
-//! A robot on a serial line as a target: its options, its configuration, and its connection.
+//! A robot on a serial line as a target: its options, configuration and connection.
 
 use std::marker::PhantomData;
 use std::time::Duration;
@@ -12,23 +12,23 @@ use crate::clock::Clock;
 use crate::configuration::{Configuration, Configured};
 use crate::options;
 
-/// A robot on a serial line, as its driver implements it.
+/// A driver of a robot on a serial line.
 pub trait SerialRobot: Robot<Output = Sensed, Input = Twist, Error: Into<Refusal>> + Sized + 'static {
-    /// The name of the target, as `mdlec --target` takes it.
+    /// Name of the target, as in `mdlec --target`.
     const NAME: &'static str;
-    /// The period of a turn unless `--period` says otherwise.
+    /// Period of a turn without the option `--period`.
     const PERIOD: Nanos;
-    /// The highest speed and turn rate of a path, as those of `go` in the alphabet.
+    /// Maximum speed and turn rate of a path, equal to those of `go` in the alphabet.
     const FASTEST: Twist;
-    /// The settings that people change while the robot drives, if there are any.
+    /// Settings that a user can change while the robot drives, if there are any.
     const SETTINGS: Option<SettingsOf<Self>> = None;
-    /// The values by which robots of this kind differ.
+    /// Values in which robots of this kind differ.
     type Config: Configuration;
 
-    /// Opens the line and prepares the robot, which stands.
+    /// Opens the line and prepares the robot, which is at rest.
     ///
     /// # Errors
-    /// There is no line, no robot, one that cannot drive, or `request` was made.
+    /// There is no line or no robot, the robot cannot be driven, or `request` was made.
     fn connect(
         config: Self::Config,
         clock: Clock,
@@ -36,19 +36,19 @@ pub trait SerialRobot: Robot<Output = Sensed, Input = Twist, Error: Into<Refusal
         request: &StopRequest,
     ) -> Result<Self, Self::Error>;
 
-    /// Takes the paths that the plan replays.
+    /// Stores the paths that the plan replays.
     fn take_paths(&mut self, paths: PathStore);
 
     /// Returns the time for which the line is busy in a turn.
     fn turn_takes(config: &Self::Config) -> Duration;
 
-    /// Returns the time that an answer may take, in milliseconds.
+    /// Returns the maximum time for an answer, in milliseconds.
     fn answer(config: &mut Self::Config) -> &mut u64;
 
-    /// Checks that the watchdog does not stop the robot between two commands, by the clock.
+    /// Checks that the watchdog does not stop the robot between two commands, if turns follow the computer's clock.
     ///
     /// # Errors
-    /// The sentence that says how long the watchdog waits.
+    /// Returns a sentence with the watchdog's time limit.
     fn outlasts(config: &Self::Config, period: Duration) -> Result<(), String>;
 }
 
@@ -98,7 +98,7 @@ impl<R: SerialRobot> Target for SerialTarget<R> {
     }
 }
 
-/// Returns the configuration that the options ask for.
+/// Returns the configuration that the options select.
 fn configured<R: SerialRobot>(matches: &ArgMatches) -> Result<Configured<R::Config>, Refusal> {
     Configured::read(options::config(matches), options::device(matches)).map_err(Refusal::Usage)
 }
