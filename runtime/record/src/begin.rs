@@ -1,11 +1,11 @@
-//! The begin of a record: the run, its plan, and what never changes in the robot's outputs.
+//! The beginning of a record: the run, its plan, and the constants of the robot's outputs.
 
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, PathStore, Radians, Sensed, Setpoint, Shape, StoredPath};
 
 use crate::bytes::{Bytes, put_f64, put_text, put_u32, put_u64};
 
-/// The data of a run that never change.
+/// Data of a run that do not change.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Begin {
     /// Version of the program that drove the robot.
@@ -18,40 +18,42 @@ pub struct Begin {
     pub command: String,
     /// Period of a turn.
     pub period: Nanos,
-    /// Files of the plan, its own first: the name and the text of each. Empty for an executable, which does not have
-    /// the text of its plan.
+    /// Name and text of each file of the plan, the plan's own file first. Empty for an executable, which does not
+    /// contain the text of its plan.
     pub files: Vec<(String, String)>,
-    /// Causes of inputs besides the plan and the outputs, such as safety rules, for people; empty if there is nothing.
+    /// Description of what influences the inputs besides the plan and the outputs, such as safety rules; empty if
+    /// nothing does.
     pub beside: String,
-    /// The safety rules of the run, if there are any.
+    /// Texts of the run's safety rules, if there are any.
     pub safety: Option<SafetyTexts>,
 }
 
-/// The texts of safety rules.
+/// Texts of safety rules.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct SafetyTexts {
     /// Name of the safety file.
     pub name: String,
     /// Text of the safety file.
     pub text: String,
-    /// The plans to which rules divert, in the order of the rules: the files of each, its own first.
+    /// Files of the plans to which rules divert, in the order of the rules; for each plan its own file first.
     pub plans: Vec<Vec<(String, String)>>,
 }
 
-/// The part of a robot's outputs that never changes.
+/// Parts of a robot's outputs that never change in a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Constants {
     /// Constants of the body.
     pub shape: Shape,
-    /// The paths that the plan can replay.
+    /// Paths that the plan can replay.
     pub paths: PathStore,
 }
 
 impl Begin {
-    /// [`Begin::beside`] of a record that begins in the middle of a run, so that no replay can make its turns again.
+    /// Value of [`Begin::beside`] in a record that begins in the middle of a run, so that no replay can repeat its
+    /// turns.
     pub const MIDDLE: &str = "the run before it";
 
-    /// Writes the begin of a run whose first output is `y`, with the paths that the plan can replay.
+    /// Writes the beginning of a run whose first output is `y`, with the paths that the plan can replay.
     pub(crate) fn put(&self, y: &Sensed, to: &mut Vec<u8>) {
         for text in [&self.version, &self.target, &self.plan, &self.command, &self.beside] {
             put_text(to, text);
@@ -73,7 +75,7 @@ impl Begin {
         }
     }
 
-    /// Reads the begin of a run. Its paths stay until the program ends, as those of a run do.
+    /// Reads the beginning of a run. Its paths stay in memory until the program ends, like those of a run.
     pub(crate) fn take(from: &mut Bytes<'_>) -> Option<(Self, Constants)> {
         let [version, target, plan, command, beside] =
             [from.text()?, from.text()?, from.text()?, from.text()?, from.text()?];
@@ -94,12 +96,12 @@ impl Begin {
     }
 }
 
-/// The number of some items.
+/// Returns the number of items as it is written to a record.
 pub(crate) fn count<T>(items: &[T]) -> u32 {
     u32::try_from(items.len()).unwrap_or(u32::MAX)
 }
 
-/// Writes the names and the texts of files.
+/// Writes the names and texts of files.
 pub(crate) fn put_files(files: &[(String, String)], to: &mut Vec<u8>) {
     put_u32(to, count(files));
     for (name, text) in files {
@@ -108,7 +110,7 @@ pub(crate) fn put_files(files: &[(String, String)], to: &mut Vec<u8>) {
     }
 }
 
-/// Reads the names and the texts of files.
+/// Reads the names and texts of files.
 pub(crate) fn take_files(from: &mut Bytes<'_>) -> Option<Vec<(String, String)>> {
     from.list(|from| Some((from.text()?, from.text()?)))
 }

@@ -1,4 +1,4 @@
-//! Numbers and texts as bytes, little-endian, and back.
+//! Numbers and texts as little-endian bytes, and back.
 
 use mdle_runtime::{Meters, Nanos, Pose, Radians};
 
@@ -10,12 +10,12 @@ pub(crate) fn put_u64(to: &mut Vec<u8>, number: u64) {
     to.extend_from_slice(&number.to_le_bytes());
 }
 
-/// Writes all bits of a number of single precision.
+/// Writes all bits of a single-precision number.
 pub(crate) fn put_f32(to: &mut Vec<u8>, number: f32) {
     put_u32(to, number.to_bits());
 }
 
-/// Writes all bits of a number, also those of a NaN.
+/// Writes all bits of a number, including a NaN.
 pub(crate) fn put_f64(to: &mut Vec<u8>, number: f64) {
     put_u64(to, number.to_bits());
 }
@@ -26,14 +26,14 @@ pub(crate) fn put_pose(to: &mut Vec<u8>, pose: &Pose) {
     }
 }
 
-/// Writes a text of less than 4 GiB; of a longer one nothing.
+/// Writes a text of less than 4 GiB; a longer text is written as an empty one.
 pub(crate) fn put_text(to: &mut Vec<u8>, text: &str) {
     let (length, text) = u32::try_from(text.len()).map_or((0, ""), |length| (length, text));
     put_u32(to, length);
     to.extend_from_slice(text.as_bytes());
 }
 
-/// Bytes that are being read: each function takes something from their start, or returns `None` if they end before.
+/// Bytes to read: each function reads a value from their start, or returns `None` if the bytes end before.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bytes<'b>(pub(crate) &'b [u8]);
 
@@ -77,7 +77,7 @@ impl<'b> Bytes<'b> {
         String::from_utf8(self.take(length)?.to_vec()).ok()
     }
 
-    /// Returns as many items as the number at the start says.
+    /// Reads a list: the number of items, and then each item.
     pub(crate) fn list<T>(&mut self, mut item: impl FnMut(&mut Self) -> Option<T>) -> Option<Vec<T>> {
         (0..self.u32()?).map(|_| item(self)).collect()
     }

@@ -10,55 +10,56 @@ use crate::exact::{put_twist, take_twist};
 /// A cause of a turn besides the robot's output.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Change {
-    /// A module has an attribute from now on. Other changes name it by its number: those of a record count from 0.
+    /// A module has an attribute from now on. Later changes refer to attributes by number, counted from 0 in a record.
     Attribute {
         /// Name of the module.
         module: String,
         /// Name of the attribute in the module.
         name: String,
-        /// Number of the kind of its values.
+        /// Number of the kind of the attribute's values.
         kind: u8,
     },
-    /// The attribute of this number has vanished.
+    /// The attribute with this number has vanished.
     Vanished(u32),
-    /// A module has published a value at a break.
+    /// A module has published a value at a turn break.
     Published {
         /// Number of the attribute.
         attribute: u32,
-        /// Time of the turn before that break.
+        /// Time of the turn before the break.
         at: Nanos,
         /// The value as 64 bits; 0 for a kind that plans do not read.
         bits: u64,
     },
-    /// The files of a plan: the name and the text of each, its own first. Those of a record count from 0.
+    /// Name and text of each file of a plan, the plan's own file first. Later changes refer to such lists by number,
+    /// counted from 0 in a record.
     Files(Vec<(String, String)>),
     /// A plan is ready to take over.
     Armed {
-        /// Number of its files.
+        /// Number of the list with the plan's files.
         files: u32,
         /// Name of the plan.
         plan: String,
-        /// Number of the moment at which it takes over.
+        /// Number of the kind of moment at which the plan takes over.
         when: u8,
     },
-    /// The plan that was armed is taken back.
+    /// The armed plan is cancelled.
     Cancelled,
-    /// The plan on trial is ended for this reason.
+    /// The trial of a plan has ended, and the plan is replaced, for this reason.
     RolledBack(String),
-    /// A plan that takes over from now on is on trial for this time.
+    /// A plan that takes over from now on is on trial for this duration.
     Trial(Nanos),
-    /// A limit of the safety rules has another value.
+    /// A limit of the safety rules has a new value.
     Limit {
         /// Key of the limit in a safety file.
         key: String,
-        /// The limit in SI units.
+        /// Value of the limit, in SI units.
         value: f64,
     },
-    /// The plan made no turn, as no thread had taken it in time.
+    /// The plan made no turn because no thread was ready for it in time.
     Skipped,
-    /// The plan had not ended its turn in time.
+    /// The plan did not finish its turn in time.
     Late,
-    /// A turn of the plan that was late has ended; its input comes too late.
+    /// A late turn of the plan has ended; its input is not used.
     Back,
     /// Another robot that the plan names, as the state link knows it in this turn.
     Peer {
@@ -81,7 +82,7 @@ pub enum Change {
 /// An input that a safety rule changed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Overruled {
-    /// The input that the plan asked for.
+    /// Input that the plan requested.
     pub asked: Twist,
     /// Name of the rule.
     pub rule: String,
@@ -201,7 +202,7 @@ fn take(from: &mut Bytes<'_>) -> Option<Change> {
     })
 }
 
-/// Writes the input that a rule changed, if one did.
+/// Writes the input that a safety rule changed, or its absence.
 pub(crate) fn put_overruled(overruled: Option<&Overruled>, to: &mut Vec<u8>) {
     to.push(u8::from(overruled.is_some()));
     if let Some(Overruled { asked, rule }) = overruled {
@@ -210,7 +211,7 @@ pub(crate) fn put_overruled(overruled: Option<&Overruled>, to: &mut Vec<u8>) {
     }
 }
 
-/// Reads the input that a rule changed; `None` within if none did.
+/// Reads the input that a safety rule changed; returns `Some(None)` if no rule changed it.
 pub(crate) fn take_overruled(from: &mut Bytes<'_>) -> Option<Option<Overruled>> {
     match from.u8()? {
         0 => Some(None),

@@ -1,4 +1,4 @@
-//! An output as bytes and back, to the bit: the pings that are new since the output before, and all other numbers.
+//! An output as bytes and back, to the bit: the pings that are newer than the previous output, and all other numbers.
 
 use mdle_runtime::{
     Compass, Meters, MetersPerSecond, Mount, Ping, Pings, Pose, Published, RadiansPerSecond, SONARS, Sensed, Supply,
@@ -8,14 +8,14 @@ use mdle_runtime::{
 use crate::Constants;
 use crate::bytes::{Bytes, put_f32, put_f64, put_pose, put_u32, put_u64};
 
-/// Kind of a compass that is computed from the output and the compass before.
+/// Tag of a compass that can be computed from the output and the previous compass.
 const COMPUTED: u8 = 0;
-/// Kind of a compass that has measured nothing.
+/// Tag of a compass without measurements.
 const UNUSED: u8 = 1;
-/// Kind of any other compass.
+/// Tag of any other compass.
 const UNKNOWN: u8 = 2;
 
-/// Writes an output that came after `before`.
+/// Writes an output that follows the output `before`.
 pub(crate) fn put(y: &Sensed, before: Option<&Sensed>, to: &mut Vec<u8>) {
     put_u64(to, y.at.0);
     put_pose(to, &y.odometry);
@@ -52,14 +52,15 @@ pub(crate) fn take_twist(from: &mut Bytes<'_>) -> Option<Twist> {
     Some(Twist { v: MetersPerSecond(from.f64()?), omega: RadiansPerSecond(from.f64()?) })
 }
 
-/// The compass that an output's own data give, after the compass before.
+/// Returns the compass that follows from the output's data and the previous compass.
 fn computed(y: &Sensed, before: Option<&Sensed>) -> Compass {
     let mut compass = before.map_or_else(Compass::default, |before| before.compass);
     compass.take(&y.pings, y.odometry, &y.shape);
     compass
 }
 
-/// Number of pings that are newer than all of the output before: to the bit, as a range may be no number.
+/// Returns the number of pings that are newer than all pings of the previous output. Pings are compared to the bit,
+/// because a range may be a NaN.
 fn fresh(pings: Option<&Pings>, before: Option<&Pings>) -> usize {
     let bits = |pose: &Pose| [pose.x.0, pose.y.0, pose.theta.0].map(f64::to_bits);
     let mount = |mount: Mount| [mount.left, mount.turned].map(f32::to_bits);
@@ -68,12 +69,12 @@ fn fresh(pings: Option<&Pings>, before: Option<&Pings>) -> usize {
     pings.map_or(0, |pings| pings.newest_first().take_while(|ping| Some(all(ping)) != newest).count())
 }
 
-/// The mount of a sonar's newest ping: seldom that of the next one differs.
+/// Returns the mount of a sonar's newest ping; the next ping seldom has another mount.
 fn last_mount(pings: Option<&Pings>) -> Mount {
     pings.and_then(|pings| pings.newest_first().next()).map_or(Mount::default(), |ping| ping.mount)
 }
 
-/// Writes a ping whose sonar heard the one before by the transducer at `mount`.
+/// Writes a ping; `mount` is the mount of the sonar's previous ping.
 fn put_ping(ping: &Ping, y: &Sensed, mount: Mount, to: &mut Vec<u8>) {
     let is_mounted =
         [ping.mount.left, ping.mount.turned].map(f32::to_bits) == [mount.left, mount.turned].map(f32::to_bits);
@@ -96,8 +97,8 @@ fn put_ping(ping: &Ping, y: &Sensed, mount: Mount, to: &mut Vec<u8>) {
     }
 }
 
-/// Reads the output that came after `before`. Returns `None` if the bytes are none, or if the drift of the robot's
-/// heading is not that of its pings.
+/// Reads the output that follows the output `before`. Returns `None` if the bytes are not an output, or if the recorded
+/// drift of the heading does not follow from the pings.
 pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Constants) -> Option<Sensed> {
     let mut y = Sensed {
         at: from.nanos()?,

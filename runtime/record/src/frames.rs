@@ -1,5 +1,5 @@
-//! Frames: what the thread that drives a robot hands over to the thread that writes the record. A frame is a tag, the
-//! number of its bytes, and these.
+//! Frames, which the thread that drives a robot passes to the thread that writes the record. A frame consists of a tag,
+//! the number of bytes that follow, and these bytes.
 
 use mdle_runtime::{Nanos, Sensed};
 
@@ -7,7 +7,7 @@ use crate::bytes::{Bytes, put_u32, put_u64};
 use crate::turn::{self, TurnMade, Undecoded};
 use crate::{Begin, Chain, RecordedTurn, Step};
 
-/// Bytes before the content of a frame.
+/// Number of bytes before the content of a frame.
 const HEAD: usize = 5;
 
 /// Kind of a frame.
@@ -28,7 +28,7 @@ impl Tag {
     }
 }
 
-/// Encodes the turns of a run as frames.
+/// Encoder of the turns of a run as frames.
 #[derive(Debug, Clone, Default)]
 pub struct Frames {
     before: Option<Sensed>,
@@ -37,7 +37,7 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Writes the begin of a record, whose first output is `y`.
+    /// Writes the beginning of a record whose first output is `y`.
     pub fn begin(&mut self, begin: &Begin, y: &Sensed, to: &mut Vec<u8>) {
         self.content.clear();
         begin.put(y, &mut self.content);
@@ -76,7 +76,7 @@ impl Frames {
         self.put(Tag::End, to);
     }
 
-    /// Adds the sum over the content and all before it.
+    /// Appends the checksum over the content and all earlier contents.
     fn chained(&mut self) {
         self.chain = self.chain.with(&self.content);
         self.content.extend_from_slice(&self.chain.bytes());
@@ -96,8 +96,7 @@ impl Frames {
     }
 }
 
-/// Returns the first frame of these bytes, and the number of its bytes; `None` until it is complete, or if it is no
-/// frame.
+/// Returns the first frame in `bytes`, with its number of bytes; `None` if the frame is incomplete or invalid.
 pub(crate) fn first(bytes: &[u8]) -> Option<(Tag, &[u8], usize)> {
     let mut from = Bytes(bytes);
     let tag = Tag::of(from.u8()?)?;
@@ -105,7 +104,7 @@ pub(crate) fn first(bytes: &[u8]) -> Option<(Tag, &[u8], usize)> {
     Some((tag, from.take(length)?, HEAD + length))
 }
 
-/// Decodes the turns of a record.
+/// Decoder of the turns of a record.
 #[derive(Debug)]
 pub(crate) struct Turns {
     pub(crate) begin: Begin,
@@ -115,7 +114,7 @@ pub(crate) struct Turns {
 }
 
 impl Turns {
-    /// Takes the content of a frame of the begin.
+    /// Reads the content of the first frame of a record.
     pub(crate) fn of(content: &[u8]) -> Result<Self, Undecoded> {
         let mut chain = Chain::default();
         let content = chain.checked(content)?;
@@ -123,7 +122,7 @@ impl Turns {
         Ok(Self { begin, constants, before: None, chain })
     }
 
-    /// Takes the content of the next frame of a turn.
+    /// Reads the content of the next frame of a turn.
     pub(crate) fn next(&mut self, content: &[u8]) -> Result<RecordedTurn, Undecoded> {
         let content = self.chain.checked(content)?;
         let turn = turn::take(&mut Bytes(content), self.before.as_ref(), &self.constants);

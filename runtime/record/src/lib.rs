@@ -1,7 +1,7 @@
-//! Records of runs: an MCAP file with everything that a replay to the bit needs, and channels that viewers open unaided
+//! Records of runs: an MCAP file with all data for a replay to the bit, and with channels that viewers can open
 //! (docs/src/reference/interfaces.md, 6.6).
 //!
-//! The thread that drives a robot encodes each turn as a [frame](frames); the thread that writes the file turns frames
+//! The thread that drives a robot encodes each turn as a [frame](frames). The thread that writes the file turns frames
 //! into an MCAP file, a [`RecordFile`]. [`Records`] reads the turns of such a file.
 #![forbid(unsafe_code)]
 

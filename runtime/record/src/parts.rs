@@ -1,4 +1,5 @@
-//! The channels and messages of an MCAP file, one after the other, with the sums of its chunks and of the file.
+//! The channels and messages of an MCAP file in their order, with checks of the checksums of its chunks and of the
+//! file.
 
 use std::io::{self, Read};
 
@@ -6,50 +7,51 @@ use mcap::records::{Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{MAGIC, McapError};
 
-/// Maximum size of a part of the file, in bytes: more than a second of a robot.
+/// Maximum size of a part of the file, in bytes: more than a robot's data of a second.
 const LARGEST: usize = 64_000_000;
 
-/// A part of the file.
+/// A part of an MCAP file.
 #[derive(Debug)]
 pub(crate) enum Part {
     /// A channel: its number, its topic, and the encoding of its messages.
     Channel(u16, String, String),
-    /// A message, by the number of its channel.
+    /// A message: the number of its channel, and its content.
     Message(u16, Vec<u8>),
 }
 
-/// Reason why the file cannot be read on.
+/// Reason why the rest of the file cannot be read.
 #[derive(Debug)]
 pub(crate) enum Unreadable {
-    /// The system's error.
+    /// The system reported this error.
     System(io::Error),
-    /// The file is damaged: a sentence.
+    /// The file is damaged, as this sentence explains.
     Damaged(String),
 }
 
-/// Number of parts of nine zeros each that are the end of a file: more than a megabyte, which no chunk of a record has.
+/// Number of consecutive parts of nine zeros that mean the end of a file: more than a megabyte of zeros, which no chunk
+/// of a record contains.
 const MOST_ZEROS: u32 = 120_000;
 
-/// The parts of a file that is being read.
+/// Reader of the parts of an MCAP file.
 pub(crate) struct Parts<R> {
     source: R,
     reader: LinearReader,
     chunk: Option<Chunk>,
-    /// The bytes that were read last.
+    /// Last bytes that were read.
     last: [u8; MAGIC.len()],
-    /// Number of parts in a row that consist of zeros.
+    /// Number of consecutive parts that consist of zeros.
     zeros: u32,
-    /// `true` once the end of the file was read: it was not cut short.
+    /// `true` once the end of the file has been read: the file was not cut short.
     pub(crate) is_whole: bool,
 }
 
-/// A chunk that is being read.
+/// A chunk of which parts are being read.
 #[derive(Debug)]
 struct Chunk {
     data: Vec<u8>,
-    /// Place of the next part.
+    /// Byte offset of the next part in the chunk.
     at: usize,
-    /// `true` if its bytes have the sum that they had.
+    /// `true` if the chunk's bytes have the recorded checksum.
     is_sound: bool,
 }
 
@@ -117,10 +119,11 @@ impl<R: Read> Parts<R> {
 }
 
 impl Chunk {
-    /// Bytes of a chunk's head before the name of its compression, and those after it.
+    /// Number of bytes in a chunk's head before and after the name of its compression.
     const HEAD: [usize; 2] = [32, 8];
 
-    /// Takes a chunk that is not compressed. The library must not see one that is shorter than it says: it panics.
+    /// Reads the head of an uncompressed chunk. A chunk that is shorter than its head declares must not reach the
+    /// library, which would panic.
     fn of(data: &[u8]) -> Result<Self, Unreadable> {
         let shorter = || Unreadable::Damaged("one of its seconds has another length than it gives".to_owned());
         let [before, after] = Self::HEAD;
@@ -144,7 +147,8 @@ impl Chunk {
         }
     }
 
-    /// Returns the next channel or message; its damage at the end, so that a turn is named that was changed.
+    /// Returns the next channel or message. Damage of the chunk is reported at its end, so that the message can name
+    /// the changed turn.
     fn next(&mut self) -> Result<Option<Part>, Unreadable> {
         const HEAD: usize = 9;
         let changed = || {

@@ -1,4 +1,4 @@
-//! Reads the turns of a record, one after the other: a record of any length takes little memory.
+//! Reads the turns of a record one after the other: memory use does not depend on the record's length.
 
 use std::fmt;
 use std::io::{self, Read};
@@ -13,17 +13,18 @@ use mdle_runtime::Nanos;
 /// Reason why a record, or the rest of it, cannot be read.
 #[derive(Debug)]
 pub enum ReadError {
-    /// The system's error.
+    /// The system reported this error.
     System(io::Error),
-    /// The file is no record of a run.
+    /// The file is not a record of a run.
     NotARecord,
-    /// The record is of another version of this format: the encoding of its messages, and the one that can be read.
+    /// The record has another version of this format: the first text is the encoding of its messages, the second the
+    /// encoding that can be read.
     OtherVersion(String, &'static str),
-    /// Bytes of the begin were changed after they had been written.
+    /// Bytes of the record's beginning were changed after they had been written.
     ChangedBegin,
-    /// Bytes of the turn of this number were changed after they had been written.
+    /// Bytes of the turn with this number were changed after they had been written.
     Changed(u64),
-    /// The file is damaged after this number of turns.
+    /// The file is damaged after this number of turns, as the sentence explains.
     Damaged(u64, String),
 }
 
@@ -45,33 +46,33 @@ impl fmt::Display for ReadError {
 
 impl std::error::Error for ReadError {}
 
-/// A message of a record about a turn, for people and viewers.
+/// A message about a turn, for users and viewers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
-    /// The kind of the message.
+    /// Kind of the message.
     pub kind: MessageKind,
-    /// A JSON object, under the schema of the kind's channel.
+    /// Content of the message: a JSON object under the schema of the kind's channel.
     pub json: String,
 }
 
-/// The kind of a message.
+/// Kind of a message about a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MessageKind {
-    /// A transition: `/plan/transitions`.
+    /// A transition, on the channel `/plan/transitions`.
     Transition,
-    /// An event: `/engine/events`.
+    /// An event, on the channel `/engine/events`.
     Event,
 }
 
-/// The turns of a record with the messages about them, which a record has after each turn.
+/// Turns of a record, each with the messages that follow it in the record.
 pub struct TurnsWithMessages<R> {
     records: Records<R>,
-    /// The turn after the one that was returned last.
+    /// The turn after the last one that was returned.
     peeked: Option<Result<RecordedTurn, ReadError>>,
 }
 
 impl<R: Read> TurnsWithMessages<R> {
-    /// Returns `true` once the end of the record was read; a run that was killed leaves a record without an end.
+    /// Returns `true` once the end of the record has been read. A run that was killed leaves a record without an end.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.records.is_whole()
@@ -97,22 +98,22 @@ impl<R: Read> Iterator for TurnsWithMessages<R> {
     }
 }
 
-/// The turns of a record.
+/// Turns of a record.
 pub struct Records<R> {
     parts: Parts<R>,
     /// Channels of `/exact/begin`, `/exact/turn`, `/plan/transitions` and `/engine/events`.
     channels: [Option<u16>; 4],
-    /// The messages that were read since the last turn.
+    /// Messages that were read since the last turn.
     messages: Vec<Message>,
     turns: Option<Turns>,
     count: u64,
 }
 
 impl<R: Read> Records<R> {
-    /// Reads the begin of a record.
+    /// Reads the beginning of a record.
     ///
     /// # Errors
-    /// The source cannot be read, or is no record.
+    /// The source cannot be read, or is not a record.
     pub fn open(source: R) -> Result<(Begin, Self), ReadError> {
         let (parts, messages) = (Parts::new(source), Vec::new());
         let mut records = Self { parts, channels: [None; 4], messages, turns: None, count: 0 };
@@ -131,18 +132,19 @@ impl<R: Read> Records<R> {
         }
     }
 
-    /// Returns `true` once the end of the record was read; a run that was killed leaves a record without an end.
+    /// Returns `true` once the end of the record has been read. A run that was killed leaves a record without an end.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.parts.is_whole
     }
 
-    /// Returns the turns with the messages about them.
+    /// Returns the turns, each with the messages about it.
     pub fn with_messages(self) -> TurnsWithMessages<R> {
         TurnsWithMessages { records: self, peeked: None }
     }
 
-    /// Returns the next message of `/exact/begin`, which is 0, or of `/exact/turn`, which is 1; `None` at the end.
+    /// Returns the next message of `/exact/begin`, with the number 0, or of `/exact/turn`, with the number 1; `None` at
+    /// the end of the record.
     fn message(&mut self) -> Result<Option<(usize, Vec<u8>)>, ReadError> {
         let unreadable = |why| match why {
             Unreadable::System(error) => ReadError::System(error),

@@ -1,4 +1,4 @@
-//! A turn of a record: the output, the input that was sent, the transitions and the state.
+//! A turn of a record: the output, the input that was sent, the transitions and the plan's state.
 
 use mdle_runtime::{Cause, Nanos, Sensed, Transition, Twist};
 
@@ -7,89 +7,89 @@ use crate::change::{put_changes, put_overruled, take_changes, take_overruled};
 use crate::exact::{self, put_twist, take_twist};
 use crate::{Change, Constants, Overruled};
 
-/// A turn of a run that goes on, besides its output.
+/// A turn of a current run, without its output.
 #[derive(Debug, Clone, Copy)]
 pub struct TurnMade<'a> {
     /// Number of the turn, from 0.
     pub number: u64,
-    /// Time of the run.
+    /// Time of the turn in the run.
     pub t: Nanos,
-    /// The input that is sent after it.
+    /// Input that was sent after the output.
     pub sent: Twist,
     /// Source of the input.
     pub applied: Applied,
     /// Number of the plan that ran, from 1.
     pub plan: u64,
-    /// The state in which the turn ended; 0 if no plan has made it.
+    /// State of the plan at the end of the turn; 0 if no plan made the turn.
     pub state: u64,
     /// Causes of the turn besides its output.
     pub changes: &'a [Change],
-    /// The input that a safety rule changed.
+    /// Input that a safety rule changed.
     pub overruled: Option<&'a Overruled>,
 }
 
 /// Reason why a turn cannot be decoded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Undecoded {
-    /// The sum over this and all before it differs: bytes were changed.
+    /// The checksum over this content and all earlier contents differs: bytes were changed.
     Changed,
-    /// The bytes are none of the begin or of a turn.
+    /// The bytes are neither the beginning of a record nor a turn.
     Unreadable,
 }
 
-/// A turn of a run.
+/// A turn of a recorded run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedTurn {
     /// Number of the turn, from 0.
     pub number: u64,
-    /// Time of the run.
+    /// Time of the turn in the run.
     pub t: Nanos,
     /// The robot's output.
     pub y: Sensed,
-    /// The input that was sent after it.
+    /// Input that was sent after the output.
     pub sent: Twist,
     /// Source of the input.
     pub applied: Applied,
     /// Number of the plan that ran, from 1.
     pub plan: u64,
-    /// The state in which the turn ended; 0 if no plan has made it.
+    /// State of the plan at the end of the turn; 0 if no plan made the turn.
     pub state: u64,
-    /// The transitions, in order.
+    /// Transitions of the turn, in order.
     pub steps: Vec<Step>,
     /// Causes of the turn besides its output, in order.
     pub changes: Vec<Change>,
-    /// The input that a safety rule changed.
+    /// Input that a safety rule changed.
     pub overruled: Option<Overruled>,
 }
 
-/// Result of a turn.
+/// Source of the input of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Applied {
     /// The law of the current atom was applied.
     Law,
-    /// The turn had too many transitions, so that the input is the null input.
+    /// The null input, because the turn had too many transitions.
     Cut,
-    /// The plan is over.
+    /// The null input, because the plan had ended.
     Over,
 }
 
-/// A transition of a turn, with the numbers of the operands that had fired.
+/// A transition of a turn, with the numbers of the operands that fired.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Step {
-    /// The state left.
+    /// State that the transition leaves.
     pub from: u64,
-    /// The scope that ended, by its bracket.
+    /// Bracket of the scope that ended.
     pub scope: u32,
-    /// Cause of the end.
+    /// Cause for which the scope ended.
     pub cause: Cause,
-    /// The state entered.
+    /// State that the transition enters.
     pub to: u64,
-    /// Numbers of the operands that had fired.
+    /// Numbers of the operands that fired.
     pub operands: Vec<u32>,
 }
 
 impl Step {
-    /// The step of a transition.
+    /// Returns the recorded form of a transition.
     #[must_use]
     pub fn new(transition: &Transition, operands: impl IntoIterator<Item = u32>) -> Self {
         let Transition { from, scope, cause, to, .. } = *transition;
@@ -97,7 +97,7 @@ impl Step {
     }
 }
 
-/// Writes a turn, whose output came after `before`.
+/// Writes a turn whose output `y` follows the output `before`.
 pub(crate) fn put(
     made: TurnMade<'_>,
     (y, before): (&Sensed, Option<&Sensed>),
@@ -130,7 +130,7 @@ pub(crate) fn put(
     }
 }
 
-/// Reads a turn, whose output came after `before`.
+/// Reads a turn whose output follows the output `before`.
 pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Constants) -> Option<RecordedTurn> {
     let (number, t) = (from.u64()?, from.nanos()?);
     let y = exact::take(from, before, constants)?;
@@ -152,15 +152,15 @@ pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Co
     Some(RecordedTurn { number, t, y, sent, applied, plan, state, steps, changes, overruled })
 }
 
-/// The sum over the begin and all turns so far, by which a reader finds the first turn that was changed.
+/// Checksum over the beginning and all turns so far, with which a reader finds the first changed turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Chain(u32);
 
 impl Chain {
-    /// Bytes of a sum.
+    /// Number of bytes of a checksum.
     const LENGTH: usize = 4;
 
-    /// Returns the sum with the bytes of the next turn.
+    /// Returns the checksum that also covers `bytes`, the content of the next turn.
     pub(crate) fn with(self, bytes: &[u8]) -> Self {
         let mut sum = crc32fast::Hasher::new();
         sum.update(&self.0.to_le_bytes());
@@ -168,7 +168,7 @@ impl Chain {
         Self(sum.finalize())
     }
 
-    /// Returns a content without the sum at its end, which this sum has to be with it.
+    /// Returns `content` without the checksum at its end, after a check that this checksum is right.
     pub(crate) fn checked<'c>(&mut self, content: &'c [u8]) -> Result<&'c [u8], Undecoded> {
         let length = content.len().checked_sub(Self::LENGTH).ok_or(Undecoded::Unreadable)?;
         let (content, sum) = content.split_at_checked(length).ok_or(Undecoded::Unreadable)?;

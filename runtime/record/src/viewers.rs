@@ -1,4 +1,4 @@
-//! Channels for viewers: JSON messages under the schemas that Foxglove, Lichtblick and PlotJuggler know.
+//! Channels for viewers: JSON messages under schemas that Foxglove, Lichtblick and PlotJuggler support.
 
 use std::fmt::{self, Write as _};
 
@@ -15,7 +15,7 @@ pub(crate) struct Channel {
     pub(crate) message: fn(&RecordedTurn, &mut String) -> fmt::Result,
 }
 
-/// The channels that have a message for each turn.
+/// Channels with a message for each turn.
 pub(crate) const CHANNELS: [Channel; 4] = [
     Channel {
         topic: "/robot/pose",
@@ -38,7 +38,7 @@ pub(crate) const CHANNELS: [Channel; 4] = [
     Channel { topic: "/plan/state", schema: "mdle.State", text: include_str!("schemas/state.json"), message: state },
 ];
 
-/// A number as JSON has it: `null` unless it is finite.
+/// A number in JSON; a number that is not finite becomes `null`.
 struct Number(f64);
 
 impl fmt::Display for Number {
@@ -51,13 +51,13 @@ fn time(t: Nanos) -> String {
     format!("{{\"sec\":{},\"nsec\":{}}}", t.0 / 1_000_000_000, t.0 % 1_000_000_000)
 }
 
-/// A number to the thousandth: millimetres suffice for a picture.
+/// Rounds a number to three decimals: a picture needs no more than millimetres.
 fn short(value: f64) -> Number {
     // No zero has a sign.
     Number(libm::round(value * 1e3) / 1e3 + 0.0)
 }
 
-/// The time, and the pose by odometry, in metres and as a quaternion; the begin of a message.
+/// Returns the beginning of a message: the time, and the pose by odometry in metres and as a quaternion.
 fn begin(turn: &RecordedTurn) -> String {
     let pose = &turn.y.odometry;
     let (sin, cos) = libm::sincos(pose.theta.0 / 2.0);
@@ -71,13 +71,13 @@ fn begin(turn: &RecordedTurn) -> String {
     )
 }
 
-/// The pose by odometry.
+/// Writes the pose by odometry.
 fn pose(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
     write!(to, "{}}}", begin(turn))
 }
 
-/// The last range of each sonar from the middle of the robot, in metres and counter-clockwise from the front; 0 if no
-/// echo came back. Viewers draw it at the pose of the robot.
+/// Writes the last range of each sonar from the robot's centre, in metres, counter-clockwise from the front; 0 if no
+/// echo returned. Viewers draw the ranges at the robot's pose.
 fn ranges(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
     let last = libm::round(core::f64::consts::TAU * (SONARS - 1) as f64 / SONARS as f64 * 1e6) / 1e6;
     write!(to, "{},\"start_angle\":0,\"end_angle\":{last},\"ranges\":[", begin(turn))?;
@@ -89,12 +89,12 @@ fn ranges(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
     to.write_str("],\"intensities\":[]}")
 }
 
-/// The input that was sent.
+/// Writes the input that was sent.
 fn command(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
     write!(to, "{{\"v\":{},\"omega\":{}}}", Number(turn.sent.v.0), Number(turn.sent.omega.0))
 }
 
-/// The state of the plan, and the number of its plan.
+/// Writes the state and the number of the plan.
 fn state(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
     write!(to, "{{\"state\":{},\"plan\":{}}}", turn.state, turn.plan)
 }

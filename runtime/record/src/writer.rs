@@ -1,4 +1,4 @@
-//! The file of a record: frames go in, an MCAP file comes out.
+//! Writes the file of a record: converts frames to an MCAP file.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -14,24 +14,24 @@ use crate::frames::{Tag, Turns, first};
 use crate::turn::Undecoded;
 use crate::viewers::CHANNELS;
 
-/// Time of the run after which a chunk is closed and written, in nanoseconds.
+/// Duration of a chunk in the time of the run, in nanoseconds.
 const CHUNK: u64 = 1_000_000_000;
 /// Encoding of the messages of `/exact/begin`.
 pub(crate) const BEGIN: &str = "mdle.begin.2";
 /// Encoding of the messages of `/exact/turn`.
 pub(crate) const TURN: &str = "mdle.turn.2";
 
-/// Writes frames to a record. Each second of the run is a chunk, which is written whole: a record that is cut short can
-/// be read up to its last second.
+/// Writer of a record from frames. Each second of the run becomes a chunk, which is written as a whole: a record that
+/// is cut short can be read up to its last second.
 pub struct RecordFile<W: Write> {
-    /// Bytes of a frame that is not complete yet.
+    /// Bytes of an incomplete frame.
     pending: Vec<u8>,
     parts: Parts<W>,
 }
 
-/// The parts of a record that are being written.
+/// State of a record that is being written.
 enum Parts<W: Write> {
-    /// Nothing is written before the begin.
+    /// The beginning has not been written yet.
     Unbegun(Option<W>),
     Begun(Box<Open<W>>),
     /// The record is complete, or could not be written.
@@ -43,7 +43,7 @@ struct Open<W: Write> {
     writer: Writer<NoSeek<W>>,
     turns: Turns,
     channels: Channels,
-    /// Number of messages.
+    /// Number of messages so far.
     sequence: u32,
     /// Time at which the current chunk began.
     chunk: Nanos,
@@ -60,7 +60,7 @@ struct Channels {
 }
 
 impl<W: Write> RecordFile<W> {
-    /// A record that is written to `to`.
+    /// Returns the writer of a record to `to`.
     pub fn new(to: W) -> Self {
         Self { pending: Vec::new(), parts: Parts::Unbegun(Some(to)) }
     }
@@ -85,7 +85,7 @@ impl<W: Write> RecordFile<W> {
         }
     }
 
-    /// Leaves the record as it is: the library would panic if it were to complete a file that cannot be written.
+    /// Abandons the record as it is: the library would panic on completing a file that cannot be written.
     fn give_up(&mut self) {
         std::mem::forget(std::mem::replace(&mut self.parts, Parts::Closed));
     }
@@ -108,7 +108,7 @@ impl<W: Write> Write for RecordFile<W> {
         Ok(bytes.len())
     }
 
-    /// Chunks are written when they are complete.
+    /// Does nothing, because chunks are written when they are complete.
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
     }
@@ -191,7 +191,7 @@ impl Channels {
     }
 }
 
-/// Writes what people and other programs may want to know of a run.
+/// Writes the metadata of the run for users and other programs.
 fn describe<W: Write>(writer: &mut Writer<NoSeek<W>>, begin: &Begin) -> mcap::McapResult<()> {
     let Begin { version, target, plan, command, period, files, beside, safety } = begin;
     let facts = [
@@ -217,7 +217,7 @@ fn invalid(sentence: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, sentence)
 }
 
-/// The error of the system that kept a record from being written.
+/// Returns the system's error because of which the record could not be written.
 fn unwritten(error: mcap::McapError) -> io::Error {
     if let mcap::McapError::Io(error) = error { error } else { io::Error::other(error.to_string()) }
 }
