@@ -1,8 +1,8 @@
-//! The brackets that are open in an unfinished text, and what was read in each.
+//! The open brackets of an unfinished text, and the words read in each of them.
 
 use crate::words::{Kind, Word};
 
-/// Kind of a bracket that is open.
+/// Kind of an open bracket.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Bracket {
     Plan,
@@ -10,14 +10,14 @@ pub(crate) enum Bracket {
     Body,
     Atom,
     Condition,
-    /// Arguments of the call that the enclosing bracket has open.
+    /// Arguments of the call that is written in the enclosing bracket.
     Arguments,
 }
 
-/// A call that is being written.
+/// A call that is being typed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OpenCall<'t> {
-    /// Name of the quark or plan.
+    /// Name of the called quark or plan.
     pub name: &'t str,
     /// Number of arguments before the cursor.
     pub args: usize,
@@ -25,11 +25,11 @@ pub struct OpenCall<'t> {
     pub is_condition: bool,
 }
 
-/// A bracket with what was read in it.
+/// An open bracket, with the words read in it.
 #[derive(Debug, Clone)]
 pub(crate) struct Open<'t> {
     pub(crate) bracket: Bracket,
-    /// Number of words and brackets read directly in it.
+    /// Number of words and nested brackets read directly in the bracket.
     pub(crate) items: usize,
     pub(crate) last: &'t str,
     pub(crate) call: Option<OpenCall<'t>>,
@@ -41,7 +41,7 @@ impl Open<'_> {
     }
 }
 
-/// Reads one word in the innermost bracket.
+/// Reads the word `word`, in the innermost open bracket.
 pub(crate) fn read<'t>(stack: &mut Vec<Open<'t>>, word: &Word<'t>, touches: bool) {
     match word.text {
         "{" | "(" => {
@@ -69,7 +69,7 @@ pub(crate) fn read<'t>(stack: &mut Vec<Open<'t>>, word: &Word<'t>, touches: bool
     }
 }
 
-/// Kind of the bracket `sign` in this one.
+/// Returns the kind of the bracket that `sign` opens inside the bracket `outer`.
 fn opened(outer: Option<&Open<'_>>, sign: &str, touches: bool) -> Bracket {
     let Some(outer) = outer else { return if sign == "{" { Bracket::Plan } else { Bracket::Body } };
     match (sign, outer.bracket) {
@@ -93,7 +93,7 @@ fn is_keyword(word: &str) -> bool {
     ["OR", "AND", "NOT", "RISING", "or", "and", "not", "rising", "after", "Atom", "ExecPlan"].contains(&word)
 }
 
-/// Keeps track of the call that is written in a bracket.
+/// Updates the call that is being typed in the bracket `open`.
 fn read_in<'t>(open: &mut Open<'t>, word: &Word<'t>) {
     let is_condition = open.bracket == Bracket::Condition;
     let begins = |name| Some(OpenCall { name, args: 0, is_condition });

@@ -1,4 +1,4 @@
-//! Proposes words at the cursor: those that fit there and that the robot has.
+//! Proposes words at the cursor that are valid there and that the robot supports.
 
 use std::ops::Range;
 
@@ -14,60 +14,60 @@ use crate::view::View;
 /// Kind of a proposal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ItemKind {
-    /// A law.
+    /// A law of the robot's alphabet.
     Law,
-    /// An interrupt.
+    /// An interrupt of the robot's alphabet.
     Interrupt,
-    /// A signal.
+    /// A signal of the robot's alphabet.
     Signal,
-    /// A plan.
+    /// A plan in the document or a used file.
     Plan,
-    /// A unit.
+    /// A unit of a number.
     Unit,
-    /// A label.
+    /// A label of an element.
     Label,
-    /// A parameter.
+    /// A parameter of the plan.
     Parameter,
     /// The type of a parameter.
     Type,
-    /// A keyword.
+    /// A keyword of the language.
     Keyword,
-    /// Several words with places to fill in.
+    /// Several words with placeholders.
     Snippet,
 }
 
-/// A proposal.
+/// A proposal at the cursor.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Item {
     /// Kind of the proposal.
     pub kind: ItemKind,
-    /// Word that the editor lists and compares with what was typed.
+    /// Word that the editor lists and compares with the typed text.
     pub label: String,
-    /// Text beside the word.
+    /// Short text beside the word.
     pub detail: String,
-    /// Text about the proposal, in Markdown.
+    /// Documentation of the proposal, in Markdown.
     pub docs: String,
-    /// Text to insert; of a [`ItemKind::Snippet`] with places as `${1:name}`.
+    /// Text to insert; for an [`ItemKind::Snippet`] with placeholders such as `${1:name}`.
     pub insert: String,
 }
 
-/// Proposals, and the bytes that each of them replaces.
+/// Proposals, with the byte range that each proposal replaces.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Completion {
     /// Byte range to replace.
     pub range: Range<usize>,
-    /// Proposals.
+    /// Proposals at the cursor.
     pub items: Vec<Item>,
 }
 
-/// The signature of the call around the cursor.
+/// The signature of the innermost call at the cursor.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Signature {
-    /// The signature, with all parameters.
+    /// Text of the signature, with all parameters.
     pub label: String,
-    /// Text about the quark or plan, in Markdown.
+    /// Documentation of the quark or plan, in Markdown.
     pub docs: String,
-    /// Parameters as they are written in the signature.
+    /// Parameters as in the text of the signature.
     pub params: Vec<String>,
     /// Index of the parameter at the cursor.
     pub active: usize,
@@ -83,7 +83,7 @@ const PLANS: &[(&str, &str)] = &[("plan", "{ ${1:Name} (${2:interrupt})\n  $0\n}
 const OPERANDS: &[(&str, &str)] =
     &[("after", "after ${1:label} (${2:interrupt})"), ("NOT", "NOT $0"), ("RISING", "RISING $0"), ("null", "null")];
 
-/// Proposes words at a byte.
+/// Returns the proposals at a byte offset.
 #[must_use]
 pub fn completion(view: &View<'_>, byte: usize) -> Completion {
     let context = context(view.text, byte);
@@ -118,7 +118,7 @@ fn snippets(texts: &[(&str, &str)]) -> Vec<Item> {
     texts.iter().map(snippet).collect()
 }
 
-/// Quarks of this kind that the robot can have, each name once.
+/// Returns the quarks of this kind that the robot supports, each name once.
 fn quarks<'v>(view: &'v View<'_>, kind: DeclarationKind) -> impl Iterator<Item = Item> + 'v {
     let mut last = "";
     let declarations = view.alphabet.declarations().filter(move |declaration| declaration.kind == kind);
@@ -151,14 +151,14 @@ fn plans(view: &View<'_>) -> Vec<Item> {
     view.files.plans.iter().filter(|plan| plan.name.span.start < plan.name.span.end).map(item).collect()
 }
 
-/// Units of the number at the cursor: those of the parameter that it is given to, or all.
+/// Returns the units of the number at the cursor: those of the parameter that receives the number, or all units.
 fn units(view: &View<'_>, context: &Context<'_>) -> Vec<Item> {
     let kind = context.call.as_ref().and_then(|call| kind_of(view, call));
     let fits = |unit: &&Unit| kind.is_none_or(|kind| unit.kind == kind);
     Unit::ALL.iter().filter(fits).map(|unit| simple(ItemKind::Unit, unit.name, &unit.kind.words())).collect()
 }
 
-/// Kind of the argument at the cursor.
+/// Returns the type of the argument at the cursor.
 fn kind_of(view: &View<'_>, call: &OpenCall<'_>) -> Option<Kind> {
     if let Some(declaration) = declared(view, call) {
         return declaration.params.get(call.args).map(|param| param.kind);
@@ -167,7 +167,7 @@ fn kind_of(view: &View<'_>, call: &OpenCall<'_>) -> Option<Kind> {
     bare_unit(plan.params.get(call.args)?.type_name.node).map(|unit| unit.kind)
 }
 
-/// Declaration of the quark that is being written.
+/// Returns the declaration of the quark that is being typed.
 fn declared<'v>(view: &'v View<'_>, call: &OpenCall<'_>) -> Option<&'v Declaration> {
     let kind = if call.is_condition { DeclarationKind::Interrupt } else { DeclarationKind::Control };
     let start = mdle_compiler::diagnostic::Span { start: 0, end: 0 };
@@ -177,7 +177,7 @@ fn declared<'v>(view: &'v View<'_>, call: &OpenCall<'_>) -> Option<&'v Declarati
         .max_by_key(|found| found.params.len())
 }
 
-/// Parameters of the plan around the cursor, and in a condition the words that join operands.
+/// Returns the parameters of the plan at the cursor, and in a condition also the words that join operands.
 fn arguments(view: &View<'_>, context: &Context<'_>, byte: usize) -> Vec<Item> {
     let around = view.own().iter().filter(|plan| view.contains(plan.span, byte));
     let params = around.flat_map(|plan| plan.params);
@@ -189,7 +189,7 @@ fn arguments(view: &View<'_>, context: &Context<'_>, byte: usize) -> Vec<Item> {
     params.chain(joins.iter().map(|word| simple(ItemKind::Keyword, word, ""))).collect()
 }
 
-/// Returns the signature of the call around a byte.
+/// Returns the signature of the call at a byte offset.
 #[must_use]
 pub fn signature_at(view: &View<'_>, byte: usize) -> Option<Signature> {
     let call = context(view.text, byte).call?;

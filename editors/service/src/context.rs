@@ -1,4 +1,4 @@
-//! The place of the cursor in an unfinished text: which words may follow.
+//! The context of the cursor in an unfinished text, which determines the words that may follow.
 
 use std::ops::Range;
 
@@ -6,43 +6,43 @@ pub use crate::brackets::OpenCall;
 use crate::brackets::{Bracket, Open, read};
 use crate::words::{Kind, Word, words};
 
-/// Words that may follow.
+/// Kind of word that may follow at the cursor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Expected {
-    /// A plan or `use`, outside of all brackets.
+    /// A plan or `use`, outside all brackets.
     Plan,
-    /// An element.
+    /// An element of a plan.
     Element,
     /// An operand of a condition.
     Operand,
-    /// A law.
+    /// A law of an atom.
     Law,
-    /// A label, after `after`.
+    /// A label, as the operand of `after`.
     Label,
     /// The type of a parameter.
     Type,
     /// The unit of the number that the cursor touches.
     Unit,
-    /// An argument, or what follows the call.
+    /// An argument, or a word after the call.
     Argument,
-    /// Nothing: in a comment, in a text, or where a name is chosen.
+    /// No word: the cursor is in a comment, in a text, or where the user chooses a name.
     Nothing,
 }
 
-/// The place of the cursor.
+/// The context of the cursor.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Context<'t> {
-    /// Words that may follow.
+    /// Kind of word that may follow.
     pub expected: Expected,
-    /// Byte range of the word that the cursor ends: a completion replaces it.
+    /// Byte range of the word that ends at the cursor; a completion replaces it.
     pub typed: Range<usize>,
-    /// Innermost call around the cursor.
+    /// Innermost call that encloses the cursor.
     pub call: Option<OpenCall<'t>>,
-    /// Labels of the plan around the cursor.
+    /// Labels of the plan that contains the cursor.
     pub labels: Vec<&'t str>,
 }
 
-/// Reads the text up to the cursor at `byte`; the labels are those of the whole plan.
+/// Returns the context of the cursor at `byte`, from the text before it; the labels are those of the whole plan.
 #[must_use]
 pub fn context(text: &str, byte: usize) -> Context<'_> {
     let mut stack: Vec<Open<'_>> = Vec::new();
@@ -85,7 +85,7 @@ pub fn context(text: &str, byte: usize) -> Context<'_> {
     found
 }
 
-/// The place of the cursor, which is in or at the end of `word`, or before it.
+/// Returns the context of a cursor that is in `word`, at its end, or before it.
 fn at_cursor<'t>(stack: &[Open<'t>], word: &Word<'t>, byte: usize) -> Context<'t> {
     let is_in = word.range.start < byte;
     let typed = if is_in && word.kind == Kind::Name { word.range.start..byte } else { byte..byte };
@@ -99,13 +99,14 @@ fn at_cursor<'t>(stack: &[Open<'t>], word: &Word<'t>, byte: usize) -> Context<'t
     Context { expected, typed, call, labels: Vec::new() }
 }
 
-/// Byte range of the unit of a number up to the cursor.
+/// Returns the byte range of a number's unit up to the cursor.
 fn unit_at(number: &Word<'_>, byte: usize) -> Range<usize> {
     let digits = number.text.find(|letter: char| letter.is_alphabetic()).unwrap_or(number.text.len());
     (number.range.start + digits).min(byte)..byte
 }
 
-/// Innermost call around the cursor: in a bracket of arguments, that of the bracket around it.
+/// Returns the innermost call that encloses the cursor. If the innermost bracket contains arguments, the call is in the
+/// enclosing bracket.
 fn call<'t>(stack: &[Open<'t>]) -> Option<OpenCall<'t>> {
     let open = stack.last()?;
     match (open.bracket, stack.len().checked_sub(2).and_then(|outer| stack.get(outer))) {

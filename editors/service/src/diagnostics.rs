@@ -7,22 +7,22 @@ use mdle_compiler::diagnostic::{Code, Diagnostic, Label, Severity, SourceId, Sou
 /// A place in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
-    /// The file.
+    /// Identifier of the file.
     pub source: SourceId,
     /// Byte range in the file.
     pub range: Range<usize>,
 }
 
-/// A diagnostic for an editor.
+/// A diagnostic in the form that editors show.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Finding {
     /// Code of the diagnostic.
     pub code: Code,
     /// Place of the defect.
     pub place: Place,
-    /// The message, the text at the place, and the help, a line each.
+    /// Message of the diagnostic, text at the place, and help, each on a line.
     pub message: String,
-    /// Places that explain the defect, each with its text.
+    /// Places that explain the defect, each with a text.
     pub related: Vec<(Place, String)>,
 }
 
@@ -41,7 +41,7 @@ pub fn place(sources: &Sources, span: Span) -> Place {
     Place { source, range }
 }
 
-/// Converts diagnostics: as many as people are shown.
+/// Converts diagnostics to findings, up to the maximum number that a user is shown.
 #[must_use]
 pub fn findings(sources: &Sources, diagnostics: &[Diagnostic]) -> Vec<Finding> {
     let shown = diagnostics.iter().take(most_shown(diagnostics));

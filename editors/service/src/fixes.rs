@@ -6,12 +6,12 @@ use mdle_compiler::diagnostic::{Diagnostic, Sources};
 
 use crate::diagnostics::{Place, place};
 
-/// An edit that removes a defect.
+/// An edit that corrects a defect.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fix {
-    /// The help, as the title of the fix.
+    /// Title of the fix: the help of the diagnostic.
     pub title: String,
-    /// Index of the diagnostic among those given.
+    /// Index of the diagnostic in the list of diagnostics.
     pub diagnostic: usize,
     /// Place of the text to replace.
     pub place: Place,
@@ -19,7 +19,7 @@ pub struct Fix {
     pub replacement: String,
 }
 
-/// Lists the fixes of the diagnostics that touch `range` of the file that `own` accepts.
+/// Returns the fixes of the diagnostics that touch `range` of the file whose places `own` accepts.
 #[must_use]
 pub fn fixes(
     sources: &Sources,

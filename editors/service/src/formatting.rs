@@ -16,14 +16,16 @@ pub struct TextEdit {
     pub text: String,
 }
 
-/// Formats a document: the edit between the first and the last difference, or `None` for a document with errors.
+/// Formats a document: returns the edit between the first and the last difference, or `None` if the document has
+/// errors.
 #[must_use]
 pub fn document(text: &str) -> Option<Vec<TextEdit>> {
     let formatted = format(SourceId(0), text).ok()?;
     Some(difference(text, &formatted, 0))
 }
 
-/// Formats the plans that a range touches, also if other plans have errors; `None` if one of them has.
+/// Formats the plans that a range touches, also if other plans have errors; returns `None` if one of these plans has
+/// errors.
 #[must_use]
 pub fn range(view: &View<'_>, range: &Range<usize>) -> Option<Vec<TextEdit>> {
     let plans: Vec<_> = view.file.plans.iter().filter_map(|plan| view.range(plan.span)).collect();
@@ -38,7 +40,7 @@ pub fn range(view: &View<'_>, range: &Range<usize>) -> Option<Vec<TextEdit>> {
     Some(difference(text, formatted.trim_end(), whole.start))
 }
 
-/// The edit that turns `old`, which begins at byte `start`, into `new`; none if they are equal.
+/// Returns the edit that turns `old`, which begins at byte `start`, into `new`; no edit if the two are equal.
 fn difference(old: &str, new: &str, start: usize) -> Vec<TextEdit> {
     let same = |pair: &(char, char)| pair.0 == pair.1;
     let prefix: usize = old.chars().zip(new.chars()).take_while(same).map(|(letter, _)| letter.len_utf8()).sum();

@@ -6,16 +6,16 @@ use mdle_compiler::syntax::tree::{Count, Element, Primary};
 use crate::mentions::{Role, inside, mentions};
 use crate::view::View;
 
-/// A text that is shown after a place.
+/// A text that an editor shows after a place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Hint {
-    /// Byte after which the hint is shown.
+    /// Byte offset after which the hint is shown.
     pub byte: usize,
     /// Text of the hint.
     pub text: String,
 }
 
-/// Lists the hints of a document in the order of the text.
+/// Returns the hints of a document in the order of the text.
 #[must_use]
 pub fn hints(view: &View<'_>) -> Vec<Hint> {
     let mut hints = Vec::new();
@@ -35,14 +35,14 @@ pub fn hints(view: &View<'_>) -> Vec<Hint> {
     hints
 }
 
-/// Returns `true` if every law of this name can complete by itself.
+/// Returns `true` if every law with this name can complete by itself.
 fn completes(view: &View<'_>, name: &str) -> bool {
     let mut laws =
         view.alphabet.declarations_of(name).filter(|found| found.kind == DeclarationKind::Control).peekable();
     laws.peek().is_some() && laws.all(|law| law.completes)
 }
 
-/// Adds a hint to each loop without end.
+/// Appends a hint for each endless loop.
 fn endless(view: &View<'_>, elements: &[Element<'_>], hints: &mut Vec<Hint>) {
     for element in elements {
         let of_exec = if let Primary::Exec(exec) = element.primary { Some(&exec.count) } else { None };

@@ -1,4 +1,4 @@
-//! The text that an editor shows for a name or a number under the pointer, as Markdown.
+//! The text in Markdown that an editor shows for the name or number under the pointer.
 
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -12,7 +12,7 @@ use crate::mentions::{Mention, Role, inside, mentions, quark_name};
 use crate::view::View;
 use crate::words::{Kind, words};
 
-/// A text about a place.
+/// A text about a name or a number.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Hover {
     /// Byte range of the name or number.
@@ -21,7 +21,7 @@ pub struct Hover {
     pub text: String,
 }
 
-/// Returns the text about the name or number at a byte.
+/// Returns the text about the name or number at a byte offset.
 #[must_use]
 pub fn hover(view: &View<'_>, byte: usize) -> Option<Hover> {
     let mentions = mentions(view.files, view.alphabet);
@@ -117,7 +117,7 @@ fn about(alphabet: &Alphabet, declaration: &Declaration) -> String {
     text
 }
 
-/// Value of a number in the unit that a bare number has at its place.
+/// Returns the value of a number in the unit that a bare number has at its place.
 fn number(written: &str, bare: Option<Unit>) -> Option<String> {
     let bare = bare?;
     let digits = written.trim_end_matches(|letter: char| !letter.is_ascii_digit());
@@ -138,7 +138,7 @@ fn number(written: &str, bare: Option<Unit>) -> Option<String> {
     Some(format!("{}{note}", values.join(" = ")))
 }
 
-/// Writes a number with at most six decimals.
+/// Formats a number with at most six decimals.
 fn rounded(value: f64) -> String {
     let text = format!("{value:.6}");
     let short = text.trim_end_matches('0').trim_end_matches('.');
@@ -155,7 +155,7 @@ fn parameter(view: &View<'_>, mention: &Mention<'_>) -> Option<String> {
     Some(format!("```text\n{name}: {}\n```\nParameter of `{of}`{unit}.", param.type_name.node))
 }
 
-/// Conditions that ask for a label.
+/// Returns a text with the conditions that refer to a label.
 fn label(view: &View<'_>, mentions: &[Mention<'_>], mention: &Mention<'_>) -> String {
     let asks = mentions.iter().filter(|other| {
         other.role == Role::Label
@@ -172,7 +172,7 @@ fn label(view: &View<'_>, mentions: &[Mention<'_>], mention: &Mention<'_>) -> St
     format!("Label `{}`: the plan records which operand ended its element. {asked}", mention.text)
 }
 
-/// A plan or behavior: parameters, doc comment, condition, timers, and the element after it.
+/// Returns the text about a plan or behavior: parameters, doc comment, condition, timers, and the next element.
 fn plan(view: &View<'_>, mention: &Mention<'_>) -> Option<String> {
     let defined = mention.defined?;
     let found = view.files.plans.iter().find_map(|plan| {
@@ -204,7 +204,7 @@ fn plan(view: &View<'_>, mention: &Mention<'_>) -> Option<String> {
     Some(text)
 }
 
-/// Finds the behavior whose name is at `defined`, and the element after it.
+/// Returns the behavior whose name is at `defined`, with the place of the next element.
 fn behavior<'s>(elements: &[Element<'s>], defined: Span) -> Option<(Plan<'s>, Option<Span>)> {
     elements.iter().enumerate().find_map(|(at, element)| {
         if let Primary::Plan(plan) = element.primary
@@ -216,14 +216,14 @@ fn behavior<'s>(elements: &[Element<'s>], defined: Span) -> Option<(Plan<'s>, Op
     })
 }
 
-/// Text of a condition without its parentheses.
+/// Returns the text of a condition without its parentheses.
 fn operands(view: &View<'_>, condition: &Condition<'_>) -> String {
     let text = view.words(condition.span);
     let inner = text.strip_prefix('(').and_then(|text| text.strip_suffix(')'));
     inner.filter(|inner| !inner.contains(['(', ')'])).unwrap_or(&text).to_owned()
 }
 
-/// Adds the timers of a condition.
+/// Appends the timers of a condition.
 fn waits(view: &View<'_>, condition: &Condition<'_>, found: &mut Vec<String>) {
     match condition.node {
         ConditionNode::Or(operands) | ConditionNode::And(operands) => {
@@ -239,7 +239,7 @@ fn waits(view: &View<'_>, condition: &Condition<'_>, found: &mut Vec<String>) {
     }
 }
 
-/// Cuts a text after about eight words.
+/// Shortens a text to about eight words.
 fn first_words(text: &str) -> String {
     let words: Vec<_> = text.split(' ').collect();
     match words.get(..8) {

@@ -1,4 +1,4 @@
-//! The plans of a document that can be run and drawn.
+//! The plans of a document that a user can run and draw.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::mentions::{Role, mentions};
 use crate::view::View;
 
-/// A plan that can be run.
+/// A plan that a user can run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Runnable {
     /// Name of the plan.
@@ -15,7 +15,7 @@ pub struct Runnable {
     pub range: Range<usize>,
 }
 
-/// Lists the plans of the document that no other plan uses and that have no parameters.
+/// Returns the plans of the document that no other plan uses and that have no parameters.
 #[must_use]
 pub fn runnables(view: &View<'_>) -> Vec<Runnable> {
     let mentions = mentions(view.files, view.alphabet);

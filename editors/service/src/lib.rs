@@ -1,7 +1,7 @@
-//! The features of MDLe for editors: the language server has them, and the playground in the browser.
+//! Editor features of MDLe, for the language server and for the playground in the browser.
 //!
-//! A feature is a function from a [`View`](view::View), a checked document, to an answer in places of bytes. It does no
-//! I/O, and knows no protocol and no operating system.
+//! A feature is a function from a [`View`](view::View), a checked document, to an answer whose places are byte ranges.
+//! It does no I/O, and does not depend on a protocol or an operating system.
 #![forbid(unsafe_code)]
 
 mod brackets;

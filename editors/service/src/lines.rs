@@ -1,24 +1,25 @@
-//! Places in a text: byte offsets, and positions of the protocol, which count from 0, columns in UTF-16 code units.
+//! Conversion between byte offsets in a text and the positions of the protocol, which count lines and UTF-16 columns
+//! from 0.
 
 use std::ops::Range;
 
 /// A position: line and UTF-16 column, both from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Position {
-    /// Line, from 0.
+    /// Line number, from 0.
     pub line: u32,
     /// Column in UTF-16 code units, from 0.
     pub character: u32,
 }
 
-/// Starts of the lines of a text. A line ends with `\n`, `\r\n` or `\r`.
+/// Starting offsets of the lines of a text. A line ends with `\n`, `\r\n` or `\r`.
 #[derive(Debug, Clone)]
 pub struct Lines {
     starts: Vec<usize>,
 }
 
 impl Lines {
-    /// Finds the lines of a text.
+    /// Finds the lines of `text`.
     #[must_use]
     pub fn of(text: &str) -> Self {
         let bytes = text.as_bytes();
@@ -30,8 +31,8 @@ impl Lines {
         Self { starts: std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect() }
     }
 
-    /// Returns the position of a byte of `text`: of its character if it is in the middle of one, and of the end of the
-    /// text if it is beyond.
+    /// Returns the position of a byte of `text`: inside a character, the position of the character; beyond the end of
+    /// the text, the position of the end.
     #[must_use]
     pub fn position(&self, text: &str, byte: usize) -> Position {
         let byte = text.floor_char_boundary(byte);
@@ -41,8 +42,8 @@ impl Lines {
         Position { line: small(line), character: small(character) }
     }
 
-    /// Returns the byte of a position of `text`: the start of a character if it is in the middle of one, the end of the
-    /// line if it is beyond, and the end of the text if there is no such line.
+    /// Returns the byte offset of a position of `text`. Inside a character it is the start of the character, beyond the
+    /// end of a line the end of the line, and beyond the last line the end of the text.
     #[must_use]
     pub fn byte(&self, text: &str, position: Position) -> usize {
         let line = self.line(text, position.line);
@@ -59,13 +60,14 @@ impl Lines {
         byte
     }
 
-    /// Byte range of a line with its line break; empty at the end of the text if there is no such line.
+    /// Returns the byte range of a line with its line break; an empty range at the end of the text if there is no such
+    /// line.
     fn line(&self, text: &str, line: u32) -> Range<usize> {
         let start = |line: usize| self.starts.get(line).copied().unwrap_or(text.len());
         start(line as usize)..start((line as usize).saturating_add(1))
     }
 
-    /// Returns the bytes between two positions, in whichever order they are.
+    /// Returns the byte range between two positions in either order.
     #[must_use]
     pub fn range(&self, text: &str, from: Position, to: Position) -> Range<usize> {
         let (from, to) = (self.byte(text, from), self.byte(text, to));

@@ -1,5 +1,5 @@
-//! Every name and number of the plans, with what it means: definition, references, rename, hover and colours go by this
-//! list.
+//! List of all names and numbers of the plans, with their meaning. Definition, references, rename, hover and colours
+//! use this list.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use mdle_compiler::syntax::tree::{
 /// Meaning of a name or a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Role {
-    /// A plan, or a behavior in place.
+    /// A plan, or a behavior in a plan.
     Plan,
     /// A parameter of a plan.
     Parameter,
@@ -23,34 +23,34 @@ pub enum Role {
     Quark(DeclarationKind),
     /// The type of a parameter.
     Type,
-    /// A number; without a unit it has this one, where one is known.
+    /// A number; the unit is that of a bare number at this place, if it is known.
     Number(Option<Unit>),
-    /// A text in quotes, or a name that is an argument by itself.
+    /// A text in quotes, or a name that is a whole argument.
     Text,
 }
 
-/// A name or a number where it is written.
+/// An occurrence of a name or a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mention<'s> {
-    /// Place of the name or number.
+    /// Place of the occurrence.
     pub span: Span,
     /// The name, or the number with its unit.
     pub text: &'s str,
     /// Meaning of the name or number.
     pub role: Role,
-    /// Place of the name where it is defined; its own place if this is the definition. `None` for what no plan defines.
+    /// Place where the name is defined, equal to `span` at the definition itself; `None` if no plan defines the name.
     pub defined: Option<Span>,
 }
 
 impl Mention<'_> {
-    /// Returns `true` if the name is defined here.
+    /// Returns `true` if this occurrence defines the name.
     #[must_use]
     pub fn is_definition(&self) -> bool {
         self.defined == Some(self.span)
     }
 }
 
-/// Lists the names and numbers of all plans of a file and of the files that it uses.
+/// Returns all names and numbers in the plans of a file and of the files that it uses.
 #[must_use]
 pub fn mentions<'s>(files: &Files<'s>, alphabet: &Alphabet) -> Vec<Mention<'s>> {
     let plans = files.plans.iter().rev().map(|plan| (plan.name.node, plan)).collect();
@@ -64,7 +64,7 @@ pub fn mentions<'s>(files: &Files<'s>, alphabet: &Alphabet) -> Vec<Mention<'s>> 
     list.mentions
 }
 
-/// Collects the labels of a definition: `after` reads those of its own plan.
+/// Collects the labels of a definition, to which `after` in the same definition can refer.
 fn labels<'s>(elements: &[Element<'s>], found: &mut BTreeMap<&'s str, Span>) {
     for element in elements {
         if let Some(label) = element.label() {
@@ -74,7 +74,7 @@ fn labels<'s>(elements: &[Element<'s>], found: &mut BTreeMap<&'s str, Span>) {
     }
 }
 
-/// Elements inside an element.
+/// Returns the elements inside an element.
 pub(crate) fn inside<'s>(primary: &Primary<'s>) -> &'s [Element<'s>] {
     match primary {
         Primary::Plan(plan) => plan.elements,
@@ -85,7 +85,8 @@ pub(crate) fn inside<'s>(primary: &Primary<'s>) -> &'s [Element<'s>] {
     }
 }
 
-/// The name under which the alphabet has a quark: the number of a sonar may touch that of a signal, as in `r0`.
+/// Returns the name under which the alphabet declares a quark. The name of a signal may end in a sonar number, as in
+/// `r0` for `r`.
 #[must_use]
 pub fn quark_name<'n>(alphabet: &Alphabet, name: &'n str, kind: DeclarationKind) -> &'n str {
     let is_declared = alphabet.declarations_of(name).any(|found| found.kind == kind);
@@ -96,7 +97,7 @@ pub fn quark_name<'n>(alphabet: &Alphabet, name: &'n str, kind: DeclarationKind)
     }
 }
 
-/// The declaration of a quark that is meant by a call: one whose parameters fit in number.
+/// Returns the declaration of the quark that a call means, by the number of arguments.
 #[must_use]
 pub fn declaration<'a>(alphabet: &'a Alphabet, call: &Call<'_>, kind: DeclarationKind) -> Option<&'a Declaration> {
     let name = quark_name(alphabet, call.name, kind);
@@ -106,12 +107,12 @@ pub fn declaration<'a>(alphabet: &'a Alphabet, call: &Call<'_>, kind: Declaratio
     of_kind().find(fits).or_else(|| of_kind().next())
 }
 
-/// Unit of a bare number that is given to a parameter.
+/// Returns the unit of a bare number for a parameter.
 fn unit_of(param: &mdle_compiler::alphabet::Param) -> Option<Unit> {
     param.unit.or_else(|| param.kind.base_unit())
 }
 
-/// Unit of a bare number that is given to a plan's parameter of this type (docs/src/reference/language.md, 3.4).
+/// Returns the unit of a bare number for a plan's parameter of this type (docs/src/reference/language.md, 3.4).
 #[must_use]
 pub fn bare_unit(type_name: &str) -> Option<Unit> {
     let kind = Kind::from_name(type_name)?;
@@ -200,7 +201,7 @@ impl<'s> List<'_, 's> {
         }
     }
 
-    /// A plan by name.
+    /// Records the name of a plan in a call.
     fn reference(&mut self, call: &Call<'s>) {
         let defined = self.plans.get(call.name).map(|plan| plan.name.span);
         self.add(Name { node: call.name, span: call.name_span() }, Role::Plan, defined);
@@ -230,7 +231,7 @@ impl<'s> List<'_, 's> {
         }
     }
 
-    /// Place of the parameter of this name.
+    /// Returns the place of the parameter with this name.
     fn parameter(&self, name: &str) -> Option<Span> {
         self.params.iter().find(|param| param.name.node == name).map(|param| param.name.span)
     }

@@ -1,4 +1,4 @@
-//! The structure of a document: symbols, and what can be folded and selected.
+//! The structure of a document: its symbols, and the ranges that a user can fold and select.
 
 use std::ops::Range;
 
@@ -19,24 +19,24 @@ pub enum SymbolKind {
     Labelled,
 }
 
-/// A plan, a behavior or a labelled element, with those inside.
+/// A plan, a behavior or a labelled element, with the symbols inside.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Symbol {
     /// Kind of the symbol.
     pub kind: SymbolKind,
     /// Name of the plan or behavior, or the label.
     pub name: String,
-    /// Interrupt of the plan or behavior; otherwise empty.
+    /// Interrupt of the plan or behavior; empty for a labelled element.
     pub detail: String,
-    /// Byte range of the whole.
+    /// Byte range of the whole plan, behavior or element.
     pub range: Range<usize>,
-    /// Byte range of the name, inside the whole.
+    /// Byte range of the name, inside `range`.
     pub name_range: Range<usize>,
-    /// Symbols inside.
+    /// Symbols inside this symbol.
     pub children: Vec<Symbol>,
 }
 
-/// Lists the symbols of a document.
+/// Returns the symbols of a document.
 #[must_use]
 pub fn symbols(view: &View<'_>) -> Vec<Symbol> {
     view.own().iter().filter_map(|plan| symbol(view, plan, plan.span, SymbolKind::Plan)).collect()
@@ -79,7 +79,7 @@ fn within(view: &View<'_>, elements: &[Element<'_>]) -> Vec<Symbol> {
     symbols
 }
 
-/// Lists what can be folded: elements, plans and comments of several lines.
+/// Returns the ranges that can be folded: elements, plans and comments of several lines.
 #[must_use]
 pub fn folds(view: &View<'_>) -> Vec<Range<usize>> {
     let mut spans = Vec::new();
@@ -91,7 +91,7 @@ pub fn folds(view: &View<'_>) -> Vec<Range<usize>> {
     folds
 }
 
-/// Lists what can be selected around a byte, from the smallest to the whole document.
+/// Returns the ranges around a byte offset that can be selected, from the smallest to the whole document.
 #[must_use]
 pub fn selections(view: &View<'_>, byte: usize) -> Vec<Range<usize>> {
     let mut spans = Vec::new();
@@ -110,7 +110,7 @@ pub fn selections(view: &View<'_>, byte: usize) -> Vec<Range<usize>> {
     nested
 }
 
-/// Adds the spans of a plan and of everything in it.
+/// Appends the spans of a plan and of everything in it.
 fn spans_of(plan: &Plan<'_>, spans: &mut Vec<Span>) {
     spans.extend([plan.span, plan.name.span]);
     plan.params.iter().for_each(|param| spans.push(param.name.span.to(param.type_name.span)));

@@ -1,4 +1,4 @@
-//! Definitions, references, and other names for plans, parameters and labels.
+//! Definitions, references, and rename of plans, parameters and labels.
 
 use std::collections::BTreeSet;
 
@@ -11,18 +11,18 @@ use crate::diagnostics::{Place, place};
 use crate::mentions::{Mention, Role, mentions};
 use crate::view::View;
 
-/// The name at a byte: the place of its definition, and its own.
+/// A plan, parameter or label at a byte offset.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Named {
     /// Place of the name where it is defined.
     pub defined: Place,
-    /// Place of the name at the byte.
+    /// Place of the name at the byte offset.
     pub here: Place,
-    /// The name.
+    /// Name of the plan, parameter or label.
     pub name: String,
 }
 
-/// Returns the plan, parameter or label at a byte; `None` for what no plan defines.
+/// Returns the plan, parameter or label at a byte offset; `None` for a name that no plan defines.
 #[must_use]
 pub fn named(view: &View<'_>, byte: usize) -> Option<Named> {
     let mentions = mentions(view.files, view.alphabet);
@@ -31,15 +31,14 @@ pub fn named(view: &View<'_>, byte: usize) -> Option<Named> {
     Some(Named { defined: at(mention.defined?), here: at(mention.span), name: mention.text.to_owned() })
 }
 
-/// Path of the used file that is named at a byte, as it is written.
+/// Returns the path of the used file that is named at a byte offset, as it is written.
 #[must_use]
 pub fn used_file(view: &View<'_>, byte: usize) -> Option<String> {
     let used = view.file.uses.iter().find(|used| view.contains(used.span, byte))?;
     Some(used.node.to_owned())
 }
 
-/// Lists the places of the document itself where the name is written that is defined at a place that `is_meant`
-/// accepts.
+/// Returns the places in the document of names whose definition is at a place that `is_meant` accepts.
 #[must_use]
 pub fn references(view: &View<'_>, is_meant: impl Fn(&Place) -> bool) -> Vec<Place> {
     let of_definition = |mention: &Mention<'_>| {
@@ -62,7 +61,8 @@ pub fn is_name(name: &str) -> bool {
     found.is_empty() && plan.name.node == name && matches!(plan.elements, [only] if is_other(only))
 }
 
-/// Number of mentions in the document, by role and definition: equal before and after a rename that keeps all meanings.
+/// Returns the role and definition of each mention in the document, by number; the list is equal before and after a
+/// rename that keeps all meanings.
 #[must_use]
 pub fn meanings(view: &View<'_>) -> Vec<(u8, Option<usize>)> {
     let mentions = mentions(view.files, view.alphabet);

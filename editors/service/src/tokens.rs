@@ -1,4 +1,4 @@
-//! Colours by meaning: the parts of a document whose role only the tree knows.
+//! Semantic tokens: the parts of a document whose role follows from the tree and not from the text.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use mdle_compiler::alphabet::DeclarationKind;
 use crate::mentions::{Role, mentions};
 use crate::view::View;
 
-/// Names of the kinds of tokens, among those that the protocol lists.
+/// Names of the kinds of tokens, a selection of those in the protocol.
 pub const KINDS: &[&str] =
     &["class", "parameter", "property", "function", "event", "variable", "type", "number", "string"];
 
@@ -18,11 +18,11 @@ pub struct Token {
     pub range: Range<usize>,
     /// Index of the token's kind in [`KINDS`].
     pub kind: usize,
-    /// `true` where the name is defined.
+    /// `true` if the token defines its name.
     pub is_definition: bool,
 }
 
-/// Lists the tokens of a document in the order of the text, each on a line of its own.
+/// Returns the tokens of a document in the order of the text; each token is on one line.
 #[must_use]
 pub fn tokens(view: &View<'_>) -> Vec<Token> {
     let mentions = mentions(view.files, view.alphabet);

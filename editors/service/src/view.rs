@@ -1,4 +1,4 @@
-//! A checked document as the features see it: text, tree and alphabet.
+//! A checked document as the features use it, with its text, tree and alphabet.
 
 use std::ops::Range;
 
@@ -20,39 +20,39 @@ pub struct View<'v> {
     pub files: &'v Files<'v>,
     /// Alphabet of the robot.
     pub alphabet: &'v Alphabet,
-    /// Texts of all these files.
+    /// Texts of the document and of the files that it uses.
     pub sources: &'v Sources,
 }
 
 impl View<'_> {
-    /// Plans of the document itself.
+    /// Returns the plans of the document itself.
     #[must_use]
     pub fn own(&self) -> &[Plan<'_>] {
         self.files.plans.get(..self.files.own).unwrap_or(&[])
     }
 
-    /// Byte range of a span if it is in the document itself.
+    /// Returns the byte range of a span that is in the document itself, and `None` for other spans.
     #[must_use]
     pub fn range(&self, span: Span) -> Option<Range<usize>> {
         let (source, range) = self.sources.range(span);
         (source == self.source).then_some(range)
     }
 
-    /// Returns `true` if the span is in the document and contains the byte, or ends with it.
+    /// Returns `true` if the span is in the document and contains the byte offset or ends there.
     #[must_use]
     pub fn contains(&self, span: Span, byte: usize) -> bool {
         self.range(span).is_some_and(|range| range.start <= byte && byte <= range.end)
     }
 
-    /// Text of a span with single spaces and without line breaks.
+    /// Returns the text of a span with single spaces and without line breaks.
     #[must_use]
     pub fn words(&self, span: Span) -> String {
         self.sources.slice(span).split_whitespace().collect::<Vec<_>>().join(" ")
     }
 }
 
-/// Parses the document `source` and shows it to `feature`; `loader` reads the files that it uses, and `sources` returns
-/// their texts.
+/// Parses the document `source` and calls `feature` with it; `loader` reads the files that the document uses, and
+/// `sources` returns their texts.
 pub fn view<L: Loader, T>(
     source: SourceId,
     loader: &mut L,

@@ -1,4 +1,4 @@
-//! Splits a text into words for completion, where the text is unfinished and the tree has a hole.
+//! Splits an unfinished text, whose tree is incomplete, into words for completion.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use std::ops::Range;
 pub(crate) enum Kind {
     /// A name or a keyword.
     Name,
-    /// Digits, with the unit that touches them.
+    /// Digits, with the unit that directly follows.
     Number,
     /// A comment or a text in quotes.
     Opaque,
@@ -15,7 +15,7 @@ pub(crate) enum Kind {
     Sign,
 }
 
-/// A word with its place.
+/// A word, with its place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Word<'t> {
     pub(crate) kind: Kind,
@@ -23,7 +23,7 @@ pub(crate) struct Word<'t> {
     pub(crate) range: Range<usize>,
 }
 
-/// Returns the words of a text.
+/// Returns the words of `text`.
 pub(crate) fn words(text: &str) -> impl Iterator<Item = Word<'_>> {
     let mut at = 0;
     std::iter::from_fn(move || {
@@ -37,7 +37,7 @@ pub(crate) fn words(text: &str) -> impl Iterator<Item = Word<'_>> {
     })
 }
 
-/// Kind and length of the word with which a text begins.
+/// Returns the kind and the length of the first word of a text.
 fn next(text: &str) -> (Kind, usize) {
     let while_in = |is_in: fn(char) -> bool| text.find(|letter| !is_in(letter)).unwrap_or(text.len());
     let first = text.chars().next().unwrap_or(' ');
