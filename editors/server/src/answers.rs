@@ -1,4 +1,4 @@
-//! Answers to the requests about one document: features, in the words of the protocol.
+//! Answers to the requests about one document: results of the features, in the terms of the protocol.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ use mdle_language_service::{
     completion, fixes as quick, formatting as layout, hints as inlay, hover as about, lenses as lens, outline,
 };
 
-/// A document that a request is about.
+/// The document that a request is about.
 #[derive(Debug)]
 pub(crate) struct Asked<'d> {
     pub(crate) documents: &'d Documents,
@@ -29,7 +29,7 @@ pub(crate) struct Asked<'d> {
 }
 
 impl Asked<'_> {
-    /// Shows the document to a feature.
+    /// Calls `feature` with the document.
     pub(crate) fn view<T>(&mut self, feature: impl FnOnce(&View<'_>) -> T) -> T {
         self.plan.view(feature)
     }
@@ -56,7 +56,7 @@ impl Asked<'_> {
 }
 
 impl Plan {
-    /// Shows the plan to a feature.
+    /// Calls `feature` with the plan.
     pub(crate) fn view<T>(&mut self, feature: impl FnOnce(&View<'_>) -> T) -> T {
         view(self.input.source, &mut self.input, |input| &input.sources, &self.target.alphabet, feature)
     }
@@ -90,7 +90,7 @@ pub(crate) fn completion(asked: &mut Asked<'_>, params: &Params) -> Result<Value
     Ok(found.items.into_iter().map(item).collect())
 }
 
-/// Number of the protocol for a kind of proposal.
+/// Returns the protocol's number for a kind of proposal.
 fn kind_of_item(kind: ItemKind) -> u32 {
     match kind {
         ItemKind::Law => 3,

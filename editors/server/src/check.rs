@@ -17,7 +17,7 @@ use mdle_language_service::lines::Lines;
 pub(crate) struct Checked {
     /// Diagnostics by the URI of the document that contains them.
     pub(crate) diagnostics: BTreeMap<String, Vec<Value>>,
-    /// `true` if the document uses other files, or tries to.
+    /// `true` if the document uses other files, or names files that cannot be read.
     pub(crate) uses_files: bool,
 }
 
@@ -45,7 +45,7 @@ pub(crate) fn check(documents: &Documents, uri: &str, document: &Document, book:
     Checked { diagnostics, uses_files }
 }
 
-/// Diagnostics of an alphabet.
+/// Returns the diagnostics of an alphabet.
 fn of_alphabet(document: &Document) -> Vec<Value> {
     let mut sources = Sources::default();
     let (text, lines) = (document.text.as_str(), Lines::of(&document.text));
@@ -60,7 +60,7 @@ fn of_alphabet(document: &Document) -> Vec<Value> {
     findings(&sources, &found).into_iter().map(diagnostic).collect()
 }
 
-/// Words for an input that cannot be checked: those of `mdlec check`, with the first defect of the file at fault.
+/// Returns the message about an input that cannot be checked, as in `mdlec check`, with the first defect of the file.
 fn words(error: InputError) -> String {
     let own = Some(error.to_string()).filter(|own| !own.is_empty());
     let first = error.faulty_file().and_then(|FaultyFile { sources, diagnostics, .. }| {

@@ -1,4 +1,4 @@
-//! Answers in the words of the protocol.
+//! Conversion of answers to the terms of the protocol.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,7 +10,7 @@ use crate::documents::{Documents, Plan};
 use mdle_language_service::diagnostics::{Finding, Place};
 use mdle_language_service::lines::{Lines, Position};
 
-/// Converts places of a plan's files; finds the lines of each file once.
+/// Converter of places in a plan's files, which determines the lines of each file once.
 #[derive(Debug)]
 pub(crate) struct Converter<'d> {
     documents: &'d Documents,
@@ -18,12 +18,12 @@ pub(crate) struct Converter<'d> {
     lines: BTreeMap<SourceId, Lines>,
 }
 
-/// A position of the protocol.
+/// Returns a position in the form of the protocol.
 pub(crate) fn position(at: Position) -> Value {
     json!({ "line": at.line, "character": at.character })
 }
 
-/// A range of the protocol.
+/// Returns a range in the form of the protocol.
 pub(crate) fn range(text: &str, lines: &Lines, range: &Range<usize>) -> Value {
     let [start, end] = [range.start, range.end].map(|byte| position(lines.position(text, byte)));
     json!({ "start": start, "end": end })
@@ -34,29 +34,29 @@ impl<'d> Converter<'d> {
         Self { documents, plan, lines: BTreeMap::new() }
     }
 
-    /// URI of a file that was read for the plan; `None` for the files of alphabets.
+    /// Returns the URI of a file that was read for the plan; `None` for the files of alphabets.
     pub(crate) fn uri(&self, source: SourceId) -> Option<String> {
         self.plan.input.path(source).map(|path| self.documents.uri(path))
     }
 
-    /// Range in the plan's own document.
+    /// Returns a range in the plan's own document.
     pub(crate) fn own(&mut self, range: &Range<usize>) -> Value {
         self.range(&Place { source: self.plan.input.source, range: range.clone() })
     }
 
-    /// Range of a place in its file.
+    /// Returns the range of a place in its file.
     pub(crate) fn range(&mut self, place: &Place) -> Value {
         let text = self.plan.input.sources.text(place.source);
         let lines = self.lines.entry(place.source).or_insert_with(|| Lines::of(text));
         range(text, lines, &place.range)
     }
 
-    /// Location of a place.
+    /// Returns the location of a place: its file and range.
     pub(crate) fn location(&mut self, place: &Place) -> Option<Value> {
         Some(json!({ "uri": self.uri(place.source)?, "range": self.range(place) }))
     }
 
-    /// A diagnostic, with a link to the page of messages in the `book` if one is known.
+    /// Returns a diagnostic, with a link to the page of messages in the `book` if its address is known.
     pub(crate) fn diagnostic(&mut self, finding: &Finding, book: Option<&str>) -> Value {
         let related = finding.related.iter();
         let related: Vec<_> = related
@@ -82,10 +82,10 @@ impl<'d> Converter<'d> {
     }
 }
 
-/// Source of all diagnostics.
+/// Value of the field `source` of all diagnostics.
 const SOURCE: &str = "mdlec";
 
-/// A diagnostic without a place in the plan, as of an `mdle.toml`, at the first character of the document.
+/// Returns a diagnostic without a place in the plan, such as of an `mdle.toml`, at the first character of the document.
 pub(crate) fn unplaced(message: &str) -> Value {
     let start = json!({ "line": 0, "character": 0 });
     json!({ "range": { "start": start, "end": start }, "severity": 1, "source": SOURCE, "message": message })

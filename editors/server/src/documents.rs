@@ -1,4 +1,4 @@
-//! The documents that are open in the editor, and what they need to be checked: the robot, and each other's texts.
+//! The documents that are open in the editor, with the robot and the other documents that their checks need.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -17,21 +17,21 @@ pub(crate) struct Document {
     pub(crate) version: i64,
 }
 
-/// An edit of the protocol: without a range it replaces the text.
+/// An edit in the form of the protocol; an edit without a range replaces the whole text.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Change {
     range: Option<Positions>,
     text: String,
 }
 
-/// Two positions of the protocol.
+/// A range in the form of the protocol.
 #[derive(Debug, Clone, Copy, Deserialize)]
 pub(crate) struct Positions {
     pub(crate) start: At,
     pub(crate) end: At,
 }
 
-/// A position of the protocol.
+/// A position in the form of the protocol.
 #[derive(Debug, Clone, Copy, Deserialize)]
 pub(crate) struct At {
     line: u32,
@@ -45,7 +45,7 @@ impl From<At> for Position {
 }
 
 impl Document {
-    /// Makes the edits, each in the text that the one before it left.
+    /// Applies the edits one after the other, each to the text after the previous edit.
     pub(crate) fn change(&mut self, changes: Vec<Change>) {
         for change in changes {
             match change.range {
@@ -59,7 +59,7 @@ impl Document {
     }
 }
 
-/// All open documents by their URIs, as the client writes them.
+/// All open documents, by their URIs as the client writes them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Documents {
     pub(crate) open: BTreeMap<String, Document>,
@@ -67,7 +67,7 @@ pub(crate) struct Documents {
     pub(crate) robot: Option<String>,
 }
 
-/// A plan file with its robot.
+/// A plan file, with its robot.
 #[derive(Debug)]
 pub(crate) struct Plan {
     pub(crate) input: Input,
@@ -80,7 +80,8 @@ impl Documents {
         self.with_robot(document, self.robot(&document.path)?)
     }
 
-    /// Reads the plan in an open document, for a robot with every capability if the document's own is unknown.
+    /// Reads the plan in an open document. If the document's robot is unknown, the plan is read for a robot with every
+    /// capability.
     pub(crate) fn plan_for_any(&self, document: &Document) -> Result<Plan, InputError> {
         let robot = self.robot(&document.path).or_else(|_| target(None))?;
         self.with_robot(document, robot)
@@ -91,21 +92,21 @@ impl Documents {
         Ok(Plan { input, target })
     }
 
-    /// The robot of the `mdle.toml` beside a plan, or else that of the client's settings.
+    /// Returns the robot of the `mdle.toml` beside a plan; if there is none, the robot of the client's settings.
     fn robot(&self, path: &Path) -> Result<Target, InputError> {
         let settings = Settings::beside(path)?;
         let option = self.robot.as_deref().filter(|_| !settings.names_target(None));
         settings.target(option)
     }
 
-    /// Texts of the open documents.
+    /// Returns the texts of the open documents.
     fn unsaved(&self) -> Unsaved {
         let mut unsaved = Unsaved::default();
         self.open.values().for_each(|document| unsaved.insert(&document.path, &document.text));
         unsaved
     }
 
-    /// URI of a file: that of the open document if there is one.
+    /// Returns the URI of a file; the URI of an open document is as the client writes it.
     pub(crate) fn uri(&self, path: &Path) -> String {
         let at = place(path).ok();
         let mut open = self.open.iter();
@@ -114,7 +115,7 @@ impl Documents {
         own.map_or_else(|| uri::of(path), |(uri, _)| uri.clone())
     }
 
-    /// Plan files that may use each other: the open ones, and those in the same folders and below.
+    /// Returns the plan files that may use each other: the open files, and the files in the same folders and below.
     pub(crate) fn project(&self) -> BTreeSet<PathBuf> {
         let mut files: BTreeSet<PathBuf> = self.open.values().map(|document| document.path.clone()).collect();
         let folders: BTreeSet<_> = files.iter().filter_map(|file| file.parent()).map(Path::to_owned).collect();
@@ -127,12 +128,12 @@ impl Documents {
     }
 }
 
-/// Maximum number of entries that are looked at in the folders of the open documents.
+/// Maximum number of folder entries that are examined below the folders of the open documents.
 const MOST_FILES: usize = 10_000;
-/// Number of levels of folders that are searched below the folder of an open document.
+/// Maximum depth of the search below the folder of an open document, in levels of folders.
 const DEEPEST: usize = 6;
 
-/// Adds the plan files of a folder.
+/// Appends the plan files of a folder.
 #[allow(clippy::disallowed_methods, reason = "the files of a project are found by looking for them")]
 fn plans_in(folder: &Path, depth: usize, left: &mut usize, files: &mut BTreeSet<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
@@ -153,12 +154,12 @@ fn plans_in(folder: &Path, depth: usize, left: &mut usize, files: &mut BTreeSet<
     }
 }
 
-/// Returns `true` for a file of plans, by its name.
+/// Returns `true` if the name of a file is that of a plan file.
 fn is_plan(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "mdle") && !is_alphabet(path)
 }
 
-/// Returns `true` for the file of an alphabet, which is written in a language of its own.
+/// Returns `true` if a file is an alphabet, which has a language of its own.
 pub(crate) fn is_alphabet(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name == "alphabet.mdle")
 }

@@ -1,4 +1,4 @@
-//! Work whose panic is an error of this work alone.
+//! Work whose panic becomes an error of this work alone.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -6,7 +6,7 @@ use lsp_server::ErrorCode;
 
 use crate::params::Refusal;
 
-/// Runs a piece of work; a panic in it is an error of this work alone.
+/// Runs `work`; a panic becomes an error of this work alone.
 pub(crate) fn guarded<T>(work: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|cause| {
         let text = cause.downcast_ref::<&str>().copied().map(str::to_owned);

@@ -1,8 +1,8 @@
 //! The language server of MDLe, for every editor that speaks the Language Server Protocol 3.17; `mdlec lsp` runs it on
 //! standard input and output.
 //!
-//! The features are those of `mdle-language-service`, which answers in places of bytes. `requests` and `convert`
-//! translate between it and the protocol, with positions in UTF-16.
+//! The features are those of `mdle-language-service`, which answers with byte ranges. `requests` and `convert`
+//! translate between the features and the protocol, whose positions are in UTF-16.
 
 mod answers;
 mod check;
@@ -22,10 +22,10 @@ use std::io;
 
 pub use server::serve_on;
 
-/// Reason why the server ends before its client asked for it.
+/// Reason why the server ends before the client requested it.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
-    /// The client broke the protocol.
+    /// The client violated the protocol.
     #[error(
         "the client does not speak the Language Server Protocol: {0}\nhelp: an editor starts `mdlec lsp`, as docs/src/editors.md shows"
     )]
@@ -35,10 +35,10 @@ pub enum ServeError {
     Vanished,
 }
 
-/// Serves one client on standard input and output, until the client ends it.
+/// Serves one client on standard input and output until the client ends the server.
 ///
 /// # Errors
-/// The client broke the protocol or vanished.
+/// The client violated the protocol or vanished.
 pub fn serve() -> Result<(), ServeError> {
     let (connection, threads) = lsp_server::Connection::stdio();
     let served = serve_on(&connection);

@@ -1,4 +1,4 @@
-//! Parameters of requests, and errors that answer them.
+//! Parameters of requests, and error answers.
 
 use lsp_server::ErrorCode;
 use serde::Deserialize;
@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::documents::{At, Positions};
 
-/// Error that answers a request.
+/// An error that answers a request.
 #[derive(Debug)]
 pub(crate) struct Refusal {
     pub(crate) code: ErrorCode,
@@ -14,7 +14,7 @@ pub(crate) struct Refusal {
 }
 
 impl Refusal {
-    /// Parameters that are not those of the protocol.
+    /// Returns the refusal of a request whose parameters do not follow the protocol.
     pub(crate) fn params(message: &str) -> Self {
         Self { code: ErrorCode::InvalidParams, message: message.to_owned() }
     }
@@ -24,13 +24,13 @@ impl Refusal {
         Self::params(&format!("`{uri}` is not open"))
     }
 
-    /// A request that cannot be met, with the reason for the user.
+    /// Returns the refusal of a request that cannot be fulfilled, with the reason for the user.
     pub(crate) fn failed(message: impl Into<String>) -> Self {
         Self { code: ErrorCode::RequestFailed, message: message.into() }
     }
 }
 
-/// Parameters of the requests about a document, as far as they have them.
+/// Parameters of the requests about a document; a request has some of them.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(crate) struct Params {

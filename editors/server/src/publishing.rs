@@ -1,4 +1,4 @@
-//! Checks of documents, and the diagnostics that they publish.
+//! Checks documents, and publishes their diagnostics.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::params::Refusal;
 use crate::server::{Server, send};
 
 impl Server<'_> {
-    /// Checks one of the marked documents, and after the last of them publishes what changed.
+    /// Checks one of the marked documents; after the last of them, publishes the changed diagnostics.
     pub(crate) fn check_one(&mut self) -> Result<(), ServeError> {
         let Some(uri) = self.stale.pop_first() else { return Ok(()) };
         let documents = &self.documents;
@@ -31,7 +31,7 @@ impl Server<'_> {
         concerned.iter().try_for_each(|uri| self.publish(uri))
     }
 
-    /// Keeps the diagnostics of a check until they are published.
+    /// Stores the diagnostics of a check until they are published.
     fn keep(&mut self, uri: String, checked: check::Checked) {
         if checked.uses_files {
             self.users.insert(uri.clone())
@@ -47,7 +47,7 @@ impl Server<'_> {
         self.concerned.extend(before.into_iter().flat_map(BTreeMap::into_keys));
     }
 
-    /// Publishes the diagnostics in a document, each once, by whichever check it was found.
+    /// Publishes the diagnostics in a document; a diagnostic that several checks found is published once.
     fn publish(&self, uri: &str) -> Result<(), ServeError> {
         let mut diagnostics: Vec<&Value> = Vec::new();
         for diagnostic in self.found.values().filter_map(|found| found.get(uri)).flatten() {

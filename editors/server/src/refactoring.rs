@@ -16,10 +16,10 @@ use mdle_language_service::diagnostics::Place;
 use mdle_language_service::lines::Lines;
 use mdle_language_service::rename::{self as names, Named};
 
-/// Place of a definition: the place of its file, and the byte range of the name.
+/// Place of a definition: the path of the file, and the byte range of the name.
 type Definition = (PathBuf, Range<usize>);
 
-/// Place of a definition whatever file it is seen from.
+/// Returns the place of a definition in a form that is equal for all files that use it.
 fn global(plan: &Plan, defined: &Place) -> Option<Definition> {
     let path = plan.input.path(defined.source)?;
     Some((place(path).unwrap_or_else(|_| path.to_owned()), defined.range.clone()))
@@ -91,17 +91,17 @@ pub(crate) fn rename(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Re
     Ok(json!({ "changes": changes }))
 }
 
-/// A file that sees a definition.
+/// A file that uses a definition.
 #[derive(Debug)]
 struct File {
     text: String,
-    /// Byte ranges of the name.
+    /// Byte ranges in the file at which the name is written.
     ranges: Vec<Range<usize>>,
     meanings: Vec<(u8, Option<usize>)>,
     errors: Vec<Code>,
 }
 
-/// Files of the project that see a definition, by their places.
+/// Returns the files of the project that use a definition, by their paths.
 fn files_with(documents: &Documents, definition: &Definition) -> BTreeMap<PathBuf, File> {
     let mut files = BTreeMap::new();
     let mut paths: BTreeSet<PathBuf> = documents.project();
@@ -121,7 +121,7 @@ fn files_with(documents: &Documents, definition: &Definition) -> BTreeMap<PathBu
     files
 }
 
-/// Reads a file, if it sees the definition.
+/// Reads a file, and returns it if it uses the definition.
 fn seen(documents: &Documents, path: &Path, text: String, definition: &Definition) -> Option<File> {
     let document = Document { path: path.to_owned(), text, version: 0 };
     let mut plan = documents.plan_for_any(&document).ok()?;
@@ -155,7 +155,7 @@ fn seen(documents: &Documents, path: &Path, text: String, definition: &Definitio
     })
 }
 
-/// Checks that all names mean the same with another name for this one.
+/// Checks that all names in `files` keep their meaning if the definition is renamed to `name`.
 fn keeps_meanings(documents: &Documents, files: &BTreeMap<PathBuf, File>, name: &str) -> Result<(), String> {
     let mut renamed = documents.clone();
     for (path, file) in files {

@@ -9,7 +9,7 @@ use crate::params::{Params, Refusal};
 use crate::{commands, refactoring};
 use mdle_language_service::tokens;
 
-/// Lists the abilities of the server, as `initialize` answers.
+/// Returns the capabilities of the server, as in the answer to `initialize`.
 pub(crate) fn capabilities() -> Value {
     json!({
         "positionEncoding": "utf-16",
@@ -37,16 +37,16 @@ pub(crate) fn capabilities() -> Value {
     })
 }
 
-/// URI of the document that a request is about.
+/// Returns the URI of the document that a request is about.
 pub(crate) fn uri_of(params: &Value) -> Result<String, Refusal> {
     let uri = params.pointer("/textDocument/uri").and_then(Value::as_str);
     uri.map(str::to_owned).ok_or_else(|| Refusal::params("missing `textDocument.uri`"))
 }
 
-/// Function that answers a request about a document.
+/// A function that answers a request about a document.
 type Answer = fn(&mut Asked<'_>, &Params) -> Result<Value, Refusal>;
 
-/// The function for a method.
+/// Returns the function that answers requests of this method.
 fn function(method: &str) -> Option<Answer> {
     Some(match method {
         "textDocument/hover" => answers::hover,

@@ -1,4 +1,4 @@
-//! The loop of the server: takes messages in their order, and checks documents when none is waiting.
+//! The main loop of the server: handles messages in their order, and checks documents when no message waits.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
@@ -12,7 +12,7 @@ use crate::guard::guarded;
 use crate::params::Refusal;
 use crate::requests;
 
-/// Pause of the client after which a document is checked: shorter than that between two keystrokes.
+/// Pause in the client's messages after which a document is checked; shorter than the time between two keystrokes.
 const PAUSE: Duration = Duration::from_millis(5);
 
 /// The server of one client, after `initialize`.
@@ -21,25 +21,25 @@ pub(crate) struct Server<'c> {
     pub(crate) documents: Documents,
     /// Address of the book, for links to the explanations of messages.
     pub(crate) book: Option<String>,
-    /// Messages that were received and wait for their turn.
+    /// Received messages that have not been handled yet.
     pub(crate) waiting: VecDeque<Message>,
-    /// Documents to check.
+    /// URIs of documents to check.
     pub(crate) stale: BTreeSet<String>,
-    /// Documents whose diagnostics are published once no document is stale: what one check finds in a file that another
-    /// check still has to read would be of two texts.
+    /// URIs of documents whose diagnostics are published once all documents are checked: before that, the diagnostics
+    /// in a file that several documents use could belong to different texts of the file.
     pub(crate) concerned: BTreeSet<String>,
     /// Diagnostics by the document whose check found them, and by the document that contains them.
     pub(crate) found: BTreeMap<String, BTreeMap<String, Vec<Value>>>,
-    /// Open documents that use other files, or try to.
+    /// URIs of open documents that use other files, or name files that cannot be read.
     pub(crate) users: BTreeSet<String>,
     /// `true` after `shutdown`: only `exit` may follow.
     pub(crate) is_shut_down: bool,
 }
 
-/// Serves one client, until it ends the server.
+/// Serves one client until the client ends the server.
 ///
 /// # Errors
-/// The client vanished.
+/// The client violated the protocol or vanished.
 pub fn serve_on(connection: &Connection) -> Result<(), ServeError> {
     let options = initialize(connection)?;
     let mut server = Server {
@@ -57,7 +57,7 @@ pub fn serve_on(connection: &Connection) -> Result<(), ServeError> {
     server.run()
 }
 
-/// Answers `initialize`, and refuses every other request before it; returns the client's settings.
+/// Answers `initialize`, and refuses every other request before it. Returns the client's settings.
 fn initialize(connection: &Connection) -> Result<Value, ServeError> {
     loop {
         match connection.receiver.recv().map_err(|_| ServeError::Vanished)? {
@@ -104,7 +104,7 @@ impl Server<'_> {
         }
     }
 
-    /// Returns the next message; `None` if none comes and a document is to be checked.
+    /// Returns the next message; `None` if no message arrives and a document has to be checked.
     fn next(&mut self) -> Result<Option<Message>, ServeError> {
         while let Ok(message) = self.connection.receiver.try_recv() {
             self.receive(message)?;
@@ -123,7 +123,7 @@ impl Server<'_> {
         }
     }
 
-    /// Queues a message, or cancels a request that waits.
+    /// Queues a message, or cancels a queued request.
     fn receive(&mut self, message: Message) -> Result<(), ServeError> {
         let Message::Notification(Notification { method, params }) = &message else {
             self.waiting.push_back(message);
@@ -171,7 +171,7 @@ impl Server<'_> {
         }
     }
 
-    /// Reports an error that no answer can carry, in the client's log.
+    /// Writes an error that no answer can report to the client's log.
     pub(crate) fn log(&self, message: &str) -> Result<(), ServeError> {
         let params = json!({ "type": 1, "message": message });
         send(self.connection, Notification::new("window/logMessage".into(), params))

@@ -1,4 +1,4 @@
-//! Notifications of the client: what it opens, changes and closes, and its settings.
+//! Notifications from the client: documents that it opens, changes and closes, and its settings.
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -48,7 +48,7 @@ fn read<T: DeserializeOwned>(params: Value) -> Result<T, Refusal> {
 }
 
 impl Server<'_> {
-    /// Takes a notification.
+    /// Handles a notification.
     pub(crate) fn notified(&mut self, method: &str, params: Value) -> Result<(), Refusal> {
         match method {
             "textDocument/didOpen" => {
@@ -86,7 +86,7 @@ impl Server<'_> {
         Ok(())
     }
 
-    /// Takes the client's settings.
+    /// Applies the client's settings.
     pub(crate) fn configure(&mut self, settings: &Value) {
         let Options { target, book } = Options::deserialize(settings).unwrap_or_default();
         self.documents.robot = target.filter(|target| !target.is_empty());
@@ -94,7 +94,7 @@ impl Server<'_> {
         self.mark_all();
     }
 
-    /// Marks a document, and those that may use it, to be checked.
+    /// Marks a document, and the documents that may use it, to be checked.
     fn mark(&mut self, uri: &str) {
         self.stale.insert(uri.to_owned());
         self.stale.extend(self.users.iter().cloned());

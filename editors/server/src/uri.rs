@@ -1,10 +1,10 @@
-//! Addresses of documents: `file://` with a path, percent-encoded.
+//! URIs of documents: `file://` with a percent-encoded path.
 
 use std::ffi::OsString;
 use std::os::unix::ffi::{OsStrExt, OsStringExt};
 use std::path::{Path, PathBuf};
 
-/// Returns the path that a URI names; a document that is in no file, such as `untitled:1`, has its URI as its path.
+/// Returns the path that a URI names; the path of a document that is not in a file, such as `untitled:1`, is its URI.
 pub(crate) fn path(uri: &str) -> PathBuf {
     match uri.strip_prefix("file://") {
         Some(rest) => {
@@ -16,7 +16,7 @@ pub(crate) fn path(uri: &str) -> PathBuf {
     }
 }
 
-/// Returns the URI of a path, which is made absolute.
+/// Returns the URI of a path, after making the path absolute.
 pub(crate) fn of(path: &Path) -> String {
     let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"/-._~".contains(&byte);
