@@ -1,4 +1,4 @@
-//! The breakpoints of a session: at places of the plan, at the entry of what has a name, and at times.
+//! The breakpoints of a session: at places of the plan, at the entry of a named scope or of an atom, and at times.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,23 +19,23 @@ pub(crate) type Id = i64;
 #[derive(Debug)]
 pub(crate) struct Breakpoints {
     places: Vec<Place>,
-    /// Breakpoints of each file, with the spans at which they stop.
+    /// Breakpoints of each file: their numbers, and the places at which they stop.
     lines: BTreeMap<SourceId, Vec<(Id, Place)>>,
     names: Vec<(Id, Name)>,
     last: Id,
 }
 
-/// The condition of a breakpoint that is in no file.
+/// Condition of a breakpoint that is not in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Name {
-    /// A scope of this name, or an atom with this law, is entered.
+    /// The entry of a scope with this name or of an atom with this law.
     Entered(String),
     /// The first turn whose plan time is at least this time.
     Time(Nanos),
 }
 
 impl Breakpoints {
-    /// Makes the list of a plan, without any breakpoint.
+    /// Returns an empty list of breakpoints for a plan.
     pub(crate) fn new(loaded: &Loaded) -> Self {
         Self { places: places(loaded), lines: BTreeMap::new(), names: Vec::new(), last: 0 }
     }
@@ -45,8 +45,8 @@ impl Breakpoints {
         &self.places
     }
 
-    /// Replaces the breakpoints of a file by those at these lines and columns, which count from 0. Returns for each its
-    /// number, and its place or the reason why it has none.
+    /// Replaces the breakpoints of a file by breakpoints at the given lines and columns, which count from 0. Returns
+    /// the number of each breakpoint, with its place or the reason why it has no place.
     pub(crate) fn set(
         &mut self,
         loaded: &Loaded,
@@ -71,8 +71,8 @@ impl Breakpoints {
         set
     }
 
-    /// Replaces the breakpoints that are in no file. Returns for each its number, or the reason why it cannot stop a
-    /// run.
+    /// Replaces the breakpoints that are not in a file. Returns the number of each breakpoint, or the reason why it
+    /// cannot stop a run.
     pub(crate) fn set_names(&mut self, plan: &Plan, wanted: &[String]) -> Vec<(Id, Result<(), String>)> {
         self.names.clear();
         let mut set = Vec::new();
@@ -85,7 +85,8 @@ impl Breakpoints {
         set
     }
 
-    /// Returns the breakpoints at the position of a run to which `step` has led; `None` at the start of the run.
+    /// Returns the breakpoints at the current position of a run, to which `step` has led; `step` is `None` at the run's
+    /// start.
     pub(crate) fn hits(&self, run: &Run<'_>, plan: &Plan, step: Option<Step>) -> Vec<Id> {
         let entered = match step {
             None => 0,
@@ -110,7 +111,7 @@ impl Breakpoints {
     }
 }
 
-/// Reads the text of a breakpoint that is in no file: a name, or a time with its unit.
+/// Reads the text of a breakpoint that is not in a file: a name, or a time with its unit.
 fn name(plan: &Plan, text: &str) -> Result<Name, String> {
     if text.starts_with(|c: char| c.is_ascii_digit()) {
         return time(text).map(Name::Time).ok_or_else(|| format!("`{text}` is no time: write it as `2.5s` or `500ms`"));
@@ -126,7 +127,7 @@ fn time(text: &str) -> Option<Nanos> {
     Decimal::parse(number.trim())?.scaled(unit.factor, unit.exponent).to_nanos().map(Nanos)
 }
 
-/// Returns `true` for a scope of this name, and for an atom whose law has it.
+/// Returns `true` if `part` is a scope with this name or an atom with this law.
 fn is_called(part: Part<'_>, plan: &Plan, name: &str) -> bool {
     match part {
         Part::Scope(scope) => scope.name == name,

@@ -1,4 +1,4 @@
-//! The client: messages of the Debug Adapter Protocol, each JSON after a header with its length.
+//! The client: it exchanges messages of the Debug Adapter Protocol, each in JSON after a header with its length.
 
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Read, Write};
@@ -9,10 +9,10 @@ use serde_json::{Value, json};
 
 use crate::ServeError;
 
-/// Maximum length of a message in bytes: a client sends names and lines, never texts.
+/// Maximum length of a message in bytes: a client sends names and lines, but no texts.
 const LONGEST: usize = 16_000_000;
 
-/// A request of the client.
+/// A request from the client.
 #[derive(Debug)]
 pub(crate) struct Request {
     pub(crate) seq: i64,
@@ -20,19 +20,19 @@ pub(crate) struct Request {
     pub(crate) arguments: Value,
 }
 
-/// The client on the other end of the connection.
+/// The client at the other end of the connection.
 pub(crate) struct Client<'o> {
-    /// Messages that a thread has read. A run can then be interrupted.
+    /// Messages that a thread reads, so that a request can interrupt a run.
     received: Receiver<Result<Value, ServeError>>,
-    /// Requests that came during a run, in their order.
+    /// Requests that arrived during a run, in their order.
     waiting: VecDeque<Request>,
     output: &'o mut dyn Write,
-    /// Number of the last message that was sent.
+    /// Number of the last sent message.
     seq: i64,
 }
 
 impl<'o> Client<'o> {
-    /// Begins to read messages.
+    /// Starts reading messages from `input`.
     pub(crate) fn new(mut input: impl BufRead + Send + 'static, output: &'o mut dyn Write) -> Self {
         let (sender, received) = mpsc::channel();
         thread::spawn(move || {
@@ -60,7 +60,7 @@ impl<'o> Client<'o> {
         }
     }
 
-    /// Returns `true` if a request has come that interrupts a run.
+    /// Returns `true` if a request has arrived that interrupts a run.
     pub(crate) fn interrupts(&mut self) -> Result<bool, ServeError> {
         while let Ok(message) = self.received.try_recv() {
             self.waiting.extend(request(message?)?);
@@ -89,7 +89,7 @@ impl<'o> Client<'o> {
         self.send(response)
     }
 
-    /// Reports an event.
+    /// Sends an event to the client.
     pub(crate) fn event(&mut self, event: &str, body: Value) -> Result<(), ServeError> {
         self.send(json!({ "type": "event", "event": event, "body": body }))
     }
@@ -103,7 +103,7 @@ impl<'o> Client<'o> {
     }
 }
 
-/// Reads a request; `None` for a response, as the debugger asks nothing.
+/// Reads a request; `None` for a response, because the debugger sends no requests.
 fn request(mut message: Value) -> Result<Option<Request>, ServeError> {
     match message.get("type").and_then(Value::as_str) {
         Some("request") => {}
@@ -119,7 +119,7 @@ fn request(mut message: Value) -> Result<Option<Request>, ServeError> {
     Ok(Some(Request { seq, command, arguments }))
 }
 
-/// Reads a message.
+/// Reads the next message.
 fn message(input: &mut impl BufRead) -> Result<Value, ServeError> {
     let mut length = None;
     loop {

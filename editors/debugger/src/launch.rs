@@ -12,7 +12,7 @@ use mdle_files::{Input, InputError, Settings};
 use mdle_language_service::lines::Lines;
 use serde::Deserialize;
 
-/// Arguments of `launch`.
+/// Arguments of the request `launch`.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(crate) struct Launch {
@@ -20,24 +20,24 @@ pub(crate) struct Launch {
     program: PathBuf,
     /// Path of the script.
     script: PathBuf,
-    /// Robot for a plan without an `mdle.toml`.
+    /// Robot for a plan that has no `mdle.toml`.
     target: Option<String>,
-    /// Name of the plan, if the file contains several.
+    /// Name of the plan; needed if the file contains several plans.
     plan: Option<String>,
-    /// `true` to stop where the plan is entered.
+    /// `true` to stop at the entry of the plan.
     #[serde(default)]
     pub(crate) stop_on_entry: bool,
 }
 
-/// A plan that is debugged.
+/// A compiled plan with its script.
 #[derive(Debug)]
 pub(crate) struct Loaded {
     pub(crate) compiled: Compiled,
     input: Input,
     script: Script,
-    /// Lines of the files that were read.
+    /// Lines of each file that was read.
     lines: BTreeMap<SourceId, Lines>,
-    /// Texts of the `after` conditions, by the facts that they read.
+    /// Texts of the `after` conditions, by the facts that they test.
     facts: BTreeMap<(RecordId, u32), String>,
 }
 
@@ -45,7 +45,7 @@ impl Loaded {
     /// Compiles the plan and reads the script.
     ///
     /// # Errors
-    /// A file cannot be read, or contains errors; the text has one line for each error.
+    /// A file cannot be read or contains errors. The text has one line for each error.
     pub(crate) fn read(launch: &Launch) -> Result<Self, String> {
         let Launch { program, script, target, plan, .. } = launch;
         let settings = Settings::beside(program).map_err(words)?;
@@ -78,12 +78,12 @@ impl Loaded {
         Ok(loaded)
     }
 
-    /// Returns the turns of the script, of which there is at least one.
+    /// Returns the turns of the script, which has at least one turn.
     pub(crate) fn turns(&self) -> &[Reports] {
         self.script.turns()
     }
 
-    /// Returns the files with parts of the plan.
+    /// Returns the files that contain parts of the plan.
     fn sources(&self) -> Vec<SourceId> {
         let mut sources: Vec<_> =
             self.compiled.plan.parts().map(|part| self.input.sources.range(part.span()).0).collect();
@@ -106,7 +106,7 @@ impl Loaded {
         std::path::absolute(self.input.path(source)?).ok()
     }
 
-    /// Returns the file at a path, if it has parts of the plan.
+    /// Returns the file at a path, if it contains parts of the plan.
     pub(crate) fn source(&self, path: &Path) -> Option<SourceId> {
         let place = mdle_files::place(path).ok()?;
         let is_there = |source: &SourceId| {
@@ -115,7 +115,8 @@ impl Loaded {
         self.lines.keys().copied().find(is_there)
     }
 
-    /// Returns the file of a span, with the line and the column of its start, both from 0, the column in UTF-16.
+    /// Returns the file of a span, with the line and the column of its start. Both count from 0; columns are in UTF-16
+    /// units.
     pub(crate) fn place(&self, span: Span) -> (SourceId, u32, u32) {
         let (source, range) = self.input.sources.range(span);
         let at = self.lines.get(&source).map(|lines| lines.position(self.text(source), range.start));
@@ -128,7 +129,7 @@ impl Loaded {
     }
 }
 
-/// Returns the texts of the `after` conditions of a plan, by the facts that they read.
+/// Returns the texts of the `after` conditions of a plan, by the facts that they test.
 fn facts(compiled: &Compiled) -> BTreeMap<(RecordId, u32), String> {
     let mut facts = BTreeMap::new();
     for interrupt in compiled.plan.parts().filter_map(mdle_compiler::plan::Part::interrupt) {
@@ -141,13 +142,13 @@ fn facts(compiled: &Compiled) -> BTreeMap<(RecordId, u32), String> {
     facts
 }
 
-/// Returns the diagnostics of a plan with errors, and their number.
+/// Returns the diagnostics of a plan with errors as text, with their number.
 fn rendered(sources: &Sources, found: &[Diagnostic]) -> String {
     let shown = found.iter().take(most_shown(found)).map(|found| sources.render(found));
     shown.chain(judged(found, false).err()).collect::<Vec<_>>().join("\n")
 }
 
-/// Returns the message of a file that cannot be read, with the diagnostics of a faulty one.
+/// Returns the message about a file that cannot be read, or the diagnostics of a file with errors.
 fn words(error: InputError) -> String {
     let own = error.to_string();
     let found = error.faulty_file().map(|file| rendered(&file.sources, &file.diagnostics));

@@ -1,8 +1,8 @@
 //! The debugger of MDLe, for every editor that speaks the Debug Adapter Protocol; `mdlec dap` runs it on standard input
 //! and output.
 //!
-//! A plan runs on a script of interrupts, as `mdlec trace` runs it. Runs are deterministic, so a run goes back by going
-//! forward again from a copy of an earlier state (`run.rs`).
+//! A plan runs on a script of interrupts, as in `mdlec trace`. Runs are deterministic. To go back, a run therefore
+//! starts from a copy of an earlier state and goes forward again (`run.rs`).
 
 mod breakpoints;
 mod client;
@@ -21,10 +21,10 @@ use std::io::{self, BufReader, Read, Write};
 
 use client::Client;
 
-/// Reason why the debugger ends before its client asked for it.
+/// Reason why the debugger ends before the client requested it.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
-    /// The client broke the protocol.
+    /// The client violated the protocol.
     #[error(
         "the client does not speak the Debug Adapter Protocol: {0}\nhelp: an editor starts `mdlec dap`, as docs/src/editors.md shows"
     )]
@@ -34,18 +34,18 @@ pub enum ServeError {
     Vanished,
 }
 
-/// Serves one client on standard input and output, until the client ends the session.
+/// Serves one client on standard input and output until the client ends the session.
 ///
 /// # Errors
-/// The client broke the protocol or vanished.
+/// The client violated the protocol or vanished.
 pub fn serve() -> Result<(), ServeError> {
     serve_on(io::stdin(), &mut io::stdout())
 }
 
-/// Serves one client, until it ends the session.
+/// Serves one client until the client ends the session.
 ///
 /// # Errors
-/// The client broke the protocol or vanished.
+/// The client violated the protocol or vanished.
 pub fn serve_on(input: impl Read + Send + 'static, output: &mut dyn Write) -> Result<(), ServeError> {
     serve::serve(&mut Client::new(BufReader::new(input), output))
 }

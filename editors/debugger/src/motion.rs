@@ -1,4 +1,4 @@
-//! Motions of a run: continue, steps, and steps back.
+//! Motions of a run: continue, steps forward, and steps back.
 
 use mdle_compiler::plan::Part;
 use serde_json::{Value, json};
@@ -8,30 +8,30 @@ use crate::breakpoints::Id;
 use crate::run::Step;
 use crate::session::Session;
 
-/// Number of steps between two looks at the client.
+/// Number of steps between two checks for a request that interrupts the run.
 const LOOK: u64 = 4_096;
 
-/// A motion that the client asks for.
+/// A motion that the client requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Motion {
-    /// To the next breakpoint, or to the end.
+    /// Forward to the next breakpoint or to the end.
     Continue,
-    /// To the end of the turn, or of the next one.
+    /// Forward to the end of the current turn, or of the next turn if the current one has ended.
     Turn,
-    /// To the next transition.
+    /// Forward to the next transition.
     Transition,
-    /// Until the innermost scope around the atom has ended.
+    /// Forward until the innermost scope of the atom has ended.
     Out,
-    /// To the end of the turn before.
+    /// Back to the end of the previous turn.
     TurnBack,
-    /// To the transition before.
+    /// Back to the previous transition.
     TransitionBack,
-    /// To the breakpoint before, or to the start.
+    /// Back to the previous breakpoint or to the start.
     ContinueBack,
 }
 
 impl Motion {
-    /// Returns the motion of a command; `None` for another command.
+    /// Returns the motion that a command requests; `None` for a command that is not a motion.
     pub(crate) fn of(command: &str, arguments: &Value) -> Option<Self> {
         let is_fine = arguments.get("granularity").and_then(Value::as_str) == Some("instruction");
         match (command, is_fine) {
@@ -48,7 +48,7 @@ impl Motion {
 }
 
 impl Session<'_, '_, '_> {
-    /// Begins the run.
+    /// Starts the run.
     pub(crate) fn start(&mut self, stops_on_entry: bool) -> Result<(), ServeError> {
         if stops_on_entry {
             return self.stopped("entry", "The plan is entered", &[]);
@@ -59,7 +59,7 @@ impl Session<'_, '_, '_> {
         }
     }
 
-    /// Makes a motion, and reports where it stopped.
+    /// Executes a motion, and reports where the run has stopped.
     pub(crate) fn go(&mut self, motion: Motion) -> Result<(), ServeError> {
         self.lists.clear();
         match motion {
@@ -103,7 +103,8 @@ impl Session<'_, '_, '_> {
         self.stopped("end", text, &[])
     }
 
-    /// Goes back to the last position that `is_there` accepts, by its breakpoints and the step that leads to it.
+    /// Moves the run back to the last position that `is_there` accepts; the arguments are the breakpoints at the
+    /// position and the step that leads to it.
     fn back(&mut self, reason: &str, is_there: impl Fn(&[Id], Option<Step>) -> bool) -> Result<(), ServeError> {
         let (breakpoints, plan) = (&self.breakpoints, &self.loaded.compiled.plan);
         self.run.back(|run, step| is_there(&breakpoints.hits(run, plan, step), step));
@@ -113,7 +114,7 @@ impl Session<'_, '_, '_> {
         self.stopped(reason, if reason == "step" { "Step back" } else { "Breakpoint" }, &[])
     }
 
-    /// Reports that the run has stopped.
+    /// Reports to the client that the run has stopped.
     pub(crate) fn stopped(&mut self, reason: &str, description: &str, hits: &[Id]) -> Result<(), ServeError> {
         self.lists.clear();
         let body = json!({

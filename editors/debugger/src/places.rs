@@ -1,4 +1,4 @@
-//! The places of a plan at which a run can stop: where elements begin, and the operands of conditions.
+//! The places of a plan at which a run can stop: the beginnings of elements, and the operands of conditions.
 
 use mdle_compiler::diagnostic::{SourceId, Span};
 use mdle_compiler::plan::Part;
@@ -9,7 +9,7 @@ use crate::launch::Loaded;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Place {
     source: SourceId,
-    /// Line and column of its start, from 0.
+    /// Line of the place's start, from 0. The next field is the column, from 0.
     pub(crate) line: u32,
     pub(crate) column: u32,
     /// `true` for an operand of a condition, `false` for a scope, a loop or an atom.
@@ -38,8 +38,8 @@ pub(crate) fn places(loaded: &Loaded) -> Vec<Place> {
     places
 }
 
-/// Returns the place that a breakpoint means: with a column the operand around it, or else the first place from there
-/// on in the line; without a column the element that begins in the line, or else the first place from there on.
+/// Returns the place that a breakpoint means. With a column, this is the operand at the column, or else the next or
+/// last place in the line. Without a column, this is the element that begins in the line, or else the next place.
 pub(crate) fn meant(places: &[Place], source: SourceId, line: u32, column: Option<u32>) -> Option<Place> {
     let from = places.partition_point(|place| (place.source, place.line) < (source, line));
     let to = places.partition_point(|place| (place.source, place.line) <= (source, line));
@@ -56,13 +56,14 @@ pub(crate) fn meant(places: &[Place], source: SourceId, line: u32, column: Optio
     found.or_else(next).copied()
 }
 
-/// Returns the places that begin in these lines.
+/// Returns the places that begin in the lines from `first` to `last`.
 pub(crate) fn between(places: &[Place], source: SourceId, first: u32, last: u32) -> impl Iterator<Item = &Place> {
     places.iter().filter(move |place| place.source == source && (first..=last).contains(&place.line))
 }
 
 impl Place {
-    /// Column behind the place, if it ends in its line: operands contain no character of two UTF-16 units.
+    /// Returns the column after the end of a place that ends in its first line; operands contain no character with two
+    /// UTF-16 units.
     fn end_column(&self) -> u32 {
         self.column.saturating_add(self.span.end.saturating_sub(self.span.start))
     }

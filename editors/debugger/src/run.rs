@@ -1,11 +1,11 @@
-//! A run of a plan on a script, which goes forward step by step, and back: a run is deterministic, so going back is
-//! going forward again from a copy of an earlier state.
+//! A run of a plan on a script, which can go forward and back step by step. Runs are deterministic: to go back, the run
+//! starts from a copy of an earlier state and goes forward again.
 
 use mdle_compiler::diagnostic::Span;
 use mdle_compiler::plan::Plan;
 use mdle_compiler::trace::{Applied, OpenPart, Reports, Step as TreeStep, Tree};
 
-/// Maximum number of copies; with more of them every other one is dropped.
+/// Maximum number of copies; beyond it every second copy is dropped.
 const MOST_COPIES: usize = 64;
 
 /// A position in a run.
@@ -15,48 +15,48 @@ pub(crate) struct At {
     pub(crate) steps: u64,
     /// Number of the turn, from 0.
     pub(crate) turn: usize,
-    /// Number of transitions that were made in the turn.
+    /// Number of transitions so far in the turn.
     made: usize,
-    /// Input of the turn, once the turn is over.
+    /// Input of the turn; `None` until the turn has ended.
     pub(crate) input: Option<Input>,
 }
 
-/// The input of a turn that is over.
+/// Input of a turn that has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Input {
-    /// The law of the current atom.
+    /// The input that the law of the current atom returns.
     Law,
-    /// The null input, because the turn reached the limit of transitions.
+    /// The null input, because the turn reached the maximum number of transitions.
     Cut,
     /// The null input, because the plan has ended.
     Over,
 }
 
-/// A step forward.
+/// Kind of a step forward.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// The next turn has begun: time has passed.
+    /// The next turn has begun, at a later time.
     Turn,
-    /// A scope has ended, which `ended` open elements enclosed. Of the open elements, `kept` were not entered anew.
+    /// A scope has ended. Before that, `ended` open elements enclosed it; `kept` open elements were not entered again.
     Transition { ended: usize, kept: usize },
-    /// The turn is over.
+    /// The turn has ended.
     End,
 }
 
-/// A run of a plan.
+/// A run of a plan on a script.
 #[derive(Debug)]
 pub(crate) struct Run<'p> {
     turns: &'p [Reports],
     tree: Tree<'p>,
     at: At,
-    /// Copies in the order of the run; the first is its start.
+    /// Copies of the state in the order of the run; the first is the start of the run.
     copies: Vec<(At, Tree<'p>)>,
     /// Number of turns between two copies.
     apart: usize,
 }
 
 impl<'p> Run<'p> {
-    /// Enters the plan at the first of the turns; `None` if there is none.
+    /// Enters the plan at the first of `turns`; returns `None` if there is no turn.
     pub(crate) fn new(plan: &'p Plan, turns: &'p [Reports]) -> Option<Self> {
         let mut tree = Tree::new(plan);
         tree.begin(turns.first()?);
@@ -64,27 +64,27 @@ impl<'p> Run<'p> {
         Some(Self { turns, at, copies: vec![(at, tree.clone())], tree, apart: 32 })
     }
 
-    /// Returns the position.
+    /// Returns the current position.
     pub(crate) fn at(&self) -> At {
         self.at
     }
 
-    /// Returns the reports of the turn.
+    /// Returns the reports of the current turn.
     pub(crate) fn reports(&self) -> &'p Reports {
         &self.turns[self.at.turn]
     }
 
-    /// Returns the reports of the turn before, if there was one.
+    /// Returns the reports of the previous turn, if there is one.
     pub(crate) fn reports_before(&self) -> Option<&'p Reports> {
         self.turns.get(self.at.turn.checked_sub(1)?)
     }
 
-    /// Returns the open elements, the plan first and the current atom last; none when the plan has ended.
+    /// Returns the open elements from the plan to the current atom; no elements once the plan has ended.
     pub(crate) fn open(&self) -> impl DoubleEndedIterator<Item = OpenPart<'_, 'p>> + ExactSizeIterator {
         self.tree.open()
     }
 
-    /// Returns the places of the operands by which the next step ends a scope.
+    /// Returns the places of the operands whose firing ends a scope in the next step.
     pub(crate) fn firing(&self) -> Vec<Span> {
         if self.at.input.is_some() { Vec::new() } else { self.tree.firing(self.reports()) }
     }
@@ -94,7 +94,7 @@ impl<'p> Run<'p> {
         self.open().len() == 0
     }
 
-    /// Makes a step; `None` at the end of the plan and of the script.
+    /// Makes a step; returns `None` at the end of the plan or of the script.
     pub(crate) fn step(&mut self) -> Option<Step> {
         let step = if self.at.input.is_some() { self.next_turn()? } else { self.go_on() };
         self.at.steps += 1;
@@ -141,8 +141,9 @@ impl<'p> Run<'p> {
         self.copies.push((self.at, self.tree.clone()));
     }
 
-    /// Goes back to the last position before this one to which a step leads that `is_there` accepts, or else to the
-    /// start; `is_there` sees the start without a step. Returns `false` at the start, where nothing is before.
+    /// Moves back to the last earlier position that `is_there` accepts, or else to the start of the run. The second
+    /// argument of `is_there` is the step that leads to the position, and `None` for the start. Returns `false` if the
+    /// run is at its start.
     pub(crate) fn back(&mut self, mut is_there: impl FnMut(&Self, Option<Step>) -> bool) -> bool {
         let here = self.at.steps;
         if here == 0 {
@@ -168,7 +169,7 @@ impl<'p> Run<'p> {
         false
     }
 
-    /// Goes to the position after `steps` steps from the start of the run.
+    /// Moves to the position `steps` steps after the start of the run.
     fn go_to(&mut self, steps: u64) {
         if let Some((at, tree)) = self.copies.iter().rev().find(|(at, _)| at.steps <= steps).cloned() {
             (self.at, self.tree) = (at, tree);

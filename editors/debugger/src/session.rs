@@ -1,4 +1,4 @@
-//! The state of a session in which a client debugs a plan.
+//! The state of a debugging session.
 
 use crate::breakpoints::Breakpoints;
 use crate::client::Client;
@@ -6,14 +6,14 @@ use crate::launch::Loaded;
 use crate::run::Run;
 use crate::variables::Lists;
 
-/// Numbers of the first line and of the first column for the client, 0 or 1.
+/// Number of the first line and of the first column in the client's messages, 0 or 1.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Base {
     pub(crate) line: u32,
     pub(crate) column: u32,
 }
 
-/// A plan that is being debugged.
+/// The session of a client that debugs a plan.
 pub(crate) struct Session<'l, 'c, 'o> {
     pub(crate) loaded: &'l Loaded,
     pub(crate) run: Run<'l>,

@@ -1,24 +1,25 @@
-//! The stack of a run: the current atom, and the scopes that enclose it, each with the passes of the loops around it.
+//! The stack of a run: the current atom, and the scopes that enclose it, each with the passes of its loops.
 
 use mdle_compiler::diagnostic::Span;
 use mdle_compiler::plan::{Part, Plan};
 
 use crate::run::Run;
 
-/// A frame of the stack.
+/// A frame of the stack: an atom or a scope.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Frame {
-    /// Text for people.
+    /// Name of the frame for users.
     pub(crate) name: String,
-    /// Place of the atom, or of the scope's definition.
+    /// Place of the atom or of the scope's definition.
     pub(crate) span: Span,
-    /// Index among the open elements of the run.
+    /// Index of the frame among the open elements of the run.
     pub(crate) open: usize,
-    /// Indices of the loops directly around the element, the innermost last.
+    /// Indices, among the open elements, of the loops that directly enclose the element, from the outermost to the
+    /// innermost.
     pub(crate) loops: Vec<usize>,
 }
 
-/// Returns the frames, the current atom first and the plan last; none when the plan has ended.
+/// Returns the frames from the current atom to the plan; no frames once the plan has ended.
 pub(crate) fn frames(run: &Run<'_>, plan: &Plan) -> Vec<Frame> {
     let (mut frames, mut loops, mut passes) = (Vec::new(), Vec::new(), String::new());
     for (open, element) in run.open().enumerate() {

@@ -1,4 +1,4 @@
-//! The variables of a frame: its condition with the operands, what it keeps since it was entered, and the turn.
+//! The variables of a frame: the operands of its condition, its memory since it was entered, and the turn.
 
 use serde_json::{Value, json};
 
@@ -7,17 +7,18 @@ use crate::run::{Input, Run};
 use crate::stack::Frame;
 use crate::why::{Reason, reason};
 
-/// Lists of variables that the client may ask for while the run is stopped; a reference is a position in it, from 1.
+/// Lists of variables that the client can request while the run is stopped; a reference is an index into the lists,
+/// from 1.
 #[derive(Debug, Default)]
 pub(crate) struct Lists(Vec<Vec<Value>>);
 
 impl Lists {
-    /// Forgets all lists: the run goes on.
+    /// Removes all lists, because the run continues.
     pub(crate) fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// Returns the list of a reference.
+    /// Returns the list with this reference.
     pub(crate) fn get(&self, reference: usize) -> Option<&[Value]> {
         self.0.get(reference.checked_sub(1)?).map(Vec::as_slice)
     }
@@ -34,7 +35,7 @@ impl Lists {
         json!({ "name": reason.text, "value": reason.value(), "variablesReference": reference })
     }
 
-    /// Returns the groups of variables of a frame; of the turn alone when the plan has ended.
+    /// Returns the groups of variables of a frame; once the plan has ended, only the group of the turn.
     pub(crate) fn scopes(&mut self, loaded: &Loaded, run: &Run<'_>, frame: Option<&Frame>) -> Value {
         let mut lists = Vec::new();
         if let Some(frame) = frame {
@@ -74,7 +75,7 @@ fn meters(nanometers: u64) -> String {
     format!("{} m", nanometers as f64 / 1e9)
 }
 
-/// Returns what a frame keeps: timer, way, passes, memories of RISING and the record of `after`.
+/// Returns the memory of a frame: timer, way, passes, memories of RISING, and the record of `after`.
 fn kept(loaded: &Loaded, run: &Run<'_>, frame: &Frame) -> Vec<Value> {
     let reports = run.reports();
     let opened: Vec<_> = run.open().collect();
@@ -96,7 +97,7 @@ fn kept(loaded: &Loaded, run: &Run<'_>, frame: &Frame) -> Vec<Value> {
     list
 }
 
-/// Returns the turn: its number, its time, and what the script reports.
+/// Returns the variables of the turn: its number, its time, and the reports of the script.
 fn turn(run: &Run<'_>) -> Vec<Value> {
     let (at, reports) = (run.at(), run.reports());
     let state = match at.input {

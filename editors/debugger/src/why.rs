@@ -1,4 +1,4 @@
-//! The reason why a condition holds or does not hold, operand by operand.
+//! The reason why a condition holds or does not hold, with the values of its operands.
 
 use std::slice::Iter;
 
@@ -9,21 +9,21 @@ use crate::launch::Loaded;
 use crate::run::Run;
 use crate::stack::Frame;
 
-/// A condition in a turn, with its operands.
+/// The value of a condition in a turn, with its operands.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Reason {
-    /// Condition text.
+    /// Text of the condition.
     pub(crate) text: String,
     pub(crate) holds: bool,
-    /// Reason for the verdict, such as the time that has passed; empty if it is the operands.
+    /// Reason for the value, such as the elapsed time; empty if the operands are the reason.
     pub(crate) detail: String,
-    /// `true` for a comparison, of which the first word is a number and no condition.
+    /// `true` for a comparison, whose first word is a number and not a condition.
     is_comparison: bool,
     pub(crate) operands: Vec<Reason>,
 }
 
-/// Returns the reasons for the condition of a frame, or for an operand of it, that `expression` names: by its text in
-/// the file, by its condition text, or by its first word. A signal names all its comparisons.
+/// Returns the reasons of the frame's condition, or of the operands of it that `expression` names: by their text in the
+/// file, by their condition text, or by their first word. The name of a signal selects all its comparisons.
 pub(crate) fn why(loaded: &Loaded, run: &Run<'_>, frame: &Frame, expression: &str) -> Option<Vec<Reason>> {
     let (plan, reports) = (&loaded.compiled.plan, run.reports());
     let open = run.open().nth(frame.open)?;
@@ -46,8 +46,8 @@ pub(crate) fn why(loaded: &Loaded, run: &Run<'_>, frame: &Frame, expression: &st
     if comparisons.is_empty() { named.into_iter().next().map(|first| vec![first]) } else { Some(comparisons) }
 }
 
-/// Returns the sentence about reasons: the value of a single condition, and of comparisons each with its text, since
-/// their number has no value that is true or false.
+/// Returns the sentence about `reasons`: for a single condition its value; for comparisons the text and value of each,
+/// because the number that they compare is neither true nor false.
 pub(crate) fn sentence(reasons: &[Reason], expression: &str) -> String {
     let expression = plain(expression);
     match reasons {
@@ -79,14 +79,14 @@ fn written<'c, 'p>(
     is_meant(first, last).then_some(condition)
 }
 
-/// Returns a text with single spaces and without the parentheses around it.
+/// Returns a text with single spaces and without its outer parentheses.
 fn plain(text: &str) -> String {
     let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let inner = words.strip_prefix('(').and_then(|text| text.strip_suffix(')')).filter(|text| is_balanced(text));
     inner.map_or_else(|| words.clone(), plain)
 }
 
-/// Returns `true` if no closing bracket is before its opening one.
+/// Returns `true` if no closing parenthesis precedes its opening parenthesis.
 fn is_balanced(text: &str) -> bool {
     let depth = text.chars().try_fold(0_i64, |depth, c| match c {
         '(' => Some(depth + 1),
@@ -96,7 +96,7 @@ fn is_balanced(text: &str) -> bool {
     depth == Some(0)
 }
 
-/// Returns the reason for a condition of an open part in a turn.
+/// Returns the value of a condition of an open part in a turn, with the reason.
 pub(crate) fn reason(plan: &Plan, part: OpenPart<'_, '_>, condition: &Condition, reports: &Reports) -> Reason {
     let operands = if condition.lasting().is_some() { &[] } else { condition.children() };
     Reason {
@@ -139,18 +139,18 @@ fn detail(part: OpenPart<'_, '_>, condition: &Condition, reports: &Reports) -> S
 }
 
 impl Reason {
-    /// Returns the first part that `is_it` accepts, an operator before its operands.
+    /// Returns the first part that `is_it` accepts; an operator precedes its operands.
     fn find(&self, is_it: &impl Fn(&Self) -> bool) -> Option<&Self> {
         if is_it(self) { Some(self) } else { self.operands.iter().find_map(|operand| operand.find(is_it)) }
     }
 
-    /// Returns the value, with its detail.
+    /// Returns the value as text, with its detail.
     pub(crate) fn value(&self) -> String {
         let value = if self.holds { "holds" } else { "does not hold" };
         if self.detail.is_empty() { value.to_owned() } else { format!("{value}: {}", self.detail) }
     }
 
-    /// Returns the value, followed by those of the operands that decide it.
+    /// Returns the value, followed by the values of the operands that decide it.
     fn sentence(&self) -> String {
         let mut sentence = self.value();
         let operands: Vec<String> =
@@ -161,7 +161,7 @@ impl Reason {
         sentence
     }
 
-    /// Returns the operands that have no operands themselves.
+    /// Returns all nested operands that have no operands themselves.
     fn leaves(&self) -> Vec<&Self> {
         match self.operands.as_slice() {
             [] => vec![self],
