@@ -1,4 +1,4 @@
-//! The arrows of a picture, between boxes that have their places: what follows what, and how a scope is left.
+//! The arrows of a picture between placed boxes: the order of elements, and the exits of scopes.
 
 use super::layout::{GAP, Placed, SIDE};
 use super::texts::until;
@@ -7,17 +7,17 @@ use crate::fsm::{Element, ElementKind, Machine};
 /// Meaning of an arrow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Arrow {
-    /// The way to the element that follows.
+    /// An arrow to the next element.
     Flow,
-    /// The way into the first element of a box, or out of its last one: a line without a head.
+    /// A line without a head, into the first element of a box or out of its last element.
     Port,
-    /// The way out of a scope when its own condition fires.
+    /// An arrow that leaves a scope when its own condition fires.
     Exit,
     /// An arrow back to the beginning of a loop, for its next pass.
     Again,
 }
 
-/// A line through these points with rounded corners.
+/// A line through `points`, with rounded corners.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Polyline {
     pub(super) arrow: Arrow,
@@ -26,9 +26,9 @@ pub(super) struct Polyline {
     pub(super) depth: usize,
 }
 
-/// Width on either side of the plan's box, for the signs where the plan begins and ends.
+/// Width of the margin on either side of the plan's box, for the signs at its beginning and end.
 pub(super) const MARGIN: i64 = 44;
-/// Distance of a scope's own exit from the scope's upper edge.
+/// Distance of the exit by a scope's own condition from the scope's upper edge.
 pub(super) const EXIT: i64 = 16;
 
 /// Returns all arrows, in the order of their boxes.
@@ -53,7 +53,7 @@ fn line(arrow: Arrow, depth: usize, points: &[(i64, i64)]) -> Polyline {
     Polyline { arrow, points: points.to_vec(), depth }
 }
 
-/// The arrows between the children of a box, into the first and out of the last.
+/// Appends the arrows between the children of a box, into the first and out of the last child.
 fn inside(element: Element<'_>, placed: &Placed, all: &[Placed], lines: &mut Vec<Polyline>) {
     let depth = placed.depth + 1;
     let (Some(first), Some(last)) = (element.children().next(), element.children().last()) else { return };
@@ -89,7 +89,7 @@ fn inside(element: Element<'_>, placed: &Placed, all: &[Placed], lines: &mut Vec
     lines.extend(exit(last, end, (port, from.1), from.0 + SIDE / 2));
 }
 
-/// Returns the points from one box to the next in its row, whose arrow may arrive at another height.
+/// Returns the points of an arrow from one box to the next box in its row, which may be at another height.
 fn beside(from: (i64, i64), to: (i64, i64)) -> Vec<(i64, i64)> {
     if from.1 == to.1 {
         return vec![from, to];
@@ -98,7 +98,7 @@ fn beside(from: (i64, i64), to: (i64, i64)) -> Vec<(i64, i64)> {
     vec![from, (middle, from.1), (middle, to.1), to]
 }
 
-/// Returns the points from the end of a row to the beginning of the next one, through the gap between them.
+/// Returns the points of an arrow from the end of a row to the beginning of the next row, through the gap between them.
 fn around(from: (i64, i64), to: (i64, i64), gap: i64) -> Vec<(i64, i64)> {
     vec![
         from,
@@ -118,13 +118,13 @@ fn gap_above(child: usize, placed: &Placed, all: &[Placed]) -> i64 {
     tops.min().unwrap_or(0) - GAP / 2
 }
 
-/// Returns the line of a loop's next pass: below all its elements, back to the first.
+/// Returns the arrow for the next pass of a loop: below all its elements, back to the first.
 fn again(placed: &Placed, from: (i64, i64), to: (i64, i64)) -> Polyline {
     let (right, left, below) = (from.0 + SIDE / 2, to.0 - SIDE / 2, placed.y + placed.height - 16);
     line(Arrow::Again, placed.depth, &[from, (right, from.1), (right, below), (left, below), (left, to.1), to])
 }
 
-/// Returns the line of a scope's exit by its own condition, from its head to `to`; no line for other elements.
+/// Returns the arrow of a scope's exit by its own condition, from its head to `to`; no arrow for other elements.
 fn exit(element: Element<'_>, placed: &Placed, to: (i64, i64), over: i64) -> Vec<Polyline> {
     if !element.is_scope() || !until(element).ends() {
         return Vec::new();
@@ -133,8 +133,8 @@ fn exit(element: Element<'_>, placed: &Placed, to: (i64, i64), over: i64) -> Vec
     vec![line(Arrow::Exit, placed.depth, &[from, (over, from.1), (over, to.1), to])]
 }
 
-/// Returns the lines of the exit of a scope at the end of a row by its own condition: down to the arrow in the gap,
-/// which leads on.
+/// Returns the arrows of the exit, by its own condition, of a scope at the end of a row: down to the gap, from where an
+/// arrow leads on.
 fn exit_below(element: Element<'_>, placed: &Placed, to: (i64, i64), gap: i64) -> Vec<Polyline> {
     let right = placed.x + placed.width;
     if placed.flows {

@@ -1,4 +1,4 @@
-//! A plan for Graphviz: scopes and loops as clusters, atoms as nodes, exits as edges.
+//! A plan in Graphviz's language, with scopes and loops as clusters, atoms as nodes, and exits as edges.
 
 use mdle_runtime::{Printable, is_printable};
 
@@ -9,16 +9,16 @@ use super::{can_be_shown, place, too_many};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Atom, Element, ElementKind, Machine, Visit};
 
-/// Maximum number of letters in a line of a label; `LINES` is the maximum number of its lines.
+/// Maximum number of characters in a line of a label. `LINES` is the maximum number of lines.
 const LETTERS: usize = 30;
 const LINES: usize = 3;
-/// Maximum number of edges: loops that end together have one each.
+/// Maximum number of edges: each of several loops that end together has an edge.
 const EDGES: usize = 10_000;
 
-/// The plan in Graphviz's language.
+/// Returns the plan in Graphviz's language.
 ///
 /// # Errors
-/// E0502 for a plan of more than 1,000 atoms, or of as many scopes and loops.
+/// E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
 pub fn dot(machine: &Machine) -> Result<String, Diagnostic> {
     can_be_shown(machine)?;
     let mut graph = Graph { text: String::new(), depth: 0, edges: 0 };
@@ -36,7 +36,7 @@ pub fn dot(machine: &Machine) -> Result<String, Diagnostic> {
 
 struct Graph {
     text: String,
-    /// The clusters that are open.
+    /// Number of open clusters.
     depth: usize,
     edges: usize,
 }
@@ -57,7 +57,7 @@ impl Graph {
         self.line(1, &format!("begin -> {} [lhead=cluster0];", id(plan.first())));
     }
 
-    /// Opens or closes the cluster of a scope or a loop; an atom is a node.
+    /// Writes the beginning or the end of the cluster of a scope or a loop, or the node of an atom.
     fn cluster(&mut self, visit: Visit<'_>) {
         let (Visit::Enter(element) | Visit::Leave(element)) = visit;
         let (labels, tooltip) = (labels(element), quoted(&tooltip(element)));
@@ -87,7 +87,7 @@ impl Graph {
         self.line(self.depth + 1, &format!("label={}; {style}; tooltip={tooltip};", label(&title)));
     }
 
-    /// The destinations of an element that ends by its own condition.
+    /// Writes the edges from an element that ends by its own condition to its destinations.
     fn edges(&mut self, element: Element<'_>) {
         let until = until(element);
         if !until.ends() {
@@ -117,7 +117,7 @@ impl Graph {
     }
 }
 
-/// Returns `true` if a destination is inside the element itself: an edge cannot begin at a cluster that it ends in.
+/// Returns `true` if a destination is inside the element itself: an edge cannot begin at a cluster in which it ends.
 fn leads_inside(destination: Destination<'_>, element: Element<'_>) -> bool {
     match destination {
         Destination::After { .. } | Destination::Over { .. } => false,
@@ -133,7 +133,7 @@ fn id(atom: Atom<'_>) -> String {
     format!("a{}", atom.number() + 1)
 }
 
-/// A text on a few lines, as a label.
+/// Returns a text as a label of a few lines.
 fn label(text: &str) -> String {
     let lines = wrapped(text, LETTERS, LINES);
     let lines: Vec<_> = lines.iter().map(|line| escaped(line)).collect();
@@ -144,7 +144,7 @@ fn quoted(text: &str) -> String {
     format!("\"{}\"", escaped(text))
 }
 
-/// In a string of Graphviz's a backslash begins an escape sequence, and `&` an HTML entity.
+/// Escapes a text for a string of Graphviz, where a backslash begins an escape sequence and `&` an HTML entity.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {

@@ -1,21 +1,21 @@
-//! The elements that follow when an element of a plan ends, with loops as they are written
+//! Determines the elements that follow when an element of a plan ends; loops are not expanded
 //! (docs/src/reference/semantics.md, 5.3).
 
 use super::texts::until;
 use crate::fsm::{Element, ElementKind, Exit, Machine};
 
-/// A destination of an element that ends.
+/// A destination to which the end of an element leads.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Destination<'m> {
-    /// The end leads to the next element; `last_pass` is `true` if only the last pass of a loop leads there.
+    /// The next element; `last_pass` is `true` if only the last pass of a loop leads there.
     After { next: Element<'m>, last_pass: bool },
-    /// The beginning of this loop, for the next pass.
+    /// The beginning of the loop `repeated`, for its next pass.
     Again { repeated: Element<'m>, times: Option<u64> },
-    /// The end leads to the end of the plan; `last_pass` is `true` if only the last pass of a loop leads there.
+    /// The end of the plan; `last_pass` is `true` if only the last pass of a loop leads there.
     Over { last_pass: bool },
 }
 
-/// Returns the destinations of an element: each loop that ends with it, and the element after these loops.
+/// Returns the destinations of an element: each loop that ends with the element, and the element after these loops.
 pub(super) fn destinations(element: Element<'_>) -> Vec<Destination<'_>> {
     let (mut all, mut exit, mut last_pass) = (Vec::new(), element.exit(), false);
     loop {
@@ -43,16 +43,16 @@ pub(super) fn destinations(element: Element<'_>) -> Vec<Destination<'_>> {
     }
 }
 
-/// The ways in which an element can end.
+/// Ways in which an element can end.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct WaysOut {
     /// `true` if the element can end, by itself or with its last element.
     pub(super) ever: bool,
-    /// `true` if it ends with its last element; of an atom, if anything ends it.
+    /// `true` if the element can end with its last element, or is an atom that can end.
     pub(super) at_its_end: bool,
 }
 
-/// Returns the ways in which each element can end, by its number.
+/// Returns the ways in which each element can end, indexed by the element's number.
 pub(super) fn ends(machine: &Machine) -> Vec<WaysOut> {
     let mut ends = vec![WaysOut::default(); machine.elements().len()];
     // Inner elements come before those that hold them.

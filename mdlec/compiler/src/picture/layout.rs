@@ -1,4 +1,4 @@
-//! Positions of the boxes of a picture: children are in rows inside their scope or loop.
+//! Computes positions of the boxes of a picture: children are in rows inside their scope or loop.
 
 use super::exits::ends;
 use super::measure::{LINE, letters, width, wrapped};
@@ -6,19 +6,19 @@ use super::texts::{Until, exponent, labels, passes, until};
 use crate::fsm::{Atom, Element, ElementKind, Machine};
 use crate::plan::frame_text;
 
-/// Width of a picture, if nothing in it needs more.
+/// Maximum width of a picture whose elements do not need more, in pixels.
 const PICTURE: i64 = 1180;
-/// Minimum width of a box's content, at any depth.
+/// Minimum width of a box's content at any depth, in pixels.
 const LEAST: i64 = 400;
-/// Distance between adjacent boxes, and between a box and its content.
+/// Distance between adjacent boxes, and between a box and its content, in pixels.
 pub(super) const GAP: i64 = 34;
 pub(super) const SIDE: i64 = 26;
 const BETWEEN_ROWS: i64 = 34;
 const BOTTOM: i64 = 16;
-/// The room below for the arrow that begins the next pass.
+/// Height below the content of a loop for the arrow to the next pass, in pixels.
 const AGAIN: i64 = 30;
 const PADDING: i64 = 10;
-/// Maximum width of an atom's text, in letters; `LINES` is the maximum number of its lines.
+/// Maximum width of an atom's text, in characters. `LINES` is the maximum number of lines.
 const LETTERS: usize = 30;
 const LINES: usize = 3;
 
@@ -31,30 +31,32 @@ pub(super) enum Style {
     Quiet,
 }
 
-/// The box of a bracket; at first its place is relative to the box around it.
+/// The box of a bracket. During the computation its position is relative to the enclosing box.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Placed {
     pub(super) x: i64,
     pub(super) y: i64,
     pub(super) width: i64,
     pub(super) height: i64,
-    /// Distances from the upper edge of the arrow that leads to the box (`enters`) and of the one that leaves it
-    /// (`leaves`).
+    /// Distance from the box's upper edge to the arrow that enters the box. `leaves` is the distance to the arrow that
+    /// leaves it.
     pub(super) enters: i64,
     pub(super) leaves: i64,
-    /// Lines at the head of the box, from above.
+    /// Lines at the head of the box, from top to bottom.
     pub(super) lines: Vec<(Style, String)>,
     pub(super) children: Vec<usize>,
-    /// The children that begin a row.
+    /// Children with which a row begins.
     pub(super) rows: Vec<usize>,
-    /// Number of scopes and loops around the box.
+    /// Number of scopes and loops that enclose the box.
     pub(super) depth: usize,
-    /// `true` if the element can end; `flows` is `true` if it ends with its last element, or is an atom that ends.
+    /// `true` if the element can end. `flows` is `true` if it can end with its last element, or is an atom that can
+    /// end.
     pub(super) ends: bool,
     pub(super) flows: bool,
 }
 
-/// Returns the boxes of all elements, by their numbers. No recursion: an element comes after those that enclose it.
+/// Returns the boxes of all elements, indexed by the element's number. There is no recursion: an element's number is
+/// greater than those of the elements that enclose it.
 pub(super) fn places(machine: &Machine) -> Vec<Placed> {
     let mut all: Vec<Placed> = Vec::new();
     for (element, ends) in machine.elements().zip(ends(machine)) {
@@ -114,7 +116,7 @@ fn widest(lines: &[(Style, String)]) -> i64 {
     lines.iter().map(|(_, line)| width(line)).max().unwrap_or(0)
 }
 
-/// Places the elements of a scope or a loop, whose sizes are known, and computes its own size.
+/// Places the children of a scope or a loop, whose sizes are known, and computes the size of the scope or loop.
 fn holder(element: Element<'_>, all: &mut [Placed]) {
     let number = element.index();
     let children = all[number].children.clone();
@@ -166,7 +168,7 @@ fn head(element: Element<'_>, content: i64) -> Vec<(Style, String)> {
     }
 }
 
-/// The width at which the children take no more rows than in this room, and rows are as even as they can be.
+/// Returns the smallest width at which the children need no more rows than in the width `room`, so that rows are even.
 fn even(children: &[usize], all: &[Placed], room: i64) -> i64 {
     let needed = rows(children, all, room).len();
     let (mut low, mut high) = (0, room);
@@ -181,7 +183,7 @@ fn even(children: &[usize], all: &[Placed], room: i64) -> i64 {
     high
 }
 
-/// The children in rows, each at most so wide, if a single child is not wider.
+/// Returns the children in rows, each at most `limit` wide unless a single child is wider.
 fn rows(children: &[usize], all: &[Placed], limit: i64) -> Vec<Vec<usize>> {
     let mut rows: Vec<Vec<usize>> = Vec::new();
     let mut taken = 0;

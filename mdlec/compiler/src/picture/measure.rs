@@ -1,27 +1,27 @@
-//! Size of text in a picture: all letters have the same width, so that no font has to be asked.
+//! Size of text in a picture: all characters have the same width, so that no font is needed.
 
-/// The width of ten letters, in pixels.
+/// Width of ten characters, in pixels.
 const TEN_LETTERS: i64 = 73;
-/// The height of a line, in pixels.
+/// Height of a line, in pixels.
 pub(super) const LINE: i64 = 16;
 
-/// The width of a text, in pixels.
+/// Returns the width of a text, in pixels.
 pub(super) fn width(text: &str) -> i64 {
     columns(text) * TEN_LETTERS / 10
 }
 
-/// Returns the number of letters that fit into a width in pixels.
+/// Returns the number of characters that fit into a width in pixels.
 pub(super) fn letters(width: i64) -> usize {
     usize::try_from(width.max(0) * 10 / TEN_LETTERS).unwrap_or(0)
 }
 
-/// The places that a text takes: two for a letter of the East Asian scripts.
+/// Returns the number of columns of a text: two for a character of the East Asian scripts.
 fn columns(text: &str) -> i64 {
     text.chars().map(|letter| if letter < '\u{1100}' { 1 } else { 2 }).sum()
 }
 
-/// Breaks a text into at most `lines` lines of at most `letters` letters, before OR and AND where possible, else
-/// between words. Text that does not fit is left out, and the last line shows so by `…`.
+/// Breaks a text into at most `lines` lines of at most `letters` characters, where possible before OR and AND,
+/// otherwise between words. Text that does not fit is left out; then the last line ends with `…`.
 pub(super) fn wrapped(text: &str, letters: usize, lines: usize) -> Vec<String> {
     let letters = letters.max(4);
     // More is never shown, however long the text is.
@@ -67,7 +67,7 @@ fn fits(wrapped: &[String], words: &str, letters: usize) -> bool {
     line + length(words) <= letters
 }
 
-/// Puts words on the last line, or on the next one; in pieces if they are longer than a line.
+/// Appends words to the last line, or to a new line; words longer than a line are split.
 fn put(wrapped: &mut Vec<String>, words: &str, letters: usize) {
     if !fits(wrapped, words, letters) && wrapped.last().is_some_and(|line| !line.is_empty()) {
         wrapped.push(String::new());

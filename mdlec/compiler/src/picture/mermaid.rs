@@ -1,7 +1,7 @@
-//! A plan for mermaid: a `stateDiagram-v2` with scopes and loops as composite states.
+//! A plan in the language of mermaid: a `stateDiagram-v2` with scopes and loops as composite states.
 //!
-//! In mermaid no transition leads from inside a composite state to the outside, so an end is drawn one step at a time:
-//! the last element leads to the end of the enclosing element, and that leads on.
+//! In mermaid no transition leads from inside a composite state to the outside. The end of an element is therefore
+//! drawn in steps: the last element leads to the end of the enclosing element, and the enclosing element leads on.
 
 use mdle_runtime::{Printable, is_printable};
 
@@ -12,13 +12,13 @@ use super::texts::{exponent, labels, law, passes, until};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Element, ElementKind, Exit, Machine, Visit};
 
-/// Maximum number of letters of a condition or a law: mermaid does not break the lines of labels.
+/// Maximum number of characters of a condition or a law, because mermaid does not break the lines of labels.
 const LETTERS: usize = 60;
 
-/// The plan as a state diagram.
+/// Returns the plan as a state diagram.
 ///
 /// # Errors
-/// E0502 for a plan of more than 1,000 atoms, or of as many scopes and loops.
+/// E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
 pub fn mermaid(machine: &Machine) -> Result<String, Diagnostic> {
     can_be_shown(machine)?;
     let mut diagram = Diagram { ends: ends(machine), depth: 1, text: "stateDiagram-v2\n".into() };
@@ -44,7 +44,7 @@ impl Diagram {
         self.text += &format!("{:indent$}{text}\n", "");
     }
 
-    /// A state; of a scope or a loop up to where the states inside it begin.
+    /// Writes the state of an element; for a scope or a loop, up to the beginning of the states inside it.
     fn enter(&mut self, element: Element<'_>) {
         let (labels, number) = (labels(element), element.number());
         let title = match element.kind() {
@@ -63,7 +63,7 @@ impl Diagram {
         self.line(&format!("[*] --> b{}", number + 1));
     }
 
-    /// The destinations of an element: by its own condition, and when its last element ends.
+    /// Writes the transitions of an element to its destinations: by its own condition, and when its last element ends.
     fn leave(&mut self, element: Element<'_>) {
         if element.atom().is_none() {
             self.depth -= 1;
@@ -98,7 +98,7 @@ impl Diagram {
     }
 }
 
-/// A text on one line, what mermaid reads otherwise as the numbers of its letters.
+/// Returns a text on one line; characters with a meaning in mermaid are replaced by their codes.
 fn shown(text: &str) -> String {
     let mut shown = String::new();
     for letter in wrapped(text, LETTERS, 1).concat().chars() {

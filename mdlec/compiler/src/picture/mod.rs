@@ -1,7 +1,7 @@
-//! Pictures of a plan: drawn as nested boxes, and as text that other tools draw or run (Graphviz, mermaid, SCXML).
+//! Pictures of a plan: a drawing of nested boxes, and texts that other tools draw or run (Graphviz, mermaid, SCXML).
 //!
-//! A picture shows the plan as it is written: loops are not expanded. Only the SCXML machine, which is to do what the
-//! plan does, has a state for each atom of the expanded plan.
+//! A picture shows the plan as it is written: loops are not expanded. Only the SCXML machine, which behaves like the
+//! plan, has a state for each atom of the expanded plan.
 
 mod arrows;
 mod dot;
@@ -23,13 +23,13 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::Machine;
 use crate::plan::Nondegenerate;
 
-/// Maximum number of atoms, and of scopes and loops, that a picture shows: a person does not find his way in more.
+/// Maximum number of atoms, and of scopes and loops together, in a picture: a larger picture is not readable.
 const SHOWN: usize = 1000;
 
 /// Checks that a plan can be drawn.
 ///
 /// # Errors
-/// E0502 for a plan of more than 1,000 atoms, or of as many scopes and loops.
+/// E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
 pub fn fits(plan: &Nondegenerate) -> Result<(), Diagnostic> {
     let plan = plan.plan();
     let (elements, atoms) =
@@ -37,12 +37,12 @@ pub fn fits(plan: &Nondegenerate) -> Result<(), Diagnostic> {
     within(elements, atoms, plan.root.interrupt.span)
 }
 
-/// Refuses a machine that [`fits`] refuses as a plan.
+/// Returns an error for a machine whose plan [`fits`] rejects.
 fn can_be_shown(machine: &Machine) -> Result<(), Diagnostic> {
     within(machine.elements().len(), machine.atoms().len(), place(machine))
 }
 
-/// Refuses too many atoms, or scopes and loops, for a picture.
+/// Returns an error if there are too many atoms, or scopes and loops, for a picture.
 fn within(elements: usize, atoms: usize, place: Span) -> Result<(), Diagnostic> {
     let (count, what) = if atoms > SHOWN { (atoms, "atoms") } else { (elements - atoms, "scopes and loops") };
     if count > SHOWN { Err(too_many(place, count, what, SHOWN)) } else { Ok(()) }
@@ -54,7 +54,7 @@ fn place(machine: &Machine) -> Span {
     root.interrupt().map_or(root.span(), |interrupt| interrupt.span)
 }
 
-/// Reports a plan that is too large for a picture: `count` exceeds `most`.
+/// Returns the error about a plan that is too large for a picture: `count` exceeds `most`.
 fn too_many(place: Span, count: usize, what: &str, most: usize) -> Diagnostic {
     let message = format!("this plan has {count} {what}; a picture shows {most} at most");
     let help = "draw a part of it: `--plan NAME` takes any plan of the file, also one that others use";

@@ -1,12 +1,12 @@
-//! A plan as a machine in W3C SCXML that does what the plan does.
+//! A plan as a machine in W3C SCXML that behaves like the plan.
 //!
-//! In SCXML the transitions of inner states go first, in MDLe those of outer scopes. So there are no nested states:
-//! each atom of the expanded plan is a state, and has the transitions of all scopes around it in document order, the
-//! outermost first. Assignments reset what starts afresh with a state, for which SCXML would enter states.
+//! In SCXML the transitions of inner states take precedence, in MDLe those of outer scopes. So there are no nested
+//! states: each atom of the expanded plan is a state, and has the transitions of all its enclosing scopes in document
+//! order, the outermost first. Where SCXML would enter nested states, assignments reset their variables.
 //!
-//! An event `turn` brings the content of a line of a script (`t`, `way`, `fired`, `completed`); afterwards transitions
-//! without an event are taken as long as there are any, at most [`TRANSITIONS_PER_TURN`], and `law` is the law that is
-//! applied.
+//! An event `turn` carries the content of a line of a script (`t`, `way`, `fired`, `completed`). Then transitions
+//! without an event are taken while there are any, at most [`TRANSITIONS_PER_TURN`]. The variable `law` is the law that
+//! is applied.
 
 use std::collections::BTreeMap;
 
@@ -17,15 +17,15 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::fsm::{Matrices, Transition, matrices};
 use crate::plan::{Condition, Mark, Nondegenerate, Plan, Quark, RecordId};
 
-/// Maximum length of the text, in bytes.
+/// Maximum length of the SCXML text, in bytes.
 const LONGEST: usize = 64 << 20;
 /// Value of `n`, the number of transitions in this turn, before the first turn.
 const BEFORE: u32 = TRANSITIONS_PER_TURN + 1;
 
-/// Writes the state machine of a plan as SCXML.
+/// Returns the plan as a state machine in SCXML.
 ///
 /// # Errors
-/// E0501 and E0502, as [`fsm::expand`](crate::fsm::expand) has them; E0502 for a machine of more than 64 MB.
+/// E0501 and E0502, as in [`fsm::expand`](crate::fsm::expand); E0502 for a machine of more than 64 MB.
 pub fn scxml(plan: &Nondegenerate) -> Result<String, Diagnostic> {
     let made = matrices(plan)?;
     let mut listing = vec![Vec::new(); made.laws.len() + 1];
@@ -54,7 +54,8 @@ pub fn scxml(plan: &Nondegenerate) -> Result<String, Diagnostic> {
 struct Machine<'m, 'p> {
     plan: &'p Plan,
     made: &'m Matrices<'p>,
-    /// `true` if the plan reads the length of the path driven; asked once, as the conditions of all states may be many.
+    /// `true` if the plan reads the length of the driven path; computed once, because the states may have many
+    /// conditions.
     drives: bool,
     /// For each state, the interrupts of its enclosing scopes, outermost first.
     listing: Vec<Vec<usize>>,
@@ -148,7 +149,8 @@ impl<'p> Machine<'_, 'p> {
         self.line(1, "</state>");
     }
 
-    /// Begins a turn: sets the memories by the values at the end of the previous turn, and reads all values again.
+    /// Writes the beginning of a turn: sets the memories from the values at the end of the previous turn, and reads new
+    /// values.
     fn turn(&mut self, state: usize, law: &Quark) {
         self.line(2, "<transition event=\"turn\">");
         for number in self.listing[state].clone() {
@@ -179,7 +181,8 @@ impl<'p> Machine<'_, 'p> {
         self.line(2, "</transition>");
     }
 
-    /// The transition of this interrupt, when this is so; by its own condition, or because the law is done.
+    /// Writes the transition of an interrupt under the condition `when`; `by_condition` is `false` if the law
+    /// completes.
     fn leave(&mut self, number: usize, when: &str, by_condition: bool) {
         let made = self.made;
         let transition = &made.transitions[number];
@@ -205,7 +208,7 @@ impl<'p> Machine<'_, 'p> {
         self.line(2, "</transition>");
     }
 
-    /// Writes the facts that `after` asks for when an interrupt of this transition ends elements.
+    /// Writes the facts that `after` tests and that change when the interrupt of this transition ends elements.
     fn record(&mut self, transition: &Transition<'p>, number: usize, by_condition: bool) {
         let own = transition.marks.iter().map(|mark| (mark, by_condition));
         let ended: Vec<(&Mark, bool)> = own.chain(transition.ends_with.iter().map(|mark| (*mark, false))).collect();
@@ -240,7 +243,7 @@ impl<'p> Machine<'_, 'p> {
         }
     }
 
-    /// Returns the ECMAScript expression that is true if a condition of this interrupt has fired.
+    /// Returns the ECMAScript expression for a condition of this interrupt, which is true if the condition has fired.
     fn expression(&self, condition: &Condition, number: usize) -> String {
         let joined = |operands: &[Condition], sign: &str| {
             let operands: Vec<_> = operands.iter().map(|operand| self.expression(operand, number)).collect();
@@ -299,7 +302,7 @@ fn fact(record: RecordId, number: u32) -> String {
     format!("fact{}_{number}", record.0)
 }
 
-/// A quark's text as a string of ECMAScript's, which one of JSON's is.
+/// Returns a quark's text as a string of ECMAScript; strings of JSON are valid in it.
 fn text(quark: &Quark) -> String {
     // A string can always be written.
     let text = serde_json::to_string(&quark.text).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! A plan drawn as nested boxes: atoms in rows, exits as arcs. No other tool is needed to see it.
+//! A plan drawn as nested boxes: atoms in rows, exits as arcs. A browser can show the drawing without other tools.
 
 use std::fmt::Write;
 
@@ -11,20 +11,20 @@ use super::xml::escaped;
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Element, ElementKind, Machine};
 
-/// Colours for light and dark, and letters.
+/// Style sheet: colours for a light and a dark background, and fonts.
 const STYLE: &str = include_str!("style.css");
-/// Height above the plan's box, for the title.
+/// Height above the plan's box for the title, in pixels.
 const TITLE: i64 = 46;
-/// Height below the plan's box, with a line for the meaning of the signs.
+/// Height below the plan's box with a line of the legend, in pixels.
 const FOOT: i64 = 40;
 /// Maximum number of lines of the legend that explains the signs.
 const MEANINGS: usize = 4;
-/// Radius of the rounded corners of a line.
+/// Radius of the rounded corners of a line, in pixels.
 const ROUND: i64 = 8;
 /// Number of colours for nested scopes.
 const COLOURS: usize = 4;
 
-/// The picture of a plan.
+/// Returns the picture of a plan as SVG.
 ///
 /// # Errors
 /// E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
@@ -32,7 +32,8 @@ pub fn svg(machine: &Machine) -> Result<String, Diagnostic> {
     drawn(machine, None)
 }
 
-/// The picture of a plan with the number of times that each atom began in some runs: atoms that never did are faint.
+/// Returns the picture of a plan with the number of times that each atom began in some runs; atoms that never began are
+/// faint.
 ///
 /// # Errors
 /// E0502 as for [`svg`].
@@ -55,7 +56,7 @@ fn drawn(machine: &Machine, began: Option<&[u64]>) -> Result<String, Diagnostic>
 struct Picture<'p> {
     machine: &'p Machine,
     all: &'p [Placed],
-    /// The number of times that each atom began, if it is to be shown.
+    /// Number of times that each atom began, if the picture shows it.
     began: Option<&'p [u64]>,
     text: String,
 }
@@ -98,7 +99,7 @@ impl Picture<'_> {
         self.line("</svg>");
     }
 
-    /// Draws the signs for the beginning and the end of the plan, and the meaning of the signs.
+    /// Draws the signs for the beginning and the end of the plan, and the legend.
     fn ends(&mut self, root: &Placed, height: i64, meanings: &[String]) {
         let (begin, end) = (root.x - MARGIN + 16, root.x + root.width + MARGIN - 12);
         self.line(&format!("<circle class=\"end\" cx=\"{begin}\" cy=\"{}\" r=\"6\"/>", root.y + root.enters));
@@ -113,7 +114,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Returns the meaning of the signs that are in this picture.
+    /// Returns the text of the legend for the signs that are in this picture.
     fn meanings(&self) -> String {
         let mut meanings = Vec::new();
         if self.machine.elements().any(|element| element.is_scope() && until(element).ends()) {
@@ -125,7 +126,7 @@ impl Picture<'_> {
         meanings.join(" ")
     }
 
-    /// Draws all boxes, outer ones first, so that inner ones are drawn over them.
+    /// Draws all boxes, the outer boxes first, so that inner boxes cover them.
     fn boxes(&mut self) {
         for (element, placed) in self.machine.elements().zip(self.all) {
             let (x, y, width, height) = (placed.x, placed.y, placed.width, placed.height);
@@ -144,7 +145,7 @@ impl Picture<'_> {
         }
     }
 
-    /// The number of times that an atom began, if it is shown.
+    /// Returns the number of times that an atom began, if the picture shows it.
     fn count(&self, element: Element<'_>) -> Option<u64> {
         self.began?.get(element.atom()?.index()).copied()
     }
@@ -191,7 +192,7 @@ impl Picture<'_> {
     }
 }
 
-/// A path through points with rounded corners.
+/// Returns the path through these points with rounded corners.
 fn rounded(points: &[(i64, i64)]) -> String {
     let mut points = points.to_vec();
     points.dedup();
@@ -209,7 +210,7 @@ fn rounded(points: &[(i64, i64)]) -> String {
     path
 }
 
-/// A point on the way from one to another, where the corner begins: no farther than half the way.
+/// Returns the point on the line from `from` to `to` at which a corner begins, at most halfway.
 fn towards(from: (i64, i64), to: (i64, i64)) -> (i64, i64) {
     let step = |from: i64, to: i64| from + (to - from).signum() * ROUND.min((to - from).abs() / 2);
     (step(from.0, to.0), step(from.1, to.1))

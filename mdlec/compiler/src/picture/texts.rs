@@ -3,19 +3,19 @@
 use crate::fsm::{Atom, Element, ElementKind};
 use crate::plan::{Condition, Interrupt, frame_text};
 
-/// Maximum length of a tooltip, in characters: people do not read a longer text.
+/// Maximum length of a tooltip, in characters: nobody reads a longer text.
 const TOOLTIP: usize = 4000;
 
-/// Condition that ends an atom or a scope, in words.
+/// Condition that ends an atom or a scope, in a form for a picture.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Until {
     /// The element ends when this condition fires.
     Fires(String),
-    /// The law's completion.
+    /// The element ends when its law completes.
     Done,
     /// The atom ends when this condition fires or its law completes.
     FiresOrDone(String),
-    /// The element has no condition any more: it was removed, because an outer scope repeats it.
+    /// The element has no condition: its condition, with this text, was removed because an outer scope repeats it.
     Removed(String),
     /// The element has no condition.
     Never,
@@ -54,22 +54,22 @@ impl Until {
     }
 }
 
-/// Returns what ends an element by itself; a loop has nothing that does.
+/// Returns the condition that ends an element by itself; a loop has no such condition.
 pub(super) fn until(element: Element<'_>) -> Until {
     element.interrupt().map_or(Until::Never, |interrupt| Until::of(interrupt, element.completes()))
 }
 
-/// Returns the labels of the elements that end with this one, as in `s1: `; empty without labels.
+/// Returns the labels of the elements that end with this element, such as `s1: `; an empty text if there are no labels.
 pub(super) fn labels(element: Element<'_>) -> String {
     element.marks().iter().rev().map(|mark| format!("{}: ", mark.label)).collect()
 }
 
-/// Returns the text of an atom's frame and law: `FRAME 90deg go 20 0`.
+/// Returns the text of an atom's frame and law, such as `FRAME 90deg go 20 0`.
 pub(super) fn law(atom: Atom<'_>) -> String {
     format!("{}{}", frame_text(atom.frame()), atom.law().text)
 }
 
-/// Returns everything about an element on a few lines, for a tooltip.
+/// Returns the text of a tooltip with all data of an element in a few lines.
 pub(super) fn tooltip(element: Element<'_>) -> String {
     let (labels, until) = (labels(element), until(element));
     let text = match element.kind() {
@@ -88,12 +88,12 @@ pub(super) fn tooltip(element: Element<'_>) -> String {
     bounded(&text)
 }
 
-/// Writes the exponent of a loop: `^3`, or `^inf`.
+/// Returns the exponent of a loop, such as `^3` or `^inf`.
 pub(super) fn exponent(times: Option<u64>) -> String {
     times.map_or_else(|| "^inf".into(), |times| format!("^{times}"))
 }
 
-/// Writes the number of a loop's passes: `3 passes`, `1 pass`, `for ever`.
+/// Returns the number of a loop's passes in words, such as `3 passes`, `1 pass` or `for ever`.
 pub(super) fn passes(times: Option<u64>) -> String {
     match times {
         None => "for ever".into(),
@@ -102,7 +102,7 @@ pub(super) fn passes(times: Option<u64>) -> String {
     }
 }
 
-/// Shortens a text that is too long to be read.
+/// Shortens a text that exceeds the maximum length of a tooltip.
 pub(super) fn bounded(text: &str) -> String {
     match text.char_indices().nth(TOOLTIP) {
         None => text.to_owned(),

@@ -1,8 +1,8 @@
-//! Text in XML: escaped, and without the characters that XML does not have.
+//! Text for XML, escaped and without the characters that XML does not allow.
 
 use mdle_runtime::{Printable, is_printable};
 
-/// The text as content, or as an attribute's value in double quotes.
+/// Returns the text in the form of XML content or of an attribute's value in double quotes.
 pub(super) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
