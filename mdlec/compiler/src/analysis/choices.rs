@@ -1,4 +1,5 @@
-//! Every choice of the values of some variables, and where a condition has fired among them.
+//! Enumerates all assignments of values to some variables (choices), and determines in which of them a condition has
+//! fired.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,7 +27,7 @@ pub(super) struct Read<'l> {
     pub(super) when: When,
 }
 
-/// Variables, each with its value in every choice of those that have more than one.
+/// All choices of values for some variables. Each variable has a table with its value in every choice.
 #[derive(Debug)]
 pub(super) struct Choices {
     free: usize,
@@ -34,8 +35,8 @@ pub(super) struct Choices {
 }
 
 impl Choices {
-    /// The choices of these, in their order, where `value` says which have one value only; nothing if there are too
-    /// many.
+    /// Enumerates the choices of the variables in `all`. `value` returns the value of a variable that has only one
+    /// value. Returns `None` if too many variables have two values.
     pub(super) fn new(all: &BTreeSet<Variable>, value: impl Fn(&Variable) -> Option<bool>) -> Option<Self> {
         let free = all.iter().filter(|variable| value(variable).is_none()).count();
         if free > VARIABLES {
@@ -52,17 +53,18 @@ impl Choices {
         Some(Self { free, columns: columns.collect() })
     }
 
-    /// Returns the table that is `value` in every choice.
+    /// Returns the table with `value` in every choice.
     pub(super) fn constant(&self, value: bool) -> Table {
         Table::constant(self.free, value)
     }
 
-    /// Returns each variable, and the choices in which it is true.
+    /// Returns each variable, with the table of choices in which it is true.
     pub(super) fn columns(&self) -> impl Iterator<Item = (&Variable, &Table)> {
         self.columns.iter()
     }
 
-    /// Returns the choices in which a condition has fired. A variable that is missing here is false.
+    /// Returns the table of choices in which a condition has fired. A variable that is not among the variables is
+    /// false.
     pub(super) fn fired(&self, read: Read<'_>, machine: &Machine) -> Table {
         let Read { condition, bracket, when } = read;
         let column = |variable| self.columns.get(&variable).cloned().unwrap_or_else(|| self.constant(false));
@@ -105,9 +107,10 @@ impl Choices {
     }
 }
 
-/// Adds the variables of a condition; `false` where there are too many.
+/// Collects the variables of a condition in `found`; returns `false` if there are too many.
 pub(super) fn variables(read: Read<'_>, machine: &Machine, found: &mut BTreeSet<Variable>) -> bool {
-    /// Maximum number of variables: more than can be tried, since some may have one value only.
+    /// Maximum number of variables; greater than the number that can be enumerated, because some may have only one
+    /// value.
     const MOST: usize = 4 * VARIABLES;
     let Read { condition, bracket, when } = read;
     let timer = |nanos| match when {
@@ -147,7 +150,7 @@ pub(super) fn variables(read: Read<'_>, machine: &Machine, found: &mut BTreeSet<
     found.len() <= MOST
 }
 
-/// Returns the variable of the fact that `after` asks for: the fact itself, or the fact before an element ended.
+/// Returns the variable of the fact that `after` tests: the fact itself, or the fact as it was before an element ended.
 fn fact(after: &After, when: When) -> Variable {
     match when {
         When::Entered | When::Later => Variable::Fact(after.record, after.fact),

@@ -1,4 +1,5 @@
-//! W0203: conditions that are never true, or true whenever they are first read, independent of the scopes around them.
+//! W0203: conditions that are never true, or that are true whenever they are first read, independent of the enclosing
+//! scopes.
 
 use std::collections::BTreeMap;
 
@@ -8,16 +9,16 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::Machine;
 use crate::plan::{Condition, Interrupt, condition_text};
 
-/// Judges conditions by themselves, without their scopes; every signal counts as a number.
+/// Evaluates conditions without their enclosing scopes; every signal counts as a number.
 pub(super) struct Constants<'l> {
     alone: KnownFacts<'l>,
 }
 
-/// A condition that joins two others of which the value of both together is always the same.
+/// Two operands whose conjunction or disjunction always has the same value.
 struct Pair {
     one: String,
     other: String,
-    /// Returns `true` if the other operator would leave a condition with two values.
+    /// `true` if the condition would have two values with the other operator.
     may_be_joined_otherwise: bool,
 }
 
@@ -26,12 +27,13 @@ impl<'l> Constants<'l> {
         Self { alone: KnownFacts::of_numbers(machine) }
     }
 
-    /// Returns `true` if an interrupt may be one that has not fired when the scope of this bracket is entered.
+    /// Returns `true` if an interrupt may not have fired when the scope of this bracket is entered.
     pub(super) fn stays(&self, bracket: u32, condition: &'l Condition) -> bool {
         self.alone.stays(bracket, condition, When::Entered)
     }
 
-    /// Warns of an interrupt with one value. Leaves alone what never fires on purpose: `null` and `wait inf`.
+    /// Returns a warning about an interrupt with only one value. There is no warning about `null` and `wait inf`, which
+    /// never fire on purpose.
     pub(super) fn lint(&self, bracket: u32, interrupt: &'l Interrupt) -> Option<Diagnostic> {
         let condition = &interrupt.condition;
         let remembers =
@@ -66,7 +68,7 @@ impl<'l> Constants<'l> {
         Some(never_true(lint, operands, &text, span))
     }
 
-    /// An interrupt that has fired whenever its scope is entered.
+    /// Returns the warning about an interrupt that has fired whenever its scope is entered.
     fn skipped(&self, bracket: u32, interrupt: &'l Interrupt) -> Diagnostic {
         let (condition, text, span) = (&interrupt.condition, &interrupt.text, interrupt.span);
         let (what, skipped) = self.what(bracket);
@@ -96,7 +98,7 @@ impl<'l> Constants<'l> {
         }
     }
 
-    /// Returns the scope of a bracket in words, and the effect of an interrupt that has fired at once.
+    /// Returns the kind of a bracket's scope in words, and the effect of an interrupt that has fired at once.
     fn what(&self, bracket: u32) -> (&'static str, &'static str) {
         match bracket {
             0 => ("plan", "is over before it begins"),
@@ -105,7 +107,8 @@ impl<'l> Constants<'l> {
         }
     }
 
-    /// Returns a condition in which operands that are true from the start are negated.
+    /// Returns the text of the condition with negated operands, for those that are true at once; `None` if no such text
+    /// helps.
     fn opposite(&self, bracket: u32, condition: &'l Condition) -> Option<String> {
         // Where each operand may be false at once, only what joins them is at fault.
         if condition.operands().iter().all(|operand| self.stays(bracket, operand)) {
@@ -121,7 +124,8 @@ impl<'l> Constants<'l> {
         Some(opposites.collect::<Option<Vec<_>>>()?.join(" OR "))
     }
 
-    /// Two operands of an AND, `joined` by it, that are never true at once; or two of an OR of which one always is.
+    /// Returns two operands of an AND that are never true together (`joined` is `true`), or two operands of an OR of
+    /// which one is always true (`joined` is `false`).
     fn pair(&self, bracket: u32, condition: &'l Condition, joined: bool) -> Option<Pair> {
         let operands = match (condition, joined) {
             (Condition::And(operands), true) | (Condition::Or(operands), false) => operands,
@@ -146,7 +150,7 @@ impl<'l> Constants<'l> {
         found.or_else(|| operands.iter().find_map(|operand| self.pair(bracket, operand, joined)))
     }
 
-    /// Returns `true` if these conditions may have these values in one turn.
+    /// Returns `true` if the conditions in `values` can have the given values in the same turn.
     fn is_possible(&self, bracket: u32, values: &[(&'l Condition, bool)], when: When) -> bool {
         let wanted = values
             .iter()
@@ -154,8 +158,8 @@ impl<'l> Constants<'l> {
         self.alone.is_possible(&wanted.collect::<Vec<_>>(), &BTreeMap::new())
     }
 
-    /// Text of an operand of the interrupt's OR, as it is written if the interrupt's text has as many operands: `wait
-    /// inf` is `null` in the condition.
+    /// Returns the text of an operand of the interrupt's OR as it is in the plan, if the plan's text has the same
+    /// number of operands: `wait inf`, for example, is `null` in the condition.
     fn written(&self, operand: &Condition, interrupt: &Interrupt) -> String {
         let operands = interrupt.condition.operands();
         let texts = operands_of(&interrupt.text);
@@ -169,7 +173,7 @@ impl<'l> Constants<'l> {
     }
 }
 
-/// Operands of the OR outside of all parentheses in the text of a condition.
+/// Returns the operands of an OR in the text of a condition, outside of all parentheses.
 fn operands_of(text: &str) -> Vec<&str> {
     let (mut depth, mut from, mut found) = (0_u32, 0, Vec::new());
     for (at, letter) in text.char_indices() {
@@ -187,12 +191,12 @@ fn operands_of(text: &str) -> Vec<&str> {
     found
 }
 
-/// Returns `true` if a condition can be seen to have two values.
+/// Returns `true` if a condition obviously has two values.
 fn is_open(condition: &Condition) -> bool {
     matches!(condition, Condition::Quark(_) | Condition::Wait { nanos: 1.., .. } | Condition::After(_))
 }
 
-/// Proposes what to write for an operand that is never true.
+/// Proposes a replacement for an operand that is never true.
 fn never_true(lint: Diagnostic, operands: &[Condition], text: &str, span: Span) -> Diagnostic {
     match operands {
         [_] => lint.fix("if it is never to fire, write {}", span, "(null)"),
@@ -200,7 +204,7 @@ fn never_true(lint: Diagnostic, operands: &[Condition], text: &str, span: Span) 
     }
 }
 
-/// The text of the opposite of a condition with this text.
+/// Returns the text of the negation of a condition, whose own text is `text`.
 fn opposite(condition: &Condition, text: &str) -> String {
     #[allow(clippy::wildcard_enum_match_arm, reason = "all other conditions are negated as a whole")]
     match condition {

@@ -1,6 +1,6 @@
 //! Upper bound of a plan's duration by its timers, independent of the robot's sensors and of the completion of laws.
 //!
-//! A timer is read once a turn, so each may be over as much later as the time from one turn to the next.
+//! A timer is read once per turn, so each timer can end later by up to the time between two turns.
 
 use mdle_runtime::TRANSITIONS_PER_TURN;
 
@@ -14,7 +14,7 @@ use crate::plan::Condition;
 pub(super) enum Longest {
     /// At most `nanos` nanoseconds and `turns` periods of a turn.
     Bounded { nanos: u128, turns: u64 },
-    /// No bound, because this bracket, an atom or a loop, may go on for ever.
+    /// No bound, because this bracket, an atom or a loop, may continue forever.
     Unbounded(u32),
 }
 
@@ -33,7 +33,7 @@ impl Longest {
         }
     }
 
-    /// Returns the duration of this number of passes of the loop of this bracket; 0 is for ever.
+    /// Returns the duration of `times` passes of the loop of this bracket; 0 means an endless loop.
     fn times(self, times: u64, bracket: u32) -> Self {
         match self {
             Self::Bounded { .. } if times == 0 => Self::Unbounded(bracket),
@@ -56,7 +56,7 @@ impl Longest {
     }
 }
 
-/// Adds up the longest times of all that is reached.
+/// Returns the upper bound of the plan's duration: the sum over all elements that run.
 pub(super) fn longest(machine: &Machine, found: &[BracketFacts], most: Most) -> Longest {
     let mut inside = vec![Longest::NONE; machine.elements().len()];
     // The last element first: then the elements inside and after an element are known.
@@ -81,8 +81,8 @@ pub(super) fn longest(machine: &Machine, found: &[BracketFacts], most: Most) -> 
     Longest::NONE
 }
 
-/// Adds the turns in which a search is cut: each makes as many transitions as a turn can, and each transition leads to
-/// another state.
+/// Returns `longest` with additional turns for searches that are cut at the end of a turn: each such turn makes the
+/// maximum number of transitions, and each transition leads to another state.
 fn searched(longest: Longest, machine: &Machine, most: Most) -> Longest {
     match longest {
         Longest::Bounded { nanos, turns } if most.is_cut => {
@@ -93,7 +93,8 @@ fn searched(longest: Longest, machine: &Machine, most: Most) -> Longest {
     }
 }
 
-/// The nanoseconds from which on a condition certainly has fired, or certainly has not.
+/// Returns the time in nanoseconds after which a condition has certainly fired (`fired` is `true`), or certainly has
+/// not (`fired` is `false`).
 fn certain(condition: &Condition, fired: bool) -> Option<u64> {
     let any = |operands: &[Condition]| operands.iter().filter_map(|operand| certain(operand, fired)).min();
     let all = |operands: &[Condition]| {

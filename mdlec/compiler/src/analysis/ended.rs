@@ -1,8 +1,8 @@
-//! The facts that records can hold: a label whose element never ends is never in its record
+//! Determines the facts that records can hold: a label whose element never ends is never in its record
 //! (docs/src/reference/semantics.md, 2.3).
 //!
-//! Which elements end depends on the conditions that ask the records, so the facts grow from none until a walk finds no
-//! further one.
+//! Which elements can end depends on the conditions that test the records. So the analysis begins without facts, and
+//! repeats its walk until the walk finds no new fact.
 
 use std::collections::BTreeSet;
 
@@ -11,9 +11,10 @@ use super::walk::{BracketFacts, Outcome, PlanFacts, Reach, walk};
 use crate::fsm::{Element, ElementKind, Machine};
 use crate::plan::RecordId;
 
-/// Walks over a machine with the records that its runs can have. `one_turn` is as for [`walk`].
+/// Walks over a machine until the facts of its records are complete. `one_turn` is passed to [`walk`].
 pub(super) fn walk_with_records(machine: &Machine, one_turn: bool) -> PlanFacts {
-    /// Maximum number of walks: each but the last finds elements that end because of what the one before found.
+    /// Maximum number of walks: each walk but the last finds elements that can end only because of facts from the
+    /// previous walk.
     const WALKS: usize = 8;
     let mut facts = BTreeSet::new();
     for _ in 1..WALKS {
@@ -27,7 +28,7 @@ pub(super) fn walk_with_records(machine: &Machine, one_turn: bool) -> PlanFacts 
     walk(machine, one_turn, &PossibleFacts::Any)
 }
 
-/// Returns the facts that the elements record which can end, by what a walk has found.
+/// Returns the facts that elements record if they can end according to `found`.
 fn recorded(machine: &Machine, found: &[BracketFacts]) -> BTreeSet<(RecordId, u32)> {
     let mut ends = vec![false; found.len()];
     let mut facts = BTreeSet::new();
@@ -46,7 +47,7 @@ fn recorded(machine: &Machine, found: &[BracketFacts]) -> BTreeSet<(RecordId, u3
     facts
 }
 
-/// Returns `true` if an element can end; `ends` has the answer for each element inside it.
+/// Returns `true` if an element can end; `ends` has the answers for the elements inside it.
 fn can_end(element: Element<'_>, found: &BracketFacts, ends: &[bool]) -> bool {
     let inside = || element.children().last().is_some_and(|last| ends[last.index()]);
     let by_its_body = match element.kind() {

@@ -7,9 +7,9 @@ use crate::plan::RecordId;
 /// The facts of records that may become true in some run.
 #[derive(Debug, Clone)]
 pub(super) enum PossibleFacts {
-    /// These alone, each by its record and its number there.
+    /// Only these facts, each with its record and its number in the record.
     Only(BTreeSet<(RecordId, u32)>),
-    /// Any: the question was too large to decide.
+    /// Any fact: the question was too large to decide.
     Any,
 }
 

@@ -1,4 +1,5 @@
-//! Operands that can end one scope, and scopes that are always skipped, by the knowledge at their place.
+//! Determines the operands that can end a scope, and the scopes that are always skipped, from the knowledge at their
+//! place.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,7 +10,7 @@ use super::walk::{BracketFacts, Outcome, Reach, Skip, Walk};
 use crate::plan::Condition;
 
 impl<'l> Walk<'l> {
-    /// Finds out what can end a scope that is reached, and when at the earliest.
+    /// Determines the operands that can end a reached scope; returns the earliest time at which the scope can end.
     pub(super) fn judge(&mut self, number: u32, found: &mut BracketFacts) -> Option<u64> {
         let clock = self.clock?;
         let condition = self.element(number).condition();
@@ -50,9 +51,10 @@ impl<'l> Walk<'l> {
         earliest
     }
 
-    /// The nanoseconds after which an operand can end its scope at the earliest; `None` if it cannot.
+    /// Returns the earliest time in nanoseconds after which an operand can end its scope; `None` if it cannot end the
+    /// scope.
     fn earliest(&self, operand: &'l Condition, number: u32) -> Option<u64> {
-        /// Maximum number of timers of which every order with the present is tried.
+        /// Maximum number of timers for which all positions of the present among their ends are tried.
         const TIMERS: usize = 8;
         let asked = [Question { any: vec![self.read(operand, number, When::Later)], fired: true }];
         let mut variables = BTreeSet::new();

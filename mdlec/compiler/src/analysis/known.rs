@@ -1,5 +1,5 @@
-//! Knowledge at the place where a condition is read: no interrupt of an enclosing scope has fired, because these are
-//! read first (docs/src/reference/semantics.md, 5.2).
+//! Knowledge at the place where a condition is read: no interrupt of an enclosing scope has fired, because these
+//! interrupts are read first (docs/src/reference/semantics.md, 5.2).
 //!
 //! "Impossible" holds for every run; "possible" may also mean that the question was too large to decide.
 
@@ -14,10 +14,11 @@ use crate::fsm::Machine;
 use crate::plan::families::{Family, Readings, family};
 use crate::plan::{Condition, QuarkId};
 
-/// Maximum number of conditions around a place that are looked at for each variable of a question.
+/// Maximum number of conditions of enclosing scopes that are considered for each variable of a question.
 const CLAUSES: usize = 8;
 
-/// Question about conditions: whether at least one has fired, or none has.
+/// A question about conditions: can at least one of them have fired (`fired` is `true`), or can all of them not have
+/// fired?
 #[derive(Debug, Clone)]
 pub(super) struct Question<'l> {
     pub(super) any: Vec<Read<'l>>,
@@ -30,22 +31,24 @@ pub(super) struct KnownFacts<'l> {
     pub(super) machine: &'l Machine,
     /// Earliest entry of the scope of each bracket, in nanoseconds since the plan began.
     pub(super) entered: Vec<u64>,
-    /// Variables that have one value only, or an enclosing scope would have ended; with the bracket of that scope.
+    /// Variables that can have only one value, because otherwise an enclosing scope would have ended; with the scope's
+    /// bracket.
     units: BTreeMap<Variable, (bool, u32)>,
-    /// Times at which the timers of enclosing scopes are over, on the clock of `entered`, with their brackets: the last
-    /// one in the list is over first.
+    /// Ends of the timers of enclosing scopes, on the clock of `entered`, with the scopes' brackets; the last timer in
+    /// the list ends first.
     deadlines: Vec<(u64, u32)>,
-    /// The paths that end scopes around, in nanometres, with their brackets: each is shorter than those before it.
+    /// Paths that end enclosing scopes, in nanometres, with the scopes' brackets; each path is shorter than those
+    /// before it.
     distances: Vec<(u64, u32)>,
     /// Other conditions of enclosing scopes that have not fired, by the variables in them.
     clauses: BTreeMap<Variable, Vec<Read<'l>>>,
     families: BTreeMap<Family<'l>, BTreeSet<QuarkId>>,
-    /// The facts that `after` may find in a record.
+    /// Facts that `after` may find in a record.
     recorded: PossibleFacts,
     readings: Readings,
 }
 
-/// Knowledge that a scope has added for the elements inside it.
+/// Knowledge that a scope adds for the elements inside it.
 #[derive(Debug, Default)]
 pub(super) struct Assumptions {
     units: Vec<Variable>,
@@ -74,23 +77,23 @@ impl<'l> KnownFacts<'l> {
         Self { readings: Readings::Numbers, ..Self::new(machine, &PossibleFacts::Any) }
     }
 
-    /// Returns the time at which the first timer of an enclosing scope is over, and its bracket.
+    /// Returns the end of the first timer of an enclosing scope to end, with the scope's bracket.
     pub(super) fn deadline(&self) -> Option<(u64, u32)> {
         self.deadlines.last().copied()
     }
 
-    /// Returns the enclosing bracket that gives a variable its value.
+    /// Returns the bracket of the enclosing scope because of which a variable has only one value.
     pub(super) fn unit(&self, variable: Variable) -> Option<u32> {
         self.units.get(&variable).map(|(_, bracket)| *bracket)
     }
 
-    /// Returns the bracket at or around `bracket` whose interrupt ends it after the shortest path, and that path in
-    /// nanometres.
+    /// Returns the shortest path, in nanometres, whose length ends the scope of `bracket` or an enclosing scope, with
+    /// the bracket of that scope.
     pub(super) fn distance(&self, bracket: u32) -> Option<(u64, u32)> {
         self.distances.iter().rev().find(|(_, outer)| *outer <= bracket).copied()
     }
 
-    /// The brackets around this place whose conditions depend on these variables.
+    /// Returns the bracket of an enclosing scope whose condition depends on these variables.
     pub(super) fn around(&self, variables: &BTreeSet<Variable>) -> Option<u32> {
         let unit = variables.iter().find_map(|variable| self.unit(*variable));
         let relative = || self.relatives(variables).iter().find_map(|variable| self.unit(*variable));
@@ -105,7 +108,7 @@ impl<'l> KnownFacts<'l> {
         unit.or_else(clause).or_else(relative).or_else(distance)
     }
 
-    /// Adds the knowledge that the interrupt of this bracket has not fired.
+    /// Records that the interrupt of this bracket has not fired.
     pub(super) fn open(&mut self, bracket: u32, condition: &'l Condition) -> Assumptions {
         let mut added = Assumptions::default();
         for condition in flat(condition) {
@@ -145,7 +148,7 @@ impl<'l> KnownFacts<'l> {
         added
     }
 
-    /// Removes the knowledge that a scope has added.
+    /// Removes the knowledge that a scope added.
     pub(super) fn close(&mut self, added: Assumptions) {
         for variable in added.units {
             self.units.remove(&variable);
@@ -162,7 +165,7 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Adds the knowledge that the scope of this bracket ends after a path of this length.
+    /// Records that the scope of this bracket ends after a path of `nanometers`.
     fn add_distance(&mut self, nanometers: u64, bracket: u32, added: &mut Assumptions) {
         match self.distances.last_mut() {
             Some((shortest, _)) if *shortest <= nanometers => {}
@@ -185,7 +188,7 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Other quarks of the same families whose values are known.
+    /// Returns other quarks of the same families whose values are known.
     fn relatives(&self, variables: &BTreeSet<Variable>) -> Vec<Variable> {
         let mut found = Vec::new();
         for variable in variables {
@@ -254,7 +257,8 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Returns `true` if all this can be true in one turn; `fixed` gives the values of some variables.
+    /// Returns `true` if all answers in `wanted` are possible in the same turn; `fixed` contains the values of some
+    /// variables.
     pub(super) fn is_possible(&self, wanted: &[Question<'l>], fixed: &BTreeMap<Variable, bool>) -> bool {
         let mut variables = BTreeSet::new();
         let reads = wanted.iter().flat_map(|wanted| &wanted.any);
@@ -287,7 +291,7 @@ impl<'l> KnownFacts<'l> {
         table.is_possible()
     }
 
-    /// Returns `true` if an interrupt may not have fired.
+    /// Returns `true` if it is possible that an interrupt has not fired.
     pub(super) fn stays(&self, bracket: u32, condition: &'l Condition, when: When) -> bool {
         let not = |condition| {
             let any = vec![Read { condition, bracket, when }];
@@ -299,7 +303,7 @@ impl<'l> KnownFacts<'l> {
     }
 
     /// Returns conditions of enclosing scopes that have not fired and share variables with `all`, as long as the number
-    /// of free variables permits.
+    /// of free variables permits. Adds their variables to `all`.
     fn clauses(&self, all: &mut BTreeSet<Variable>, value: &impl Fn(&Variable) -> Option<bool>) -> Vec<Read<'l>> {
         let free = |all: &BTreeSet<Variable>| all.iter().filter(|variable| value(variable).is_none()).count();
         let related: Vec<Read<'l>> = all

@@ -48,7 +48,7 @@ impl<'l> Lints<'l> {
         lints
     }
 
-    /// An operand that never ends its scope.
+    /// Returns the warning about an operand that never ends its scope.
     fn operand(
         &self,
         element: Element<'_>,
@@ -85,7 +85,7 @@ impl<'l> Lints<'l> {
         })
     }
 
-    /// An operand that asks a record for what is never in it.
+    /// Returns the warning about an operand that tests a record for a fact that is never in it.
     fn unrecorded(&self, interrupt: &Interrupt, found: &BracketFacts) -> Option<Diagnostic> {
         let operands = interrupt.condition.operands();
         let asks = |operand: &Condition| operand.any(&|part| matches!(part, Condition::After(_)));
@@ -101,7 +101,7 @@ impl<'l> Lints<'l> {
         )
     }
 
-    /// An element that is always skipped.
+    /// Returns the warning about an element that is always skipped.
     fn skipped(&self, element: Element<'l>, interrupt: &'l Interrupt, found: &BracketFacts) -> Option<Diagnostic> {
         let (span, text) = (interrupt.span, &interrupt.text);
         let behind = match found.skipped? {
@@ -124,7 +124,7 @@ impl<'l> Lints<'l> {
         Some(lint.fix("wait here until it becomes true again: {}", span, format!("(RISING ({text}))")))
     }
 
-    /// Returns the warning about an element after one that never ends before the element that encloses both.
+    /// Returns the warning about an element after an element that never ends before the scope that encloses both.
     fn cut_off(&self, interrupt: &Interrupt, before: u32) -> Diagnostic {
         let lint = Diagnostic::new(Code::W0202, "this is never reached", interrupt.span, "never runs");
         let before = self.machine.element(before).interrupt().map(|before| before.span);
@@ -135,7 +135,7 @@ impl<'l> Lints<'l> {
         lint.help("let the element before it end earlier, or the enclosing scope end later")
     }
 
-    /// The scope of a bracket as a sentence names it, and the place of its interrupt.
+    /// Returns the scope of a bracket in words, with the place of its interrupt.
     fn whose(&self, bracket: u32) -> (String, Span) {
         let element = self.machine.element(bracket);
         let name = Some(element.name()).filter(|name| !name.is_empty());
@@ -144,12 +144,12 @@ impl<'l> Lints<'l> {
     }
 }
 
-/// Returns `true` if an element is an atom whose law never completes, and another one follows it in its string.
+/// Returns `true` if an element is an atom whose law never completes, and another element follows it in its string.
 fn goes_on(element: Element<'_>) -> bool {
     element.atom().is_some_and(|atom| !atom.law().completes) && matches!(element.exit(), Exit::Next(_))
 }
 
-/// An element that is skipped since the one before it ends by the same condition.
+/// Returns the warning about an element that is skipped because the element before it ends by the same condition.
 fn repeated(element: Element<'_>, interrupt: &Interrupt, before: &Interrupt) -> Diagnostic {
     let (span, text) = (interrupt.span, &interrupt.text);
     let message = format!("`{text}` ends the element before this as well, so this is always skipped");
@@ -170,7 +170,7 @@ fn repeated(element: Element<'_>, interrupt: &Interrupt, before: &Interrupt) -> 
     lint.fix("or wait here until it becomes true again: {}", span, rising)
 }
 
-/// Returns the condition of a scope after a word that takes one operand.
+/// Returns the text of a scope's condition after `word`, a word that takes one operand.
 fn negated(word: &str, interrupt: &Interrupt) -> String {
     let text = &interrupt.text;
     if matches!(interrupt.condition, Condition::Quark(_)) {

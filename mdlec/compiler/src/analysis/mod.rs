@@ -1,7 +1,7 @@
-//! Static analysis: facts about every run of a plan, found without running it. It finds the atoms that run, the
+//! Static analysis: finds facts about every run of a plan without running it. These are the atoms that run, the
 //! operands that can end them, durations, and the size of the machine.
 //!
-//! "Never" is true of every run; "possible" may also mean that the question was too large to decide.
+//! "Never" holds for every run; "possible" may also mean that the question was too large to decide.
 
 mod choices;
 mod constants;
@@ -35,43 +35,43 @@ use crate::plan::{Condition, condition_text};
 /// Facts about every run of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Analysis {
-    /// The plan's name.
+    /// Name of the plan.
     pub plan: String,
-    /// The states of its machine, the last one included.
+    /// Number of states of the plan's machine, including the termination state.
     pub states: u64,
-    /// The atoms as written, plans by name copied in.
+    /// Number of atoms as written, with the atoms of plans that are used by name.
     pub atom_count: usize,
-    /// Number of interrupts as written that can fire, without null and removed ones.
+    /// Number of interrupts as written that can fire, without `null` and removed interrupts.
     pub interrupts: usize,
-    /// Maximum number of nested scopes, the plan and the atom's own included.
+    /// Maximum number of nested scopes, including the plan and the atom's own scope.
     pub depth: usize,
-    /// Maximum number of loops around an atom.
+    /// Maximum number of loops that enclose an atom.
     pub loop_depth: usize,
     /// Maximum number of transitions in one turn.
     pub transitions: u64,
-    /// Number of turns from the one in which an interrupt fires to the one that begins by sending the next atom's
-    /// input; `None` if a search for the next atom may go on without end.
+    /// Number of turns from the turn in which an interrupt fires to the turn that begins by sending the next atom's
+    /// input; `None` if the search for the next atom may continue forever.
     pub reaction_turns: Option<u64>,
-    /// Minimum time until the plan is over, in seconds; `None` if it never is.
+    /// Minimum time until the plan ends, in seconds; `None` if it never ends.
     pub shortest: Option<f64>,
-    /// Maximum time until the plan is over.
+    /// Maximum time until the plan ends.
     pub longest: Duration,
     /// Size of the emitted machine.
     pub bytes: Bytes,
-    /// The plan and its behaviors, in order; atoms are below.
+    /// Facts about the plan and its behaviors, in order.
     pub scopes: Vec<ScopeAnswer>,
-    /// The atoms, in order.
+    /// Facts about the atoms, in order.
     pub atoms: Vec<AtomAnswer>,
 }
 
 /// Maximum duration of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Duration {
-    /// Duration in seconds; `None` without a bound.
+    /// Duration in seconds; `None` if there is no bound.
     pub seconds: Option<f64>,
-    /// Number of further times from one turn to the next, since a timer is read once a turn.
+    /// Number of times between two turns that have to be added, because a timer is read once per turn.
     pub turns: Option<u64>,
-    /// Reason why there is no bound; `None` with a bound.
+    /// Reason why there is no bound; `None` if there is a bound.
     pub because: Option<String>,
 }
 
@@ -90,7 +90,7 @@ pub struct ScopeAnswer {
     pub reach: Reach,
     /// Operands of the scope's interrupt by which it can end.
     pub ended_by: Vec<String>,
-    /// Operands of the interrupt by which it never ends.
+    /// Operands of the scope's interrupt by which it never ends.
     pub never_by: Vec<String>,
 }
 
@@ -99,7 +99,7 @@ pub struct ScopeAnswer {
 pub struct AtomAnswer {
     /// Number of the atom, from 1, among the atoms as written.
     pub atom: usize,
-    /// Number of the atom's state, in the first pass of every loop around it.
+    /// Number of the atom's state, in the first pass of every enclosing loop.
     pub state: u64,
     /// Number of the enclosing scope.
     pub within: usize,
@@ -109,9 +109,9 @@ pub struct AtomAnswer {
     pub reach: Reach,
     /// Operands of the atom's own interrupt by which it can end, and `completed` if its law can complete.
     pub ended_by: Vec<String>,
-    /// Operands of the interrupt by which it never ends.
+    /// Operands of the atom's interrupt by which it never ends.
     pub never_by: Vec<String>,
-    /// Set to `true` if the atom can end, by itself or with an enclosing scope.
+    /// `true` if the atom can end, by itself or with an enclosing scope.
     pub ends: bool,
 }
 
@@ -122,7 +122,7 @@ pub fn lints(machine: &Machine) -> Vec<Diagnostic> {
     lints::lints(machine, &ended::walk_with_records(machine, !most.is_cut).found)
 }
 
-/// Analyses a machine.
+/// Returns the facts about every run of a machine.
 #[must_use]
 pub fn analyze(machine: &Machine) -> Analysis {
     let most = transitions::most(machine);
@@ -146,7 +146,8 @@ pub fn analyze(machine: &Machine) -> Analysis {
     }
 }
 
-/// The input that follows an interrupt is sent at the head of the next turn; a search that is cut goes on in that turn.
+/// Returns the maximum number of turns from the firing of an interrupt to the input of the next atom. This input is
+/// sent at the beginning of the next turn; a search that is cut continues in that turn.
 fn reaction(machine: &Machine, most: transitions::Most) -> Option<u64> {
     let endless = || machine.elements().any(|element| matches!(element.kind(), ElementKind::Loop { times: None }));
     match most.is_cut {
@@ -229,7 +230,8 @@ impl Answers {
     }
 }
 
-/// Returns the texts of the operands by which an interrupt can fire, and of those by which it cannot, without `null`.
+/// Returns the texts of the operands by which an interrupt can fire, and of those by which it cannot fire, without
+/// `null`.
 fn by(condition: &Condition, found: &BracketFacts, machine: &Machine) -> (Vec<String>, Vec<String>) {
     let (mut can, mut never) = (Vec::new(), Vec::new());
     for (operand, outcome) in condition.operands().iter().zip(&found.operands) {

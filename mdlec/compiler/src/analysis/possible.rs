@@ -1,4 +1,5 @@
-//! The values that variables can have at once: timers run from entries in a known order, and a signal has one value.
+//! Determines which values of variables are possible at the same time: timers run from entries in a known order, and a
+//! signal has one value.
 
 use std::collections::BTreeMap;
 
@@ -8,8 +9,8 @@ use super::variables::Variable;
 use crate::plan::Quark;
 use crate::plan::families::{Family, Readings, at_once, family};
 
-/// Returns the choices whose values the variables can have at once. `entered` gives the earliest entry of a scope; the
-/// brackets of timers are nested, and the outer one has the smaller number.
+/// Returns the table of choices whose values the variables can have at the same time. `entered` returns the earliest
+/// entry of a scope; the brackets of timers are nested, and the outer bracket has the smaller number.
 pub(super) fn possible(
     choices: &Choices,
     quarks: &[Quark],

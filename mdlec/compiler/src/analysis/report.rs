@@ -1,10 +1,10 @@
-//! An analysis as text: figures of the plan, a table of its scopes, a table of its atoms; or as JSON.
+//! Output of an analysis, as text with the figures of the plan and tables of its scopes and atoms, or as JSON.
 
 use std::fmt::Write;
 
 use super::{Analysis, AtomAnswer, Duration, Reach, ScopeAnswer};
 
-/// Maximum number of scopes that are named among the causes of an atom's end.
+/// Maximum number of enclosing scopes that are named among the causes of an atom's end.
 const AROUND: usize = 3;
 
 impl Analysis {
@@ -15,7 +15,7 @@ impl Analysis {
         serde_json::to_string_pretty(self).map(|text| text + "\n").unwrap_or_default()
     }
 
-    /// Returns the analysis as text for people.
+    /// Returns the analysis as text for users.
     #[must_use]
     pub fn to_text(&self) -> String {
         let mut text = self.figures();
@@ -106,13 +106,13 @@ fn longest(longest: &Duration) -> String {
     }
 }
 
-/// Writes a number with its noun: `1 atom`, `2 atoms`.
+/// Returns a number with its noun: `1 atom`, `2 atoms`.
 fn count(number: u64, thing: &str) -> String {
     if number == 1 { format!("1 {thing}") } else { format!("{number} {thing}s") }
 }
 
-/// Rows below each other, each column as wide as its widest cell, up to a line's length; a last column that is empty is
-/// left out.
+/// Formats rows as a table. Each column is as wide as its widest cell, up to the length of a line; an empty last column
+/// is left out.
 fn table<const COLUMNS: usize>(heads: [&str; COLUMNS], rows: &[Vec<String>]) -> String {
     const WIDEST: usize = 48;
     let shown = if rows.iter().all(|row| row.last().is_none_or(String::is_empty)) { COLUMNS - 1 } else { COLUMNS };

@@ -1,4 +1,4 @@
-//! Size of the emitted machine in bytes: its state from turn to turn, and its tables.
+//! Size of the emitted machine, in bytes: its state from turn to turn, and its tables.
 
 use std::collections::BTreeSet;
 
@@ -9,25 +9,26 @@ use serde::Serialize;
 use crate::fsm::{Element, Machine};
 use crate::rust::Shape;
 
-/// Bytes of the place of a text on a computer of 64 bits: address and length.
+/// Size of a reference to a text on a 64-bit computer, in bytes: address and length.
 const PLACE: usize = 16;
 
-/// Bytes of the emitted machine, on a computer of 64 bits.
+/// Sizes of the parts of the emitted machine on a 64-bit computer, in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Bytes {
     /// Form of the emitted plan: `code` or `rows`.
     pub form: &'static str,
-    /// State from turn to turn, besides the running law: the position in the plan, the times of entry, the frame.
+    /// Size of the state from turn to turn, without the running law: the position in the plan, the times of entry, the
+    /// frame.
     pub state: u64,
-    /// Memories of RISING and `after`.
+    /// Size of the memories of RISING and `after`.
     pub memories: u64,
-    /// Tables of the brackets and the atoms.
+    /// Size of the tables of brackets and atoms.
     pub machine: u64,
-    /// The texts that it shows: each place that has one, and each different text once.
+    /// Size of the texts that the machine shows: a reference for each use of a text, and each different text once.
     pub texts: u64,
 }
 
-/// Counts the bytes of the emitted machine.
+/// Returns the sizes of the parts of the emitted machine.
 pub(super) fn bytes(machine: &Machine) -> Bytes {
     let number = |count: usize| u64::try_from(count).unwrap_or(u64::MAX);
     // A cursor holds the number of its atom, in front of numbers of eight bytes.

@@ -1,13 +1,13 @@
-//! Truth tables: for every choice of some variables one bit, sixty-four bits at a time.
+//! Truth tables with one bit for every choice of values of some variables, in words of 64 bits.
 
-/// Maximum number of variables for which all assignments are enumerated.
+/// Maximum number of variables for which all choices are enumerated.
 pub(super) const VARIABLES: usize = 12;
 
-/// A truth table by the number of the choice: bit `i` of that number is the value of variable `i`.
+/// A truth table, indexed by the number of the choice: bit `i` of that number is the value of variable `i`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Table(Vec<u64>);
 
-/// The first six variables, in one word.
+/// Columns of the first six variables in one word.
 const SHORT: [u64; 6] = [
     0xAAAA_AAAA_AAAA_AAAA,
     0xCCCC_CCCC_CCCC_CCCC,
@@ -18,13 +18,13 @@ const SHORT: [u64; 6] = [
 ];
 
 impl Table {
-    /// Returns the table of this number of variables that is `value` for every choice.
+    /// Returns a table for `variables` variables with `value` in every choice.
     pub(super) fn constant(variables: usize, value: bool) -> Self {
         let words = 1_usize << variables.saturating_sub(SHORT.len());
         Self(vec![if value { u64::MAX } else { 0 }; words])
     }
 
-    /// Returns the table that is true where this variable is true.
+    /// Returns a table for `variables` variables that is true where the variable `index` is true.
     pub(super) fn variable(variables: usize, index: usize) -> Self {
         let mut table = Self::constant(variables, false);
         for (number, word) in table.0.iter_mut().enumerate() {
@@ -55,12 +55,12 @@ impl Table {
         self
     }
 
-    /// Returns `true` if the table is true for the choice of this number.
+    /// Returns `true` if the table is true for the choice with this number.
     pub(super) fn holds(&self, choice: usize) -> bool {
         self.0.get(choice / 64).is_some_and(|word| word >> (choice % 64) & 1 == 1)
     }
 
-    /// Returns `true` if the table is true for some choice.
+    /// Returns `true` if the table is true for at least one choice.
     pub(super) fn is_possible(&self) -> bool {
         self.0.iter().any(|word| *word != 0)
     }

@@ -1,7 +1,8 @@
 //! Maximum number of transitions in one turn (docs/src/reference/semantics.md, 5.5).
 //!
-//! All that a turn reads is read of one output at one time, so each choice of what the interrupt quarks say is counted
-//! by itself, as long as there are few of them; else each may say anything each time, and the count is a bound.
+//! A turn reads one output at one time. If there are few interrupt quarks, the transitions are therefore counted for
+//! each choice of the quarks' values. Otherwise each quark may have any value each time, and the count is an upper
+//! bound.
 
 use std::collections::BTreeSet;
 
@@ -14,17 +15,18 @@ use crate::fsm::{ElementKind, Machine};
 use crate::plan::families::Readings;
 use crate::plan::{Condition, Interrupt, QuarkId};
 
-/// Maximum number of transitions in one turn, at most as many as the machine makes.
+/// Maximum number of transitions in one turn, at most the number that the machine allows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Most {
     pub(super) count: u64,
-    /// Set to `true` if a search may need more transitions than one turn has.
+    /// `true` if a search may need more transitions than one turn allows.
     pub(super) is_cut: bool,
 }
 
-/// Counts the transitions of a machine's longest turn.
+/// Returns the maximum number of transitions in a turn of a machine.
 pub(super) fn most(machine: &Machine) -> Most {
-    /// Maximum number of quarks of which every choice is counted, and of brackets times choices.
+    /// Maximum number of quarks for which every choice is counted. The next constant is the maximum number of brackets
+    /// times choices.
     const QUARKS: usize = 8;
     const WORK: usize = 2_000_000;
     let mut quarks: Vec<QuarkId> = Vec::new();
@@ -78,7 +80,7 @@ impl Chains {
         }
     }
 
-    /// Returns the chains of this number of passes of `self`; 0 is for ever.
+    /// Returns the chains of `times` passes of `self`; 0 means an endless loop.
     fn times(self, times: u64) -> Self {
         let through = |passes: u64| self.pass.map_or(0, |pass| pass.saturating_mul(passes));
         let again = |passes: u64| self.last.map_or(0, |last| last.saturating_add(through(passes)));
@@ -97,7 +99,7 @@ impl Chains {
         }
     }
 
-    /// Returns the chains of a scope around `self`, whose interrupt fires with these certainties.
+    /// Returns the chains of a scope that encloses `self` and whose interrupt fires with these certainties.
     fn within(self, at_once: Certainty, later: Certainty, asks_after: bool) -> Self {
         let one = |certainty: Certainty| certainty.can.then_some(1);
         if at_once.must {
@@ -118,7 +120,7 @@ fn plus(one: Option<u64>, other: Option<u64>) -> Option<u64> {
     Some(one?.saturating_add(other?))
 }
 
-/// Returns the length of the longest chain of transitions where the quarks have the values of the bits of `choice`.
+/// Returns the length of the longest chain of transitions if the quarks have the values in the bits of `choice`.
 fn longest(machine: &Machine, quarks: &[QuarkId], choice: usize) -> u64 {
     let mut inside = vec![Chains::NONE; machine.elements().len()];
     // The last element first: then the elements inside and after an element are known.

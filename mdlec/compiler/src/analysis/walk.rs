@@ -1,8 +1,8 @@
-//! Walks over a machine in the order in which it runs: which atoms run, which are skipped, which are never reached, and
-//! what can end each scope.
+//! Walks over a machine in the order in which it runs, and finds the atoms that run, are skipped or are never reached,
+//! and the operands that can end each scope.
 //!
-//! One pass over the brackets: what a scope around a place does to it is in [`KnownFacts`], when it is reached at the
-//! earliest is counted on the way. A loop's body is walked over once: its first pass comes first.
+//! One pass over the brackets suffices: [`KnownFacts`] holds the effects of enclosing scopes, and the walk keeps the
+//! earliest time at which a place is reached. A loop's body is walked over once, as its first pass.
 
 use std::collections::BTreeMap;
 use std::iter;
@@ -21,9 +21,9 @@ use crate::plan::{Condition, QuarkId};
 pub enum Reach {
     /// The atom's law may be applied.
     Runs,
-    /// The atom may become the current one, but an interrupt of an enclosing scope has then always fired.
+    /// The atom may become the current atom, but then an interrupt of an enclosing scope has always fired.
     Skipped,
-    /// The atom never becomes the current one.
+    /// The atom never becomes the current atom.
     Never,
 }
 
@@ -31,13 +31,13 @@ pub enum Reach {
 #[derive(Debug, Clone)]
 pub(super) struct BracketFacts {
     pub(super) reach: Reach,
-    /// An answer for each operand of the outermost OR of the bracket's interrupt.
+    /// Outcome of each operand of the outermost OR of the bracket's interrupt.
     pub(super) operands: Vec<Outcome>,
-    /// Set to `true` if the bracket can end because its law is done.
+    /// `true` if the bracket can end because its law completes.
     pub(super) completes: bool,
     /// Reason why the bracket is always skipped, if it is.
     pub(super) skipped: Option<Skip>,
-    /// The element before it, if that keeps it from being reached and a reader of the text alone would not see it.
+    /// The element before this one, if this one is never reached because of it, and the text alone does not show that.
     pub(super) cut_off_by: Option<u32>,
 }
 
@@ -46,40 +46,41 @@ pub(super) struct BracketFacts {
 pub(super) enum Skip {
     /// The element's interrupt has always fired when the element is entered.
     AtOnce,
-    /// The element's interrupt has fired whenever the element before it ends; this bracket is one of those that end it.
+    /// The element's interrupt has fired whenever the previous element ends; this is a bracket that ends the previous
+    /// element.
     Behind(u32),
     /// An enclosing element is skipped.
     Inside,
 }
 
-/// Answer whether an interrupt can fire by one of its operands.
+/// Answer to the question whether an interrupt can fire by one of its operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Outcome {
     /// The interrupt can fire by the operand.
     Possible,
     /// The operand is never true.
     Never,
-    /// The operand is true only when the interrupt of this bracket has fired.
+    /// The operand is true only if the interrupt of this bracket has fired.
     Beaten(u32),
-    /// The operand's timer is over later than a timer of this bracket.
+    /// The operand's timer ends later than a timer of this bracket.
     Late(u32),
     /// The operand equals an operand of this bracket's interrupt.
     Repeated(u32),
-    /// The operand was not judged: its place is never reached.
+    /// The operand was not examined, because its place is never reached.
     Unread,
 }
 
-/// Conditions of which one has just fired where an element is entered. The list is empty if nothing is known.
+/// Conditions of which at least one has just fired when an element is entered. The list is empty if nothing is known.
 type Facts<'l> = Vec<Read<'l>>;
 
-/// A bracket that the walk is inside.
+/// A bracket that encloses the current place of the walk.
 struct Open {
     reach: Reach,
-    /// Earliest entry of the bracket; `own` is its earliest end by itself.
+    /// Earliest entry of the bracket. `own` is the earliest end by its own condition.
     clock: Option<u64>,
     own: Option<u64>,
     added: Assumptions,
-    /// Set to `true` if the element before the bracket ends, as far as the text alone shows.
+    /// `true` if the element before the bracket ends, as far as the text alone shows.
     written: bool,
 }
 
@@ -89,7 +90,7 @@ pub(super) struct PlanFacts {
     pub(super) shortest: Option<u64>,
 }
 
-/// Walks over a machine whose records may come to hold these facts. `one_turn` is `true` if every search for the next
+/// Walks over a machine whose records can hold the facts `facts`. `one_turn` is `true` if every search for the next
 /// atom ends within one turn.
 pub(super) fn walk(machine: &Machine, one_turn: bool, facts: &PossibleFacts) -> PlanFacts {
     let mut walk = Walk {
@@ -116,22 +117,22 @@ pub(super) fn walk(machine: &Machine, one_turn: bool, facts: &PossibleFacts) -> 
 
 pub(super) struct Walk<'l> {
     pub(super) world: KnownFacts<'l>,
-    /// The knowledge about a place that no scope encloses.
+    /// Knowledge about a place without enclosing scopes.
     pub(super) alone: KnownFacts<'l>,
     open: Vec<Open>,
     found: Vec<BracketFacts>,
-    /// The timers that are operands of interrupts around, by their brackets.
+    /// Brackets of the enclosing scopes in whose interrupts a timer is an operand, for each timer.
     pub(super) waits: BTreeMap<QuarkId, Vec<u32>>,
     /// Earliest entry of the next element; `None` if it is never entered.
     pub(super) clock: Option<u64>,
     pub(super) facts: Facts<'l>,
-    /// Set to `true` if the element before the next one ends, as far as the text alone shows.
+    /// `true` if the element before the next one ends, as far as the text alone shows.
     written: bool,
-    /// Set to `true` if the next element is inside a skipped element.
+    /// `true` if the next element is inside a skipped element.
     skipping: bool,
     /// The element before the next one.
     before: Option<u32>,
-    /// Set to `true` if every search for the next atom ends within one turn.
+    /// `true` if every search for the next atom ends within one turn.
     pub(super) one_turn: bool,
 }
 
@@ -180,7 +181,7 @@ impl<'l> Walk<'l> {
         self.before = None;
     }
 
-    /// Adds the conditions that lead from a loop's last element to the beginning of its body.
+    /// Records the conditions that lead from the last element of a loop back to the beginning of its body.
     fn repeat(&mut self, repeated: Element<'l>) {
         let again = self.exit(repeated);
         if self.facts.is_empty() || again.is_empty() {
@@ -194,7 +195,8 @@ impl<'l> Walk<'l> {
         Read { condition, bracket, when }
     }
 
-    /// Counts the timers of a scope's interrupt among those around, or takes them out again.
+    /// Records the timers of a scope's interrupt among those of enclosing scopes when the scope is opened, and removes
+    /// them again when it is closed.
     fn wait_for(&mut self, element: Element<'l>, opened: bool) {
         for operand in element.condition().operands() {
             let Condition::Wait { quark, .. } = operand else { continue };
@@ -207,7 +209,8 @@ impl<'l> Walk<'l> {
         }
     }
 
-    /// Returns conditions of which one has fired when an element has ended; the list is empty if that is not known.
+    /// Returns conditions of which at least one has fired when an element has ended; an empty list if that is not
+    /// known.
     fn exit(&self, element: Element<'l>) -> Facts<'l> {
         /// Maximum number of scopes that may end together.
         const ENDING: usize = 8;
@@ -226,7 +229,7 @@ impl<'l> Walk<'l> {
         Vec::new()
     }
 
-    /// Leaves the innermost element: the next one is entered at its earliest end.
+    /// Leaves the innermost element; the next element is entered at its earliest end.
     fn leave(&mut self, element: Element<'l>) {
         let Some(open) = self.open.pop() else { return };
         let inside = self.clock.filter(|_| element.atom().is_none());
