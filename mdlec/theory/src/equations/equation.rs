@@ -1,27 +1,26 @@
-//! The transition matrices of a small plan in the paper's notation: `Π(t) = E_1 ξ̄_1(t) + …`, printed as its Eq. 6 is.
+//! Prints the transition matrices of a small plan in the paper's notation: `Π(t) = E_1 ξ̄_1(t) + …`, as in the paper's
+//! Eq. 6.
 
 use super::terms::{Extent, Term, Terms};
 
-/// Maximum number of states whose matrices are printed in the paper's notation: more do not fit a line beside each
-/// other.
+/// Maximum number of states whose matrices are printed in the paper's notation: more matrices do not fit on a line.
 const STATES: usize = 16;
 /// Maximum length of a line, in characters.
 const WIDTH: usize = 100;
 
-/// Returns the equation with the meaning of its symbols; `None` for a plan with more states than people can read
-/// matrices of.
+/// Returns the equation with the meaning of its symbols; `None` for a plan with too many states for readable matrices.
 #[must_use]
 pub fn equation(terms: &Terms<'_>) -> Option<String> {
     (terms.states() <= STATES).then(|| format!("{}\n{}", sum(terms), symbols(terms)))
 }
 
-/// Maximum number of states that [`equation`] prints.
+/// Returns the maximum number of states for which [`equation`] prints matrices.
 #[must_use]
 pub fn most_states() -> usize {
     STATES
 }
 
-/// The sum of all terms, as many beside each other as fit.
+/// Returns the sum of all terms, with as many terms on a line as fit.
 fn sum(terms: &Terms<'_>) -> String {
     let (height, middle) = (terms.states(), terms.states() / 2);
     if terms.live.is_empty() {
@@ -47,7 +46,7 @@ fn sum(terms: &Terms<'_>) -> String {
     text + &written(&lines)
 }
 
-/// Returns the lines of a matrix in its brackets, with its interrupt after the row in the middle.
+/// Returns the lines of a matrix in brackets, with the matrix's interrupt after the middle row.
 fn block(terms: &Terms<'_>, term: &Term<'_>) -> Vec<String> {
     let (matrix, last) = (terms.matrix(term), terms.states() - 1);
     let rows = (0..=last).map(|row| {
@@ -82,7 +81,7 @@ fn complement(name: &str) -> String {
     symbol(name).replacen('ξ', "ξ\u{304}", 1)
 }
 
-/// Returns the meaning of the symbols.
+/// Returns the text that explains the symbols.
 fn symbols(terms: &Terms<'_>) -> String {
     let mut text = "where the state is one of\n".to_owned();
     let states = terms.laws.iter().copied().chain(["the plan is over"]);
@@ -108,7 +107,7 @@ fn symbols(terms: &Terms<'_>) -> String {
     text
 }
 
-/// Returns `true` if terms of the same text are apart, since they wait.
+/// Returns `true` if terms with equal texts are separate because they have timers.
 fn is_kept_apart(terms: &[Term<'_>]) -> bool {
     let mut texts: Vec<_> = terms.iter().filter(|term| term.waits).map(|term| term.text).collect();
     texts.sort_unstable();
@@ -125,7 +124,7 @@ fn interrupts(terms: &[Term<'_>], numbered: bool) -> String {
     table(&rows.collect::<Vec<_>>())
 }
 
-/// The states of a scope, and its name.
+/// Returns the states of a scope, and the scope's name, as text.
 fn states(place: &Extent<'_>, numbered: bool) -> String {
     let states = if place.first == place.last {
         format!("e{}", place.first + 1)

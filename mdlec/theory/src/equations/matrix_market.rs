@@ -1,4 +1,5 @@
-//! The transition matrices of a plan as MatrixMarket coordinate files, one for each interrupt, and a list of them.
+//! The transition matrices of a plan as MatrixMarket coordinate files, one file for each interrupt, and a list of the
+//! files.
 
 use std::fmt::Write;
 
@@ -6,27 +7,27 @@ use serde::Serialize;
 
 use super::terms::{Extent, Term, Terms};
 
-/// The version of the list.
+/// Version of the list's format.
 const VERSION: u32 = 1;
-/// Maximum number of ones that all files have together: each is a line.
+/// Maximum total number of ones in all files; each one is a line.
 const ONES: usize = 10_000_000;
 /// Maximum length of a comment, in characters: a line of a MatrixMarket file has at most 1024 bytes.
 const COMMENT: usize = 200;
 
-/// The files of a plan's matrices.
+/// Files of a plan's matrices.
 #[derive(Debug, Clone, Copy)]
 pub struct MatrixFiles<'t, 'p>(&'t Terms<'p>);
 
-/// The files of these terms; or, where they would be too many, how many lines they have and how many they may have.
+/// Returns the files of the terms' matrices.
 ///
 /// # Errors
-/// When all files together have more than ten million ones.
+/// Returns the total number of ones in all files, and its maximum of ten million, if there are more ones than that.
 pub fn matrix_files<'t, 'p>(terms: &'t Terms<'p>) -> Result<MatrixFiles<'t, 'p>, (usize, usize)> {
     let ones = terms.states().saturating_mul(terms.live.len());
     if ones > ONES { Err((ones, ONES)) } else { Ok(MatrixFiles(terms)) }
 }
 
-/// The list of the matrices.
+/// List of the matrices.
 #[derive(Debug, Serialize)]
 struct List<'t> {
     version: u32,
@@ -47,7 +48,7 @@ struct Entry<'t> {
     places: Vec<ScopeStates<'t>>,
 }
 
-/// The states of a scope, from 1.
+/// States of a scope, from 1.
 #[derive(Debug, Serialize)]
 struct ScopeStates<'t> {
     number: usize,
@@ -57,15 +58,15 @@ struct ScopeStates<'t> {
 }
 
 impl MatrixFiles<'_, '_> {
-    /// The name of the list among the files.
+    /// Name of the list among the files.
     pub const LIST: &'static str = "matrices.json";
 
-    /// Returns the name and the text of each file; a text is made when the iterator reaches it.
+    /// Returns the name and the text of each file; the iterator creates a text when it reaches the file.
     pub fn files(&self) -> impl Iterator<Item = (String, String)> {
         self.0.live.iter().map(|term| (file_name(term), self.file(term)))
     }
 
-    /// The list: states, laws, and each matrix with its interrupt, its file and the states of its scopes.
+    /// Returns the list: states, laws, and each matrix with its interrupt, its file and the states of its scopes.
     #[must_use]
     pub fn list(&self) -> String {
         let states = (1..self.0.states()).map(|atom| format!("a{atom}")).chain(["end".to_owned()]);
@@ -107,7 +108,7 @@ fn entry<'t>(term: &'t Term<'_>, file: Option<String>) -> Entry<'t> {
     Entry { name: &term.name, text: term.text, file, places: term.places.iter().map(listed).collect() }
 }
 
-/// A text on one line, and no longer than such a line may be.
+/// Returns a text on one line, shortened to the maximum length of a comment.
 fn comment(text: &str) -> String {
     let mut line: String =
         text.chars().take(COMMENT).map(|letter| if letter.is_control() { ' ' } else { letter }).collect();

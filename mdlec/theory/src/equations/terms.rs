@@ -1,7 +1,6 @@
-//! The terms of `Π(t) = Σ E_i ξ̄_i(t)` of a plan (paper, Eq. 2), and those of an interrupt that is counted once (Eq.
-//! 3).
+//! The terms of `Π(t) = Σ E_i ξ̄_i(t)` of a plan (paper, Eq. 2), or with equal interrupts combined to one term (Eq. 3).
 //!
-//! They are numbered as in the FSM file: `x1`, `x2`, … in pre-order, and `completed` for laws that are done.
+//! Terms are numbered as in the FSM file: `x1`, `x2`, … in pre-order, and `completed` for the completion of laws.
 
 use std::collections::BTreeMap;
 
@@ -9,59 +8,62 @@ use mdle_compiler::diagnostic::Diagnostic;
 use mdle_compiler::fsm::{Matrices, matrices};
 use mdle_compiler::plan::{Condition, Functions, Nondegenerate, Plan};
 
-/// The terms of a plan with `N` states.
+/// Terms of a plan with `N` states.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Terms<'p> {
-    /// The plan's name.
+    /// Name of the plan.
     pub source: &'p str,
-    /// The quark text of each state's law, without the termination state.
+    /// Law of each state but the termination state, as the text of a quark.
     pub laws: Vec<&'p str>,
     /// Terms whose interrupt can fire, in pre-order, completion last.
     pub live: Vec<Term<'p>>,
-    /// Terms whose interrupt never fires: null, or removed because an outer one repeats it.
+    /// Terms whose interrupt never fires: it is null, or was removed because an outer interrupt repeats it.
     pub never: Vec<Term<'p>>,
-    /// Set to `true` if equal interrupts are counted once.
+    /// `true` if equal interrupts are combined to one term.
     pub combined: bool,
 }
 
 /// An interrupt with its transition matrix.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Term<'p> {
-    /// Name of the interrupt: `x1`, `x2`, …, or `completed`. An interrupt in several places has the name of the first.
+    /// Name of the interrupt: `x1`, `x2`, …, or `completed`. An interrupt in several places has the name of its first
+    /// place.
     pub name: String,
     /// Text of the interrupt's condition.
     pub text: &'p str,
-    /// `true` if it asks for a time, which counts from the start of its scope.
+    /// `true` if the interrupt has a timer, which counts from the start of its scope.
     pub waits: bool,
-    /// The scopes that have it, from left to right: no state is in two of them (Observation 1).
+    /// Scopes that have the interrupt, from left to right: no state is in two of them (Observation 1).
     pub places: Vec<Extent<'p>>,
 }
 
-/// A scope that has an interrupt, as columns and the row that they have their one in. They count from 0.
+/// A scope that has an interrupt, as a range of columns and the row in which these columns have their one. All indices
+/// count from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Extent<'p> {
-    /// The number of the interrupt in pre-order, from 1: of those that fire at once, the lowest one decides.
+    /// Number of the interrupt in pre-order, from 1: of interrupts that fire at the same time, the lowest number
+    /// decides.
     pub number: usize,
-    /// The scope's name; empty for an atom.
+    /// Name of the scope; empty for an atom.
     pub scope: &'p str,
     /// First column of the range.
     pub first: usize,
     /// Last column of the range.
     pub last: usize,
-    /// The row.
+    /// Row in which the columns have their one.
     pub row: usize,
 }
 
 impl Terms<'_> {
-    /// The number of states, the termination state included.
+    /// Returns the number of states, including the termination state.
     #[must_use]
     pub fn states(&self) -> usize {
         self.laws.len() + 1
     }
 
-    /// The transition matrix of a term: for each column the row of its one. It is `Σ E_ij − (n−1) I` over the term's
-    /// places (Eq. 3): a column that one of them lists is taken from there, for in all others it is that of the
-    /// identity.
+    /// Returns the transition matrix of a term, as the row of the one in each column. The matrix is `Σ E_ij − (n−1) I`
+    /// over the term's places (Eq. 3): a column in a place's range comes from this place, because in all other places
+    /// it is a column of the identity.
     #[must_use]
     pub fn matrix(&self, term: &Term<'_>) -> Vec<usize> {
         let mut rows: Vec<_> = (0..self.states()).collect();
@@ -72,7 +74,7 @@ impl Terms<'_> {
     }
 }
 
-/// The terms of a plan, its finite loops written out; `combined` counts equal interrupts once.
+/// Returns the terms of a plan with expanded finite loops; `combined` combines equal interrupts to one term.
 ///
 /// # Errors
 /// Fails with E0501 or E0502 as [`expand`](mdle_compiler::fsm::expand) does.
@@ -105,7 +107,7 @@ pub fn terms(plan: &Nondegenerate, combined: bool) -> Result<Terms<'_>, Diagnost
     Ok(Terms { source: &plan.root.name, laws, live, never, combined })
 }
 
-/// The interrupt that laws raise when they are done: it counts as their atoms' own.
+/// Returns the term of the interrupt that fires when laws complete; it counts as the atoms' own interrupt.
 fn completion<'p>(plan: &'p Plan, made: &Matrices<'p>) -> Option<Term<'p>> {
     let places = made.completion(plan).map(|(number, matrix)| {
         let (scope, column) = (made.transitions[number].name, *matrix.columns().start());

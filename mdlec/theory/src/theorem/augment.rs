@@ -1,5 +1,5 @@
-//! Writes any machine as a plan with `after` (paper, below Theorem 1: "auxiliary variables"): one endless loop over all
-//! states, each guarded by the element that ended last.
+//! Writes any machine as a plan with `after` (paper, below Theorem 1: "auxiliary variables"): an endless loop over all
+//! states, in which each state's condition tests the element that ended last.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -8,11 +8,11 @@ use super::names::{in_a_comment, texts};
 use super::{COMPLETED, Machine, State};
 use mdle_compiler::syntax::operands;
 
-/// Writes a machine of any shape as a plan. If several interrupts lead on from a state, the first in the file takes
+/// Returns a machine of any shape as a plan. If several interrupts lead from a state, the first in the file takes
 /// precedence.
 ///
-/// The plan's states are the machine's in the order of the file, after one that ends at once. In each turn the plan is
-/// in the machine's state, until a turn in which the machine would enter a state twice.
+/// The plan has the machine's states in the order of the file, after a state that ends at once. In each turn the plan
+/// is in the machine's state, up to a turn in which the machine would enter a state twice.
 #[must_use]
 pub fn augment(machine: &Machine) -> String {
     let (texts, mut names) = texts(machine);
@@ -56,7 +56,7 @@ pub fn augment(machine: &Machine) -> String {
     text
 }
 
-/// Transitions out of a state.
+/// Transitions from a state.
 struct Exits<'t> {
     /// Operands of the state's conditions in the order of the file, each once, with their destinations.
     operands: Vec<(&'t str, State)>,
@@ -82,13 +82,14 @@ impl<'t> Exits<'t> {
         exits
     }
 
-    /// Interrupt of the state's atom.
+    /// Returns the interrupt of the state's atom.
     fn condition(&self) -> String {
         let operands: Vec<_> = self.operands.iter().map(|(operand, _)| *operand).collect();
         if operands.is_empty() { "null".to_owned() } else { operands.join(" OR ") }
     }
 
-    /// Conditions that show how the state was left, each with the destination.
+    /// Returns each destination of the state, with the condition that shows that the state was left for this
+    /// destination.
     fn ways(&self, label: &str) -> Vec<(State, String)> {
         let after = |operand: &str| match is_a_name(operand) {
             true => format!("after {label} {operand}"),

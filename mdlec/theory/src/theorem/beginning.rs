@@ -1,7 +1,8 @@
-//! Beginning of an order of a machine's states, with the scopes and loops in it: computes which scopes must end if a
-//! state follows, and whether they can (Theorem 1, R1 to R4).
+//! Beginning of an order of a machine's states, with its scopes and loops. Computes the scopes that must end if a state
+//! follows, and whether they can end (Theorem 1, R1 to R4).
 //!
-//! Everything that has ended is pairwise nested or disjoint, and each place but the last has an interrupt of its own.
+//! All stretches that have ended are pairwise nested or disjoint, and each place but the last has an interrupt of its
+//! own.
 
 mod fits;
 
@@ -19,15 +20,15 @@ pub(super) struct Open {
 #[derive(Default)]
 pub(super) struct Boundary {
     runs: Vec<Run>,
-    /// First places of the loops that end here, in ascending order.
+    /// First places of the loops that end at the boundary, in ascending order.
     loops: Vec<usize>,
-    /// Scopes that continue.
+    /// Scopes that continue after the boundary.
     open: Vec<Open>,
-    /// First place of the widest scope or loop that ends.
+    /// First place of the widest scope or loop that ends at the boundary.
     widest: Option<usize>,
 }
 
-/// Data that undo a step.
+/// Data for undoing a step.
 #[derive(Default)]
 pub(super) struct Before {
     runs: usize,
@@ -37,18 +38,18 @@ pub(super) struct Before {
     has_whole: bool,
 }
 
-/// Beginning of an order.
+/// Beginning of an order of a machine's states.
 pub(super) struct Beginning<'m> {
     machine: &'m Machine,
     pub(super) order: Vec<State>,
     places: Vec<Option<usize>>,
-    /// For each state the states that lead to it.
+    /// States that lead to each state.
     sources: Vec<Vec<State>>,
     pub(super) runs: Vec<Run>,
     pub(super) loops: Vec<Loop>,
-    /// First and last place of each closed stretch, outermost only.
+    /// First and last place of each closed stretch that is not inside another one.
     wholes: Vec<(usize, usize)>,
-    /// Interrupt of laws that complete: it belongs to the atom alone, so that each state is left by itself.
+    /// Interrupt of the completion of laws; it belongs to atoms only, so that it leads from each state by itself.
     completed: Option<InterruptId>,
 }
 
@@ -75,15 +76,15 @@ impl<'m> Beginning<'m> {
         self.places[state.0 as usize]
     }
 
-    /// Scopes and loops that end if `next` follows: those that must end and, if given, the open scope `extra`; `None`
-    /// if that one must end anyway, or must not.
+    /// Returns the scopes and loops that end if `next` follows: those that must end and, if given, the open scope
+    /// `extra`. Returns `None` if the scope `extra` must end anyway, or must not end.
     ///
-    /// More than one extra is never needed: a scope that ends early provides an interrupt of its own for this place or
-    /// the next; of two scopes that lead back, one already does both, and two parts of a scope that leads to its own
-    /// start could be joined instead.
+    /// More than one extra scope is never needed. A scope that ends early provides an interrupt of its own for this
+    /// place or the next. If two scopes lead back, one of them suffices for both purposes. Two parts of a scope that
+    /// leads to its own start could be joined instead.
     ///
     /// # Errors
-    /// Fails with the condition that `next` breaks.
+    /// Returns the condition that `next` breaks.
     pub(super) fn ending(&self, open: &[Open], next: State, extra: Option<usize>) -> Result<Option<Boundary>, Broken> {
         let Some(here) = self.order.len().checked_sub(1) else {
             return Ok(extra.is_none().then(Boundary::default));
@@ -110,8 +111,8 @@ impl<'m> Beginning<'m> {
         self.ended(open, next, &ends, widest).map(Some)
     }
 
-    /// Returns `true` if a scope would end before `next` although its interrupt also leads there from other states,
-    /// which have no place yet.
+    /// Returns `true` if a scope would end before `next` although its interrupt also leads to its destination from
+    /// other states, which have no place yet.
     pub(super) fn ends_too_early(&self, open: &[Open], next: State) -> bool {
         let mut ending = open.iter().filter(|run| run.to == next && self.completed != Some(run.interrupt));
         ending.any(|run| {
@@ -135,12 +136,12 @@ impl<'m> Beginning<'m> {
         Ok(!goes_on)
     }
 
-    /// First place of an ending scope, or of the loop at whose start it leads.
+    /// Returns the first place of an ending scope, or of the loop to whose start the scope leads.
     fn reach(&self, run: Open, next: State) -> usize {
         if run.to == next { run.first } else { self.place(run.to).unwrap_or(run.first) }
     }
 
-    /// Ends every scope that begins inside an ending one.
+    /// Marks every scope as ending that begins inside an ending scope.
     fn spread(&self, open: &[Open], next: State, ends: &mut [bool], widest: &mut usize) -> Result<(), Broken> {
         for (run, ends) in open.iter().zip(ends).rev() {
             if run.first <= *widest {
@@ -155,7 +156,7 @@ impl<'m> Beginning<'m> {
         Ok(())
     }
 
-    /// Reports a scope that continues although one that encloses its first state ends.
+    /// Returns the broken condition of a scope that continues although a scope that encloses its first state ends.
     fn crossing(&self, run: Open, open: &[Open], widest: usize, next: State) -> Broken {
         let around = open.iter().find(|around| around.first == widest || self.place(around.to) == Some(widest));
         let [.., here] = *self.order.as_slice() else { return Broken::NoExit(next) };
@@ -193,7 +194,7 @@ impl<'m> Beginning<'m> {
         Ok(ending)
     }
 
-    /// Appends a state; returns the scopes that are open with it, and the data that undo this step.
+    /// Appends a state; returns the scopes that are open with it, and the data for undoing this step.
     pub(super) fn fill(&mut self, ending: Boundary, next: State) -> (Vec<Open>, Before) {
         let place = self.order.len();
         let mut before = Before { runs: self.runs.len(), loops: self.loops.len(), ..Before::default() };
@@ -215,8 +216,9 @@ impl<'m> Beginning<'m> {
         (open, before)
     }
 
-    /// Hash of everything that decides which states can follow: the states that have a place, the starts of closed
-    /// stretches, the open scopes, and the last state. The inside of a closed stretch no longer matters.
+    /// Returns a hash of all data that determine which states can follow: the states that have a place, the starts of
+    /// closed stretches, the open scopes, and the last state. The inside of a closed stretch does not matter any
+    /// longer.
     pub(super) fn outline(&self, open: &[Open]) -> [u8; 32] {
         let mut placed = vec![0_u8; self.places.len().div_ceil(8)];
         for state in &self.order {

@@ -7,104 +7,104 @@ use mdle_runtime::Printable;
 
 use super::{InterruptId, Machine, State};
 
-/// A stretch of neighbouring states in an order.
+/// A stretch of consecutive states in an order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stretch {
-    /// First state of the range.
+    /// First state of the stretch.
     pub first: State,
-    /// Last state of the range.
+    /// Last state of the stretch.
     pub last: State,
 }
 
-/// A condition that fails, with the states and interrupts that break it.
+/// A condition that a machine breaks, with the states and interrupts that break it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Broken {
-    /// An interrupt leads on from the termination state.
+    /// This interrupt leads from the termination state to another state.
     EndIsLeft(InterruptId),
-    /// No interrupt leads on from a state.
+    /// No interrupt leads from this state to another state.
     NoExit(State),
-    /// The only possible order begins with a state other than the one that the file names.
+    /// The only possible order begins with another state than the start state in the file.
     StartNotFirst {
-        /// The state that the file names.
+        /// Start state in the file.
         start: State,
-        /// The first state of the order.
+        /// First state of the order.
         first: State,
     },
-    /// Two states must be neighbours, but neither leads to the other.
+    /// Two states must be neighbours, but neither of them leads to the other.
     SideBySide(State, State),
-    /// A state has no interrupt of its own that leads to the next.
+    /// A state has no interrupt of its own that leads to the next state.
     NoOwnInterrupt {
-        /// The state.
+        /// State without an interrupt of its own.
         state: State,
-        /// The state after it.
+        /// Next state in the order.
         next: State,
-        /// An interrupt that leads there, but also from the state before, which is given.
+        /// An interrupt that leads to the next state, but also from the state before; with the state before.
         shared: Option<(InterruptId, State)>,
     },
-    /// An interrupt leads past a state without leading on from there to the same destination.
+    /// An interrupt leads past a state, but does not lead from that state to the same destination.
     Skips {
-        /// The interrupt.
+        /// Interrupt that leads past the state.
         interrupt: InterruptId,
-        /// The state from which it leads.
+        /// State from which the interrupt leads.
         from: State,
-        /// The state to which it leads.
+        /// State to which the interrupt leads.
         to: State,
-        /// The state between them.
+        /// State between `from` and `to`.
         past: State,
         /// State to which the interrupt leads from `past`, if any.
         other: Option<State>,
     },
     /// The states that two interrupts enclose overlap, and neither stretch contains the other.
     Crosses {
-        /// The interrupt whose stretch begins first.
+        /// Interrupt whose stretch begins first.
         interrupt: InterruptId,
         /// States that this interrupt encloses.
         around: Stretch,
-        /// The other interrupt.
+        /// Interrupt whose stretch begins later.
         other: InterruptId,
-        /// The first state that the other encloses.
+        /// First state that the interrupt `other` encloses.
         begins: State,
-        /// A state after the first stretch that the other interrupt encloses too.
+        /// State after the stretch `around` that the interrupt `other` also encloses.
         goes_on: State,
     },
     /// An interrupt leads into the middle of a closed stretch.
     IntoTheMiddle {
-        /// The interrupt.
+        /// Interrupt that leads into the stretch.
         interrupt: InterruptId,
-        /// The state from which it leads.
+        /// State from which the interrupt leads.
         from: State,
-        /// The state to which it leads.
+        /// State to which the interrupt leads.
         to: State,
-        /// The closed stretch.
+        /// Closed stretch.
         whole: Stretch,
     },
-    /// An interrupt would have to lead back to the first state of a loop around it, but leads elsewhere.
+    /// An interrupt must lead back to the first state of an enclosing loop, but leads to another state.
     PastALoop {
-        /// The interrupt.
+        /// Interrupt that leads to another state.
         interrupt: InterruptId,
         /// States that the interrupt encloses.
         around: Stretch,
-        /// The state to which it leads.
+        /// State to which the interrupt leads.
         to: State,
-        /// First state of the loop.
+        /// First state of the enclosing loop.
         begins: State,
     },
-    /// No order of the states satisfies the theorem: gives the beginning of the order that gets furthest, and why no
+    /// No order of the states satisfies the theorem. The fields describe the longest beginning of an order, and why no
     /// state can follow it.
     NoOrder {
-        /// States of that beginning.
+        /// States of the longest beginning.
         begins: Vec<State>,
         /// States that might follow, each with the condition that it breaks.
         tries: Vec<(State, Broken)>,
-        /// Number of further states that might follow.
+        /// Number of other states that might follow.
         more: usize,
     },
 }
 
-/// Maximum number of states of an order that are named, from its end.
+/// Maximum number of states of an order that a sentence names, from the order's end.
 const NAMED: usize = 6;
 
-/// Conditions that a machine breaks in every order of its states.
+/// Returns the conditions that a machine breaks in every order of its states.
 pub(super) fn of_every_order(machine: &Machine) -> Vec<Broken> {
     let left = machine.exits(machine.end()).iter().map(|exit| Broken::EndIsLeft(exit.interrupt));
     let stays = machine.atoms().filter(|state| machine.exits(*state).is_empty()).map(Broken::NoExit);
@@ -112,7 +112,7 @@ pub(super) fn of_every_order(machine: &Machine) -> Vec<Broken> {
 }
 
 impl Broken {
-    /// Describes the broken condition in a sentence that begins with its name.
+    /// Returns a sentence about the broken condition, which begins with the condition's name.
     #[must_use]
     pub fn sentence(&self, machine: &Machine) -> String {
         let state = |state: State| quoted(machine.name(state));
@@ -208,7 +208,7 @@ impl Broken {
     }
 }
 
-/// Quotes a name for a sentence.
+/// Returns a name in quotes for a sentence.
 fn quoted(name: &str) -> String {
     format!("`{}`", Printable(name))
 }

@@ -6,12 +6,13 @@ use std::cmp::Reverse;
 use super::order::places;
 use super::{Broken, InterruptId, Machine, Run, State, Stretch};
 
-/// Scopes of each interrupt, in an order in which all interrupts lead forwards.
+/// Returns the scopes of each interrupt in an order in which all interrupts lead forwards.
 ///
-/// Only one order is possible: each state leads to the next, and in no other order do all interrupts lead forwards.
+/// Only one such order is possible: each state leads to the next, and in no other order do all interrupts lead
+/// forwards.
 ///
 /// # Errors
-/// Fails with every condition that the machine breaks.
+/// Returns all conditions that the machine breaks.
 pub(super) fn runs(machine: &Machine, order: &[State]) -> Result<Vec<Run>, Vec<Broken>> {
     let mut broken = Vec::new();
     if let (Some(start), [first, ..]) = (machine.start(), order)
@@ -27,7 +28,7 @@ pub(super) fn runs(machine: &Machine, order: &[State]) -> Result<Vec<Run>, Vec<B
     if broken.is_empty() { Ok(runs) } else { Err(broken) }
 }
 
-/// Cuts the moves of interrupts into runs (R2): from the first place that leads to a state up to that state.
+/// Splits the moves of interrupts into runs (R2): from the first place that leads to a state up to that state.
 pub(super) fn cut(machine: &Machine, order: &[State]) -> (Vec<Run>, Vec<Broken>) {
     let places = places(order);
     let (mut runs, mut skips) = (Vec::new(), Vec::new());
@@ -43,7 +44,8 @@ pub(super) fn cut(machine: &Machine, order: &[State]) -> (Vec<Run>, Vec<Broken>)
     (runs, skips)
 }
 
-/// Adds a run that ends just before its destination; any other run leads past a state.
+/// Appends a run that ends just before its destination to `runs`; another run leads past a state and becomes a broken
+/// condition.
 fn end(machine: &Machine, order: &[State], run: Run, runs: &mut Vec<Run>, skips: &mut Vec<Broken>) {
     if run.last + 1 == run.to {
         runs.push(run);
@@ -59,7 +61,7 @@ fn end(machine: &Machine, order: &[State], run: Run, runs: &mut Vec<Run>, skips:
     });
 }
 
-/// For each interrupt and destination the places from which it leads there, in order.
+/// Returns, for each interrupt and destination, the places from which the interrupt leads to the destination, in order.
 fn by_destination(machine: &Machine, order: &[State]) -> Vec<([u32; 2], Vec<usize>)> {
     let mut moves: Vec<([u32; 2], usize)> = Vec::new();
     for (place, state) in order.iter().enumerate() {
@@ -70,7 +72,7 @@ fn by_destination(machine: &Machine, order: &[State]) -> Vec<([u32; 2], Vec<usiz
     groups.filter_map(|group| Some((group.first()?.0, group.iter().map(|(_, place)| *place).collect()))).collect()
 }
 
-/// Finds states without an interrupt of their own (R1).
+/// Returns the conditions broken by states without an interrupt of their own (R1).
 fn atoms(machine: &Machine, order: &[State], runs: &[Run]) -> Vec<Broken> {
     let mut has_own = vec![false; order.len()];
     for run in runs.iter().filter(|run| run.first == run.last) {
@@ -88,7 +90,8 @@ fn atoms(machine: &Machine, order: &[State], runs: &[Run]) -> Vec<Broken> {
     lacking.map(why).collect()
 }
 
-/// Finds runs that overlap without nesting (R3); `runs` are sorted by their first place, longest first.
+/// Returns the conditions broken by runs that overlap without nesting (R3); `runs` are sorted by their first place,
+/// longest first.
 pub(super) fn crossings(order: &[State], runs: &[Run]) -> Vec<Broken> {
     let mut open: Vec<Run> = Vec::new();
     let mut broken = Vec::new();

@@ -1,26 +1,26 @@
-//! Theorem 1 with endless loops (R4): a search among the orders of the states that gives up a beginning as soon as no
-//! state that could follow makes it a string.
+//! Theorem 1 with endless loops (R4): searches among the orders of the states, and abandons a beginning of an order
+//! when no next state can make it a string.
 
 use std::collections::BTreeSet;
 
 use super::beginning::{Before, Beginning, Boundary, Open};
 use super::{Answer, Broken, Found, InterruptId, Machine, State};
 
-/// Maximum number of continuations of the furthest beginning that are reported.
+/// Maximum number of states after the longest beginning that are reported.
 const TOLD: usize = 10;
 
-/// Step from which failed beginnings are remembered: most searches end earlier.
+/// Number of steps after which failed beginnings are remembered; most searches end earlier.
 const REMEMBERS: u64 = 2_000;
 
-/// A filled place, with the continuations that have been tried.
+/// A place with a state, and the continuations that have been tried.
 struct Step {
-    /// Scopes that are open with this place.
+    /// Scopes that are open at this place.
     open: Vec<Open>,
-    /// Index of the state to try next: first those that the last state leads to, then all others.
+    /// Index of the next state to try, among the states to which the last state leads and then all others.
     candidate: usize,
-    /// Index from 1 of the open scope that ends here in addition to those that must; 0 for no scope.
+    /// Index, from 1, of the open scope that ends here in addition to those that must end; 0 for no scope.
     extra: usize,
-    /// Data that undo the step.
+    /// Data for undoing the step.
     before: Before,
 }
 
@@ -28,16 +28,16 @@ struct Search<'m> {
     machine: &'m Machine,
     /// States in the order in which they are tried.
     candidates: &'m [State],
-    /// For each state the states that it leads to, each once.
+    /// States to which each state leads, without duplicates.
     next: Vec<Vec<State>>,
     beginning: Beginning<'m>,
-    /// Outlines of beginnings that cannot become a string.
+    /// Hashes of beginnings that cannot become a string.
     failed: BTreeSet<[u8; 32]>,
     furthest: Furthest,
     leaves: Leaves,
 }
 
-/// The beginning that gets furthest, with the reasons why no state can follow.
+/// The longest beginning, with the reasons why no state can follow.
 #[derive(Default)]
 struct Furthest {
     begins: Vec<State>,
@@ -45,16 +45,16 @@ struct Furthest {
     more: usize,
 }
 
-/// Cases that a search leaves out at first, since most strings are found without them.
+/// Cases that a search omits at first, because most strings are found without them.
 #[derive(Debug, Clone, Copy)]
 struct Leaves {
-    /// Interrupt of laws that complete, if it may end atoms only; `None` if it may end any scope.
+    /// Interrupt of the completion of laws, if it may end only atoms; `None` if it may end any scope.
     completed: Option<InterruptId>,
     /// `true` if no scope may end before a state to which its interrupt also leads from later states.
     early_ends: bool,
 }
 
-/// Searches for the string of a machine with cycles; tries states in the order of `candidates`.
+/// Searches for the string of a machine with cycles, and tries states in the order of `candidates`.
 pub(super) fn search(machine: &Machine, candidates: &[State], steps: u64) -> Answer {
     let completed = machine.completed();
     let atoms_only = completed.map(|_| completed);
@@ -73,8 +73,8 @@ pub(super) fn search(machine: &Machine, candidates: &[State], steps: u64) -> Ans
     answer
 }
 
-/// States that a state leads to, each once, beginning with the last interrupt's, which is the innermost in lowered
-/// plans.
+/// Returns the states to which a state leads, without duplicates, beginning with the destination of the last interrupt,
+/// which is the innermost in lowered plans.
 fn successors(machine: &Machine, state: State) -> Vec<State> {
     let mut seen = BTreeSet::new();
     machine.exits(state).iter().rev().map(|exit| exit.to).filter(|to| seen.insert(*to)).collect()
@@ -94,7 +94,7 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Runs the search from step `taken` to at most `limit`; returns the answer and the number of steps taken in total.
+    /// Runs the search from step `taken` to at most step `limit`; returns the answer and the total number of steps.
     fn run(mut self, taken: u64, limit: u64) -> (Answer, u64) {
         let mut steps = taken;
         let mut path = vec![Step { open: Vec::new(), candidate: 0, extra: 0, before: Before::default() }];
@@ -128,8 +128,8 @@ impl<'m> Search<'m> {
         (Answer::None(vec![Broken::NoOrder { begins, tries, more }]), steps)
     }
 
-    /// Next state to try: first those that the last state leads to, then all others; and at the end, in the same order,
-    /// states before which a scope would end although other states of it have no place yet.
+    /// Returns the next state to try: first a state to which the last state leads, then any other state; then, in the
+    /// same order, a state before which a scope would end although other states of the scope have no place yet.
     fn candidate(&self, step: &mut Step) -> Option<State> {
         let order = &self.beginning.order;
         let near = order.last().map_or(&[][..], |last| &self.next[last.0 as usize]);
@@ -157,7 +157,8 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Scopes and loops that end if `next` follows, for the next choice of an additional scope; `None` if they cannot.
+    /// Returns the scopes and loops that end if `next` follows, for the next choice of an additional scope; `None` if
+    /// they cannot end.
     fn ending(&mut self, step: &mut Step, next: State) -> Option<Boundary> {
         let extra = step.extra.checked_sub(1);
         let result = self.beginning.ending(&step.open, next, extra);

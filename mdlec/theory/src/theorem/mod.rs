@@ -1,8 +1,8 @@
 //! Theorem 1 in both directions (paper, Theorem 1; docs/src/reference/semantics.md, 8.5): the MDLe string of a machine,
-//! or the reasons why none exists.
+//! or the reasons why it has no string.
 //!
-//! In a string that is found, the places of the states count from 0, the termination state has the last, and runs and
-//! loops are pairwise nested or disjoint.
+//! In a string, the places of the states count from 0, the termination state has the last place, and runs and loops are
+//! pairwise nested or disjoint.
 
 mod augment;
 mod beginning;
@@ -22,17 +22,17 @@ pub use printed::{Rule, as_printed, monomial};
 pub use read::{FileError, read};
 pub use string::string;
 
-/// Default limit of steps in the search among orders: a few seconds.
+/// Default maximum number of steps in the search among orders, which take a few seconds.
 pub const STEPS: u64 = 1_000_000;
 
-/// Name of the interrupt that a law raises when it completes, which is not written in a plan.
+/// Name of the interrupt that fires when a law completes; plans do not contain it.
 const COMPLETED: &str = "completed";
 
-/// A state of a machine, by its index in the file.
+/// A state of a machine, as its index in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct State(pub u32);
 
-/// An interrupt of a machine, by its index in the file.
+/// An interrupt of a machine, as its index in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct InterruptId(pub u32);
 
@@ -46,7 +46,7 @@ pub struct Machine {
     exits: Vec<Vec<Exit>>,
 }
 
-/// Name of an interrupt, with the text of its condition if the file has one.
+/// An interrupt's name and the text of its condition.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Named {
     /// Name of the interrupt.
@@ -55,10 +55,10 @@ pub struct Named {
     pub text: Option<String>,
 }
 
-/// A transition out of a state: an interrupt with its destination.
+/// A transition from a state: an interrupt with its destination.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Exit {
-    /// The interrupt.
+    /// Interrupt of the transition.
     pub interrupt: InterruptId,
     /// Destination; it can be the same state, which is then entered again.
     pub to: State,
@@ -69,48 +69,48 @@ pub struct Exit {
 pub enum Answer {
     /// The machine has this string.
     String(Found),
-    /// The machine has no string, for all these reasons.
+    /// The machine has no string, for these reasons.
     None(Vec<Broken>),
-    /// The search among the orders of its states stopped after this number of steps.
+    /// The search among the orders of the machine's states stopped after this number of steps.
     Stopped(u64),
 }
 
-/// A string: an order of the states, with the scopes and loops that enclose them.
+/// A string of a machine: an order of the states, with the scopes and loops that enclose them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
-    /// The states by their places, the termination state last.
+    /// States in the order of their places, with the termination state last.
     pub order: Vec<State>,
-    /// The scopes.
+    /// Scopes of the string.
     pub runs: Vec<Run>,
-    /// The endless loops.
+    /// Endless loops of the string.
     pub loops: Vec<Loop>,
 }
 
-/// A scope: an interrupt, and the neighbouring places from which it leads to one place.
+/// A scope: an interrupt, and the consecutive places from which it leads to the same place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Run {
-    /// The interrupt.
+    /// Interrupt of the scope.
     pub interrupt: InterruptId,
-    /// First place of the range, in the order of the states.
+    /// First place of the scope.
     pub first: usize,
-    /// Last place of the range, in the order of the states.
+    /// Last place of the scope.
     pub last: usize,
-    /// The place to which it leads: after the last one, or the start of a loop.
+    /// Place to which the interrupt leads: the place after the last one, or the start of a loop.
     pub to: usize,
 }
 
-/// An endless loop, as the places that it encloses.
+/// An endless loop, as the range of places that it encloses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Loop {
-    /// First place of the range, in the order of the states.
+    /// First place of the loop.
     pub first: usize,
-    /// Last place of the range, in the order of the states.
+    /// Last place of the loop.
     pub last: usize,
 }
 
 impl Machine {
-    /// Builds a machine with these states and, for each interrupt, its moves from state to state, at most one per
-    /// state. Moves of unknown states are left out.
+    /// Returns a machine with these states and interrupts. Each interrupt has moves from state to state, at most one
+    /// from each state. Moves of unknown states are left out.
     #[must_use]
     pub fn new(states: Vec<String>, interrupts: Vec<(Named, Vec<(State, State)>)>) -> Self {
         let mut exits = vec![Vec::new(); states.len()];
@@ -126,55 +126,55 @@ impl Machine {
         Self { states, laws: None, start: None, interrupts: named, exits }
     }
 
-    /// Sets the state that must be the first.
+    /// Sets the state that must be first in an order.
     #[must_use]
     pub fn starting(self, start: State) -> Self {
         Self { start: Some(start), ..self }
     }
 
-    /// The names of the states.
+    /// Returns the names of the states.
     #[must_use]
     pub fn states(&self) -> &[String] {
         &self.states
     }
 
-    /// The interrupts.
+    /// Returns the interrupts.
     #[must_use]
     pub fn interrupts(&self) -> &[Named] {
         &self.interrupts
     }
 
-    /// Transitions out of a state, in the order of the file.
+    /// Returns the transitions from a state, in the order of the file.
     #[must_use]
     pub fn exits(&self, state: State) -> &[Exit] {
         &self.exits[state.0 as usize]
     }
 
-    /// The state that the file names as the first.
+    /// Returns the start state in the file, if the file has one.
     #[must_use]
     pub fn start(&self) -> Option<State> {
         self.start
     }
 
-    /// The termination state.
+    /// Returns the termination state.
     #[must_use]
     pub fn end(&self) -> State {
         State(number(self.states.len().saturating_sub(1)))
     }
 
-    /// State to which an interrupt leads from the state `from`, if it leads anywhere.
+    /// Returns the state to which an interrupt leads from the state `from`, if it leads anywhere.
     fn destination(&self, from: State, interrupt: InterruptId) -> Option<State> {
         let exits = self.exits(from);
         let place = exits.binary_search_by_key(&interrupt, |exit| exit.interrupt).ok()?;
         exits.get(place).map(|exit| exit.to)
     }
 
-    /// All states except the termination state.
+    /// Returns all states except the termination state.
     fn atoms(&self) -> impl DoubleEndedIterator<Item = State> {
         (0..self.end().0).map(State)
     }
 
-    /// The interrupt of laws that complete.
+    /// Returns the interrupt of the completion of laws, if the machine has one.
     fn completed(&self) -> Option<InterruptId> {
         let place = self.interrupts.iter().position(|interrupt| interrupt.name == COMPLETED)?;
         Some(InterruptId(number(place)))
@@ -189,13 +189,13 @@ impl Machine {
     }
 }
 
-/// Converts an index to a number; no file that can be read has more entries.
+/// Converts an index to 32 bits; no file that can be read has more entries.
 fn number(place: usize) -> u32 {
     u32::try_from(place).unwrap_or(u32::MAX)
 }
 
-/// Finds the string of a machine, if one exists. A machine without a cycle is decided at once, any other by a search of
-/// at most `steps` steps.
+/// Returns the string of a machine, if there is one. A machine without a cycle is decided at once, any other machine by
+/// a search of at most `steps` steps.
 #[must_use]
 pub fn decompile(machine: &Machine, steps: u64) -> Answer {
     let broken = conditions::of_every_order(machine);

@@ -1,4 +1,5 @@
-//! Converts names of states and interrupts to names of MDLe: letters, digits and `_`, all different, and not reserved.
+//! Converts names of states and interrupts to names in MDLe, which consist of letters, digits and `_`, are all
+//! different, and are not reserved.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +8,7 @@ use mdle_runtime::Printable;
 use super::Machine;
 use mdle_compiler::syntax::is_law;
 
-/// Reserved words, in capitals.
+/// Reserved words, in upper case.
 const RESERVED: &[&str] = &[
     "ATOM",
     "EXECPLAN",
@@ -25,16 +26,16 @@ const RESERVED: &[&str] = &[
     "INFINITY",
 ];
 
-/// Names in use, and the number of names derived from each.
+/// Names in use, with the number of names derived from each name.
 #[derive(Default)]
 pub(super) struct Names {
     taken: BTreeSet<String>,
     made: BTreeMap<String, usize>,
 }
 
-/// Texts in a plan for a machine's laws and interrupts.
+/// Texts in a plan for the laws and interrupts of a machine.
 pub(super) struct Texts {
-    /// Law of each state but the last.
+    /// Law of each state except the termination state.
     pub(super) laws: Vec<String>,
     /// Condition of each interrupt.
     pub(super) conditions: Vec<String>,
@@ -43,7 +44,7 @@ pub(super) struct Texts {
 }
 
 impl Names {
-    /// Returns an unused name like this one.
+    /// Returns an unused name that resembles `like`.
     pub(super) fn name(&mut self, like: &str) -> String {
         let mut name: String = like.chars().map(|letter| if is_in_names(letter) { letter } else { '_' }).collect();
         let begins_well = name.chars().next().is_some_and(|first| is_law(&first.to_string()));
@@ -92,17 +93,17 @@ pub(super) fn texts(machine: &Machine) -> (Texts, Names) {
     (Texts { laws, conditions, renamed }, names)
 }
 
-/// Words of a text.
+/// Returns the words of a text.
 pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|letter: char| !letter.is_alphanumeric() && letter != '_').filter(|word| !word.is_empty())
 }
 
-/// Returns `true` if a name may contain this letter after its first.
+/// Returns `true` if a name may contain this character after its first character.
 fn is_in_names(letter: char) -> bool {
     letter.is_ascii_alphanumeric() || letter == '_' || !letter.is_ascii() && is_law(&format!("_{letter}"))
 }
 
-/// Makes a text safe for a comment on one line.
+/// Converts a text so that it can be in a one-line comment.
 pub(super) fn in_a_comment(text: &str) -> String {
     Printable(text).to_string()
 }

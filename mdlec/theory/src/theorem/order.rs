@@ -1,9 +1,9 @@
-//! Finds an order of a machine's states in which all interrupts lead forwards, or almost all if no order has all.
+//! Finds an order of a machine's states in which all interrupts lead forwards, or almost all if there is no such order.
 
 use super::{Machine, State};
 
-/// Orders the states so that all interrupts lead forwards if the machine has no cycle, the termination state last.
-/// Among several such orders, the state that the file names as first and the file's own order decide.
+/// Returns the states in an order in which all interrupts lead forwards if the machine has no cycle; the termination
+/// state is last. Among several such orders, the start state in the file and the order of the file decide.
 pub(super) fn forwards(machine: &Machine) -> Vec<State> {
     let first = machine.start().unwrap_or(State(0));
     let mut seen = vec![false; machine.states().len()];
@@ -18,7 +18,7 @@ pub(super) fn forwards(machine: &Machine) -> Vec<State> {
     left
 }
 
-/// Visits all states that can be reached from `root` and are new, and records each when it is left.
+/// Visits all unvisited states that can be reached from `root`, and appends each to `left` after its successors.
 fn leave(machine: &Machine, root: State, seen: &mut [bool], left: &mut Vec<State>) {
     if std::mem::replace(&mut seen[root.0 as usize], true) {
         return;
@@ -41,7 +41,7 @@ fn leave(machine: &Machine, root: State, seen: &mut [bool], left: &mut Vec<State
     }
 }
 
-/// Place of each state in an order.
+/// Returns the place of each state in an order.
 pub(super) fn places(order: &[State]) -> Vec<usize> {
     let mut places = vec![0; order.len()];
     for (place, state) in order.iter().enumerate() {

@@ -1,20 +1,21 @@
-//! Theorem 1 as the paper prints it, on the columns of transition matrices: R1 to R4 literally, and as intended.
+//! Checks Theorem 1 as printed in the paper, on the columns of transition matrices: R1 to R4 literally, and as
+//! intended.
 //!
-//! The columns of an interrupt are those that it moves. A move to the same state does not count: the matrix is the
-//! identity there.
+//! The columns of an interrupt are the columns that it moves. A move to the same state does not count, because there
+//! the matrix is the identity.
 
 use super::loop_free::{crossings, cut};
 use super::order::{forwards, places};
 use super::{Answer, InterruptId, Machine, State};
 
-/// Result of one of the printed conditions for a machine.
+/// Result of a printed condition for a machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rule {
-    /// `R1` to `R4`.
+    /// Name of the condition, `R1` to `R4`.
     pub name: &'static str,
-    /// Reason why the literal condition fails; `None` if it holds.
+    /// Reason why the literal condition is not satisfied; `None` if it is satisfied.
     pub letter: Option<String>,
-    /// Reason why the intended condition fails; `None` if it holds.
+    /// Reason why the intended condition is not satisfied; `None` if it is satisfied.
     pub meant: Option<String>,
 }
 
@@ -25,9 +26,9 @@ struct Columns<'m> {
     places: Vec<usize>,
 }
 
-/// Checks the printed conditions in the only order in which they can hold: the one in which all interrupts lead
-/// forwards. For a machine with a cycle they cannot hold; then the order is that of its string or, if it has none, a
-/// similar one.
+/// Checks the printed conditions in the only order in which they can hold, the order in which all interrupts lead
+/// forwards. For a machine with a cycle they cannot hold; then the order is that of the machine's string or, if it has
+/// no string, a similar order.
 #[must_use]
 pub fn as_printed(machine: &Machine, exactly: &Answer) -> [Rule; 4] {
     let mut order = forwards(machine);
@@ -49,15 +50,15 @@ pub fn as_printed(machine: &Machine, exactly: &Answer) -> [Rule; 4] {
     ]
 }
 
-/// Neighbouring columns of an interrupt that have their 1 in the same row.
+/// Neighbouring columns of an interrupt that have their one in the same row.
 #[derive(Debug, Clone, Copy)]
 struct Same {
     first: usize,
-    /// The column after the last.
+    /// Index of the column after the last of these columns.
     behind: usize,
 }
 
-/// Lowest destination row of some moves, and the lowest of those by another interrupt.
+/// Lowest destination row of some moves, and the lowest destination row of the moves by another interrupt.
 #[derive(Debug, Clone, Copy, Default)]
 struct Lowest {
     one: Option<(usize, InterruptId)>,
@@ -65,7 +66,7 @@ struct Lowest {
 }
 
 impl Lowest {
-    /// Adds a move.
+    /// Returns the lowest rows with an additional move.
     fn with(self, interrupt: InterruptId, row: usize) -> Self {
         let Some((lowest, of)) = self.one else { return Self { one: Some((row, interrupt)), other: None } };
         if of == interrupt {
@@ -77,7 +78,7 @@ impl Lowest {
         Self { other: Some(self.other.map_or(row, |other| other.min(row))), ..self }
     }
 
-    /// Lowest destination row of the moves by interrupts other than this one.
+    /// Returns the lowest destination row of the moves by interrupts other than `interrupt`.
     fn of_another(self, interrupt: InterruptId) -> usize {
         match self.one {
             Some((lowest, of)) if of != interrupt => lowest,
@@ -88,7 +89,7 @@ impl Lowest {
 }
 
 impl Columns<'_> {
-    /// Returns every move of an interrupt from one place to another.
+    /// Returns all moves of interrupts from one place to another place.
     fn moves(&self) -> impl Iterator<Item = (InterruptId, usize, usize)> {
         let from = self.order.iter().enumerate();
         let all = from.flat_map(|(place, state)| self.machine.exits(*state).iter().map(move |exit| (place, exit)));
@@ -96,7 +97,7 @@ impl Columns<'_> {
         all.filter(|(_, from, to)| from != to)
     }
 
-    /// Row in which a column of an interrupt has its 1.
+    /// Returns the row in which a column of an interrupt has its one.
     fn row(&self, interrupt: InterruptId, column: usize) -> usize {
         let to = self.machine.destination(self.order[column], interrupt);
         to.map_or(column, |to| self.places[to.0 as usize])
@@ -110,7 +111,8 @@ impl Columns<'_> {
         format!("`{}`", self.machine.interrupt(interrupt).name)
     }
 
-    /// R1: for each column an interrupt, unlike all others, that moves the column to the next and moves nothing else.
+    /// Checks R1: for each column there is an interrupt, different from all others, that moves the column to the next
+    /// one and moves no other column.
     fn atoms(&self) -> Option<String> {
         let mut moved = vec![0_usize; self.machine.interrupts().len()];
         self.moves().for_each(|(interrupt, ..)| moved[interrupt.0 as usize] += 1);
@@ -133,7 +135,7 @@ impl Columns<'_> {
         })
     }
 
-    /// R2: no interrupt leads back, and an interrupt leads to its destination from all columns up to there.
+    /// Checks R2: no interrupt leads back, and an interrupt leads to its destination from all columns between.
     fn forwards(&self) -> Option<String> {
         let runs = self.runs();
         self.moves().zip(&runs).find_map(|((interrupt, from, to), run)| {
@@ -151,7 +153,8 @@ impl Columns<'_> {
         })
     }
 
-    /// For each move, in order, the neighbouring columns in which the interrupt has its 1 in the destination row.
+    /// Returns, for each move in order, the neighbouring columns in which the interrupt has its one in the destination
+    /// row.
     fn runs(&self) -> Vec<Same> {
         let moves: Vec<_> = self.moves().collect();
         let mut runs: Vec<Same> = moves.iter().map(|(_, from, _)| Same { first: *from, behind: from + 1 }).collect();
@@ -178,7 +181,7 @@ impl Columns<'_> {
         runs
     }
 
-    /// R3 as intended: the columns that two interrupts enclose are disjoint or nested.
+    /// Checks R3 as intended: the columns that two interrupts enclose are disjoint or nested.
     fn nested(&self) -> Option<String> {
         let (mut runs, _) = cut(self.machine, &self.order);
         runs.sort_by_key(|run| (run.first, std::cmp::Reverse(run.last), run.interrupt));
@@ -186,8 +189,8 @@ impl Columns<'_> {
         Some(sentence.trim_start_matches("R3: ").to_owned())
     }
 
-    /// First column from which a move's interrupt has its 1 in the row of the move in all columns up to that row;
-    /// `None` if one of them has not.
+    /// Returns the first column from which on all columns, up to the destination row of a move, have their one in this
+    /// row; `None` if there is no such column.
     fn first_enclosed(&self, moves: &[(InterruptId, usize, usize)], runs: &[Same], number: usize) -> Option<usize> {
         let (interrupt, from, to) = moves[number];
         if from < to {
@@ -202,7 +205,7 @@ impl Columns<'_> {
         Some(before.filter(|before| moves[*before].2 == to).map_or(to, |before| runs[before].first))
     }
 
-    /// R3 literally: `k2 <= k1` and `p2 < p1` suffices for one interrupt to have to enclose the other.
+    /// Checks R3 literally: if `k2 <= k1` and `p2 < p1`, one of two interrupts must enclose the other.
     fn nested_to_the_letter(&self) -> Option<String> {
         let (moves, runs) = (self.moves().collect::<Vec<_>>(), self.runs());
         let mut lowest = Vec::with_capacity(moves.len() + 1);
@@ -235,8 +238,8 @@ impl Columns<'_> {
         None
     }
 
-    /// R4 literally: if any interrupt leads forwards to a column, no matrix may have that column equal to its
-    /// neighbour.
+    /// Checks R4 literally: if any interrupt leads forwards to a column, this column differs from its neighbour in all
+    /// matrices.
     fn loops_to_the_letter(&self) -> Option<String> {
         let mut equal = vec![None; self.order.len()];
         for (interrupt, from, _) in self.moves() {
@@ -261,11 +264,11 @@ impl Columns<'_> {
     }
 }
 
-/// Maximum width of a line of matrices.
+/// Maximum width of a line of matrices, in characters.
 const WIDTH: usize = 110;
 
-/// Writes the machine in monomial form (paper, Eq. 2), with matrices printed as in Eq. 6; states in the order of the
-/// file.
+/// Returns the machine in monomial form (paper, Eq. 2), with matrices printed as in Eq. 6 and states in the order of
+/// the file.
 #[must_use]
 pub fn monomial(machine: &Machine) -> String {
     let size = machine.states().len();

@@ -1,7 +1,7 @@
 //! Reads FSM files (docs/src/reference/interfaces.md, 5): states, and interrupts with their moves.
 //!
-//! In a machine that is read, every move is between states of the file, and an interrupt has at most one destination
-//! per state.
+//! In the resulting machine, every move is between states of the file, and an interrupt has at most one destination for
+//! each state.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -22,7 +22,7 @@ pub struct FileError {
     pub message: String,
 }
 
-/// A file as it is written; unknown fields are ignored.
+/// Contents of an FSM file; unknown fields are ignored.
 #[derive(Deserialize)]
 #[serde(expecting = "an object with `states` and `interrupts`")]
 struct Written {
@@ -40,7 +40,7 @@ struct WrittenInterrupt {
     text: Option<String>,
 }
 
-/// Moves by the state that they leave, in the order of the names.
+/// Destinations of the moves, by the names of the states from which they lead.
 struct Moves(BTreeMap<String, String>);
 
 impl<'de> Deserialize<'de> for Moves {
@@ -75,12 +75,12 @@ impl<'de> Visitor<'de> for MovesVisitor {
     }
 }
 
-/// Reads a machine. Entries with the same name are one interrupt.
+/// Reads a machine. Entries with the same name form one interrupt.
 ///
 /// # Errors
 /// Fails if the text is not JSON, has no state, names unknown states, or gives an interrupt two destinations for a
 /// state; if `start` is the last state; if `laws` does not have one law for each state but the last; or if the text of
-/// an interrupt is not one condition.
+/// an interrupt is not exactly one condition.
 pub fn read(text: &str) -> Result<Machine, FileError> {
     let written: Written = serde_json::from_str(text).map_err(|error| reason(&error))?;
     let states = States::new(&written.states)?;
@@ -137,7 +137,7 @@ pub fn read(text: &str) -> Result<Machine, FileError> {
     }
 }
 
-/// States of a file by name.
+/// States of a file, by name.
 struct States<'n>(BTreeMap<&'n str, State>);
 
 impl<'n> States<'n> {
@@ -164,7 +164,7 @@ impl<'n> States<'n> {
         Ok(Self(states))
     }
 
-    /// Returns the state of this name; `asks` describes the entry that uses it, for the error.
+    /// Returns the state with this name; `asks` returns the description of the entry that uses it, for the error.
     fn find(&self, name: &str, asks: impl Fn() -> String) -> Result<State, FileError> {
         self.0.get(name).copied().ok_or_else(|| {
             let near = nearest(name, self.0.keys().copied());
@@ -178,7 +178,7 @@ fn refused(message: String) -> FileError {
     FileError { line: None, message }
 }
 
-/// Message of the JSON parser, with the column as the only position.
+/// Converts an error of the JSON parser; the message contains the column.
 fn reason(error: &serde_json::Error) -> FileError {
     let message = error.to_string();
     let message = match message.rsplit_once(" at line ") {

@@ -1,5 +1,5 @@
-//! Writes the string that was found for a machine as MDLe text: a plan with one atom per line, followed by the number
-//! and name of its state.
+//! Writes the string of a machine as MDLe text: a plan with one atom per line, followed by the number and name of the
+//! atom's state.
 
 use std::cmp::Reverse;
 use std::fmt::Write;
@@ -7,16 +7,16 @@ use std::fmt::Write;
 use super::names::{Names, Texts, in_a_comment, texts};
 use super::{Found, InterruptId, Machine, Run};
 
-/// Maximum nesting depth of brackets in one plan; deeper parts become plans by name.
+/// Maximum nesting depth of brackets in a plan; deeper parts become plans that are used by name.
 const DEPTH: usize = 100;
 
-/// A scope or loop, outermost first if several enclose the same states.
+/// A scope or a loop, with its stretch of places.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Enclosed {
     first: usize,
     last: Reverse<usize>,
-    /// Order of scopes and loops with the same stretch: a loop is between the scopes that lead out of it and those that
-    /// lead back to its start.
+    /// Rank among scopes and loops with the same stretch: a loop is between the scopes that lead out of it and the
+    /// scopes that lead back to its start.
     rank: Rank,
     interrupt: Option<InterruptId>,
 }
@@ -28,7 +28,7 @@ enum Rank {
     LeadsBack,
 }
 
-/// Returns the text of the string found for this machine.
+/// Returns the text of the string `found` of a machine.
 #[must_use]
 pub fn string(machine: &Machine, found: &Found) -> String {
     let (texts, mut names) = texts(machine);
@@ -66,8 +66,8 @@ fn enclosed_by(run: &Run) -> Enclosed {
     Enclosed { first: run.first, last: Reverse(run.last), rank, interrupt: Some(run.interrupt) }
 }
 
-/// Interrupt of laws that complete, if it can be left out: it encloses single atoms only, and leads where their own
-/// interrupts lead.
+/// Returns the interrupt of the completion of laws if it can be left out: it encloses only single atoms, and leads
+/// where the atoms' own interrupts lead.
 fn completed(machine: &Machine, enclosed: &[Enclosed]) -> Option<InterruptId> {
     let completed = machine.completed()?;
     let mut own = enclosed.chunk_by(|one, other| (one.first, one.last) == (other.first, other.last));
@@ -83,7 +83,7 @@ fn condition(texts: &Texts, interrupt: InterruptId) -> &str {
     &texts.conditions[interrupt.0 as usize]
 }
 
-/// A bracket that is open while its inside is written.
+/// An open bracket, whose content is being written.
 struct Bracket {
     last: usize,
     end: &'static str,
@@ -98,7 +98,7 @@ struct Writer<'w> {
     found: &'w Found,
     texts: &'w Texts,
     names: Names,
-    /// Texts of the plans, the main one first.
+    /// Texts of the plans, the main plan first.
     plans: Vec<String>,
     open: Vec<Bracket>,
 }
@@ -149,7 +149,7 @@ impl Writer<'_> {
         self.open.push(Bracket { last, end, plan, depth });
     }
 
-    /// Position of the next line: the index of the plan, and the depth in it.
+    /// Returns the position of the next line: the index of the plan, and the nesting depth in it.
     fn inside(&self) -> (usize, usize) {
         self.open.last().map_or((0, 1), |bracket| (bracket.plan, bracket.depth + 1))
     }

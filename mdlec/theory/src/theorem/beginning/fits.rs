@@ -1,4 +1,4 @@
-//! Checks whether scopes and loops can end after the beginning of an order: no interrupt may lead into the middle of a
+//! Checks that scopes and loops can end after the beginning of an order: no interrupt may lead into the middle of a
 //! closed stretch (Theorem 1, R4).
 
 use super::{Beginning, Boundary};
@@ -68,12 +68,13 @@ impl Beginning<'_> {
         Ok(())
     }
 
-    /// States without a place that lead to this one.
+    /// Returns the states without a place that lead to `state`.
     pub(super) fn outside(&self, state: State) -> impl Iterator<Item = State> {
         self.sources[state.0 as usize].iter().copied().filter(|source| self.place(*source).is_none())
     }
 
-    /// Reports that a state outside leads into the middle of the stretch that begins at place `first`.
+    /// Returns the broken condition of a state outside that leads into the middle of the stretch that begins at place
+    /// `first`.
     fn leads_inside(&self, from: State, to: State, first: usize, last: State) -> Broken {
         let exit = self.machine.exits(from).iter().find(|exit| exit.to == to);
         let interrupt = exit.map_or(InterruptId(0), |exit| exit.interrupt);
