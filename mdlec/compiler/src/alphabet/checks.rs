@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::{AlphabetFile, Declaration, DeclarationKind, Kind};
 use crate::diagnostic::{Code, Diagnostic};
 
-/// Returns all faults of the declarations.
+/// Returns all defects of the declarations.
 pub(super) fn check(alphabet: &AlphabetFile) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let mut met = BTreeSet::new();
@@ -40,8 +40,8 @@ pub(super) fn check(alphabet: &AlphabetFile) -> Vec<Diagnostic> {
     found
 }
 
-/// Reports why an interrupt cannot be `exclusive`: its uses have to differ in arguments that have no rounding, and to
-/// fire alike in all scopes.
+/// Returns the reason why an interrupt cannot be `exclusive`: its uses must differ in arguments that are compared
+/// without rounding, and must fire equally in all scopes.
 fn exclusive(declaration: &Declaration) -> Option<Diagnostic> {
     let name = &declaration.name;
     let because = |message: String| Some(at(declaration, message));

@@ -1,4 +1,4 @@
-//! Whole alphabet of a robot: its target's own file together with the shared ones that it uses.
+//! The complete alphabet of a robot: its target's own file, combined with the shared alphabets that the file uses.
 
 use std::fmt;
 
@@ -6,20 +6,20 @@ use super::synonyms;
 use super::{AlphabetFile, Capability, Declaration, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic};
 
-/// Alphabet of one robot, against which its plans are checked.
+/// Alphabet of a robot, against which the robot's plans are checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Alphabet {
     /// Name of the target.
     pub name: String,
-    /// The Rust crate that implements the target; empty without a target.
+    /// Rust crate that implements the target; empty if there is no target.
     pub crate_name: String,
     /// Period of a turn, in nanoseconds, if the target declares it.
     pub period: Option<u64>,
     /// Capabilities of the robot.
     pub capabilities: Vec<Capability>,
-    /// Capabilities that the robot has if an engine runs its plan.
+    /// Capabilities that the robot has only if an engine runs its plan.
     pub engine: Vec<Capability>,
-    /// `false` if the plan is for an executable, in which there is no engine.
+    /// `false` if the plan is compiled to an executable, which has no engine.
     pub has_engine: bool,
     /// Robots that messages may suggest, each with its capabilities.
     pub robots: Vec<(String, Vec<Capability>)>,
@@ -63,7 +63,7 @@ pub fn combine(target: AlphabetFile, shared: &[AlphabetFile]) -> (Alphabet, Vec<
 }
 
 impl Alphabet {
-    /// Alphabet of a robot with every capability: a shared file by itself.
+    /// Returns the alphabet of a robot with every capability: a shared file by itself.
     #[must_use]
     pub fn shared(file: AlphabetFile) -> Self {
         Self {
@@ -79,28 +79,28 @@ impl Alphabet {
         }
     }
 
-    /// Capabilities of the robot; empty for a shared file, whose robot has every capability.
+    /// Returns the capabilities of the robot; empty for a shared file, whose robot has every capability.
     #[must_use]
     pub fn capabilities(&self) -> &[Capability] {
         &self.capabilities
     }
 
-    /// Quarks and signals of the alphabet.
+    /// Returns the declarations of quarks and signals.
     pub fn declarations(&self) -> impl Iterator<Item = &Declaration> {
         self.declarations.iter()
     }
 
-    /// Declarations of this name, in the order in which overloads are counted.
+    /// Returns the declarations with this name, in the order in which overloads are counted.
     pub fn declarations_of(&self, name: &str) -> impl Iterator<Item = &Declaration> {
         self.declarations.iter().filter(move |declaration| declaration.name == name)
     }
 
-    /// Names of the quarks and signals; a name with several declarations is repeated.
+    /// Returns the names of the quarks and signals; a name with several declarations is repeated.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.declarations.iter().map(|declaration| declaration.name.as_str())
     }
 
-    /// Returns `true` if the robot has the capability, in at least this number.
+    /// Returns `true` if the robot has the capability in at least the needed number.
     #[must_use]
     pub fn has(&self, needed: &Capability) -> bool {
         self.everything || is_among(needed, &self.capabilities) || self.has_engine && is_among(needed, &self.engine)
@@ -112,14 +112,14 @@ impl Alphabet {
         !is_among(needed, &self.capabilities) && is_among(needed, &self.engine)
     }
 
-    /// Names of the robots that have all these capabilities.
+    /// Returns the names of the robots that have all these capabilities.
     #[must_use]
     pub fn robots_with(&self, needed: &[Capability]) -> Vec<&str> {
         let can = |capabilities: &[Capability]| needed.iter().all(|needed| is_among(needed, capabilities));
         self.robots.iter().filter(|(_, own)| can(own)).map(|(name, _)| name.as_str()).collect()
     }
 
-    /// Name that was probably meant by `name`, of this kind if one is given.
+    /// Returns the name that was probably meant by `name`, of this kind if a kind is given.
     #[must_use]
     pub fn nearest(&self, name: &str, kind: Option<DeclarationKind>) -> Option<&str> {
         let names = || {
@@ -129,13 +129,13 @@ impl Alphabet {
         nearest(name, names()).or_else(|| synonyms::meant(name).find_map(|meant| names().find(|name| *name == meant)))
     }
 
-    /// Quarks of this kind for which `name` is another word, in the order of their probability.
+    /// Returns the quarks of this kind for which `name` is a synonym, the most probable first.
     pub fn synonyms(&self, name: &str, kind: DeclarationKind) -> impl Iterator<Item = &Declaration> {
         synonyms::meant(name).filter_map(move |meant| self.declarations_of(meant).find(|found| found.kind == kind))
     }
 
-    /// Hash of the target's name, crate, period and capabilities, and of all declarations: identifies the alphabet that
-    /// a target was built for.
+    /// Returns a hash of the target's name, crate, period and capabilities, and of all declarations, which identifies
+    /// the alphabet for which a target was built.
     #[must_use]
     pub fn hash(&self) -> u64 {
         let text = format!("{} {} {:?} {:?}", self.name, self.crate_name, self.period, self.capabilities);
@@ -156,7 +156,7 @@ fn is_among(needed: &Capability, capabilities: &[Capability]) -> bool {
     capabilities.iter().any(|own| own.name == needed.name && own.size >= needed.size)
 }
 
-/// Returns the most similar of these names, if it is similar enough to have been meant.
+/// Returns the name in `names` that is most similar to `name`, if it is similar enough to be meant.
 #[must_use]
 pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     let lower = name.to_lowercase();
@@ -166,21 +166,21 @@ pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&
     names.map(|other| (distance(other), other)).filter(|(found, _)| *found <= allowed).min().map(|(_, other)| other)
 }
 
-/// Returns the end of a sentence about an unknown name: the similar name of these, or an empty text.
+/// Returns the end of a sentence about an unknown name: the similar name in `known`, or an empty text.
 #[must_use]
 pub fn did_you_mean(name: &str, known: &[&str]) -> String {
     let near = nearest(name, known.iter().copied());
     near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default()
 }
 
-/// Returns `true` if a target's own declaration replaces a shared one: same name, same kinds of arguments.
+/// Returns `true` if a target's own declaration replaces a shared one: both have the same name and kinds of arguments.
 fn replaces(own: &Declaration, shared: &Declaration) -> bool {
     let kinds = |declaration: &Declaration| -> Vec<_> { declaration.params.iter().map(|param| param.kind).collect() };
     own.name == shared.name && kinds(own) == kinds(shared)
 }
 
-/// Sorts overloads in the order of the shared alphabets, with a target's additions last: so a name's first declaration
-/// stays its first, whichever of them a target replaces.
+/// Sorts overloads in the order of the shared alphabets, with a target's additions last: the first declaration of a
+/// name then stays first, whichever declarations a target replaces.
 fn in_order(mut declarations: Vec<Declaration>, shared: &[AlphabetFile]) -> Vec<Declaration> {
     let order: Vec<&Declaration> = shared.iter().flat_map(|file| &file.declarations).collect();
     let place = |found: &Declaration| order.iter().position(|shared| replaces(found, shared)).unwrap_or(order.len());
@@ -197,7 +197,7 @@ impl fmt::Display for Capability {
     }
 }
 
-/// Canonical form of the declaration, without its docs and its place; the hash uses it.
+/// Writes the canonical form of the declaration, without its documentation and its place, for the hash.
 impl fmt::Display for Declaration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:?} {}(", self.kind, self.name)?;

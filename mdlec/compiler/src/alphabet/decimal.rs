@@ -3,18 +3,18 @@
 
 use std::fmt;
 
-/// An exact decimal number: sign, digits without leading or trailing zeros, power of ten.
+/// An exact decimal number: a sign, digits without leading or trailing zeros, and a power of ten.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Decimal {
     negative: bool,
-    /// Digits 0 to 9, most significant first; empty for zero.
+    /// Digits from 0 to 9, most significant first; empty for zero.
     digits: Vec<u8>,
     /// Power of ten of the last digit.
     exponent: i64,
 }
 
 impl Decimal {
-    /// Reads the text of a number token: sign, digits, fraction, exponent. `None` for any other text.
+    /// Reads the text of a number token, with sign, digits, fraction and exponent. Returns `None` for any other text.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         let (negative, rest) = match text.strip_prefix('-') {
@@ -34,13 +34,13 @@ impl Decimal {
         Some(Self { negative, digits, exponent }.normalized())
     }
 
-    /// Zero.
+    /// Returns the number zero.
     #[must_use]
     pub fn zero() -> Self {
         Self { negative: false, digits: Vec::new(), exponent: 0 }
     }
 
-    /// Multiplies the number by `factor` and by ten to the power `exponent`, exactly.
+    /// Returns the exact product of the number, `factor`, and ten to the power `exponent`.
     #[must_use]
     pub fn scaled(&self, factor: u32, exponent: i32) -> Self {
         let mut product = Vec::with_capacity(self.digits.len() + 10);
@@ -59,7 +59,7 @@ impl Decimal {
         Self { negative: self.negative, digits: product, exponent }.normalized()
     }
 
-    /// Nearest `f64`; infinite if the number is too large.
+    /// Returns the nearest `f64`; infinity if the number is too large.
     #[must_use]
     pub fn to_f64(&self) -> f64 {
         let sign = if self.negative { "-" } else { "" };
@@ -67,7 +67,8 @@ impl Decimal {
         format!("{sign}0{digits}e{}", self.exponent).parse().unwrap_or(f64::INFINITY)
     }
 
-    /// Nearest whole number of billionths, halves upwards; `None` if that is negative or exceeds `u64`.
+    /// Returns the nearest whole number of billionths, with halves rounded up; `None` if it is negative or exceeds
+    /// `u64`.
     #[must_use]
     pub fn to_nanos(&self) -> Option<u64> {
         if self.digits.is_empty() {
@@ -112,7 +113,7 @@ impl Decimal {
 }
 
 impl fmt::Display for Decimal {
-    /// Writes the number without an exponent, unless that would be longer than forty places.
+    /// Writes the number without an exponent, unless the result would be longer than forty digits.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.digits.is_empty() {
             return f.write_str("0");

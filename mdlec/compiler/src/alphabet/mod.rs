@@ -18,12 +18,12 @@ pub use read::read;
 
 use crate::diagnostic::Span;
 
-/// An alphabet file as read: a target's own, or a shared one that targets `use`.
+/// Contents of an alphabet file: a target's own alphabet, or a shared one that targets `use`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AlphabetFile {
     /// Name of the target or of the shared alphabet.
     pub name: String,
-    /// Head of a target's alphabet; `None` for a shared one.
+    /// Head of a target's alphabet; `None` for a shared alphabet.
     pub target: Option<TargetHead>,
     /// Shared alphabets that the file uses, with the places of their names.
     pub uses: Vec<(String, Span)>,
@@ -40,7 +40,7 @@ pub struct TargetHead {
     pub period: Option<u64>,
     /// Capabilities of the robot.
     pub capabilities: Vec<Capability>,
-    /// Capabilities that the robot has if an engine runs its plan, and not in an executable.
+    /// Capabilities that the robot has if an engine runs its plan, but not in an executable.
     pub engine: Vec<Capability>,
 }
 
@@ -49,25 +49,25 @@ pub struct TargetHead {
 pub struct Capability {
     /// Name of the capability.
     pub name: String,
-    /// Number of devices, for capabilities that have one.
+    /// Number of devices, for capabilities with a number.
     pub size: Option<u32>,
 }
 
 /// Kind of a declaration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum DeclarationKind {
-    /// A law, in U.
+    /// A law, an element of U.
     Control,
-    /// An interrupt, in B′.
+    /// An interrupt, an element of B′.
     Interrupt,
-    /// A signal, which comparisons read.
+    /// A signal, whose value comparisons read.
     Signal,
 }
 
-/// A quark or a signal with its signature.
+/// Declaration of a quark or a signal with its parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Declaration {
-    /// Doc comment, its lines joined by spaces.
+    /// Doc comment, with its lines joined by spaces.
     pub docs: String,
     /// Kind of the quark or signal.
     pub kind: DeclarationKind,
@@ -75,7 +75,7 @@ pub struct Declaration {
     pub name: String,
     /// Parameters, in order.
     pub params: Vec<Param>,
-    /// For a signal: its unit, and the tolerance of `==` in that unit.
+    /// Unit of a signal, and the tolerance of `==` in this unit; `None` for a quark.
     pub unit: Option<(Unit, f64)>,
     /// `true` for a law that can complete by itself.
     pub completes: bool,
@@ -83,7 +83,7 @@ pub struct Declaration {
     pub remembers: bool,
     /// `true` for an interrupt that fires for at most one value of its arguments in a turn.
     pub exclusive: bool,
-    /// Capabilities that the robot must have.
+    /// Capabilities that the quark or signal needs.
     pub needs: Vec<Capability>,
     /// File that declares the quark.
     pub origin: Origin,
@@ -91,12 +91,12 @@ pub struct Declaration {
     pub span: Span,
 }
 
-/// Origin of a declaration, which is also the origin of the implementation.
+/// Origin of a declaration and of its implementation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Origin {
-    /// The target itself.
+    /// The target's own alphabet and crate.
     Target,
-    /// The shared alphabet of this name.
+    /// The shared alphabet with this name.
     Shared(String),
 }
 
@@ -107,14 +107,15 @@ pub struct Param {
     pub name: String,
     /// Type of the parameter.
     pub kind: Kind,
-    /// Unit of a bare number; the kind's base unit if the alphabet names no other.
+    /// Unit of a bare number; the base unit of the kind if the alphabet declares no other unit.
     pub unit: Option<Unit>,
-    /// Default value as written, in that unit.
+    /// Default value as written, in the unit of a bare number.
     pub default: Option<String>,
-    /// Smallest and largest value, in that unit.
+    /// Minimum and maximum value, in the unit of a bare number.
     pub range: Option<(f64, f64)>,
-    /// Value in the range that is not allowed, in that unit.
+    /// Value in the range that is not allowed, in the unit of a bare number.
     pub except: Option<f64>,
-    /// Attributes that the quark reads of a module; a signal without any reads the attribute of its own name.
+    /// Attributes of a module that the quark reads; a signal without such attributes reads the attribute with its own
+    /// name.
     pub with: Vec<String>,
 }

@@ -1,21 +1,21 @@
 //! Kinds of values and their units (docs/src/reference/language.md, 2.4 and 6.2).
 
-/// Kind of value of a parameter.
+/// Kind of a parameter's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
-    /// Metres.
+    /// A length in metres.
     Length,
-    /// Metres per second.
+    /// A speed in metres per second.
     Speed,
-    /// Degrees or radians, which are never converted into each other exactly.
+    /// An angle in degrees or radians, which are never converted to each other exactly.
     Angle,
-    /// Radians or degrees per second.
+    /// A turn rate in radians or degrees per second.
     AngularRate,
-    /// Seconds.
+    /// A time in seconds.
     Time,
-    /// Volts.
+    /// A voltage in volts.
     Voltage,
-    /// Hertz; no parameter takes it yet, but it is a unit.
+    /// A frequency in hertz; it has a unit, but no parameter is of this kind yet.
     Frequency,
     /// A number without a unit.
     Number,
@@ -23,20 +23,20 @@ pub enum Kind {
     Integer,
     /// A number of passes: a positive whole number, or `inf`.
     Count,
-    /// A word of this many bits.
+    /// A word with this number of bits.
     Bits(u32),
-    /// The number of a sonar, 0 to 15.
+    /// The number of a sonar, from 0 to 15.
     Sonar,
-    /// The name of a robot.
+    /// A robot's name.
     Robot,
-    /// The name of a module.
+    /// A module's name.
     Module,
-    /// A file or the name of a stored path.
+    /// The path of a file or the name of a stored path.
     File,
 }
 
 impl Kind {
-    /// Names of the kinds in an alphabet, without `bits`, which needs a length.
+    /// Names of the kinds in an alphabet, except `bits`, which needs a length.
     pub const NAMES: &[&str] = &[
         "length",
         "speed",
@@ -53,7 +53,7 @@ impl Kind {
         "file",
     ];
 
-    /// The kind of this name in an alphabet, if it is among [`Kind::NAMES`].
+    /// Returns the kind with this name in an alphabet, if it is in [`Kind::NAMES`].
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Some(match name {
@@ -74,7 +74,7 @@ impl Kind {
         })
     }
 
-    /// Name of the kind in words, with its article: "an angle".
+    /// Returns the name of the kind in words, with its article, such as "an angle".
     #[must_use]
     pub fn words(self) -> String {
         match self {
@@ -96,8 +96,8 @@ impl Kind {
         }
     }
 
-    /// Returns `true` if two values of the kind are equal only if they are written alike, without rounding or another
-    /// name.
+    /// Returns `true` if two values of the kind are equal only if their texts are equal, without rounding or other
+    /// names.
     #[must_use]
     pub fn is_discrete(self) -> bool {
         match self {
@@ -107,7 +107,7 @@ impl Kind {
         }
     }
 
-    /// Unit in which values are compared and computed.
+    /// Returns the unit in which values of the kind are compared and computed.
     #[must_use]
     pub fn base_unit(self) -> Option<Unit> {
         Unit::ALL.iter().copied().find(|unit| unit.kind == self && unit.is_base)
@@ -121,18 +121,19 @@ pub struct Unit {
     pub name: &'static str,
     /// Kind of quantity that the unit measures.
     pub kind: Kind,
-    /// Whole number of the exact factor to the unit of the family, which is `factor` times ten to the power `exponent`.
+    /// Integer part of the exact factor from this unit to the unit of the family; the whole factor is `factor` times
+    /// ten to the power `exponent`.
     pub factor: u32,
-    /// Power of ten of the exact factor.
+    /// Power of ten in the exact factor.
     pub exponent: i32,
-    /// Unit of the family, in which exact values are compared: degrees and radians are two families.
+    /// Name of the family's unit, in which exact values are compared; degrees and radians belong to two families.
     pub family: &'static str,
     /// `true` if the family's unit is the SI unit in which robots compute.
     pub is_base: bool,
 }
 
 impl Unit {
-    /// Every unit.
+    /// All units.
     pub const ALL: &[Self] = &[
         Self::new("m", Kind::Length, 1, 0, "m"),
         Self::new("cm", Kind::Length, 1, -2, "m"),
@@ -155,7 +156,7 @@ impl Unit {
         Self::new("Hz", Kind::Frequency, 1, 0, "Hz"),
     ];
 
-    /// Unit with this name.
+    /// Returns the unit with this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|unit| unit.name == name)
@@ -167,7 +168,7 @@ impl Unit {
         Self::ALL.iter().any(|unit| unit.name == name)
     }
 
-    /// Factor from the family's unit to SI: 1, or π/180 if the family counts degrees.
+    /// Returns the factor from the family's unit to SI: 1, or π/180 if the family's unit is the degree.
     #[must_use]
     pub fn family_to_si(self) -> f64 {
         family_to_si(self.family)
@@ -187,7 +188,7 @@ impl Unit {
     }
 }
 
-/// Factor from the unit `family` to SI: 1, or π/180 if the family counts degrees.
+/// Returns the factor from the unit `family` to SI: 1, or π/180 if the family's unit is the degree.
 #[must_use]
 pub fn family_to_si(family: &str) -> f64 {
     if family.starts_with("deg") { std::f64::consts::PI / 180.0 } else { 1.0 }

@@ -10,7 +10,7 @@ use super::token::Token;
 use super::{AlphabetFile, Capability, Decimal, Declaration, DeclarationKind, Kind, Origin, Param, TargetHead, Unit};
 use crate::diagnostic::{Code, Diagnostic, SourceId, Span, sort};
 
-/// Reads an alphabet: returns it, unless it has no head, and all its diagnostics.
+/// Reads an alphabet, and returns it with all diagnostics; `None` if it has no head.
 #[must_use]
 pub fn read(source: SourceId, text: &str) -> (Option<AlphabetFile>, Vec<Diagnostic>) {
     let mut reader = Reader { text, source, tokens: Vec::new(), at: 0, found: Vec::new() };
@@ -24,7 +24,7 @@ pub fn read(source: SourceId, text: &str) -> (Option<AlphabetFile>, Vec<Diagnost
     (alphabet, found)
 }
 
-/// A defect was reported; the declaration that contains it is dropped.
+/// Marker that a defect was reported: the declaration that contains it is dropped.
 struct Defect;
 
 type Read<T> = Result<T, Defect>;
@@ -193,7 +193,7 @@ impl<'t> Reader<'t> {
     }
 
     /// Reads `NAME ":" type [ UNIT ] [ "=" NUMBER ] [ "in" NUMBER ".." NUMBER ] [ "not" NUMBER ]
-    /// [ "with" NAME { "," NAME } ]`. After a comma, a name without a type is one more attribute.
+    /// [ "with" NAME { "," NAME } ]`. After a comma, a name without a type is another attribute.
     fn param(&mut self) -> Read<Param> {
         let name = self.name()?.0;
         self.require(Token::Colon)?;
@@ -251,7 +251,7 @@ impl<'t> Reader<'t> {
         Ok(with)
     }
 
-    /// Returns `true` if a comma and another attribute follow; a name before a colon is the next parameter.
+    /// Returns `true` if a comma and another attribute follow; a name before a colon is the next parameter instead.
     fn names_attribute(&self) -> bool {
         let token = |ahead: usize| self.tokens.get(self.at + ahead).map(|(token, _)| *token);
         token(0) == Some(Token::Comma) && token(1) == Some(Token::Word) && token(2) != Some(Token::Colon)

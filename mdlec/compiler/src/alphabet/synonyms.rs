@@ -1,4 +1,4 @@
-//! Other words for quarks, which people type before they know an alphabet.
+//! Synonyms of quarks' names, which users type before they know an alphabet.
 
 /// Names of quarks, each with its synonyms.
 const SYNONYMS: &[(&str, &[&str])] = &[
@@ -19,7 +19,7 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     ("battery", &["voltage", "volts"]),
 ];
 
-/// Quarks for which `name` is another word.
+/// Returns the names of quarks for which `name` is a synonym.
 pub(super) fn meant(name: &str) -> impl Iterator<Item = &'static str> {
     let is_meant = move |words: &[&str]| words.iter().any(|word| word.eq_ignore_ascii_case(name));
     SYNONYMS.iter().filter(move |(_, words)| is_meant(words)).map(|(quark, _)| *quark)

@@ -2,51 +2,51 @@
 
 use logos::Logos;
 
-/// A token.
+/// Kind of a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Logos)]
 #[logos(skip r"[ \t\r\n\u{FEFF}]+")]
 #[logos(skip(r"//([^/\n][^\n]*)?", allow_greedy = true))]
 pub(super) enum Token {
-    /// `/// …`.
+    /// A doc comment, `/// …`.
     #[regex(r"///[^\n]*", allow_greedy = true)]
     Doc,
     /// A name, a keyword or a unit such as `cm/s`.
     #[regex(r"[\p{L}_][\p{L}\p{Nd}_]*(/[a-z]+)?")]
     Word,
-    /// A number; a unit may touch it.
+    /// A number, with the unit that directly follows.
     #[regex(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")]
     Number,
-    /// `:`.
+    /// The sign `:`.
     #[token(":")]
     Colon,
-    /// `;`.
+    /// The sign `;`.
     #[token(";")]
     Semicolon,
-    /// `,`.
+    /// The sign `,`.
     #[token(",")]
     Comma,
-    /// `(`.
+    /// The sign `(`.
     #[token("(")]
     Open,
-    /// `)`.
+    /// The sign `)`.
     #[token(")")]
     Close,
-    /// `[`.
+    /// The sign `[`.
     #[token("[")]
     OpenBracket,
-    /// `]`.
+    /// The sign `]`.
     #[token("]")]
     CloseBracket,
-    /// `=`.
+    /// The sign `=`.
     #[token("=")]
     Equals,
-    /// `..`.
+    /// The sign `..`, between the ends of a range.
     #[token("..")]
     To,
 }
 
 impl Token {
-    /// Name of the token in messages.
+    /// Returns the name of the token in messages.
     pub(super) fn words(self) -> &'static str {
         match self {
             Self::Doc => "a doc comment",

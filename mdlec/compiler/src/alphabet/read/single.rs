@@ -1,4 +1,4 @@
-//! Reads single tokens of an alphabet file, and reports those that are unexpected.
+//! Reads single tokens of an alphabet file, and reports unexpected tokens.
 
 use super::super::token::Token;
 use super::{Defect, Read, Reader};
@@ -25,7 +25,7 @@ impl<'t> Reader<'t> {
         Ok((name, span))
     }
 
-    /// Reads the name of a crate, as cargo and Rust allow it.
+    /// Reads the name of a crate, in the form that cargo and Rust allow.
     pub(super) fn crate_name(&mut self) -> Read<String> {
         let (name, span) = self.word()?;
         let is_ascii = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
@@ -95,7 +95,7 @@ impl<'t> Reader<'t> {
         Err(Defect)
     }
 
-    /// Continues after the next `;`.
+    /// Skips all tokens up to the next `;`.
     pub(super) fn skip(&mut self) {
         let rest = self.tokens.get(self.at..).unwrap_or_default();
         let end = rest.iter().position(|(token, _)| *token == Token::Semicolon);
