@@ -1,12 +1,12 @@
-//! Messages about arithmetic, which MDLe does not have: they give the result, and convert values in units that MDLe
-//! does not have.
+//! Messages about arithmetic, which MDLe does not have. The messages contain the result, and convert values in units
+//! that MDLe does not have.
 
 use super::number::split;
 use super::source::{Place, Source};
 use crate::alphabet::Unit;
 use crate::diagnostic::{Code, Diagnostic};
 
-/// Units that MDLe does not have: their names, and their size in a unit of MDLe.
+/// Units that MDLe does not have, as their names, their size in a unit of MDLe, and that unit.
 const FOREIGN: &[(&[&str], f64, &str)] = &[
     (&["km/h", "kmh", "kph", "kmph"], 1.0 / 3.6, "m/s"),
     (&["mph", "mi/h"], 0.447_04, "m/s"),
@@ -25,14 +25,14 @@ const FOREIGN: &[(&[&str], f64, &str)] = &[
     (&["kHz", "khz"], 1000.0, "Hz"),
 ];
 
-/// Converts a number with a foreign unit to a unit of MDLe.
+/// Returns a number with a foreign unit as a number with a unit of MDLe.
 pub(super) fn foreign_unit(number: &str, unit: &str) -> Option<String> {
     let (_, factor, ours) = FOREIGN.iter().find(|(names, _, _)| names.contains(&unit))?;
     Some(format!("{}{ours}", rounded(number.parse::<f64>().ok()? * factor)?))
 }
 
-/// Result of an operation on two numbers, if MDLe can express it: at most one unit, or equal units in a sum or
-/// difference.
+/// Returns the result of an operation on two numbers, if MDLe can express it: at most one of them has a unit, or both
+/// have the same unit in a sum or difference.
 pub(super) fn computed(left: &str, operator: &str, right: &str) -> Option<String> {
     let ((left, left_unit), (right, right_unit)) = (split(left), split(right));
     let is_unit = |unit: &str| unit.is_empty() || Unit::from_name(unit).is_some();
@@ -51,7 +51,7 @@ pub(super) fn computed(left: &str, operator: &str, right: &str) -> Option<String
     Some(format!("{}{unit}", rounded(value)?))
 }
 
-/// Adds up `1h30min`, a number with several units of one kind; the sum is in the last of them.
+/// Returns the sum of a number with several units of one kind, such as `1h30min`, in the last of the units.
 pub(super) fn sum_of_units(number: &str, tail: &str) -> Option<String> {
     let text = format!("{number}{tail}");
     let (mut rest, mut sum, mut last): (&str, f64, Option<Unit>) = (&text, 0.0, None);
@@ -67,13 +67,13 @@ pub(super) fn sum_of_units(number: &str, tail: &str) -> Option<String> {
     Some(format!("{}{}", rounded(sum / unit.to_si(1.0))?, unit.name))
 }
 
-/// Rounds a value to four decimals; `None` if that makes a small value zero, or if the value is 10⁹ or more.
+/// Rounds a value to four decimals; returns `None` if a small value becomes zero, or if the value is 10⁹ or more.
 fn rounded(value: f64) -> Option<String> {
     let rounded = (value * 1e4).round() / 1e4;
     (value.abs() < 1e9 && (rounded != 0.0 || value == 0.0)).then(|| rounded.to_string())
 }
 
-/// Returns the message about an operator of arithmetic, if `found` is one.
+/// Returns the message about an arithmetic operator, if `found` is such an operator.
 pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Option<Diagnostic> {
     let operator = if matches!(found, "+" | "-" | "*" | "/" | "**") { found } else { return None };
     let before = source.text.get(..place.start)?.trim_end_matches([' ', '\t']);
@@ -131,7 +131,7 @@ pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Optio
     })
 }
 
-/// Reports `-far`: a sign before a name.
+/// Reports a sign before a name, such as `-far`.
 fn negative_name(source: Source<'_>, operator: &str, place: Place) -> Option<Diagnostic> {
     let (before, after) = (source.text.get(..place.start)?, source.text.get(place.end..)?);
     let name = after.get(..after.find(|c: char| !is_in_word(c)).unwrap_or(after.len()))?;
@@ -150,7 +150,7 @@ fn negative_name(source: Source<'_>, operator: &str, place: Place) -> Option<Dia
     })
 }
 
-/// Reports `pi/2`, `2*pi` and `pi*0.5` as the angles that they are.
+/// Reports parts and multiples of pi, such as `pi/2`, `2*pi` and `pi*0.5`, as the angles that they mean.
 fn part_of_pi(source: Source<'_>, place: Place) -> Option<Diagnostic> {
     if source.slice(place) == "-" {
         // The sign and the operator after `pi` have the same message, which is reported once.
@@ -183,7 +183,7 @@ fn is_pi(text: &str) -> bool {
     matches!(text, "pi" | "PI" | "Pi" | "π")
 }
 
-/// Proposes a name for `Return-Home` in the place of a plan's name.
+/// Returns a name without hyphens for a plan's name with hyphens, such as `Return-Home`.
 fn hyphenated(source: Source<'_>, left: &str, operator: &str, right: &str, place: Place) -> Option<String> {
     let before = source.text.get(..place.start)?;
     let touches = before.ends_with(left) && source.text.get(place.end..)?.starts_with(right);
@@ -192,7 +192,7 @@ fn hyphenated(source: Source<'_>, left: &str, operator: &str, right: &str, place
     (operator == "-" && touches && is_header && is_name(left) && is_name(right)).then(|| format!("{left}_{right}"))
 }
 
-/// Reports `(…)*3`, which is not a loop in MDLe.
+/// Reports a multiplied string, such as `(…)*3`, which is not a loop in MDLe.
 fn power(source: Source<'_>, place: Place, after: &str) -> Diagnostic {
     let message = format!("`{}` does not repeat", source.slice(place));
     let diagnostic = Diagnostic::new(Code::E0101, message, source.span(place), "not part of MDLe");
@@ -205,13 +205,13 @@ fn power(source: Source<'_>, place: Place, after: &str) -> Diagnostic {
     diagnostic.fix("to repeat what is before it, write {}", span, format!("^{count}"))
 }
 
-/// Word at the end of a text.
+/// Returns the word at the end of a text.
 pub(super) fn word(text: &str) -> &str {
     let start = text.char_indices().rev().take_while(|(_, c)| is_in_word(*c)).last().map_or(text.len(), |(at, _)| at);
     text.get(start..).unwrap_or("")
 }
 
-/// Returns `true` if a character is part of a number or a name; `/` is not, as `10/2` is two numbers.
+/// Returns `true` if a character can be part of a number or a name; `/` cannot, because `10/2` is two numbers.
 fn is_in_word(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '_' | '.')
 }

@@ -1,5 +1,5 @@
-//! Reports words of other languages and misspelled keywords, with one message each, and replaces them by tokens with
-//! which parsing continues as if the plan were written in MDLe.
+//! Reports words of other languages and misspelled keywords, with one message each. Replaces them by tokens with which
+//! parsing continues as if the plan were written in MDLe.
 
 mod advice;
 mod loops;
@@ -61,14 +61,14 @@ pub(super) fn replace<'s>(source: Source<'s>, lexed: &mut Lexed<'s>) {
     lexed.tokens = new;
 }
 
-/// Returns `true` for misspellings of `ExecPlan`, such as `Execplan` or `ExecPlam`.
+/// Returns `true` if a name is a misspelling of `ExecPlan`, such as `Execplan` or `ExecPlam`.
 fn is_like_loop(name: &str) -> bool {
     (7..=9).contains(&name.len())
         && name.starts_with(['e', 'E'])
         && strsim::damerau_levenshtein(&name.to_ascii_lowercase(), "execplan") <= 1
 }
 
-/// Index of the closing bracket for each opening one, as far as they match.
+/// Returns the index of the closing bracket for each opening bracket that has a partner.
 fn ends(tokens: &[Token<'_>]) -> BTreeMap<usize, usize> {
     let (mut ends, mut open) = (BTreeMap::new(), Vec::new());
     for (at, token) in tokens.iter().enumerate() {
@@ -91,16 +91,16 @@ fn ends(tokens: &[Token<'_>]) -> BTreeMap<usize, usize> {
 struct Rewriting<'t, 's> {
     source: Source<'s>,
     old: &'t [Token<'s>],
-    /// Index of the closing bracket for each opening one.
+    /// Index of the closing bracket for each opening bracket.
     ends: BTreeMap<usize, usize>,
     /// Names of the plans of this file, which may be words of other languages.
     plans: BTreeSet<&'s str>,
     new: Vec<Token<'s>>,
-    /// Index of each old token among the new ones.
+    /// Index of each original token among the new tokens.
     moved: Vec<usize>,
     /// Open brackets, the innermost last.
     open: Vec<Open>,
-    /// Messages, each with the index of the new token after its text, and the place of that text.
+    /// Messages, each with the index of the new token after the reported text, and the place of that text.
     found: Vec<(usize, Place, Diagnostic)>,
 }
 
@@ -147,7 +147,7 @@ impl<'s> Rewriting<'_, 's> {
         self.found.push((self.new.len(), place, diagnostic));
     }
 
-    /// Processes the token at `at`; returns the index of the old token to continue with.
+    /// Processes the original token at `at`; returns the index of the original token at which to continue.
     fn next(&mut self, at: usize) -> usize {
         let Some(token) = self.old.get(at).copied() else { return at + 1 };
         let rewritten = if token.kind == Tok::Use {
@@ -199,14 +199,14 @@ impl<'s> Rewriting<'_, 's> {
         }
     }
 
-    /// Returns `true` for `(atom (…`, a misspelled atom.
+    /// Returns `true` if `name` begins a misspelled atom, such as `(atom (…`.
     fn is_atom(&self, at: usize, name: &str) -> bool {
         let is_open = |kind| matches!(kind, Some(Tok::LParen | Tok::TouchParen));
         is_like_atom(name) && !self.plans.contains(name) && is_open(self.before(at, 1)) && is_open(self.kind(at + 1))
     }
 
-    /// Reads a name that is not a plan of the file: if it is a keyword of another language, reports it, and returns the
-    /// index of the token from which reading goes on.
+    /// Reports a name that is a keyword of another language and not a plan of the file; returns the index of the
+    /// original token at which to continue.
     fn word(&mut self, at: usize, name: &'s str) -> Option<usize> {
         let place = self.place(at, at);
         if self.is_atom(at, name) {
@@ -271,7 +271,7 @@ impl<'s> Rewriting<'_, 's> {
         (is_short && inside.iter().all(is_condition)).then_some(text)
     }
 
-    /// Skips the condition after a word, and reads the braces after it as parentheses.
+    /// Skips the condition after a word, and reads the braces after the condition as parentheses.
     fn past_condition(&mut self, at: usize) -> usize {
         let mut next = at;
         if matches!(self.kind(at), Some(Tok::LParen | Tok::TouchParen)) && self.kind(at + 1) != Some(Tok::Atom) {
@@ -295,12 +295,12 @@ impl<'s> Rewriting<'_, 's> {
         next + 1
     }
 
-    /// Index of the bracket that closes the one at `at`.
+    /// Returns the index of the bracket that closes the bracket at `at`.
     fn end_of(&self, at: usize) -> Option<usize> {
         self.ends.get(&at).copied()
     }
 
-    /// Reports `[Atom (bumper) stop]`; its closing bracket is reported when it is reached.
+    /// Reports an atom in square brackets, such as `[Atom (bumper) stop]`; the closing bracket is reported later.
     fn atom_in_brackets(&mut self, at: usize) -> Option<usize> {
         let next = self.kind(at + 1)?;
         let is_atom = next == Tok::Atom || matches!(next, Tok::Name(name) if is_like_atom(name));
@@ -322,7 +322,7 @@ impl<'s> Rewriting<'_, 's> {
         Some(at + 1)
     }
 
-    /// Processes `import "corridors.mdle"`.
+    /// Reports an import of another language, such as `import "corridors.mdle"`.
     fn import(&mut self, at: usize) -> Option<usize> {
         let place = self.place(at, at);
         if !matches!(self.kind(at + 1), Some(Tok::Str(_))) {
@@ -338,7 +338,7 @@ impl<'s> Rewriting<'_, 's> {
         Some(at + 1)
     }
 
-    /// Processes `use corridors.mdle`: a file name without its quotes.
+    /// Reports a file name without quotes, such as `use corridors.mdle`.
     fn used(&mut self, at: usize) -> Option<usize> {
         if matches!(self.kind(at + 1), Some(Tok::Str(_))) || !self.open.is_empty() {
             return None;

@@ -1,6 +1,8 @@
-//! Formats a text in the canonical layout: two spaces for each level, one element per line in a scope with several.
+//! Formats a text in the canonical layout: two spaces for each level, and one element per line in a scope with several
+//! elements.
 //!
-//! Tokens stay, and every comment keeps its place among them; the tree only determines where lines may break.
+//! The tokens do not change, and every comment keeps its place among them. The tree only determines where lines may
+//! break.
 
 mod comments;
 mod lines;
@@ -15,16 +17,16 @@ use comments::Before;
 use lines::Lines;
 use pieces::Pieces;
 
-/// Maximum columns of a line; only text that cannot be broken is longer.
+/// Maximum width of a line, in columns; only text that cannot be broken is wider.
 const WIDTH: usize = 100;
 
-/// Spaces per level.
+/// Number of spaces per level.
 const INDENT: usize = 2;
 
-/// Returns the text in the canonical layout, or its diagnostics.
+/// Returns the text in the canonical layout.
 ///
 /// # Errors
-/// Fails if the text has errors: where the parser had to guess, nothing is moved.
+/// Returns the diagnostics if the text has errors: the parser then had to guess, so that nothing is moved.
 pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
     let arena = arena_for(text);
     let (_, found) = parse(id, text, &arena);
@@ -40,11 +42,11 @@ pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
     Ok(layout.lines.text())
 }
 
-/// Writes the pieces into lines, in order.
+/// Writer of the pieces in lines, in their order.
 struct Layout<'s> {
     id: SourceId,
     pieces: Pieces<'s>,
-    /// Index of the next piece of the text to be laid out.
+    /// Index of the next piece.
     at: usize,
     lines: Lines,
     depth: usize,
@@ -70,7 +72,7 @@ impl Layout<'_> {
         self.boundary(Before::Close);
     }
 
-    /// Writes a plan, on one line if it is small.
+    /// Writes a plan, on one line if it is short.
     fn plan(&mut self, plan: &Plan<'_>) {
         let end = self.behind(plan.span);
         if breaks(plan) || !self.fits(end) {
@@ -99,7 +101,7 @@ impl Layout<'_> {
         self.flow(end);
     }
 
-    /// Writes the pieces before these elements, then each element on lines of its own.
+    /// Writes the pieces before `elements`, and then each element on lines of its own.
     fn list(&mut self, elements: &[Element<'_>]) {
         let Some(first) = elements.first() else { return };
         self.flow(self.first(first.span));
@@ -124,23 +126,23 @@ impl Layout<'_> {
         !self.pieces.have_comments(self.at + 1, end) && column + self.pieces.width(self.at, end) <= WIDTH
     }
 
-    /// Returns `true` if the body of a loop is in braces and is not a plan by name.
+    /// Returns `true` if the body of a loop is in braces and is not the name of a plan.
     fn is_braced(&self, body: &[Element<'_>]) -> bool {
         let first = body.first().map_or(0, |element| self.first(element.span));
         first.checked_sub(1).and_then(|before| self.pieces.kind(before)) == Some(Tok::LBrace)
     }
 
-    /// First piece of a span.
+    /// Returns the index of the first piece of a span.
     fn first(&self, span: Span) -> usize {
         self.pieces.at_byte(span.within(self.id).start)
     }
 
-    /// First piece after a span.
+    /// Returns the index of the first piece after a span.
     fn behind(&self, span: Span) -> usize {
         self.pieces.at_byte(span.within(self.id).end)
     }
 
-    /// Writes the pieces before `end` one after the other; a line that would be too long breaks before an operator or a
+    /// Writes the pieces before `end` on the current line; a line that would be too long breaks before an operator or a
     /// law.
     fn flow(&mut self, end: usize) {
         let further = INDENT * self.depth + 2 * INDENT;
@@ -162,7 +164,7 @@ fn breaks(plan: &Plan<'_>) -> bool {
     plan.elements.len() > 1 || plan.elements.iter().any(is_broken)
 }
 
-/// Returns `true` if a body is a law or a plan by name, and not a string of several elements.
+/// Returns `true` if a body is a single law or the name of a plan.
 fn is_one_call(body: &[Element<'_>]) -> bool {
     matches!(body, [Element { primary: Primary::Ref(_), .. }])
 }

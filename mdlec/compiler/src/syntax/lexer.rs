@@ -1,5 +1,5 @@
-//! Splits text into tokens (docs/src/reference/language.md, 2): they have no spaces, comments or typesetting, and each
-//! parenthesis records whether it touches a name.
+//! Splits text into tokens (docs/src/reference/language.md, 2). Spaces, comments and typesetting are left out, and each
+//! parenthesis records if it touches a name.
 
 use logos::{Lexer, Logos};
 
@@ -13,15 +13,15 @@ use crate::diagnostic::Diagnostic;
 /// Output of the lexer.
 #[derive(Debug, Default)]
 pub(super) struct Lexed<'s> {
-    /// The tokens, in order.
+    /// Tokens in their order.
     pub(super) tokens: Vec<Token<'s>>,
-    /// The doc comments, each with the number of tokens before it.
+    /// Doc comments, each with the number of tokens before it.
     pub(super) docs: Vec<(usize, &'s str)>,
-    /// The lexical errors, in order, each with the number of tokens before it.
+    /// Lexical errors in their order, each with the number of tokens before it.
     pub(super) errors: Vec<(usize, Diagnostic)>,
 }
 
-/// The tokens of a text, its doc comments and its lexical errors.
+/// Returns the tokens of a text, its doc comments and its lexical errors.
 pub(super) fn lex(source: Source<'_>) -> Lexed<'_> {
     let mut reader = Reader {
         source,
@@ -52,7 +52,7 @@ pub(super) fn lex(source: Source<'_>) -> Lexed<'_> {
     reader.lexed
 }
 
-/// Returns the label that begins with a token, whose rest it takes, or the token.
+/// Returns the label that begins with the token `kind`, and consumes its rest; returns the token if no label begins.
 fn labelled<'s>(kind: Tok<'s>, lexer: &mut Lexer<'s, Tok<'s>>) -> Tok<'s> {
     let begins = matches!(kind, Tok::Name(name) if name.starts_with("Γ_") || name.starts_with("Gamma_"))
         || (kind == Tok::Command && lexer.slice() == r"\Gamma");
@@ -62,17 +62,17 @@ fn labelled<'s>(kind: Tok<'s>, lexer: &mut Lexer<'s, Tok<'s>>) -> Tok<'s> {
     Tok::Label(lexer.slice())
 }
 
-/// Collects tokens.
+/// Collector of the tokens of a text.
 struct Reader<'s> {
     source: Source<'s>,
     lexed: Lexed<'s>,
     /// Byte offset of the brace that closes the current `\text{…}`.
     text_ends: usize,
-    /// End of the last token and of the typesetting that touches it.
+    /// End of the last token, including the typesetting that touches it.
     touches: usize,
-    /// Place of the unexpected characters just read, not yet reported.
+    /// Place of the unexpected characters just read, which have not been reported yet.
     run: Option<Place>,
-    /// The end of a file name that was read although it is not between double quotes.
+    /// End of a file name that was read although it is not in double quotes.
     skipped: usize,
     /// The dots of signals, once the head of a group was read.
     dots: Option<Dots>,
@@ -88,7 +88,8 @@ struct Dots {
 }
 
 impl<'s> Reader<'s> {
-    /// Takes in `'home.csv'` or `C:\home.csv`, if that begins with this token.
+    /// Reports a file name without double quotes, such as `'home.csv'` or `C:\home.csv`, and reads it as a string.
+    /// Returns `false` if no such name begins with this token.
     fn file(&mut self, token: Option<&Tok<'s>>, place: Place) -> bool {
         let (start, name, end) = match token {
             None => match quoted(self.source.text, place) {
@@ -215,7 +216,8 @@ impl<'s> Reader<'s> {
         matches!(self.lexed.tokens.last(), Some(Token { kind: Tok::Frame, .. }))
     }
 
-    /// Reports and drops a text that touches a number and is no unit; a unit that does not touch it is a name.
+    /// Reports and drops a text that touches a number and is not a unit. A text that does not touch the number is a
+    /// name.
     fn number(&mut self, number: &'s str, tail: &'s str, place: Place) {
         self.end_run();
         let unit = tail.trim_start();
@@ -245,7 +247,7 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// Collects neighbouring unexpected characters, which are reported together.
+    /// Extends the run of neighbouring unexpected characters, which are reported together.
     fn character(&mut self, place: Place) {
         match &mut self.run {
             Some(run) if run.end == place.start => run.end = place.end,
@@ -263,7 +265,7 @@ impl<'s> Reader<'s> {
     }
 }
 
-/// The text between quotes that are no double quotes, and the end of both.
+/// Returns the text in quotes that are not double quotes, with the offset of its end.
 fn quoted(text: &str, opener: Place) -> Option<(&str, usize)> {
     let closers: &[char] = match text.get(opener.start..opener.end)? {
         "'" | "‘" | "`" => &['\'', '’', '`', '‘'],
@@ -277,7 +279,7 @@ fn quoted(text: &str, opener: Place) -> Option<(&str, usize)> {
     is_name.then_some((name, opener.end + length + closer.len_utf8()))
 }
 
-/// The start and the text of a path of Windows, whose first backslash is at `backslash`.
+/// Returns the start and the text of a Windows path whose first backslash is at `backslash`.
 fn drive(text: &str, backslash: Place) -> Option<(usize, &str)> {
     let start = backslash.start.checked_sub(2)?;
     let is_drive = text.get(start..backslash.start)?.starts_with(|c: char| c.is_ascii_alphabetic());
@@ -287,8 +289,8 @@ fn drive(text: &str, backslash: Place) -> Option<(usize, &str)> {
     (is_drive && is_word && path.get(1..2) == Some(":")).then_some((start, path))
 }
 
-/// Byte offset of the brace that closes the `\text{` ending at `from`; `None` if there is none, or if another brace
-/// opens before it.
+/// Returns the byte offset of the brace that closes the `\text{` ending at `from`; `None` if there is no such brace, or
+/// if another brace opens before it.
 fn text_end(text: &str, from: usize) -> Option<usize> {
     let mut bytes = text.bytes().enumerate().skip(from);
     while let Some((at, byte)) = bytes.next() {

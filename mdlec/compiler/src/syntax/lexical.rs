@@ -23,7 +23,7 @@ pub(super) fn characters(source: Source<'_>, place: Place) -> Diagnostic {
     characters_help(diagnostic, source, found, place)
 }
 
-/// Adds help about the usual meaning of these characters.
+/// Returns `diagnostic` with help about the usual meaning of the characters `found`.
 fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, place: Place) -> Diagnostic {
     let after = source.text.get(place.end..).unwrap_or("");
     let next = after.chars().next();
@@ -75,7 +75,7 @@ fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, plac
     }
 }
 
-/// Adds help about a text that these characters are a part of: `T#5s`, `bend.csv`, `r0 != 50cm`.
+/// Returns the message with help about a text that contains the characters, such as `T#5s`, `bend.csv` or `r0 != 50cm`.
 fn words_around(diagnostic: &Diagnostic, source: Source<'_>, found: &str, place: Place) -> Option<Diagnostic> {
     let (before, after) = (source.text.get(..place.start)?, source.text.get(place.end..)?);
     let left = word(before);
@@ -114,7 +114,7 @@ fn words_around(diagnostic: &Diagnostic, source: Source<'_>, found: &str, place:
     }
 }
 
-/// Returns `true` if only spaces and tabs are before this place in its line.
+/// Returns `true` if only spaces and tabs precede this place in its line.
 fn begins_line(source: Source<'_>, at: usize) -> bool {
     let before = source.text.get(..at).unwrap_or("");
     before.rsplit('\n').next().unwrap_or(before).trim().is_empty()
@@ -123,25 +123,26 @@ fn begins_line(source: Source<'_>, at: usize) -> bool {
 /// Help that lists the typesetting commands that the lexer accepts.
 const TYPESETTING: &str = "of typesetting only `\\\\`, `\\{`, `\\}`, `\\text{…}`, `\\infty`, `\\leq`, `\\geq`, `\\Gamma_{…}` and `\\sigma_{null}` are read";
 
-/// Returns `true` if an operand can begin here: after a space, an opening bracket, or a sign between operands.
+/// Returns `true` if an operand can begin at this offset: after a space, an opening bracket, or a sign between
+/// operands.
 fn begins_operand(source: Source<'_>, at: usize) -> bool {
     let before = source.text.get(..at).unwrap_or("");
     before.is_empty() || before.ends_with(|c: char| c.is_whitespace() || "(,<>=".contains(c))
 }
 
-/// Returns `true` if a name may end here.
+/// Returns `true` if a name may end at this offset.
 fn ends_name(source: Source<'_>, at: usize) -> bool {
     source.text.get(..at).is_some_and(|before| before.ends_with(|c: char| c.is_alphanumeric() || c == '_'))
 }
 
-/// A file name that is not between double quotes.
+/// Reports a file name that is not in double quotes.
 pub(super) fn file(source: Source<'_>, place: Place, name: &str) -> Diagnostic {
     let span = source.span(place);
     let diagnostic = Diagnostic::new(Code::E0101, "this text is not between double quotes", span, "not part of MDLe");
     diagnostic.fix("write {}", span, format!("\"{name}\""))
 }
 
-/// Adds help about a sign that does not touch its number.
+/// Returns `diagnostic` with help about a sign that does not touch its number.
 fn sign(diagnostic: Diagnostic, source: Source<'_>, found: &str, place: Place) -> Diagnostic {
     let after = source.text.get(place.end..).unwrap_or("");
     let spaces = after.len() - after.trim_start_matches([' ', '\t']).len();
@@ -155,7 +156,7 @@ fn sign(diagnostic: Diagnostic, source: Source<'_>, found: &str, place: Place) -
     diagnostic.fix(words, span, format!("{found}{number}"))
 }
 
-/// Adds spaces around a word that replaces characters, where these touch others.
+/// Returns a word that replaces characters, with spaces around it where the characters touch other text.
 fn apart(source: Source<'_>, place: Place, word: &str) -> String {
     let is_blank = |c: Option<char>| c.is_none_or(char::is_whitespace);
     let before = source.text.get(..place.start).and_then(|before| before.chars().next_back());
@@ -281,7 +282,7 @@ fn dot(number: &str, tail: &str, span: Span, whole: Span) -> Diagnostic {
     diagnostic.help("a number has one dot at most, with digits on both sides: `0.36`")
 }
 
-/// Returns the unit that was probably meant by `written`.
+/// Returns the unit that `written` probably means.
 pub(crate) fn nearest_unit(written: &str) -> Option<&'static str> {
     let spelled = match written.to_lowercase().as_str() {
         "°" | "degree" | "degrees" => Some("deg"),
@@ -312,13 +313,13 @@ pub(crate) fn nearest_unit(written: &str) -> Option<&'static str> {
     })
 }
 
-/// Returns the list of all units, for a sentence.
+/// Returns the list of all units for a sentence.
 fn units() -> String {
     let names: Vec<String> = Unit::ALL.iter().map(|unit| format!("`{}`", unit.name)).collect();
     names.join(" ")
 }
 
-/// Characters in quotes; invisible ones by their number.
+/// Returns characters in quotes; invisible characters are shown by their number.
 fn shown(text: &str) -> String {
     let shown: String = text
         .chars()
@@ -327,7 +328,7 @@ fn shown(text: &str) -> String {
     format!("`{shown}`")
 }
 
-/// Adds help about a comment between `(*` and `*)`; both ends have the same message.
+/// Returns `diagnostic` with help about a comment in `(*` and `*)`; both ends have the same message.
 fn pascal_comment(diagnostic: Diagnostic, source: Source<'_>, place: Place) -> Diagnostic {
     let text = source.text;
     let begins = |at: usize| text.get(..at).filter(|before| before.ends_with('(')).map(|before| before.len() - 1);

@@ -1,4 +1,4 @@
-//! Messages about usual mistakes, each with a text to type instead.
+//! Messages about common mistakes, each with a text to type instead.
 
 mod atoms;
 mod calls;
@@ -21,7 +21,7 @@ use groups::head_of_group;
 use labels::{label_and_equals, label_behind, label_in_quotes, label_of_after};
 use parameters::parameters;
 
-/// Returns the message about the first known mistake that fits.
+/// Returns the message about the first known mistake that the site contains.
 pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 21] = [
         head_of_group,
@@ -53,7 +53,7 @@ pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Reports a plan without a name, or with something that cannot be a name.
+/// Reports a plan without a name, or with a text that cannot be a name.
 fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let is_single = site.kind(site.at + 1) != Some(Tok::Colon);
     if site.found() == Some(Tok::Colon) && is_single && site.before(2) == Some(Tok::LBrace) && site.expects_element() {
@@ -107,7 +107,7 @@ fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// Reports `ExecPlan { … }` and other malformed loops.
+/// Reports a loop without a count, such as `ExecPlan { … }`, and other malformed loops.
 fn loop_count(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.before(1) == Some(Tok::ExecPlan) {
         if let (Some(Tok::LParen), Some(Tok::Number(_) | Tok::Infinity), Some(Tok::RParen), Some(Tok::LBrace)) =
@@ -201,7 +201,7 @@ fn keyword_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// A comma that is not between two elements.
+/// Reports a comma that is not between two elements.
 fn comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.found() != Some(Tok::Comma) {
         return None;
@@ -253,7 +253,7 @@ fn comma_in_atom(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// Index of a name that is a keyword except for capitals, with that keyword.
+/// Returns the index of a name that equals a keyword except for upper and lower case, with that keyword.
 fn spelling(site: &Site<'_, '_>) -> Option<(usize, &'static str)> {
     let places = [Some(site.at), site.at.checked_sub(1)].into_iter().flatten();
     let names = places.filter_map(|at| Some((at, site.name_at(at)?)));

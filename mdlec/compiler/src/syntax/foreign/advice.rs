@@ -1,6 +1,6 @@
 //! Words of other languages, and the forms of MDLe that replace them.
 
-/// Returns `true` if a name is a word of other languages, so that it may have to be replaced.
+/// Returns `true` if a name is a word of other languages, which may have to be replaced.
 pub(super) fn is_word(name: &str) -> bool {
     matches!(
         name,
@@ -63,12 +63,12 @@ pub(super) fn is_word(name: &str) -> bool {
     )
 }
 
-/// Names the form of MDLe that replaces a word of other languages.
+/// Returns the form of MDLe that replaces a word of another language.
 pub(crate) fn advice(word: &str) -> Option<String> {
     advice_for(word, "r0 < 1m")
 }
 
-/// Names the form of MDLe that replaces a word followed by this condition.
+/// Returns the form of MDLe that replaces a word with the condition that follows it.
 pub(super) fn advice_for(word: &str, condition: &str) -> Option<String> {
     let is_joined = condition.contains(" OR ") || condition.contains(" AND ");
     let opposite = match condition.strip_prefix("NOT ") {

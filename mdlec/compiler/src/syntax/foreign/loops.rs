@@ -1,11 +1,11 @@
-//! Loops as other languages write them: `repeat 3 { … }`, `forever { … }`, `for i in range(3): …`.
+//! Loops in the syntax of other languages, such as `repeat 3 { … }`, `forever { … }`, `for i in range(3): …`.
 
 use super::{Rewriting, advice, is_like_loop};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::token::Tok;
 
 impl Rewriting<'_, '_> {
-    /// Processes `repeat 3 { … }`, `repeat(3) { … }` and `forever { … }`.
+    /// Processes loops such as `repeat 3 { … }`, `repeat(3) { … }` and `forever { … }`.
     pub(super) fn repeat(&mut self, at: usize, name: &str) -> Option<usize> {
         if let Some(body) = self.after_loop_variable(at, name) {
             return Some(body);
@@ -55,7 +55,7 @@ impl Rewriting<'_, '_> {
         Some(if count.is_some() { next } else { self.past_condition(next) })
     }
 
-    /// Processes `for i in 1..3 …`, `for i in range(3): …` and `for i = 1:3 …`, up to what is repeated.
+    /// Processes loops such as `for i in 1..3 …`, `for i in range(3): …` and `for i = 1:3 …`, up to their bodies.
     fn after_loop_variable(&mut self, at: usize, name: &str) -> Option<usize> {
         let variable = self.kind(at + 1).filter(|kind| matches!(kind, Tok::Name(_)) && !is_like_loop(name))?;
         if !matches!(self.kind(at + 2), Some(Tok::Name("in" | "from" | "of") | Tok::Assign)) {

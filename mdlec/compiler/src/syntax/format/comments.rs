@@ -1,18 +1,18 @@
-//! Places comments: a comment at the end of a line stays there, one on a line of its own keeps its line.
+//! Places comments: a comment at the end of a line stays there, and a comment on a line of its own keeps its line.
 
 use super::{INDENT, Layout};
 
-/// A comment with the line ends before it.
+/// A comment, with the number of line ends before it.
 #[derive(Debug)]
 pub(super) struct Comment<'s> {
-    /// The whole comment, with its slashes.
+    /// Whole text of the comment, with its slashes.
     text: &'s str,
-    /// Number of line ends between the preceding token or comment and this one.
+    /// Number of line ends between the previous token or comment and this comment.
     lines: usize,
 }
 
 impl Comment<'_> {
-    /// Returns `true` if nothing can follow the comment on its line.
+    /// Returns `true` if no other text can follow the comment on its line.
     fn ends_line(&self) -> bool {
         self.text.starts_with("//")
     }
@@ -26,13 +26,13 @@ impl Comment<'_> {
 /// Comments and line ends between two tokens.
 #[derive(Debug, Default)]
 pub(super) struct Gap<'s> {
-    /// The comments, in order.
+    /// Comments in their order.
     pub(super) comments: Vec<Comment<'s>>,
     /// Number of line ends after the last comment.
     lines: usize,
 }
 
-/// Finds the comments in the text between two tokens.
+/// Returns the comments and line ends in the text between two tokens.
 pub(super) fn gap(text: &str) -> Gap<'_> {
     let mut gap = Gap::default();
     let mut rest = text;
@@ -55,21 +55,21 @@ fn line_ends(blank: &str) -> usize {
     blank.matches('\n').count()
 }
 
-/// Kind of piece that begins a line of its own.
+/// Kind of a piece that begins a line, which determines if an empty line precedes it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Before {
-    /// The first of several pieces: no empty line comes before it.
+    /// The first of several pieces: no empty line precedes it.
     First,
-    /// A further piece: an empty line before it stays.
+    /// Another piece: an empty line before it is kept.
     Next,
-    /// A plan after others: an empty line comes before it.
+    /// A plan after other plans: an empty line precedes it.
     Apart,
-    /// A closing bracket or the end: no empty line comes before it.
+    /// A closing bracket or the end: no empty line precedes it.
     Close,
 }
 
 impl Layout<'_> {
-    /// Writes the comments before the next piece, which itself begins a line.
+    /// Writes the comments before the next piece, which begins a line.
     pub(super) fn boundary(&mut self, before: Before) {
         let indent = INDENT * self.depth;
         // The comments before a closing bracket belong to what it closes.
@@ -106,7 +106,7 @@ impl Layout<'_> {
         }
     }
 
-    /// Begins a line, after an empty one if `behind_empty`.
+    /// Begins a line, after an empty line if `behind_empty` is `true`.
     fn line(&mut self, indent: usize, behind_empty: bool) {
         if behind_empty {
             self.lines.skip();

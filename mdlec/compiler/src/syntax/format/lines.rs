@@ -1,19 +1,20 @@
-//! Lines of code, each with its trailing comment; trailing comments of neighbouring lines of a level are aligned.
+//! Formatted lines, each with its trailing comment. Trailing comments of neighbouring lines with the same indentation
+//! are aligned.
 
-/// Columns between the longest of neighbouring lines and its comment.
+/// Number of columns between the longest of neighbouring lines and its comment.
 const GAP: usize = 4;
 
-/// A line.
+/// A formatted line.
 #[derive(Debug, Default)]
 struct FormattedLine {
     code: String,
-    /// The trailing comment, or nothing.
+    /// Trailing comment; empty if there is none.
     comment: String,
-    /// `true` if nothing can follow on this line, since its comment ends with the line.
+    /// `true` if no text can follow on this line, because it ends with a comment.
     is_closed: bool,
 }
 
-/// A text that is being written.
+/// A formatted text under construction.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
     done: Vec<FormattedLine>,
@@ -27,7 +28,7 @@ impl Lines {
         self.line = Some(FormattedLine { code: " ".repeat(indent), ..FormattedLine::default() });
     }
 
-    /// Adds an empty line.
+    /// Appends an empty line.
     pub(super) fn skip(&mut self) {
         self.done.extend(self.line.take());
         self.line = Some(FormattedLine::default());
@@ -43,7 +44,7 @@ impl Lines {
         code.push_str(text);
     }
 
-    /// Adds a comment between words, or on a line of its own.
+    /// Appends a comment between words, or on a line of its own.
     pub(super) fn append(&mut self, comment: &str, is_closed: bool) {
         if self.line.as_ref().is_some_and(|line| !line.comment.is_empty()) {
             return self.trail(comment);
@@ -72,17 +73,17 @@ impl Lines {
         self.line.as_ref().is_none_or(|line| line.code.trim_start_matches(' ').is_empty())
     }
 
-    /// Returns `true` if nothing can follow on the line.
+    /// Returns `true` if no text can follow on the line.
     pub(super) fn is_closed(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.is_closed)
     }
 
-    /// Columns that the line's code takes.
+    /// Returns the number of columns of the line's code.
     pub(super) fn width(&self) -> usize {
         self.line.as_ref().map_or(0, |line| width(&line.code))
     }
 
-    /// Returns the text, each line with its line end.
+    /// Returns the formatted text, with a line end after each line.
     pub(super) fn text(mut self) -> String {
         self.done.extend(self.line.take());
         let mut text = String::new();
@@ -101,7 +102,7 @@ impl Lines {
     }
 }
 
-/// Returns `true` if the comments of two neighbouring lines are aligned.
+/// Returns `true` if the comments of two neighbouring lines have to be aligned.
 fn are_aligned(one: &FormattedLine, next: &FormattedLine) -> bool {
     let indent = |line: &FormattedLine| line.code.len() - line.code.trim_start_matches(' ').len();
     is_commented(one) && is_commented(next) && indent(one) == indent(next)
@@ -111,7 +112,7 @@ fn is_commented(line: &FormattedLine) -> bool {
     !line.comment.is_empty()
 }
 
-/// Columns of the last line of `code`.
+/// Returns the number of columns of the last line of `code`.
 fn width(code: &str) -> usize {
     code.rsplit('\n').next().unwrap_or("").chars().count()
 }

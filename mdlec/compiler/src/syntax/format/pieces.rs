@@ -1,4 +1,4 @@
-//! The tokens of a text as they are printed, each with the comments before it.
+//! The tokens of a text in their printed form, each with the comments before it.
 
 use std::borrow::Cow;
 
@@ -10,12 +10,12 @@ use super::super::source::{Place, Source};
 use super::super::token::{Tok, Token};
 use super::comments::{Gap, gap};
 
-/// A token as it is printed.
+/// A token in its printed form.
 #[derive(Debug)]
 pub(super) struct Piece<'s> {
-    /// Text of the token, in the canonical spelling.
+    /// Text of the token in the canonical spelling.
     pub(super) text: Cow<'s, str>,
-    /// `true` if the piece touches the one before it.
+    /// `true` if no space precedes the piece.
     pub(super) is_glued: bool,
     kind: Tok<'s>,
     /// Byte offset of the token in the source.
@@ -24,25 +24,25 @@ pub(super) struct Piece<'s> {
     gap: Gap<'s>,
     /// `true` if a line that would be too long may break before the piece.
     may_break: bool,
-    /// Columns that all pieces before this one take on one line.
+    /// Number of columns that all pieces before this one need on one line.
     left: usize,
-    /// Number of comments before the piece, from the start of the text.
+    /// Number of comments between the start of the text and the piece.
     comments: usize,
 }
 
-/// Pieces that belong on one line.
+/// Pieces that must stay on one line.
 pub(super) struct Chunk {
     /// `true` if a line may break before the chunk.
     pub(super) may_break: bool,
-    /// Columns that the chunk needs.
+    /// Number of columns that the chunk needs.
     pub(super) width: usize,
 }
 
-/// All pieces of a text; the last one is empty and marks the end.
+/// All pieces of a text; the last piece is empty and marks the end.
 pub(super) struct Pieces<'s>(Vec<Piece<'s>>);
 
 impl<'s> Pieces<'s> {
-    /// The pieces of a text without errors.
+    /// Returns the pieces of a text without errors.
     pub(super) fn of(source: Source<'s>) -> Self {
         let mut lexed = lex(source);
         printed::read(&mut lexed);
@@ -74,17 +74,17 @@ impl<'s> Pieces<'s> {
         &self.0[at.min(last)]
     }
 
-    /// Kind of the piece's token; `None` at the end.
+    /// Returns the kind of a piece's token; `None` at the end.
     pub(super) fn kind(&self, at: usize) -> Option<Tok<'s>> {
         (at + 1 < self.0.len()).then(|| self.get(at).kind)
     }
 
-    /// Index of the first piece at or after this byte of the source.
+    /// Returns the index of the first piece at or after the byte offset `byte`.
     pub(super) fn at_byte(&self, byte: usize) -> usize {
         self.0.partition_point(|piece| piece.start < byte)
     }
 
-    /// Takes the comments and line ends before a piece.
+    /// Removes and returns the comments and line ends before a piece.
     pub(super) fn take_gap(&mut self, at: usize) -> Gap<'s> {
         self.0.get_mut(at).map(|piece| std::mem::take(&mut piece.gap)).unwrap_or_default()
     }
@@ -95,18 +95,18 @@ impl<'s> Pieces<'s> {
         }
     }
 
-    /// Columns that the pieces from `first` to before `end` need on one line.
+    /// Returns the number of columns that the pieces from `first` to before `end` need on one line.
     pub(super) fn width(&self, first: usize, end: usize) -> usize {
         let last = self.get(end.saturating_sub(1));
         last.left + last.text.chars().count() - self.get(first).left
     }
 
-    /// Returns `true` if a comment precedes any of the pieces from `first` to before `end`.
+    /// Returns `true` if a comment precedes a piece in the range from `first` to before `end`.
     pub(super) fn have_comments(&self, first: usize, end: usize) -> bool {
         self.get(end.saturating_sub(1)).comments > self.get(first.saturating_sub(1)).comments
     }
 
-    /// Returns the pieces from `first` to the next place where the line may break, at most to `end`.
+    /// Returns the pieces from `first` to the next place at which the line may break, at most to `end`.
     pub(super) fn chunk(&self, first: usize, end: usize) -> Chunk {
         if !self.get(first).may_break {
             return Chunk { may_break: false, width: 0 };
@@ -119,7 +119,7 @@ impl<'s> Pieces<'s> {
     }
 }
 
-/// Spells a token: words and numbers as they are written, and without typesetting.
+/// Returns the printed form of a token: words and numbers as they are written, but without typesetting.
 fn text<'s>(source: Source<'s>, token: Token<'s>) -> Cow<'s, str> {
     let written = source.slice(token.place);
     #[allow(clippy::wildcard_enum_match_arm, reason = "all others are written as they are")]
@@ -139,7 +139,7 @@ fn text<'s>(source: Source<'s>, token: Token<'s>) -> Cow<'s, str> {
     })
 }
 
-/// Returns a label without typesetting, if it remains a label then.
+/// Returns a label without typesetting, if the result is still a label.
 fn plain_label(written: &str) -> Cow<'_, str> {
     let plain = label(written);
     let is_label = |text: &str| {
@@ -149,7 +149,7 @@ fn plain_label(written: &str) -> Cow<'_, str> {
     if is_label(&plain) { plain } else { Cow::Borrowed(written) }
 }
 
-/// Returns `true` if no space comes between two tokens.
+/// Returns `true` if there is no space between two tokens.
 fn touch(before: Tok<'_>, token: Tok<'_>) -> bool {
     let opens = matches!(
         before,

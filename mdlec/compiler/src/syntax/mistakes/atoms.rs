@@ -1,10 +1,10 @@
-//! Mistakes in atoms: a condition or a law that is missing or in the wrong place.
+//! Mistakes in atoms: a condition or a law that is missing or misplaced.
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
-/// Reports `(Atom bumper stop)`: the condition of an atom without its parentheses.
+/// Reports the condition of an atom without parentheses, as in `(Atom bumper stop)`.
 pub(super) fn atom_condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.before(1) != Some(Tok::Atom) {
         return None;
@@ -50,25 +50,25 @@ pub(super) fn atom_condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
 /// Laws that complete by themselves, and laws that never do.
 const LAWS: [&[&str]; 2] = [&["advance", "align", "Follow", "goAvoid", "path", "rotate", "turn"], &["go", "stop"]];
 
-/// Returns `true` if a name is that of a law of the paper or of `mdle-atoms`: the parser knows no alphabet.
+/// Returns `true` if a name is that of a law in the paper or in `mdle-atoms`; the parser knows no alphabet.
 fn is_law(name: &str) -> bool {
     LAWS.iter().any(|laws| laws.contains(&name))
 }
 
-/// Example condition for a call of such a law.
+/// Returns an example condition for a call of such a law.
 fn condition_for(call: &str) -> &'static str {
     let name = call.split(|letter: char| !letter.is_alphanumeric()).next().unwrap_or("");
     if LAWS[0].contains(&name) { "null" } else { "wait 10" }
 }
 
-/// The only parentheses of an atom with the call in them, if it is the call of a law.
+/// Returns the index of an atom's only parentheses and the call in them, if it is the call of a law.
 fn law_in_group<'s>(site: &Site<'_, 's>, group: usize) -> Option<(usize, &'s str)> {
     let end = site.at.checked_sub(1).filter(|end| *end > group + 1 && site.end_of_group(group) == *end)?;
     let is_only = site.kind(group) == Some(Tok::LParen) && site.name_at(group + 1).is_some_and(is_law);
     site.text(group + 1, end - 1).filter(|_| is_only).map(|law| (group, law))
 }
 
-/// Reports a law after its atom: `(Atom (bumper)) (go 20 0)`.
+/// Reports a law after its atom, as in `(Atom (bumper)) (go 20 0)`.
 fn law_outside(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let first = site.at + 1;
     let (name, last) = match site.kind(first)? == Tok::LParen {
@@ -81,7 +81,7 @@ fn law_outside(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("move this `)` after the law: {}", site.span(site.at, last), format!(" {law})")))
 }
 
-/// Index of the last token of a name and the numbers after it.
+/// Returns the index of the last token of a name and the numbers that follow it.
 pub(super) fn end_of_call(site: &Site<'_, '_>, name: usize) -> usize {
     if site.kind(name + 1) == Some(Tok::TouchParen) {
         return site.end_of_group(name + 1);
@@ -90,7 +90,7 @@ pub(super) fn end_of_call(site: &Site<'_, '_>, name: usize) -> usize {
     (name + 1..).take_while(is_literal).last().unwrap_or(name)
 }
 
-/// Reports several laws in an atom: `(Atom (wait 5) ((go 20 0) (turn 90)))`.
+/// Reports several laws in an atom, as in `(Atom (wait 5) ((go 20 0) (turn 90)))`.
 fn several_laws(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (group, is_law) = (site.opener()?, site.expects("name") && !site.expects_condition());
     let in_atom = site.kind(site.opener_of(group)? + 1) == Some(Tok::Atom) && site.kind(group - 1) == Some(Tok::RParen);
@@ -100,7 +100,7 @@ fn several_laws(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Reports an atom without its law, or with something after the law.
+/// Reports an atom without a law, or with text after the law.
 pub(super) fn atom_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if let Some(laws) = several_laws(site) {
         return Some(laws);
@@ -157,7 +157,7 @@ pub(super) fn atom_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Atom of the law `(turn 90)` that follows the law of another atom.
+/// Returns the text of an atom for a second law, such as `(turn 90)`, that follows the law of an atom.
 fn second_law(site: &Site<'_, '_>) -> Option<String> {
     let (first, last) = (site.at + 1, site.end_of_group(site.at).checked_sub(1)?);
     let is_law = site.found() == Some(Tok::LParen) && site.name_at(first).is_some_and(is_law);
@@ -165,7 +165,7 @@ fn second_law(site: &Site<'_, '_>) -> Option<String> {
     Some(format!("(Atom ({}) {law})", condition_for(law)))
 }
 
-/// Reports a law in braces: `(Atom (wait 5s) { go 20 0 })`.
+/// Reports a law in braces, as in `(Atom (wait 5s) { go 20 0 })`.
 fn law_in_braces(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (first, end) = (site.at + 1, site.end_of_group(site.at));
     let last = end.checked_sub(1).filter(|last| *last >= first && site.kind(end) == Some(Tok::RBrace))?;

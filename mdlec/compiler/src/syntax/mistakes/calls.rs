@@ -1,4 +1,4 @@
-//! Mistakes with calls: laws, interrupts and plans that are not expected here, or are written in another way.
+//! Mistakes with calls: laws, interrupts and plans that are unexpected or malformed.
 
 use super::atoms::end_of_call;
 use super::spelling;
@@ -8,7 +8,7 @@ use crate::syntax::number::split;
 use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
-/// Reports `r[0]` and `[bumper]`: square brackets.
+/// Reports square brackets, as in `r[0]` and `[bumper]`.
 pub(super) fn square_brackets(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.found() != Some(Tok::LBracket) {
         return None;
@@ -34,7 +34,7 @@ pub(super) fn square_brackets(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Reports `0,5`: a decimal comma.
+/// Reports a decimal comma, as in `0,5`.
 pub(super) fn decimal_comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
     // What stops the parser is the comma, or the digits after it.
     let comma = [Some(site.at), site.at.checked_sub(1)];
@@ -52,7 +52,7 @@ pub(super) fn decimal_comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("a decimal number has a dot: {}", site.span(whole, comma + 1), format!("{left}.{right}")))
 }
 
-/// Reports `Leg (3m)`: arguments that do not touch the name of their plan.
+/// Reports arguments that do not touch the name of their plan, as in `Leg (3m)`.
 pub(super) fn apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let paren = site.at.checked_sub(1)?;
     let name = paren.checked_sub(1)?;
@@ -77,7 +77,7 @@ pub(super) fn apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix(&words, site.span(name, paren), format!("{plan}(")))
 }
 
-/// Reports `0.5 m`: a unit that does not touch its number.
+/// Reports a unit that does not touch its number, as in `0.5 m`.
 pub(super) fn unit_apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (Some(Tok::Name(name)), Some(Tok::Number(number))) = (site.found(), site.before(1)) else { return None };
     if !split(number).1.is_empty() {
@@ -89,7 +89,7 @@ pub(super) fn unit_apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("write {}", site.span(site.at - 1, site.at), format!("{number}{name}")))
 }
 
-/// Reports a quark where an element should be: `{ A go 5 0 }`, `((wait 5) stop)`, `(r0 < 1m)`.
+/// Reports a quark in the place of an element, as in `{ A go 5 0 }`, `((wait 5) stop)` or `(r0 < 1m)`.
 pub(super) fn bare_call(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let formal = site.expects(",") && site.expects_argument() && site.opener_kind() == Some(Tok::LParen);
     if formal {
@@ -121,7 +121,7 @@ pub(super) fn bare_call(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("or, if it is a plan, write {}", site.span(site.at - 1, last), call))
 }
 
-/// Reports a quark or a comparison in parentheses of its own.
+/// Reports a quark or a comparison in parentheses.
 fn in_parentheses(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let opener = site.opener()?;
     let end = site.end_of_group(opener);
@@ -138,7 +138,7 @@ fn in_parentheses(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Reports `{ Name (bumper) (wait 10) …`: a second condition of a plan.
+/// Reports a second condition of a plan, as in `{ Name (bumper) (wait 10) …`.
 fn second_condition(site: &Site<'_, '_>, opener: usize, end: usize, second: &str) -> Option<Diagnostic> {
     let closer = opener
         .checked_sub(1)
@@ -155,7 +155,7 @@ fn second_condition(site: &Site<'_, '_>, opener: usize, end: usize, second: &str
     Some(diagnostic.fix("if one of them is enough, join them: {}", site.span(first, end), joined))
 }
 
-/// Proposes the atom that was probably meant by a call.
+/// Returns `diagnostic` with help that proposes the atom that a call probably means.
 fn element(diagnostic: Diagnostic, site: &Site<'_, '_>, (first, last): (usize, usize), call: &str) -> Diagnostic {
     let name = call.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or("");
     let argument = call.strip_prefix(name).unwrap_or("").trim();
@@ -175,7 +175,7 @@ fn element(diagnostic: Diagnostic, site: &Site<'_, '_>, (first, last): (usize, u
     diagnostic.fix("a law runs in an atom, until its condition fires: {}", site.span(first, last), atom)
 }
 
-/// Returns `true` if a call is certainly a condition.
+/// Returns `true` if a call can only be a condition.
 fn is_condition(call: &str) -> bool {
     let (name, argument) = call.split_once(' ').unwrap_or((call, ""));
     let is_bits = argument.len() >= 3 && argument.bytes().all(|byte| matches!(byte, b'0' | b'1'));

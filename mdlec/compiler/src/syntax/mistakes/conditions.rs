@@ -4,7 +4,7 @@ use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
-/// Reports text that is not a condition where a condition is allowed.
+/// Reports text that is not a condition in the place of a condition.
 pub(super) fn condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if !site.expects_condition() {
         return not_joined(site);
@@ -53,7 +53,7 @@ pub(super) fn condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// Reports `1m > r0` and `0.5 < r0 < 1`: a signal must come first.
+/// Reports a comparison in which the signal is not first, such as `1m > r0` and `0.5 < r0 < 1`.
 fn turned(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (number, signal) = (site.text(site.at, site.at)?, site.at + 2);
     #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens do not compare")]
@@ -87,7 +87,7 @@ fn turned(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("write {}", site.span(site.at, end), replacement))
 }
 
-/// Reports two conditions without an operator between them: `(r0 < 50cm wait 5s)`.
+/// Reports two conditions without an operator between them, such as `(r0 < 50cm wait 5s)`.
 fn not_joined(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let next = site.name_at(site.at).filter(|_| site.expects("OR") && site.expects("AND"))?;
     let is_compared =

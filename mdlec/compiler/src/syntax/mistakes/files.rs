@@ -88,7 +88,8 @@ pub(super) fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// Reports more than one file, or another name for it, after `use`: `use "a.mdle" "b.mdle"`, `use "a.mdle" as a`.
+/// Reports more than one file or another name for the file after `use`, as in `use "a.mdle" "b.mdle"` and `use "a.mdle"
+/// as a`.
 fn after_used_file(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let first = if site.found() == Some(Tok::Comma) { site.at + 1 } else { site.at };
     if let Some(Tok::Str(_)) = site.kind(first) {
@@ -102,7 +103,7 @@ fn after_used_file(site: &Site<'_, '_>) -> Option<Diagnostic> {
     (first == site.at).then(|| diagnostic.fix(words, site.span(site.at, last), ""))
 }
 
-/// Reports a plan in parentheses instead of braces: `( Tour (bumper) …`.
+/// Reports a plan in parentheses instead of braces, as in `( Tour (bumper) …`.
 fn plan_in_parentheses(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let name = site.name_at(site.at + 1).filter(|_| site.kind(site.at + 2) == Some(Tok::LParen))?;
     let diagnostic = site.about(site.at, format!("the plan `{name}` begins with `(`"), "expected a `{`");

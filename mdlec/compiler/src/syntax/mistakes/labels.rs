@@ -1,4 +1,4 @@
-//! Labels, colons and equals signs.
+//! Mistakes with labels, colons and equals signs.
 
 use super::plan_names::{name_before_plan, not_a_label};
 use crate::alphabet::Kind;
@@ -65,7 +65,7 @@ pub(super) fn label_and_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// Reports `=` instead of a colon in a parameter: `{ Leg (far = length) …`.
+/// Reports `=` instead of a colon in a parameter, as in `{ Leg (far = length) …`.
 fn parameter_with_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let name = site.name_at(site.at.checked_sub(1)?)?;
     let kind = site.name_at(site.at + 1).filter(|kind| Kind::NAMES.contains(kind))?;
@@ -75,7 +75,7 @@ fn parameter_with_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
     is_header.then(|| diagnostic.fix(words, site.span(site.at - 1, site.at + 1), format!("{name}: {kind}")))
 }
 
-/// Reports an argument with its name: `Leg(d = 3m)`, `Leg(d: 3m)`.
+/// Reports an argument with its name, as in `Leg(d = 3m)` and `Leg(d: 3m)`.
 fn named_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let name = site.at.checked_sub(1)?;
     let text = site.name_at(name).filter(|_| site.opener_kind() == Some(Tok::TouchParen))?;
@@ -91,7 +91,7 @@ fn named_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Reports arguments of a law with their names: `(go v=20 omega=0)`.
+/// Reports arguments of a law with their names, as in `(go v=20 omega=0)`.
 fn named_arguments_of_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let first = site.at.checked_sub(1).filter(|_| site.expects_argument())?;
     let names = (first..).step_by(3).take_while(|at| {
@@ -104,7 +104,7 @@ fn named_arguments_of_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("write the values alone: {}", site.span(first, last), values.join(" ")))
 }
 
-/// Reports a label in quotes: `"there": (Atom …)`.
+/// Reports a label in quotes, as in `"there": (Atom …)`.
 pub(super) fn label_in_quotes(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let Some(Tok::Str(text)) = site.found() else { return None };
     let is_name = text.starts_with(char::is_alphabetic) && text.chars().all(|c| c.is_alphanumeric() || c == '_');
@@ -115,7 +115,7 @@ pub(super) fn label_in_quotes(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// A label with nothing after it.
+/// Reports a label without an element after it.
 pub(super) fn label_behind(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let label = site.at.checked_sub(2).and_then(|at| site.name_at(at))?;
     (site.before(1) == Some(Tok::Colon) && site.expects_element()).then(|| {
@@ -124,7 +124,7 @@ pub(super) fn label_behind(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Reports a label of `after` in parentheses or quotes: `after (ahead)`, `after "ahead"`.
+/// Reports a label of `after` in parentheses or quotes, as in `after (ahead)` and `after "ahead"`.
 pub(super) fn label_of_after(site: &Site<'_, '_>) -> Option<Diagnostic> {
     #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens hold no name")]
     let (label, last) = match site.found()? {

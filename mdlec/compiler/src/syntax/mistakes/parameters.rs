@@ -17,7 +17,7 @@ pub(super) fn parameters(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Reports a default value of a parameter: `(far: length = 1m)`.
+/// Reports a default value of a parameter, as in `(far: length = 1m)`.
 fn default_value(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let value = matches!(site.kind(site.at + 1), Some(Tok::Number(_) | Tok::Infinity | Tok::Str(_) | Tok::Name(_)));
     (site.found() == Some(Tok::Assign) && site.before(2) == Some(Tok::Colon) && value).then(|| {
@@ -27,7 +27,7 @@ fn default_value(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Reports a condition in the list of parameters: `(bumper, speed: speed)`.
+/// Reports a condition in the list of parameters, as in `(bumper, speed: speed)`.
 fn condition_in_list(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (opener, first) = (site.opener()?, site.at.checked_sub(1)?);
     let name = site.name_at(first).filter(|_| site.found() == Some(Tok::Comma) && opener + 1 == first)?;
@@ -43,7 +43,7 @@ fn condition_in_list(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Reports a parameter without its colon: `(a: length, b speed)`.
+/// Reports a parameter without its colon, as in `(a: length, b speed)`.
 fn colon_of_type(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (name, kind) = (site.name_at(site.at.checked_sub(1)?)?, site.name_at(site.at)?);
     matches!(site.before(2), Some(Tok::Comma | Tok::ParamParen)).then(|| {

@@ -1,9 +1,9 @@
-//! Names before the braces of a plan.
+//! Mistakes with names before the brace of a plan.
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;
 
-/// Reports a name between a label or the beginning and the brace of its plan.
+/// Reports a name before the brace of its plan, at the beginning of the file or after a label.
 pub(super) fn name_before_plan(site: &Site<'_, '_>, at: usize) -> Diagnostic {
     let name = site.name_at(at).unwrap_or("Name");
     let words = format!("the name of a plan is the first thing inside: `{{ {name} … }}`");
