@@ -1,5 +1,5 @@
-//! Balances brackets before the grammar sees them (docs/src/reference/language.md, 3.7): afterwards every bracket has
-//! its partner, brackets are nested at most 256 deep, and no atom contains an atom.
+//! Balances brackets before the grammar reads the tokens (docs/src/reference/language.md, 3.7). Afterwards every
+//! bracket has a partner, brackets are nested at most 256 deep, and no atom contains an atom.
 
 mod inside;
 mod unclosed;
@@ -20,24 +20,24 @@ pub(super) const MAX_DEPTH: usize = 256;
 /// Tokens whose brackets match.
 #[derive(Debug, Default)]
 pub(super) struct Balanced<'s> {
-    /// The tokens; inserted ones have an empty place.
+    /// Tokens with balanced brackets; inserted tokens have an empty place.
     pub(super) tokens: Vec<Token<'s>>,
-    /// The doc comments, each with the token that follows it.
+    /// Doc comments, each with the index of the token that follows it.
     pub(super) docs: Vec<(usize, &'s str)>,
-    /// Regions of the tokens: one defect may upset all tokens of a region.
+    /// Regions of the tokens: one defect may affect all tokens of a region.
     pub(super) regions: Regions,
-    /// The lexical errors and those of the brackets.
+    /// Lexical errors, and errors of the brackets.
     pub(super) diagnostics: Vec<Diagnostic>,
-    /// The files that are named inside plans.
+    /// Names of files in `use` inside plans.
     pub(super) uses: Vec<Name<'s>>,
-    /// `true` if a brace is never closed.
+    /// `true` if the text contains a brace that is never closed.
     is_open: bool,
-    /// `true` if the braces that are never closed were closed where they seem to end.
+    /// `true` if the braces that are never closed have been closed where they seem to end.
     is_repaired: bool,
 }
 
-/// Balances the brackets of a text. A brace that is never closed is closed where its indentation shows the end, else
-/// where its plan seems to end, if no other bracket is left over then.
+/// Balances the brackets of a text. A brace that is never closed is closed where its indentation shows the end, or else
+/// where its plan seems to end, if no other bracket remains unmatched then.
 pub(super) fn balance<'s>(source: Source<'s>, lexed: &Lexed<'s>) -> Balanced<'s> {
     let (plain, ends) = pass(source, lexed, &BTreeMap::new());
     if !plain.is_open {
@@ -56,8 +56,8 @@ pub(super) fn balance<'s>(source: Source<'s>, lexed: &Lexed<'s>) -> Balanced<'s>
     )
 }
 
-/// Goes through the tokens once and closes open brackets before the tokens of `ends`; also returns the tokens before
-/// which braces that are never closed seem to end.
+/// Reads the tokens once, and closes open brackets before the tokens in `ends`. Also returns the tokens before which
+/// braces that are never closed seem to end.
 fn pass<'s>(source: Source<'s>, lexed: &Lexed<'s>, ends: &BTreeMap<usize, End>) -> (Balanced<'s>, BTreeSet<usize>) {
     let mut errors = lexed.errors.iter().peekable();
     let mut docs = lexed.docs.iter().peekable();
@@ -103,7 +103,7 @@ enum BracketKind {
     Atom,
 }
 
-/// A bracket that is open.
+/// An open bracket.
 #[derive(Debug, Clone, Copy)]
 struct Open {
     kind: BracketKind,
@@ -111,14 +111,14 @@ struct Open {
     place: Option<Place>,
     /// Index of the bracket in the text's tokens, or of the token before which it was inserted.
     raw: usize,
-    /// Index of the message about a `)` where the `}` should be.
+    /// Index of the message about a `)` in the place of the bracket's `}`.
     stray: Option<usize>,
 }
 
-/// A run of closing brackets that close nothing.
+/// A run of consecutive closing brackets without opening brackets.
 #[derive(Debug, Clone, Copy)]
 struct Strays {
-    /// Index of the message about them.
+    /// Index of the message about the run.
     message: usize,
     /// Index of the last bracket of the run.
     last: usize,
@@ -132,7 +132,7 @@ struct Pass<'t, 's> {
     open: Vec<Open>,
     /// Number of open braces.
     braces: usize,
-    /// The last run of closing brackets that closed nothing.
+    /// Last run of closing brackets without opening brackets.
     strays: Option<Strays>,
     /// Byte offset up to which the text has been searched for line ends.
     reached: usize,
@@ -141,7 +141,7 @@ struct Pass<'t, 's> {
 }
 
 impl<'s> Pass<'_, 's> {
-    /// Processes one token; returns `false` if reading stops there.
+    /// Processes a token; returns `false` if no more tokens are to be read.
     fn token(&mut self, index: usize, token: Token<'s>) -> bool {
         #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are treated alike")]
         match token.kind {
@@ -183,7 +183,7 @@ impl<'s> Pass<'_, 's> {
         self.balanced.tokens.push(token);
     }
 
-    /// Begins a line of regions if the text up to `start` contains a line end.
+    /// Begins a line of regions if the text up to the byte offset `start` contains a line end.
     fn reach(&mut self, start: usize) {
         if self.source.slice(Place::new(self.reached, start)).contains('\n') {
             self.balanced.regions.begin_line();
@@ -201,7 +201,7 @@ impl<'s> Pass<'_, 's> {
         self.balanced.diagnostics.push(diagnostic);
     }
 
-    /// Returns `true` in an atom that has its condition and its law.
+    /// Returns `true` if the innermost bracket is that of an atom that already has its condition and its law.
     fn in_complete_atom(&self) -> bool {
         if self.open.last().is_none_or(|open| open.kind != BracketKind::Atom) {
             return false;
@@ -249,7 +249,7 @@ impl<'s> Pass<'_, 's> {
         true
     }
 
-    /// Closes the innermost open bracket.
+    /// Closes the innermost open bracket, and returns it.
     fn close(&mut self, token: Token<'s>) -> Option<Open> {
         let open = self.open.pop()?;
         self.push(token);
@@ -263,7 +263,7 @@ impl<'s> Pass<'_, 's> {
         Some(open)
     }
 
-    /// Closes the innermost open bracket where the text has no closing bracket.
+    /// Closes the innermost open bracket although the text has no closing bracket.
     fn force(&mut self) -> Option<Open> {
         let kind = if self.open.last()?.kind == BracketKind::Brace { Tok::RBrace } else { Tok::RParen };
         self.balanced.regions.spoil();
@@ -271,7 +271,7 @@ impl<'s> Pass<'_, 's> {
         self.close(Token { kind, place: Place::new(end, end) })
     }
 
-    /// Closes the parentheses above the first `depth` open brackets, with one message.
+    /// Closes all open brackets but the first `depth`, which are parentheses, and reports them with one message.
     fn force_down_to(&mut self, depth: usize, missing_at: Place, before: &str) {
         let mut unclosed = Vec::new();
         let mut atom = false;
@@ -298,7 +298,7 @@ impl<'s> Pass<'_, 's> {
         });
     }
 
-    /// Closes the atom inside which another atom begins.
+    /// Closes the atom in which another atom begins.
     fn close_atom(&mut self, at: Place) {
         let inside = self.open.iter().rev().take_while(|open| open.kind != BracketKind::Brace);
         if let Some(up) = inside.enumerate().filter(|(_, open)| open.kind == BracketKind::Atom).map(|(up, _)| up).last()
@@ -307,7 +307,7 @@ impl<'s> Pass<'_, 's> {
         }
     }
 
-    /// Inserts the parenthesis of an `Atom` that lacks it.
+    /// Inserts the missing parenthesis before an `Atom`.
     fn lone_atom(&mut self, index: usize, token: Token<'s>) -> bool {
         let place = Place::new(token.place.start, token.place.start);
         if !self.open(BracketKind::Atom, index, Token { kind: Tok::LParen, place }) {
@@ -320,8 +320,8 @@ impl<'s> Pass<'_, 's> {
         true
     }
 
-    /// Returns `true` if this closing bracket continues a run of brackets that close nothing; the run's message then
-    /// covers it.
+    /// Returns `true` if a closing bracket continues a run of closing brackets without opening brackets; then the run's
+    /// message also covers it.
     fn is_one_more(&mut self, index: usize, token: Token<'s>) -> bool {
         let is_alike = |last: usize| self.raw.get(last).is_some_and(|last| last.kind == token.kind);
         let strays = self.strays.as_mut().filter(|strays| strays.last + 1 == index && is_alike(strays.last));

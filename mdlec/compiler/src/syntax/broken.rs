@@ -1,5 +1,5 @@
-//! Removes from the tree the elements that a defect has spoiled: after a syntax error the parser may have read other
-//! words as names, and later stages must not report those. Elements beside a defect stay.
+//! Removes elements from the tree that a syntax error has affected: the parser may have read other words as names, and
+//! later stages must not report these names. Elements beside the defect remain.
 
 use bumpalo::Bump;
 
@@ -9,7 +9,7 @@ use super::token::{Tok, Token};
 use super::tree::{Condition, ConditionNode, Element, Exec, File, Formal, Plan, Primary};
 use crate::diagnostic::Span;
 
-/// Removes nodes in regions with a reported error, and plans without a name.
+/// Removes nodes in regions with a reported error, and plans without a name, from the tree.
 pub(super) fn take_out<'s>(
     file: &mut File<'s>,
     source: Source<'s>,

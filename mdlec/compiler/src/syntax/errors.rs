@@ -1,5 +1,5 @@
-//! Turns the parser's errors into messages: one for each region; usual mistakes by name, all others as expected and
-//! found.
+//! Converts the parser's errors to messages, one for each region. Common mistakes have their own messages; all other
+//! messages name the expected and the unexpected tokens.
 
 use std::cell::OnceCell;
 
@@ -44,7 +44,7 @@ pub(super) fn diagnostics(
     diagnostics
 }
 
-/// Indices of the tokens that an edit of this message replaces.
+/// Returns the indices of the tokens that the edits in a message replace.
 fn rewritten(source: Source<'_>, tokens: &[Token<'_>], diagnostic: &Diagnostic) -> impl Iterator<Item = usize> {
     let edits = diagnostic.help.iter().filter_map(|help| help.edit.as_ref());
     let first = |edit: &Edit| {
@@ -66,7 +66,7 @@ fn place_of(recovery: Recovery<'_>, end: usize) -> (usize, Vec<String>) {
     }
 }
 
-/// Innermost bracket that is open before each token and after the last.
+/// Returns the innermost open bracket before each token and at the end of the text.
 fn openers(tokens: &[Token<'_>]) -> Vec<Option<usize>> {
     let mut open = Vec::new();
     let mut openers = Vec::with_capacity(tokens.len() + 1);

@@ -1,4 +1,4 @@
-//! Parses a file of plans together with the files that it uses, each once (docs/src/reference/language.md, 1).
+//! Parses a file of plans and the files that it uses, each file once (docs/src/reference/language.md, 1).
 
 use std::collections::BTreeSet;
 
@@ -6,19 +6,19 @@ use super::tree::{Name, Plan};
 use super::{Arena, parse};
 use crate::diagnostic::{Code, Diagnostic, SourceId, sort};
 
-/// Finds and reads the files that plans use: no stage of the compiler reads a file itself.
+/// Finds and reads the files that plans use; no stage of the compiler reads a file itself.
 pub trait Loader {
-    /// Finds the file that `path` names in the file `from`; a file has one number, however it is reached.
+    /// Returns the file that `path` names in the file `from`. A file has one identifier, whichever path leads to it.
     ///
     /// # Errors
     /// Returns the reason why the file cannot be read, in one line without a full stop.
     fn find(&mut self, from: SourceId, path: &str) -> Result<SourceId, String>;
 
-    /// Returns the text of a file that `find` has returned.
+    /// Returns the text of a file that `find` returned.
     fn text(&self, source: SourceId) -> &str;
 }
 
-/// A loader without files, for a text that uses none.
+/// A loader without files, for a text that uses no files.
 #[derive(Debug, Clone, Copy)]
 pub struct NoFiles;
 
@@ -35,23 +35,23 @@ impl Loader for NoFiles {
 /// The plans of a file and of the files that it uses.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Files<'s> {
-    /// Plans, those of the file itself first, in order.
+    /// Plans in order, the plans of the file itself first.
     pub plans: Vec<Plan<'s>>,
     /// Number of plans of the file itself.
     pub own: usize,
-    /// `true` if a used file, or the head of a plan, could not be read, so that plans may be missing.
+    /// `true` if plans may be missing, because a used file or the head of a plan could not be read.
     pub is_incomplete: bool,
 }
 
-/// A file whose uses are being followed.
+/// A file whose used files are being parsed.
 struct Open<'s> {
     source: SourceId,
     uses: Vec<Name<'s>>,
-    /// Number of uses that have been followed.
+    /// Number of used files that have been parsed.
     done: usize,
 }
 
-/// Parses a text and all files that it uses: returns their trees and all diagnostics.
+/// Parses a text and all files that it uses; returns their trees and all diagnostics.
 #[must_use]
 pub fn parse_with<'s>(
     source: SourceId,
@@ -93,7 +93,7 @@ fn unusable(used: Name<'_>, reason: String) -> Diagnostic {
         .help("a path is looked up from the folder of the file that uses it")
 }
 
-/// Returns the diagnostic of a circular use: the last open file uses `source`, which is open as well.
+/// Returns the diagnostic of a circular use: the last open file uses `source`, which is also open.
 fn cycle(open: &[Open<'_>], source: SourceId) -> Option<Diagnostic> {
     let from = open.iter().position(|file| file.source == source)?;
     let cycle = open.get(from..)?;

@@ -1,23 +1,24 @@
-//! Decides what a parenthesis after a plan's own name is (docs/src/reference/language.md, 3.1): its parameters, its
-//! condition, or its first element. The grammar could not know before the end of it.
+//! Determines the meaning of a parenthesis after a plan's own name (docs/src/reference/language.md, 3.1): parameters,
+//! the condition, or the first element. The grammar could not know this before the end of the parenthesis.
 
 use std::collections::BTreeSet;
 
 use super::token::{Tok, Token};
 use crate::alphabet::Kind;
 
-/// Content that begins after a parenthesis in a header.
+/// Kind of content after a parenthesis in a header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Begins<'s> {
-    /// Parameters.
+    /// The parentheses contain parameters.
     Parameters,
     /// The parentheses do not contain parameters.
     Others,
-    /// `(v: spead)`: a parameter with an unknown type or, if a plan has this name, that plan with a label.
+    /// The parentheses contain, as in `(v: spead)`, a parameter of an unknown type or, if a plan has the name `spead`,
+    /// that plan with a label.
     Either(&'s str),
 }
 
-/// Marks the parentheses in the headers of plans; brackets must be balanced.
+/// Sets the kinds of the parentheses in the headers of plans; brackets must be balanced.
 pub(super) fn mark(tokens: &mut [Token<'_>]) {
     let mut plans = None;
     for brace in 0..tokens.len() {
@@ -27,16 +28,16 @@ pub(super) fn mark(tokens: &mut [Token<'_>]) {
     }
 }
 
-/// Marks the parenthesis at `at`, and the next one if the first holds parameters; `plans` caches the names of the
-/// file's plans.
+/// Sets the kind of the parenthesis at `at`, and of the next parenthesis if the first contains parameters; `plans`
+/// caches the names of the file's plans.
 fn mark_header<'s>(tokens: &mut [Token<'s>], at: usize, plans: &mut Option<BTreeSet<&'s str>>) {
     for (at, kind) in groups(tokens, at, plans).into_iter().flatten() {
         set(tokens, at, kind);
     }
 }
 
-/// Index of the last token of the header of the plan whose opening brace is at `brace`; `None` for the brace of a loop,
-/// or without a name.
+/// Returns the index of the last token of a plan's header, whose opening brace is at `brace`; `None` for the brace of a
+/// loop, or for a plan without a name.
 pub(super) fn end<'s>(tokens: &[Token<'s>], brace: usize, plans: &mut Option<BTreeSet<&'s str>>) -> Option<usize> {
     let name = name_of(tokens, brace)?;
     let mut groups = groups(tokens, name + 1, plans).into_iter().flatten().filter(|(_, kind)| *kind != Tok::LParen);
@@ -53,7 +54,7 @@ fn name_of(tokens: &[Token<'_>], brace: usize) -> Option<usize> {
     (is_name(tokens, name) && !is_loop(tokens, brace)).then_some(name)
 }
 
-/// The parentheses that follow the name of a plan at `at`, at most two, each with the token that it becomes.
+/// Returns the parentheses that follow a plan's name at `at`, at most two, each with its kind of token.
 fn groups<'s>(tokens: &[Token<'s>], at: usize, plans: &mut Option<BTreeSet<&'s str>>) -> [Option<(usize, Tok<'s>)>; 2] {
     if !is_parenthesis(tokens, at) {
         return [None; 2];
@@ -85,8 +86,8 @@ pub(super) fn names<'s>(tokens: &[Token<'s>]) -> BTreeSet<&'s str> {
     named.collect()
 }
 
-/// Determines if the tokens after a parenthesis begin parameters: a name and a colon with a type, or with a name that
-/// must be one. A string whose first element has a label begins alike.
+/// Determines if parameters begin after a parenthesis: a name and a colon, and then a type or a name that must be a
+/// type. A string whose first element has a label begins in the same way.
 pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s> {
     match (behind.next(), behind.next()) {
         (Some(Tok::Name(_)), Some(Tok::Colon)) => {}
@@ -116,13 +117,13 @@ pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s
     }
 }
 
-/// Returns `true` if a name is that of a type of parameters.
+/// Returns `true` if a name is that of a parameter type.
 fn is_type(name: &str) -> bool {
     name == "bits" || Kind::NAMES.contains(&name)
 }
 
-/// Returns `true` if the group whose parenthesis is before `behind` contains something that no condition does, at any
-/// depth: an element, a colon, or a comma that is not between arguments.
+/// Returns `true` if a group, whose parenthesis precedes the tokens `behind`, contains a token that cannot be in a
+/// condition: an element, a colon, or a comma that is not between arguments, at any depth.
 pub(super) fn is_element<'s>(behind: impl Iterator<Item = Tok<'s>>) -> bool {
     let mut depth = 1_usize;
     // How deep the parenthesis is in which arguments stand, and whether one of those may come next.
@@ -154,7 +155,7 @@ pub(super) fn is_element<'s>(behind: impl Iterator<Item = Tok<'s>>) -> bool {
     false
 }
 
-/// Returns `true` if the brace belongs to an `ExecPlan`, so that the first name in it is not the name of a plan.
+/// Returns `true` if the brace belongs to an `ExecPlan`, in which the first name is not the name of a plan.
 fn is_loop(tokens: &[Token<'_>], brace: usize) -> bool {
     let before = |back: usize| brace.checked_sub(back).and_then(|at| tokens.get(at)).map(|token| token.kind);
     match (before(2), before(1)) {
@@ -164,7 +165,7 @@ fn is_loop(tokens: &[Token<'_>], brace: usize) -> bool {
     }
 }
 
-/// Index of the token that closes the group opened at `at`.
+/// Returns the index of the token that closes the group opened at `at`.
 fn end_of_group(tokens: &[Token<'_>], at: usize) -> usize {
     let mut depth = 0_usize;
     for (offset, token) in tokens.get(at..).unwrap_or(&[]).iter().enumerate() {
@@ -179,7 +180,7 @@ fn end_of_group(tokens: &[Token<'_>], at: usize) -> usize {
     tokens.len()
 }
 
-/// Kinds of the tokens after the one at `at`.
+/// Returns the kinds of the tokens after the token at `at`.
 fn behind<'s>(tokens: &[Token<'s>], at: usize) -> impl Iterator<Item = Tok<'s>> {
     tokens.get(at + 1..).unwrap_or(&[]).iter().map(|token| token.kind)
 }

@@ -1,30 +1,30 @@
-//! Finds the ends of braces that are never closed, by the indentation of their lines.
+//! Determines the ends of braces that are never closed, from the indentation of lines.
 
 use std::collections::BTreeMap;
 
 use super::source::Source;
 use super::token::{Tok, Token};
 
-/// Braces that end before a token.
+/// The braces that end before a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
-    /// All open braces: at this indentation another plan begins.
+    /// All open braces: another plan begins at this indentation.
     OfPlan,
-    /// The brace that opens at this token, and the brackets inside it.
+    /// The brace that opens at the token with this index, and the brackets inside it.
     OfBrace(usize),
 }
 
-/// A brace that is open.
+/// An open brace.
 struct Open {
     brace: usize,
-    /// The indentation of its line.
+    /// Indentation of the brace's line, in characters.
     indentation: usize,
     /// `true` if a line inside the brace is indented deeper.
     is_deeper: bool,
 }
 
-/// Tokens before which a brace must be closed: each begins a line that is indented no deeper than the line of the
-/// brace, though the lines between are.
+/// Returns the tokens before which a brace must be closed. Such a token begins a line that is not indented deeper than
+/// the line of the brace, while the lines between are.
 pub(super) fn ends(source: Source<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, End> {
     let mut ends = BTreeMap::new();
     let mut open: Vec<Open> = Vec::new();
@@ -55,7 +55,7 @@ pub(super) fn ends(source: Source<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, 
     ends
 }
 
-/// Number of characters before this place in its line, if all are spaces or tabs.
+/// Returns the number of characters before a place in its line, if all of them are spaces or tabs.
 fn indentation_of(source: Source<'_>, start: usize) -> Option<usize> {
     let before = source.text.get(..start)?;
     let line = before.rsplit('\n').next().unwrap_or(before);

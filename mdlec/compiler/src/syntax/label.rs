@@ -1,11 +1,11 @@
-//! Labels of plans, as `Γ_from^to` (docs/src/reference/language.md, 2): where a label ends in the text, and its words
+//! Labels of plans, such as `Γ_from^to` (docs/src/reference/language.md, 2): their length in the text, and their words
 //! without typesetting.
 
 use std::borrow::Cow;
 
 use logos::{Lexer, Logos};
 
-/// A part of a label. The lexer of plans would be several times as large if it knew these.
+/// A part of a label. The lexer of plans does not have these parts, because they would make it several times as large.
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 enum Part {
     #[regex(r"[\p{L}\p{M}\p{Nd}_]+")]
@@ -22,7 +22,7 @@ enum Part {
     Caret,
 }
 
-/// Returns the length in bytes of the label at the start of `text`; `None` if there is none.
+/// Returns the length in bytes of the label at the start of `text`; `None` if there is no label.
 pub(super) fn label_length(text: &str) -> Option<usize> {
     let start = ["Γ_", "Gamma_", r"\Gamma_"].into_iter().find(|start| text.starts_with(start))?;
     let name = name_length(text.get(start.len()..)?)?;
@@ -31,7 +31,8 @@ pub(super) fn label_length(text: &str) -> Option<usize> {
     Some(behind.and_then(name_length).map_or(to, |name| to + 1 + name))
 }
 
-/// Returns the length in bytes of the name at the start of `text`: a word, or words in braces, perhaps of `\text`.
+/// Returns the length in bytes of the name at the start of `text`: a word, or words in braces that may be those of
+/// `\text`.
 fn name_length(text: &str) -> Option<usize> {
     let mut parts = Part::lexer(text);
     match parts.next()?.ok()? {
@@ -68,7 +69,7 @@ fn follows(parts: &mut Lexer<'_, Part>, part: Part) -> bool {
     parts.next() == Some(Ok(part))
 }
 
-/// The text of a label, normalized: `Γ_from^to`.
+/// Returns the text of a label in normalized form: `Γ_from^to`.
 pub(super) fn label(text: &str) -> Cow<'_, str> {
     if text.starts_with('Γ') && !text.contains('{') {
         return Cow::Borrowed(text);

@@ -66,7 +66,7 @@ pub fn arena_for(text: &str) -> Arena {
     Arena::with_capacity(6 * text.len())
 }
 
-/// Parses a text: returns its tree and all its diagnostics, in the order of the text.
+/// Parses a text; returns its tree and all its diagnostics, in the order of the text.
 #[must_use]
 pub fn parse<'s>(source: SourceId, text: &'s str, arena: &'s Arena) -> (tree::File<'s>, Vec<Diagnostic>) {
     let source = Source::new(source, text);

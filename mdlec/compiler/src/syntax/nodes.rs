@@ -1,7 +1,7 @@
-//! Makes the nodes of the tree: one constructor for each action of the grammar.
+//! Constructors of the tree's nodes, one for each action of the grammar.
 //!
-//! The parser's own stack holds small values that need no dropping, since it moves them with every token: large nodes
-//! are in the arena already, and members of a list wait elsewhere until the list is complete.
+//! The parser's stack holds small values that need no dropping, because the parser moves them with every token: large
+//! nodes are already in the arena, and members of a list wait in separate stacks until the list is complete.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -31,20 +31,20 @@ pub(super) struct Head<'s> {
     pub(super) condition: Option<Condition<'s>>,
 }
 
-/// State of the constructors: their input, and the nodes and errors that they collect.
+/// State of the constructors: the input, and the nodes and errors so far.
 pub(super) struct Nodes<'t, 's> {
     pub(super) source: Source<'s>,
     /// Arena of the tree.
     arena: &'s Bump,
     /// Tokens of the text, from which broken elements are made.
     pub(super) tokens: &'t [Token<'s>],
-    /// The doc comments, each with the token that follows it.
+    /// Doc comments, each with the index of the token that follows it.
     docs: &'t [(usize, &'s str)],
-    /// Nodes whose list is not complete.
+    /// Nodes of lists that are not complete yet.
     pub(super) waiting: Waiting<'s>,
-    /// The tree.
+    /// Tree of the file.
     pub(super) file: File<'s>,
-    /// The parser's errors, in the order of the text.
+    /// Errors from which the parser has recovered, in the order of the text.
     pub(super) errors: Vec<Recovery<'s>>,
     /// Messages about empty bodies, each with the tokens of the body.
     pub(super) empty: Vec<(Range<usize>, Diagnostic)>,
@@ -127,14 +127,15 @@ impl<'t, 's> Nodes<'t, 's> {
         self.waiting.params.push(Param { name, type_name });
     }
 
-    /// Returns the name before a brace, `A { … }`. Its place has been reported, but other plans may refer to the name.
+    /// Returns the name before a brace, as in `A { … }`. Its place has been reported, but other plans may refer to the
+    /// name.
     fn name_before(&self, brace: Location) -> Option<Name<'s>> {
         let before = self.tokens.get((brace.token as usize).checked_sub(1)?)?;
         let Tok::Name(name) = before.kind else { return None };
         Some(Spanned { node: name, span: self.source.span(before.place) })
     }
 
-    /// Doc comment directly before a plan.
+    /// Returns the lines of the doc comment directly before a plan.
     fn docs_of(&self, start: Location) -> &'s [&'s str] {
         let start = start.token as usize;
         let first = self.docs.partition_point(|(token, _)| *token < start);
@@ -174,12 +175,12 @@ impl<'t, 's> Nodes<'t, 's> {
         self.waiting.element(Element { primary, marks, span })
     }
 
-    /// Completes a list of elements, which begins at `first`.
+    /// Completes the list of elements that begins at `first`.
     fn elements(&mut self, first: Option<First>) -> &'s [Element<'s>] {
         first.map_or(&[][..], |first| complete(&mut self.waiting.elements, first, self.arena))
     }
 
-    /// The law of an atom in formal notation, as the only element of a list.
+    /// Returns a list whose only element is the law of an atom in formal notation.
     pub(super) fn law(&mut self, start: Location, name: Name<'s>, first: First, end: Location) -> Option<First> {
         let call = self.call(start, name, Some(first), end);
         Some(self.waiting.element(single(call)))
@@ -263,7 +264,7 @@ impl<'t, 's> Nodes<'t, 's> {
         self.waiting.condition(operand)
     }
 
-    /// Joins operands by one operator: `first` is the index of the second operand.
+    /// Joins operands by an operator; `rest` is the index of the second operand.
     pub(super) fn joined(
         &mut self,
         first: Condition<'s>,
@@ -278,7 +279,7 @@ impl<'t, 's> Nodes<'t, 's> {
 
     // ---- Calls ----
 
-    /// Makes a call with the arguments that wait from `first` on.
+    /// Returns a call with the waiting arguments from `first` on.
     pub(super) fn call(
         &mut self,
         start: Location,
@@ -317,7 +318,7 @@ impl<'t, 's> Nodes<'t, 's> {
     }
 }
 
-/// Makes an element from a call alone.
+/// Returns an element that consists of a call only.
 fn single<'s>(call: &'s Call<'s>) -> Element<'s> {
     Element { primary: Primary::Ref(call), marks: None, span: call.span }
 }

@@ -1,6 +1,6 @@
-//! The number at the beginning of a text.
+//! Splits the number at the beginning of a text from the rest.
 
-/// Splits a text into the number that it begins with (perhaps empty) and the text that touches that number.
+/// Returns the number at the beginning of a text, which may be empty, and the text that touches the number.
 pub(super) fn split(text: &str) -> (&str, &str) {
     let digits = |from: usize| text.bytes().skip(from).take_while(u8::is_ascii_digit).count();
     let is = |at: usize, any: &[u8]| text.as_bytes().get(at).is_some_and(|byte| any.contains(byte));

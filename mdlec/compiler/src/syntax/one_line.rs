@@ -1,12 +1,12 @@
-//! Writes a piece of a plan's text in one line, for reports that repeat the user's words.
+//! Writes a part of a plan's text on one line, for reports that repeat the user's words.
 
 use super::lexer::lex;
 use super::source::Source;
 use crate::diagnostic::SourceId;
 
 /// Returns the tokens of `text` on one line, without comments, typesetting and enclosing parentheses; one space
-/// separates tokens that anything separated in `text`. Also returns the offset in that line for each offset in `ends`,
-/// which are ends of tokens.
+/// separates tokens that are separated in `text`. Also returns, for each offset in `ends`, which is the end of a token,
+/// the offset in that line.
 #[must_use]
 pub fn one_line<const N: usize>(text: &str, ends: [Option<usize>; N]) -> (String, [Option<usize>; N]) {
     let tokens = lex(Source { id: SourceId(0), text }).tokens;
@@ -36,7 +36,7 @@ pub fn one_line<const N: usize>(text: &str, ends: [Option<usize>; N]) -> (String
     (line, places)
 }
 
-/// Returns `true` if the last token of `range` closes the parenthesis that opens it.
+/// Returns `true` if the last token of `range` closes the parenthesis that the first token opens.
 fn closes(range: &std::ops::Range<usize>, is: &impl Fn(usize, &str) -> bool) -> bool {
     let mut depth = 0_usize;
     for index in range.clone() {

@@ -1,10 +1,10 @@
-//! Prints the tree of a file as an outline: one line for each node, as written, without resolving names.
+//! Prints the tree of a file as an outline, with one line for each node as written; names are not resolved.
 
 use super::tree::{
     Arg, Call, Condition, ConditionNode, Count, Element, File, Frame, Number, Operand, Param, Plan, Primary,
 };
 
-/// Writes the outline, two spaces deeper for each level.
+/// Returns the outline of a file, indented by two spaces for each level.
 #[must_use]
 pub fn outline(file: &File<'_>) -> String {
     let mut outline = Outline { text: String::new(), depth: 0 };

@@ -1,5 +1,5 @@
-//! Strings as the paper prints them (docs/src/reference/language.md, 3.2): commas between their elements, and a plan
-//! without braces before `σ_null`.
+//! Strings as printed in the paper (docs/src/reference/language.md, 3.2): commas between elements, and a plan without
+//! braces before `σ_null`.
 
 use std::borrow::Cow;
 
@@ -8,10 +8,10 @@ use super::lexer::{Lexed, lex};
 use super::source::{Place, Source};
 use super::token::{Tok, Token};
 
-/// The name of a plan that is printed without one.
+/// Name of a plan that is printed without a name.
 const NAME: &str = "Plan";
 
-/// Leaves out the commas between elements, and puts the braces of a plan around a string before `σ_null`.
+/// Removes the commas between elements, and inserts the braces of a plan around a string before `σ_null`.
 pub(super) fn read(lexed: &mut Lexed<'_>) {
     let is_printed = |token: &Token<'_>| matches!(token.kind, Tok::Comma | Tok::SigmaNull);
     if !lexed.tokens.iter().any(is_printed) {
@@ -43,7 +43,7 @@ pub(super) fn read(lexed: &mut Lexed<'_>) {
     lexed.errors.iter_mut().for_each(|(before, _)| *before = at(*before));
 }
 
-/// The text with braces, and a name, around each plan that has none.
+/// Returns the text with braces and a name for each plan that has no braces.
 pub(super) fn with_braces(source: Source<'_>) -> Cow<'_, str> {
     let tokens = lex(source).tokens;
     let (_, plans) = found(&tokens);
@@ -66,7 +66,8 @@ pub(super) fn with_braces(source: Source<'_>) -> Cow<'_, str> {
     Cow::Owned(text)
 }
 
-/// The brace, the name and, where what follows looks like a condition, the null interrupt of a plan without braces.
+/// Appends the brace and the name of a plan without braces, and the null interrupt if the next group looks like a
+/// condition.
 fn head<'s>(tokens: &[Token<'s>], at: usize, new: &mut Vec<Token<'s>>) {
     let start = tokens.get(at).map_or(0, |token| token.place.start);
     let mut push = |kind| new.push(Token { kind, place: Place::new(start, start) });
@@ -76,18 +77,18 @@ fn head<'s>(tokens: &[Token<'s>], at: usize, new: &mut Vec<Token<'s>>) {
     }
 }
 
-/// The contents of an open bracket.
+/// Kind of content of an open bracket.
 #[derive(Clone, Copy, PartialEq)]
 enum Inside {
-    /// Elements of a plan or a loop.
+    /// The braces of a plan or a loop, with elements.
     Braces,
-    /// Elements, or what formal notation has.
+    /// Parentheses with elements or with formal notation.
     Parentheses,
-    /// Arguments or parameters.
+    /// Parentheses with arguments or parameters.
     Others,
 }
 
-/// The commas between elements, and the plans without braces: their first token and their `σ_null`.
+/// Returns the commas between elements, and the plans without braces, each as its first token and its `σ_null`.
 fn found(tokens: &[Token<'_>]) -> (Vec<usize>, Vec<(usize, usize)>) {
     let (mut commas, mut plans, mut open) = (Vec::new(), Vec::new(), Vec::new());
     // The first token of what is outside of all plans.
@@ -135,7 +136,7 @@ fn found(tokens: &[Token<'_>]) -> (Vec<usize>, Vec<(usize, usize)>) {
     (commas, plans)
 }
 
-/// Returns `true` if only groups in parentheses, and their powers, are between these tokens.
+/// Returns `true` if only groups in parentheses, and their powers, are between two tokens.
 fn is_string(tokens: &[Token<'_>], first: usize, end: usize) -> bool {
     let mut depth = 0_usize;
     tokens.get(first..end).unwrap_or(&[]).iter().all(|token| {
@@ -150,8 +151,8 @@ fn is_string(tokens: &[Token<'_>], first: usize, end: usize) -> bool {
     })
 }
 
-/// Returns `true` if an element ends with the last of two tokens: neither an angle of `FRAME` nor a count of
-/// `ExecPlan`, and outside of all plans no plan.
+/// Returns `true` if an element ends with the last of two tokens. An angle of `FRAME` and a count of `ExecPlan` do not
+/// end an element, and outside all plans a plan does not.
 fn ends_element([before, last]: [Option<Tok<'_>>; 2], is_outside: bool) -> bool {
     let is_word = matches!(before, Some(Tok::Frame | Tok::ExecPlan));
     match last {
@@ -162,7 +163,7 @@ fn ends_element([before, last]: [Option<Tok<'_>>; 2], is_outside: bool) -> bool 
     }
 }
 
-/// Returns `true` if an element follows this comma. In parentheses a condition may follow it, so a name, or a group
+/// Returns `true` if an element follows a comma. In parentheses a condition may follow it, so that a name, or a group
 /// that may be a condition, does not count as an element.
 fn begins_element(tokens: &[Token<'_>], comma: usize, inside: Option<Inside>) -> bool {
     let kind = |ahead: usize| tokens.get(comma + ahead).map(|token| token.kind);
@@ -176,7 +177,7 @@ fn begins_element(tokens: &[Token<'_>], comma: usize, inside: Option<Inside>) ->
     }
 }
 
-/// The tokens after the one at `at`.
+/// Returns the kinds of the tokens after the token at `at`.
 fn behind<'s>(tokens: &[Token<'s>], at: usize) -> impl Iterator<Item = Tok<'s>> {
     tokens.get(at + 1..).unwrap_or(&[]).iter().map(|token| token.kind)
 }

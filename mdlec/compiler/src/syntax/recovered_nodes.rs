@@ -1,4 +1,4 @@
-//! Constructors for the alternatives of the grammar that recover from errors: tree nodes in place of dropped tokens.
+//! Constructors for those alternatives of the grammar that recover from errors: nodes in place of dropped tokens.
 
 use super::nodes::{Head, Nodes, Recovery};
 use super::source::{Location, Place};
@@ -7,7 +7,7 @@ use super::waiting::First;
 use crate::diagnostic::Span;
 
 impl<'s> Nodes<'_, 's> {
-    /// Forgets the unfinished nodes read after `start`, so that they are not part of any list.
+    /// Removes the unfinished nodes after `start`, so that they do not become part of a list.
     pub(super) fn dropped(&mut self, start: Location, error: Recovery<'s>) {
         self.errors.push(error);
         self.waiting.forget(self.between(start, start));
@@ -35,13 +35,13 @@ impl<'s> Nodes<'_, 's> {
         self.errors.push(error);
     }
 
-    /// Drops the arguments that were read in parentheses of their own.
+    /// Records an error in a group of arguments, and drops the arguments in the group.
     pub(super) fn broken_group(&mut self, start: Location, error: Recovery<'s>) -> First {
         self.dropped(start, error);
         self.waiting.args.len()
     }
 
-    /// Keeps the arguments that were read.
+    /// Records an error in the arguments of a call, and keeps the arguments that were read.
     pub(super) fn broken_args(
         &mut self,
         start: Location,
@@ -75,7 +75,7 @@ impl<'s> Nodes<'_, 's> {
         None
     }
 
-    /// Span from one token to the one before another: dropped text may begin and end between two tokens.
+    /// Returns the span between two locations, also if dropped text begins or ends there.
     fn around(&self, start: Location, end: Location) -> Span {
         let first = self.tokens.get(start.token as usize).map_or(self.source.text.len(), |token| token.place.start);
         let last = (end.token as usize).checked_sub(1).and_then(|last| self.tokens.get(last));

@@ -1,18 +1,18 @@
-//! Regions of tokens that one defect upsets: a region is an outermost parenthesis inside its innermost brace, or a
-//! stretch between two of those, on one line. Only the first error in a region is reported.
+//! Regions of tokens that a single defect may affect. A region is an outermost parenthesis inside its innermost brace,
+//! or the tokens between two such parentheses on one line. Only the first error in a region is reported.
 
-/// The regions of a text, built along with its tokens.
+/// Regions of a text, which are built together with its tokens.
 #[derive(Debug)]
 pub(super) struct Regions {
-    /// The region of each token.
+    /// Region of each token.
     of_token: Vec<usize>,
-    /// For each region, `true` if an error has been reported there.
+    /// For each region, `true` if an error in it has been reported.
     spoiled: Vec<bool>,
-    /// The region of the next token.
+    /// Region of the next token.
     current: usize,
     /// Number of open parentheses around the next token, inside its innermost brace.
     depth: usize,
-    /// Current region and depth at each open brace.
+    /// Region and depth at each open brace.
     around: Vec<(usize, usize)>,
 }
 
@@ -23,36 +23,36 @@ impl Default for Regions {
 }
 
 impl Regions {
-    /// Adds the next token to the current region.
+    /// Assigns the next token to the current region.
     pub(super) fn push(&mut self) {
         self.of_token.push(self.current);
     }
 
-    /// Marks the current region as one with a reported error.
+    /// Records that an error in the current region has been reported.
     pub(super) fn spoil(&mut self) {
         if let Some(spoiled) = self.spoiled.get_mut(self.current) {
             *spoiled = true;
         }
     }
 
-    /// Marks the region of this token, and returns `true` if an error had been reported there before.
+    /// Records an error in the region of this token; returns `true` if an error there had been reported before.
     pub(super) fn is_spoiled_once(&mut self, token: usize) -> bool {
         let region = self.of_token.get(token).or(self.of_token.last()).copied().unwrap_or(0);
         self.spoiled.get_mut(region).is_some_and(|spoiled| std::mem::replace(spoiled, true))
     }
 
-    /// Marks the region of this token, which the reported error upsets as well.
+    /// Records that a reported error also affects the region of this token.
     pub(super) fn spoil_at(&mut self, token: usize) {
         self.is_spoiled_once(token);
     }
 
-    /// Returns `true` if an error has been reported in the region of this token.
+    /// Returns `true` if an error in the region of this token has been reported.
     pub(super) fn is_spoiled(&self, token: usize) -> bool {
         let region = self.of_token.get(token).copied();
         region.and_then(|region| self.spoiled.get(region)).copied().unwrap_or(false)
     }
 
-    /// Begins a line before the next token.
+    /// Records that the next token begins a line.
     pub(super) fn begin_line(&mut self) {
         if self.depth == 0 {
             self.begin();

@@ -1,10 +1,10 @@
-//! Ends of tokens that a regular expression cannot describe: numbers with units, strings and comments.
+//! Determines the ends of tokens that a regular expression cannot describe: numbers with units, strings and comments.
 
 use logos::{FilterResult, Lexer, Logos};
 
 use crate::alphabet::Unit;
 
-/// Reads a number with the text that touches it, if that text is a unit.
+/// Reads a number with the text that touches it, and fails if that text is not a unit.
 pub(super) fn number<'s, T: Logos<'s, Source = str>>(lexer: &mut Lexer<'s, T>) -> Result<&'s str, ()> {
     let rest = lexer.remainder();
     let tail = match rest.as_bytes() {
@@ -35,8 +35,8 @@ fn touching(rest: &str) -> usize {
     rest.len()
 }
 
-/// Length in bytes of the spaces and the unit after a number, if the unit contains `/`; only units do, so a space may
-/// precede them.
+/// Returns the length in bytes of the spaces and the unit after a number, if the unit contains `/`: only units contain
+/// this sign, so that a space may precede them.
 fn unit_apart(rest: &str) -> usize {
     let blanks = rest.bytes().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
     let behind = rest.get(blanks..).unwrap_or("");
@@ -51,7 +51,7 @@ fn unit_apart(rest: &str) -> usize {
     Unit::ALL.iter().find(|unit| follows(unit)).map_or(0, |unit| blanks + unit.name.len())
 }
 
-/// Returns the text between the quotes; a string that does not end on its line takes what could be a file name.
+/// Returns the text in the quotes; a string that does not end on its line ends where a file name could end.
 pub(super) fn string<'s, T: Logos<'s, Source = str>>(lexer: &mut Lexer<'s, T>) -> &'s str {
     let rest = lexer.remainder();
     let stop = rest.find(['"', '\n']).unwrap_or(rest.len());
@@ -63,7 +63,7 @@ pub(super) fn string<'s, T: Logos<'s, Source = str>>(lexer: &mut Lexer<'s, T>) -
     text
 }
 
-/// Returns the text after the slashes; four slashes are not a doc comment.
+/// Returns the text after the slashes of a doc comment; four slashes do not begin a doc comment.
 pub(super) fn doc<'s, T: Logos<'s, Source = str>>(lexer: &mut Lexer<'s, T>) -> FilterResult<&'s str, ()> {
     match lexer.slice().strip_prefix("///") {
         Some(text) if !text.starts_with('/') => FilterResult::Emit(text.trim_end()),
@@ -71,7 +71,7 @@ pub(super) fn doc<'s, T: Logos<'s, Source = str>>(lexer: &mut Lexer<'s, T>) -> F
     }
 }
 
-/// Skips a block comment; one that is never closed takes the rest of the text.
+/// Skips a block comment; a comment that is never closed extends to the end of the text.
 pub(super) fn comment<'s, T: Logos<'s, Source = str>>(lexer: &mut Lexer<'s, T>) -> FilterResult<(), ()> {
     let rest = lexer.remainder();
     match rest.find("*/") {

@@ -1,10 +1,10 @@
-//! Recognizes a single law or condition, as files of other formats contain them.
+//! Recognizes a single law or condition, as files in other formats contain them.
 
 use super::tree::{Condition, ConditionNode, Element, Primary};
 use super::{Arena, arena_for, parse};
 use crate::diagnostic::SourceId;
 
-/// Returns `true` if a text is one law with its arguments and nothing else, so that it can be inserted into an atom.
+/// Returns `true` if a text is exactly one law with its arguments, so that it can be inserted into an atom.
 #[must_use]
 pub fn is_law(text: &str) -> bool {
     is_alone(text, "{ P (Atom (null) ", ") }", |element| match element {
@@ -13,7 +13,8 @@ pub fn is_law(text: &str) -> bool {
     })
 }
 
-/// Operands of the outermost OR of a condition, as written; `None` if a text is not exactly one condition.
+/// Returns the operands of the outermost OR of a condition, as written; `None` if the text is not exactly one
+/// condition.
 #[must_use]
 pub fn operands(text: &str) -> Option<Vec<&str>> {
     const BEFORE: &str = "{ P (Atom (";
@@ -40,8 +41,8 @@ pub fn operands(text: &str) -> Option<Vec<&str>> {
     if is_condition { ranges.iter().map(operand).collect() } else { None }
 }
 
-/// Returns `true` if a text between `before` and `behind` makes a plan of one good element, on one line and with a line
-/// break after it: no comment or bracket in the text reaches beyond it.
+/// Returns `true` if a text between `before` and `behind` is a plan with one element that `is_good` accepts, both on
+/// one line and with a line break after the text: no comment or bracket in the text extends beyond it.
 fn is_alone(text: &str, before: &str, behind: &str, mut is_good: impl FnMut(&Element<'_>) -> bool) -> bool {
     text.chars().all(mdle_runtime::is_printable)
         && ["", "\n"].iter().all(|end| {

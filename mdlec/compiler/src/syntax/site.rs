@@ -1,4 +1,4 @@
-//! A place where the parser found an unexpected token, and the tokens around it.
+//! The place at which the parser found an unexpected token, with the tokens around it.
 
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
@@ -8,7 +8,7 @@ use super::source::{Place, Source};
 use super::token::{Tok, Token};
 use crate::diagnostic::{Code, Diagnostic, Span};
 
-/// A place where the parser found an unexpected token.
+/// The place at which the parser found an unexpected token.
 pub(super) struct Site<'t, 's> {
     pub(super) source: Source<'s>,
     pub(super) tokens: &'t [Token<'s>],
@@ -21,22 +21,22 @@ pub(super) struct Site<'t, 's> {
 }
 
 impl<'s> Site<'_, 's> {
-    /// The unexpected token; `None` at the end of the text.
+    /// Returns the unexpected token; `None` at the end of the text.
     pub(super) fn found(&self) -> Option<Tok<'s>> {
         self.kind(self.at)
     }
 
-    /// The token `back` places before the unexpected one.
+    /// Returns the token `back` places before the unexpected token.
     pub(super) fn before(&self, back: usize) -> Option<Tok<'s>> {
         self.at.checked_sub(back).and_then(|at| self.kind(at))
     }
 
-    /// Kind of the token at `at`.
+    /// Returns the kind of the token at `at`.
     pub(super) fn kind(&self, at: usize) -> Option<Tok<'s>> {
         self.tokens.get(at).map(|token| token.kind)
     }
 
-    /// The name at `at`; `None` if the token there is not a name.
+    /// Returns the name at `at`; `None` if the token there is not a name.
     pub(super) fn name_at(&self, at: usize) -> Option<&'s str> {
         match self.kind(at) {
             Some(Tok::Name(name)) => Some(name),
@@ -44,17 +44,17 @@ impl<'s> Site<'_, 's> {
         }
     }
 
-    /// Kind of the opening bracket that the one at `closer` closes.
+    /// Returns the kind of the opening bracket that the bracket at `closer` closes.
     pub(super) fn partner(&self, closer: usize) -> Option<Tok<'s>> {
         self.openers.get(closer).copied().flatten().and_then(|at| self.kind(at))
     }
 
-    /// Innermost bracket that is open before the unexpected token.
+    /// Returns the innermost open bracket before the unexpected token.
     pub(super) fn opener(&self) -> Option<usize> {
         self.openers.get(self.at).copied().flatten()
     }
 
-    /// Kind of the innermost bracket that is open before the unexpected token.
+    /// Returns the kind of the innermost open bracket before the unexpected token.
     pub(super) fn opener_kind(&self) -> Option<Tok<'s>> {
         self.opener().and_then(|at| self.kind(at))
     }
@@ -64,12 +64,13 @@ impl<'s> Site<'_, 's> {
         self.opener().is_some_and(|at| self.kind(at + 1) == Some(Tok::Atom))
     }
 
-    /// Returns `true` if the name of a plan is missing here.
+    /// Returns `true` if the name of a plan is missing at the site.
     pub(super) fn is_plan_without_name(&self) -> bool {
         self.before(1) == Some(Tok::LBrace) && self.expects("name") && !self.expects("ExecPlan")
     }
 
-    /// Returns `true` in the condition of a plan that has no name, which looks like a scope in formal notation.
+    /// Returns `true` if the site is in the condition of a plan without a name, which looks like a scope in formal
+    /// notation.
     pub(super) fn in_nameless_head(&self) -> bool {
         let Some(paren) = self.opener().filter(|at| *at > 0 && self.kind(*at) == Some(Tok::LParen)) else {
             return false;
@@ -79,70 +80,71 @@ impl<'s> Site<'_, 's> {
         self.kind(paren - 1) == Some(Tok::LBrace) && is_condition && !is_loop
     }
 
-    /// Token whose region the defect belongs to: for a plan without a name its brace, not the token where the name is
-    /// missing.
+    /// Returns the token whose region contains the defect: for a plan without a name the brace, not the token at which
+    /// the name is missing.
     pub(super) fn decisive(&self) -> usize {
         if self.is_plan_without_name() { self.at - 1 } else { self.at }
     }
 
-    /// Index of the last token of the group whose bracket opens at `at`.
+    /// Returns the index of the last token of the group whose bracket opens at `at`.
     pub(super) fn end_of_group(&self, at: usize) -> usize {
         let around = self.openers.get(at).copied().flatten();
         let inside = |next: &usize| self.openers.get(*next).is_some_and(|opener| *opener != around);
         (at + 1..self.openers.len()).take_while(inside).last().unwrap_or(at)
     }
 
-    /// Returns `true` if the grammar allows this terminal here.
+    /// Returns `true` if the grammar allows this terminal at the site.
     pub(super) fn expects(&self, terminal: &str) -> bool {
         self.expected.iter().any(|expected| expected.trim_matches('"') == terminal)
     }
 
-    /// Returns `true` if the grammar allows an element here.
+    /// Returns `true` if the grammar allows an element at the site.
     pub(super) fn expects_element(&self) -> bool {
         self.expects("ExecPlan")
     }
 
-    /// Returns `true` if the grammar allows a condition here.
+    /// Returns `true` if the grammar allows a condition at the site.
     pub(super) fn expects_condition(&self) -> bool {
         self.expects("null")
     }
 
-    /// Returns `true` if the grammar allows an argument here.
+    /// Returns `true` if the grammar allows an argument at the site.
     pub(super) fn expects_argument(&self) -> bool {
         self.expects("string") && self.expects("number")
     }
 
-    /// Source text from token `first` to token `last`, if it is short enough for a sentence and on one line.
+    /// Returns the source text from token `first` to token `last`, if it is on one line and short enough for a
+    /// sentence.
     pub(super) fn text(&self, first: usize, last: usize) -> Option<&'s str> {
         let (first, last) = (self.tokens.get(first)?, self.tokens.get(last)?);
         let text = self.source.slice(Place::new(first.place.start, last.place.end));
         (!text.is_empty() && text.len() <= 60 && !text.contains('\n')).then_some(text)
     }
 
-    /// Span from one token to another.
+    /// Returns the span from one token to another.
     pub(super) fn span(&self, first: usize, last: usize) -> Span {
         self.source.span(Place::new(self.place(first).start, self.place(last).end))
     }
 
-    /// Empty span before a token.
+    /// Returns the empty span before a token.
     pub(super) fn before_token(&self, at: usize) -> Span {
         let start = self.place(at).start;
         self.source.span(Place::new(start, start))
     }
 
-    /// Index of the brace after a name and the group that follows the name.
+    /// Returns the index of the brace that follows a name and a group after the name.
     pub(super) fn brace_after_group(&self, name: usize) -> Option<usize> {
         let is_group = matches!(self.kind(name + 1), Some(Tok::LParen | Tok::TouchParen));
         let brace = self.end_of_group(name + 1) + 1;
         (is_group && self.kind(brace) == Some(Tok::LBrace)).then_some(brace)
     }
 
-    /// Returns `true` if the text has a plan of this name.
+    /// Returns `true` if the text contains a plan with this name.
     pub(super) fn has_plan(&self, name: &str) -> bool {
         self.plans.get_or_init(|| header::names(self.tokens)).contains(name)
     }
 
-    /// Returns `true` if these tokens look like quarks and comparisons: names, values, and operators between them.
+    /// Returns `true` if the tokens look like quarks and comparisons: names, values, and operators between them.
     pub(super) fn is_call(&self, first: usize, last: usize) -> bool {
         let is_value = |at: usize| {
             (first..=last).contains(&at)
@@ -166,12 +168,12 @@ impl<'s> Site<'_, 's> {
         begins && once && (first..=last).all(is_sound)
     }
 
-    /// Returns `true` if this token is OR or AND.
+    /// Returns `true` if the token at `at` is OR or AND.
     fn joins(&self, at: usize) -> bool {
         matches!(self.kind(at), Some(Tok::Or | Tok::And))
     }
 
-    /// Index of the bracket that this closer closes.
+    /// Returns the index of the bracket that the bracket at `closer` closes.
     pub(super) fn opener_of(&self, closer: usize) -> Option<usize> {
         self.openers.get(closer).copied().flatten()
     }
@@ -186,7 +188,7 @@ impl<'s> Site<'_, 's> {
         Diagnostic::new(Code::E0102, message, self.source.span(self.place(at)), here)
     }
 
-    /// Adds a label for the token at `at` to the message.
+    /// Returns `diagnostic` with a label for the token at `at`.
     pub(super) fn also(&self, diagnostic: Diagnostic, at: usize, text: &str) -> Diagnostic {
         diagnostic.also(self.source.span(self.place(at)), text)
     }
@@ -196,7 +198,7 @@ impl<'s> Site<'_, 's> {
         self.tokens.get(at).map_or(Place::new(end, end), |token| token.place)
     }
 
-    /// Reports the expected terminals and the token that was found instead.
+    /// Reports the expected terminals and the unexpected token.
     pub(super) fn unexpected(&self) -> Diagnostic {
         let message = format!("expected {}, found {}", self.expectation(), self.found_words());
         self.about(self.at, message, "not expected here")
@@ -216,7 +218,7 @@ impl<'s> Site<'_, 's> {
         }
     }
 
-    /// Describes in words the terminals that the grammar allows here.
+    /// Returns in words the terminals that the grammar allows at the site.
     pub(super) fn expectation(&self) -> String {
         let mut left: Vec<&str> = self.expected.iter().map(|terminal| terminal.trim_matches('"')).collect();
         let mut words: Vec<String> = Vec::new();
@@ -238,7 +240,7 @@ impl<'s> Site<'_, 's> {
     }
 }
 
-/// Names for sets of terminals: the terminals that reveal the set, its name, and the terminals that it covers.
+/// Names for sets of terminals: the terminals that indicate the set, its name, and the terminals that it includes.
 const WHOLES: &[(&[&str], &str, &[&str])] = &[
     (&["ExecPlan"], "an element", &["name", "{", "(", "ExecPlan", "FRAME", "label"]),
     (&["use", "{"], "a plan", &["use", "label", "{"]),
@@ -249,7 +251,7 @@ const WHOLES: &[(&[&str], &str, &[&str])] = &[
     (&["name", "("], "a law", &["name", "("]),
 ];
 
-/// Returns a terminal of the grammar as words of a message.
+/// Returns a terminal of the grammar in the words of a message.
 fn terminal_words(terminal: &str) -> String {
     match terminal {
         "name" => "a name".to_owned(),

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{SourceId, Span};
 
-/// The text of a file with the file's identifier.
+/// The text of a file, with the file's identifier.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Source<'s> {
     /// Identifier of the file.
@@ -11,73 +11,74 @@ pub(super) struct Source<'s> {
     pub(super) text: &'s str,
 }
 
-/// A stretch of the text, in bytes.
+/// A range of the text, in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Place {
     /// Offset of the first byte.
     pub(super) start: usize,
-    /// The byte after the last.
+    /// Offset after the last byte.
     pub(super) end: usize,
 }
 
-/// Boundary between tokens, as the number of tokens and of bytes before it.
+/// A boundary between tokens, as the number of tokens and of bytes before it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Location {
-    /// The number of tokens.
+    /// Number of tokens before the boundary.
     pub(super) token: u32,
-    /// The number of bytes.
+    /// Number of bytes before the boundary.
     pub(super) byte: u32,
 }
 
 impl Location {
-    /// Location before token number `token`, which begins at `byte`, or after the token before it, which ends at
-    /// `byte`.
+    /// Returns the location before token number `token`, which begins at `byte`, or after the previous token, which
+    /// ends at `byte`.
     pub(super) fn new(token: usize, byte: usize) -> Self {
         Self { token: offset(token), byte: offset(byte) }
     }
 }
 
-/// Converts an offset to the 32 bits of spans and locations.
+/// Converts an offset to 32 bits, as in spans and locations.
 fn offset(number: usize) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
 }
 
 impl Place {
-    /// The stretch between these two bytes.
+    /// Returns the place between two byte offsets.
     pub(super) fn new(start: usize, end: usize) -> Self {
         Self { start, end }
     }
 
-    /// Returns `true` if the place holds no text.
+    /// Returns `true` if the place contains no text.
     pub(super) fn is_empty(self) -> bool {
         self.start == self.end
     }
 }
 
 impl<'s> Source<'s> {
-    /// Makes a source. Spans have 32 bits, so messages place a text that ends beyond 4 GiB in the first of the files.
+    /// Returns a source. Because spans have 32 bits, messages about a text that ends beyond 4 GiB point to the first
+    /// file.
     pub(super) fn new(id: SourceId, text: &'s str) -> Self {
         let fits = u32::try_from(text.len()).is_ok_and(|length| id.0.checked_add(length).is_some());
         Self { id: if fits { id } else { SourceId(0) }, text }
     }
 
-    /// Converts a place to a span, as in trees and diagnostics.
+    /// Converts a place to a span for trees and diagnostics.
     pub(super) fn span(self, place: Place) -> Span {
         Span::new(self.id, place.start, place.end)
     }
 
-    /// Span between two locations.
+    /// Returns the span between two locations.
     pub(super) fn between(self, start: Location, end: Location) -> Span {
         let first = self.id.0;
         Span { start: first + start.byte, end: first + end.byte.max(start.byte) }
     }
 
-    /// Text at a place.
+    /// Returns the text at a place.
     pub(super) fn slice(self, place: Place) -> &'s str {
         self.text.get(place.start..place.end).unwrap_or("")
     }
 
-    /// Returns `true` if the place begins its line.
+    /// Returns `true` if the place begins in the first column of its line.
     pub(super) fn is_column_one(self, place: Place) -> bool {
         self.text.get(..place.start).is_some_and(|before| before.is_empty() || before.ends_with('\n'))
     }

@@ -46,7 +46,7 @@ pub(super) enum Tok<'s> {
     After,
     #[token("FRAME")]
     Frame,
-    /// `here` after `FRAME`; a name anywhere else.
+    /// The word `here` after `FRAME`; elsewhere it is a name.
     Here,
     #[token("sigma_null")]
     #[token("σ_null")]
@@ -78,11 +78,11 @@ pub(super) enum Tok<'s> {
     RBrace,
     #[token("(")]
     LParen,
-    /// A parenthesis that touches the name before it.
+    /// An opening parenthesis that touches the name before it.
     TouchParen,
-    /// The parenthesis of a plan's parameters.
+    /// The opening parenthesis of a plan's parameters.
     ParamParen,
-    /// The parenthesis of a plan's condition.
+    /// The opening parenthesis of a plan's condition.
     ConditionParen,
     #[token(")")]
     RParen,
@@ -112,16 +112,16 @@ pub(super) enum Tok<'s> {
     #[token("≥")]
     #[token(r"\geq")]
     GreaterOrEqual,
-    /// A doc comment; never reaches the parser.
+    /// A doc comment, which the parser never receives.
     #[regex(r"///[^\n]*", doc, allow_greedy = true, priority = 20)]
     Doc(&'s str),
-    /// The start of `\text{…}`; never reaches the parser.
+    /// The start of `\text{…}`, which the parser never receives.
     #[regex(r"\\text\s*\{")]
     Text,
-    /// A block comment, not terminated; a terminated one is skipped.
+    /// A block comment that is not terminated; terminated comments are skipped.
     #[token("/*", comment)]
     Comment,
-    /// A typesetting command that is not part of MDLe; never reaches the parser.
+    /// A typesetting command that is not part of MDLe, which the parser never receives.
     #[regex(r"\\[A-Za-z]+", priority = 1)]
     Command,
 }

@@ -1,8 +1,8 @@
-//! Tree of a plan file as it is written (docs/src/reference/language.md, 3): every node has its span, and no name is
+//! Tree of a plan file as it is written (docs/src/reference/language.md, 3): every node has its span, and names are not
 //! resolved.
 //!
-//! Nodes borrow their text from the source and are allocated once, in an arena: a parser that allocates and copies each
-//! node spends most of its time on that.
+//! Nodes borrow their text from the source, and are allocated once in an arena: a parser that allocates and copies each
+//! node spends most of its time doing so.
 
 use crate::diagnostic::Span;
 
@@ -15,15 +15,15 @@ pub struct Spanned<T> {
     pub span: Span,
 }
 
-/// A name as written.
+/// A name as it is written.
 pub type Name<'s> = Spanned<&'s str>;
 
-/// A file: `{ use | plan }`.
+/// A plan file, with the syntax `{ use | plan }`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct File<'s> {
-    /// The used files, as written between the quotes.
+    /// Names of the used files, as written in quotes.
     pub uses: Vec<Name<'s>>,
-    /// The plans of the file, in order.
+    /// Plans of the file, in order.
     pub plans: Vec<Plan<'s>>,
     /// `true` if a plan is missing because its head could not be read.
     pub is_incomplete: bool,
@@ -32,9 +32,9 @@ pub struct File<'s> {
 /// A plan or a behavior: a closed string in braces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plan<'s> {
-    /// The doc comment before it, its lines without the slashes.
+    /// Lines of the doc comment before the plan, without the slashes.
     pub docs: &'s [&'s str],
-    /// `Γ_from^to`, normalized: `Γ_`, then the text without braces and typesetting marks.
+    /// Label of the plan in normalized form: `Γ_from^to`, without braces and typesetting.
     pub label: Option<Name<'s>>,
     /// Name of the plan.
     pub name: Name<'s>,
@@ -42,7 +42,7 @@ pub struct Plan<'s> {
     pub group: Option<&'s [Arg<'s>]>,
     /// Parameters of the plan.
     pub params: &'s [Param<'s>],
-    /// Interrupt of the plan; `None` is the null interrupt.
+    /// Interrupt of the plan; `None` for the null interrupt.
     pub condition: Option<Condition<'s>>,
     /// Elements of the plan, in order.
     pub elements: &'s [Element<'s>],
@@ -50,7 +50,7 @@ pub struct Plan<'s> {
     pub span: Span,
 }
 
-/// A parameter of a plan: `NAME ":" TYPE`.
+/// A parameter of a plan, with the syntax `NAME ":" TYPE`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Param<'s> {
     /// Name of the parameter.
@@ -59,10 +59,10 @@ pub struct Param<'s> {
     pub type_name: Name<'s>,
 }
 
-/// An element of a string: `[ NAME ":" ] [ frame ] primary [ "^" count ]`.
+/// An element of a string, with the syntax `[ NAME ":" ] [ frame ] primary [ "^" count ]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Element<'s> {
-    /// The element without its label, frame and count.
+    /// Main part of the element, without its label, frame and count.
     pub primary: Primary<'s>,
     /// Label, frame and count of the element; `None` for most elements.
     pub marks: Option<&'s Marks<'s>>,
@@ -73,84 +73,84 @@ pub struct Element<'s> {
 /// Optional parts of an element: label, frame and loop count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Marks<'s> {
-    /// Label that `after` refers to.
+    /// Label to which `after` refers.
     pub label: Option<Name<'s>>,
     /// Frame of the element.
     pub frame: Option<Frame<'s>>,
-    /// Count of `^`: the element runs this many times.
+    /// Loop count after `^`: the number of times that the element runs.
     pub power: Option<Count<'s>>,
 }
 
 impl<'s> Element<'s> {
-    /// Label that `after` refers to.
+    /// Returns the label to which `after` refers.
     #[must_use]
     pub fn label(&self) -> Option<Name<'s>> {
         self.marks?.label
     }
 
-    /// Frame of the element.
+    /// Returns the frame of the element.
     #[must_use]
     pub fn frame(&self) -> Option<&'s Frame<'s>> {
         self.marks?.frame.as_ref()
     }
 
-    /// Count of `^`: the element runs this many times.
+    /// Returns the loop count after `^`: the number of times that the element runs.
     #[must_use]
     pub fn power(&self) -> Option<&'s Count<'s>> {
         self.marks?.power.as_ref()
     }
 }
 
-/// The frame of an element: `"FRAME" ( NUMBER | "here" )`.
+/// The frame of an element, with the syntax `"FRAME" ( NUMBER | "here" )`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Frame<'s> {
     /// The enclosing frame, turned by this angle.
     Turned(Number<'s>),
-    /// The heading of the robot at the moment the element is entered.
+    /// The robot's heading at the moment when the element is entered.
     Here,
 }
 
-/// Main part of an element, by reference, so that a list of elements is short.
+/// Main part of an element. It is stored as a reference, so that a list of elements is short.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Primary<'s> {
-    /// `(Atom condition control)`.
+    /// An atom, with the syntax `(Atom condition control)`.
     Atom(&'s Atom<'s>),
-    /// A behavior in place.
+    /// A behavior that is defined in its place.
     Plan(&'s Plan<'s>),
-    /// A plan by name, with its arguments if it has any.
+    /// A plan by name, with its arguments if it has arguments.
     Ref(&'s Call<'s>),
-    /// `ExecPlan n { … }` or `ExecPlan n Name`.
+    /// A loop, with the syntax `ExecPlan n { … }` or `ExecPlan n Name`.
     Exec(&'s Exec<'s>),
     /// An open string in parentheses.
     String(&'s &'s [Element<'s>]),
-    /// Formal notation `(s, ξ, T)`, and `(u, ξ, T)` where `u` is one call.
+    /// Formal notation, `(s, ξ, T)`, or `(u, ξ, T)` with a single call `u`.
     Formal(&'s Formal<'s>),
     /// Text that could not be read; a diagnostic gives the reason.
     Broken,
 }
 
-/// `(Atom condition control)`.
+/// An atom, with the syntax `(Atom condition control)`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Atom<'s> {
-    /// The atom's interrupt.
+    /// Interrupt of the atom.
     pub condition: Condition<'s>,
     /// Law of the atom.
     pub control: &'s Call<'s>,
 }
 
-/// A loop: `ExecPlan` with its count and its body.
+/// A loop: `ExecPlan` with a count and a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Exec<'s> {
     /// Number of passes.
     pub count: Count<'s>,
-    /// The body; a plan by name is a single element.
+    /// Body of the loop; a plan by name is a single element.
     pub body: &'s [Element<'s>],
 }
 
 /// A scope or an atom in formal notation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Formal<'s> {
-    /// The string, or a single [`Primary::Ref`] that may be a law.
+    /// String of the scope, or a single [`Primary::Ref`] that may be a law.
     pub body: &'s [Element<'s>],
     /// Interrupt of the scope or atom.
     pub condition: Condition<'s>,
@@ -161,30 +161,30 @@ pub struct Formal<'s> {
 /// A condition: quarks joined by AND, OR and NOT.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Condition<'s> {
-    /// The condition without its place.
+    /// Kind and operands of the condition.
     pub node: ConditionNode<'s>,
-    /// Span of the condition, with the parentheses that belong to it.
+    /// Span of the condition, including its parentheses.
     pub span: Span,
 }
 
-/// Kind of a condition; OR and AND have at least two operands.
+/// Kind of a condition with its operands; OR and AND have at least two operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ConditionNode<'s> {
-    /// OR: at least one operand holds.
+    /// A disjunction, which fires if at least one operand holds.
     Or(&'s &'s [Condition<'s>]),
-    /// AND: all operands hold.
+    /// A conjunction, which fires if all operands hold.
     And(&'s &'s [Condition<'s>]),
-    /// NOT: the operand does not hold.
+    /// A negation, which fires if the operand does not hold.
     Not(&'s Condition<'s>),
-    /// RISING: the operand holds and has been false at some time since the scope was entered.
+    /// RISING, which fires if the operand holds and has been false at some time since the scope was entered.
     Rising(&'s Condition<'s>),
     /// An interrupt quark.
     Call(&'s Call<'s>),
     /// A comparison of a signal.
     Comparison(&'s Compared<'s>),
-    /// `null`: never fires.
+    /// The interrupt `null`, which never fires.
     Null,
-    /// `after LABEL [cause]`.
+    /// A test of a record, with the syntax `after LABEL [cause]`.
     After(&'s After<'s>),
     /// Text that could not be read; a diagnostic gives the reason.
     Broken,
@@ -193,15 +193,15 @@ pub enum ConditionNode<'s> {
 /// A comparison of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Compared<'s> {
-    /// The signal.
+    /// Signal on the left side.
     pub left: &'s Call<'s>,
     /// Operator of the comparison.
     pub operator: Comparison,
-    /// The right side.
+    /// Operand on the right side.
     pub right: Operand<'s>,
 }
 
-/// `after LABEL [cause]`.
+/// A test of a record, with the syntax `after LABEL [cause]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct After<'s> {
     /// Label of the element that must have ended last.
@@ -215,24 +215,24 @@ pub struct After<'s> {
 pub enum Operand<'s> {
     /// Another signal.
     Signal(&'s Call<'s>),
-    /// A value.
+    /// A number with or without a unit.
     Number(Number<'s>),
-    /// `inf`, for a time.
+    /// An infinite time, `inf`.
     Infinity(Span),
 }
 
 /// Operator of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Comparison {
-    /// `==`, within the signal's tolerance.
+    /// The operator `==`, within the signal's tolerance.
     Equal,
-    /// `<`.
+    /// The operator `<`.
     Less,
-    /// `<=`, `≤`.
+    /// The operator `<=` or `≤`.
     LessOrEqual,
-    /// `>`.
+    /// The operator `>`.
     Greater,
-    /// `>=`, `≥`.
+    /// The operator `>=` or `≥`.
     GreaterOrEqual,
 }
 
@@ -253,16 +253,16 @@ impl Comparison {
 /// A name with its arguments: a quark, a signal or a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Call<'s> {
-    /// The name.
+    /// Name of the quark, signal or plan.
     pub name: &'s str,
-    /// Arguments, flattened: parentheses around several of them have no meaning.
+    /// Arguments without the parentheses around several of them, which have no meaning.
     pub args: &'s [Arg<'s>],
     /// Span from the name to the last argument or the closing parenthesis.
     pub span: Span,
 }
 
 impl Call<'_> {
-    /// Span of the name, with which the call begins.
+    /// Returns the span of the name, with which the call begins.
     #[must_use]
     pub fn name_span(&self) -> Span {
         let length = u32::try_from(self.name.len()).unwrap_or(u32::MAX);
@@ -270,23 +270,23 @@ impl Call<'_> {
     }
 }
 
-/// An argument.
+/// An argument of a call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arg<'s> {
-    /// A number, or bits where the parameter has that type.
+    /// A number, or bits if the parameter has that type.
     Number(Number<'s>),
-    /// `inf` and its other spellings.
+    /// An infinite value: `inf` or another spelling of it.
     Infinity(Span),
-    /// A string, without its quotes.
+    /// A string, without the quotes.
     String(Name<'s>),
     /// The name of a robot, a file or a parameter.
     Name(Name<'s>),
-    /// `NAME module`.
+    /// The name of a module, with the syntax `NAME module`.
     Module(Name<'s>),
 }
 
 impl Arg<'_> {
-    /// Span of the argument.
+    /// Returns the span of the argument.
     #[must_use]
     pub fn span(&self) -> Span {
         match self {
@@ -297,30 +297,30 @@ impl Arg<'_> {
     }
 }
 
-/// A number as written: digits are kept, since `0100` may be four bits.
+/// A number as written. Its digits are kept, because `0100` may be four bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Number<'s> {
     /// Digits and unit as written.
     text: &'s str,
-    /// Span of the number, unit included.
+    /// Span of the number, including its unit.
     pub span: Span,
 }
 
 impl<'s> Number<'s> {
-    /// Makes a number from this text: digits, and perhaps a unit.
+    /// Returns the number with this text: digits, and optionally a unit.
     #[must_use]
     pub fn new(text: &'s str, span: Span) -> Self {
         Self { text, span }
     }
 
-    /// Sign, digits, fraction and exponent as written.
+    /// Returns the sign, digits, fraction and exponent as written.
     #[must_use]
     pub fn digits(&self) -> &'s str {
         // A unit is letters, and a number ends with a digit.
         self.text.trim_end_matches(|c: char| !c.is_ascii_digit())
     }
 
-    /// Unit that touches the digits.
+    /// Returns the unit that touches the digits.
     #[must_use]
     pub fn unit(&self) -> Option<&'s str> {
         self.text.get(self.digits().len()..).filter(|unit| !unit.is_empty())
@@ -330,16 +330,16 @@ impl<'s> Number<'s> {
 /// A loop count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Count<'s> {
-    /// Digits as written.
+    /// A number, with the digits as written.
     Number(Number<'s>),
-    /// `inf`: the loop never ends.
+    /// An infinite count, `inf`: the loop never ends.
     Infinity(Span),
-    /// A parameter.
+    /// A parameter's name.
     Name(Name<'s>),
 }
 
 impl Count<'_> {
-    /// Span of the count.
+    /// Returns the span of the count.
     #[must_use]
     pub fn span(&self) -> Span {
         match self {

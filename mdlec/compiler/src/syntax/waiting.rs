@@ -8,7 +8,7 @@ use crate::diagnostic::Span;
 /// Index of a list's first node in its stack.
 pub(super) type First = usize;
 
-/// Stacks of waiting nodes, in the order of the text: a nested list is complete before the list around it.
+/// Stacks of waiting nodes in the order of the text; a nested list is complete before the enclosing list.
 pub(super) struct Waiting<'s> {
     pub(super) args: Vec<Arg<'s>>,
     pub(super) conditions: Vec<Condition<'s>>,
@@ -24,7 +24,7 @@ pub(super) fn complete<'s, T: Copy>(waiting: &mut Vec<T>, first: First, arena: &
 }
 
 impl<'s> Waiting<'s> {
-    /// Returns empty stacks, with room for the nodes that wait in most plans.
+    /// Returns empty stacks with room for the waiting nodes of most plans.
     pub(super) fn new() -> Self {
         Self {
             args: Vec::with_capacity(8),
@@ -49,7 +49,7 @@ impl<'s> Waiting<'s> {
         self.elements.len() - 1
     }
 
-    /// Forgets nodes that begin at this empty place or after it; an empty node at the place ends there and stays.
+    /// Removes nodes that begin at the empty place `at` or after it; an empty node that ends at this place is kept.
     pub(super) fn forget(&mut self, at: Span) {
         forget(&mut self.args, at, Arg::span);
         forget(&mut self.conditions, at, |condition| condition.span);

@@ -1,4 +1,4 @@
-//! Mistakes from which the grammar could not recover: a label inside its atom, and a `use` inside a plan.
+//! Defects from which the grammar could not recover: a label inside its atom, and a `use` inside a plan.
 
 use super::{BracketKind, Pass};
 use crate::diagnostic::{Code, Diagnostic};
@@ -6,8 +6,8 @@ use crate::syntax::token::{Tok, Token};
 use crate::syntax::tree::Name;
 
 impl<'s> Pass<'_, 's> {
-    /// Reports a label between an atom's parenthesis and the next token, `Atom`, and gives the parenthesis to the atom.
-    /// Returns `true` if there is one.
+    /// Reports a label between an atom's parenthesis and the next token, `Atom`, and assigns the parenthesis to the
+    /// atom. Returns `true` if there is such a label.
     pub(super) fn label_inside(&mut self) -> bool {
         let [.., Token { kind: Tok::LParen | Tok::TouchParen, .. }, Token { kind: Tok::Name(label), place }, colon] =
             self.balanced.tokens.as_slice()
@@ -27,7 +27,7 @@ impl<'s> Pass<'_, 's> {
         true
     }
 
-    /// Reports a `use` inside a plan, where no recovery could place it; its file counts as used.
+    /// Reports a `use` inside a plan, from which the grammar could not recover; the named file counts as used.
     pub(super) fn inner_use(&mut self, index: usize, token: Token<'s>) {
         let span = self.source.span(token.place);
         let diagnostic = Diagnostic::new(

@@ -58,14 +58,14 @@ impl Pass<'_, '_> {
         self.balanced.diagnostics.push(diagnostic.also(self.source.span(at), text));
     }
 
-    /// Closes the brace that opens at token `brace` of the text, and all brackets open inside it.
+    /// Closes the brace that opens at the token with the index `brace`, and all brackets inside it.
     pub(super) fn close_brace_of(&mut self, brace: usize, at: Place) {
         if let Some(depth) = self.open.iter().position(|open| open.raw == brace && open.kind == BracketKind::Brace) {
             self.close_down_to(depth, at);
         }
     }
 
-    /// Closes the brackets above the first `depth` before a token that seems to follow them.
+    /// Closes all open brackets but the first `depth` before a token that seems to follow them.
     pub(super) fn close_down_to(&mut self, depth: usize, at: Place) {
         while let Some(open) = self.open.last().copied().filter(|_| self.open.len() > depth) {
             if open.kind == BracketKind::Brace {
