@@ -1,7 +1,8 @@
-//! A target and a plan by hand: a cart that shuttles on a track. `mdlec` writes the second half, a robot's author the
-//! first.
+//! A target and a plan in plain Rust: a cart that shuttles on a track. `mdlec` generates the second half; the author of
+//! a robot writes the first.
 //!
-//! `cargo run -p mdle-host --example cart -- --speed max --timeout 20`. The tests of this package run it as a program.
+//! Run it with `cargo run -p mdle-host --example cart -- --speed max --timeout 20`. The tests of this package run the
+//! program.
 
 use std::fs::File;
 use std::io::Write;
@@ -20,7 +21,7 @@ fn main() -> ExitCode {
     run::<CartTarget, _>("shuttle", || Shuttle { forward: true })
 }
 
-/// Output of the cart's sensors.
+/// Output of the cart.
 struct Sensed {
     at: Meters,
     track: Meters,
@@ -30,23 +31,23 @@ struct Sensed {
 
 impl Output for Sensed {}
 
-/// The cart, a simulated one.
+/// A simulated cart.
 struct Cart {
     at: Meters,
     track: Meters,
     period: Duration,
     exchanges: u64,
-    /// The exchange that does not work, and how.
+    /// Number of the exchange that fails, with the kind of failure.
     broken: Option<(u64, Breakdown)>,
-    /// The exchange after which the law hangs.
+    /// Number of the exchange after which the law hangs.
     hung: Option<u64>,
-    /// `true` if the cart prints its commands to standard error.
+    /// `true` if the cart writes its commands to standard error.
     tells: bool,
     /// File of the cart's journal.
     journal: Option<File>,
 }
 
-/// A fault of an exchange.
+/// Failure of an exchange.
 #[derive(Debug, Clone, Copy)]
 enum Breakdown {
     Fails,
@@ -103,7 +104,7 @@ impl Cart {
     }
 }
 
-/// An input: a speed; the null input is rest.
+/// Input of the cart, a speed; the null input is a speed of zero.
 #[derive(Default)]
 struct Speed(MetersPerSecond);
 
@@ -169,7 +170,7 @@ impl Target for CartTarget {
     }
 }
 
-/// `{ Shuttle (wait 1000) ((Atom (far) go 0.5) (Atom (near) go -0.5))^inf }`.
+/// The plan `{ Shuttle (wait 1000) ((Atom (far) go 0.5) (Atom (near) go -0.5))^inf }`.
 struct Shuttle {
     forward: bool,
 }

@@ -1,4 +1,4 @@
-//! The options of every executable, for any target.
+//! Command-line options of every executable, for any target.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -9,14 +9,14 @@ use crate::call::Call;
 use crate::target_options::TargetOptions;
 use crate::{Program, Quantity, paths, required, views};
 
-/// Minimum period: a turn must leave time for the exchange.
+/// Minimum period: a turn must be long enough for the exchange.
 const PERIOD_LEAST: Duration = Duration::from_micros(100);
-/// Maximum period: a robot that is commanded once a minute is not controlled.
+/// Maximum period: a robot with a command per minute is not controlled.
 const PERIOD_MOST: Duration = Duration::from_secs(60);
-/// Maximum timeout, some 31 years: far below what nanoseconds in 64 bits can count.
+/// Maximum timeout, about 31 years: far below the limit of nanoseconds in 64 bits.
 const TIMEOUT_MOST: Duration = Duration::from_secs(1_000_000_000);
 
-/// The exit statuses and their meanings.
+/// Exit statuses with their meanings.
 const STATUSES: [(&str, &str); 7] = [
     ("0", "the plan ended"),
     ("1", "with --runs: not all runs ended as required"),
@@ -31,7 +31,7 @@ const STOPPED: &str = "The robot is stopped in every case.";
 
 const TIMING: &str = "On a real robot, SIGUSR1 prints how late turns began and how long they took.";
 
-/// The values of the options that all targets share.
+/// Values of the options that all targets share.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Options {
     /// Time from the start of a turn to the start of the next.
@@ -42,14 +42,14 @@ pub(crate) struct Options {
     pub(crate) turns: Option<u64>,
     /// File of the run log.
     pub(crate) log: Option<PathBuf>,
-    /// `true` if the run goes on when its log cannot be written.
+    /// `true` if the run continues when its log cannot be written.
     pub(crate) log_best_effort: bool,
     /// File of the recorded path.
     pub(crate) path: Option<PathBuf>,
 }
 
-/// Returns the command line of a program for this target. The usage line has the words by which the program was called,
-/// or the plan if these are unknown.
+/// Returns the command line of a program for this target. The usage line begins with the words by which the program was
+/// called, or with the plan's name if these are unknown.
 pub(crate) fn command(target: &TargetOptions, program: Program<'_>, call: &Call) -> Command {
     let seconds = target.period.as_secs_f64();
     let name = program.plan;
@@ -104,7 +104,7 @@ pub(crate) fn command(target: &TargetOptions, program: Program<'_>, call: &Call)
     with_statuses((target.arguments)(if target.fastest.is_some() { paths::arguments(command) } else { command }))
 }
 
-/// Adds the exit statuses to the help of a command whose options are all there.
+/// Returns a command, which must have all its options, with the exit statuses in its help.
 fn with_statuses(command: Command) -> Command {
     let has_runs = command.get_arguments().any(|argument| argument.get_id() == "runs");
     let statuses = STATUSES.into_iter().filter(|(number, _)| *number != "1" || has_runs);
@@ -126,7 +126,7 @@ pub(crate) fn options(target: &TargetOptions, matches: &ArgMatches) -> Options {
     }
 }
 
-/// A long option with a value.
+/// Returns a long option with a value.
 fn option(name: &'static str, value: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value)
 }

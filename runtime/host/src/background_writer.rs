@@ -1,4 +1,4 @@
-//! A writer that never makes a robot wait: a thread of its own writes the text that the turns hand over.
+//! A writer that never makes a robot wait: a separate thread writes the text that the turns produce.
 
 #[cfg(test)]
 mod tests;
@@ -11,38 +11,39 @@ use std::time::{Duration, Instant};
 
 use crate::patience::{AT_THE_END, Patience};
 
-/// The stack of a thread that only writes. All memory of a run is locked: this is as much as it takes.
+/// Stack size of a thread that only writes, in bytes. All memory of a run is locked, so the stack is as small as
+/// possible.
 pub(crate) const STACK: usize = 128 * 1024;
-/// The maximum that waits for a slow reader, in bytes.
+/// Maximum size of the text that waits for a slow reader, in bytes.
 const WAITING: usize = 1 << 20;
-/// Size from which text is handed over without a flush, in bytes.
+/// Size from which text is passed to the thread without a flush, in bytes.
 const PIECE: usize = 1 << 16;
-/// Maximum size of a single write, in bytes: a reader that takes this much counts as one that reads.
+/// Maximum size of a single write, in bytes; a reader that accepts this much is still reading.
 const CHUNK: usize = 1 << 13;
-/// Maximum time without progress on a file that must be complete, while a robot drives.
+/// Maximum time without progress on a file that must be complete, while a robot is driven.
 const LAG: Duration = Duration::from_secs(5);
 /// Maximum wait between two checks of the deadline.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// The treatment of pieces for which a slow reader leaves no room while a robot drives.
+/// Treatment of text for which a slow reader leaves no space while a robot is driven.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Keeps {
-    /// Lines for people: they are left out, and a line reports that.
+    /// Text for people: it is left out, and a line reports that.
     WhatIsRead,
-    /// A record that must not lack anything: that is an error.
+    /// A file that must be complete: missing space is an error.
     All,
 }
 
-/// A writer whose `flush` returns at once while a robot drives, and otherwise when all is written, or when the patience
-/// of the run ends. Dropping it waits likewise.
+/// A writer whose `flush` returns at once while a robot is driven. Otherwise `flush` returns when all text is written,
+/// or when the patience of the run ends; dropping the writer waits in the same way.
 #[derive(Debug)]
 pub(crate) struct Outlet {
     piece: Vec<u8>,
     keeps: Keeps,
     patience: Patience,
-    /// `true` if pieces have been lost since the last piece that was handed over.
+    /// `true` if text has been lost since the last text that was passed to the thread.
     lost: bool,
-    /// `true` once the reader is not waited for any longer.
+    /// `true` once the writer no longer waits for the reader.
     given_up: bool,
     shared: Arc<Shared>,
 }
@@ -56,9 +57,9 @@ struct Shared {
 #[derive(Debug)]
 struct Queue {
     pieces: VecDeque<Vec<u8>>,
-    /// Bytes that wait or are being written.
+    /// Number of bytes that wait or are being written.
     bytes: usize,
-    /// Time at which the reader took something last, or at which something was handed over to a waiting thread.
+    /// Time at which the reader last accepted text, or at which an idle thread last received text.
     moved: Instant,
     is_closed: bool,
     /// Error that ended the thread.
@@ -74,7 +75,7 @@ impl Shared {
 }
 
 impl Queue {
-    /// Adds a piece. There is always room for a single piece of any length.
+    /// Appends a piece of text, unless there is no space. There is always space for a single piece of any length.
     fn push(&mut self, piece: Vec<u8>) -> Result<(), Vec<u8>> {
         if self.bytes > 0 && self.bytes.saturating_add(piece.len()) > WAITING {
             return Err(piece);
@@ -98,10 +99,10 @@ impl Queue {
 }
 
 impl Outlet {
-    /// Begins to write to `sink`.
+    /// Starts a thread that writes to `sink`.
     ///
     /// # Errors
-    /// When the system gives no thread.
+    /// The system cannot create a thread.
     pub(crate) fn open(sink: impl Write + Send + 'static, keeps: Keeps, patience: &Patience) -> io::Result<Self> {
         let queue = Queue {
             pieces: VecDeque::new(),
@@ -117,12 +118,12 @@ impl Outlet {
         Ok(Self { piece: Vec::new(), keeps, patience: patience.clone(), lost: false, given_up: false, shared })
     }
 
-    /// Returns a handle through which other threads write pieces, without waiting.
+    /// Returns a handle with which other threads write text without waiting.
     pub(crate) fn aside(&self) -> Aside {
         Aside(Arc::clone(&self.shared))
     }
 
-    /// Hands over the text that has been written so far.
+    /// Passes the text so far to the thread.
     fn hand_over(&mut self) -> io::Result<()> {
         if self.piece.is_empty() {
             return Ok(());
@@ -151,7 +152,7 @@ impl Outlet {
         if lags { Err(too_slow(LAG)) } else { Ok(()) }
     }
 
-    /// A piece has to be left out.
+    /// Handles text for which there is no space: leaves it out, or returns an error.
     fn without_room(&mut self) -> io::Result<()> {
         match self.keeps {
             Keeps::WhatIsRead if self.is_driving() => {
@@ -167,7 +168,7 @@ impl Outlet {
         }
     }
 
-    /// Waits until all is written, as far as patience goes.
+    /// Waits until all text is written, or until the patience of the run ends.
     fn drain(&mut self) -> io::Result<()> {
         let shared = Arc::clone(&self.shared);
         let begun = Instant::now();
@@ -185,12 +186,12 @@ impl Outlet {
         }
     }
 
-    /// Returns `true` while a robot drives, which must not wait.
+    /// Returns `true` while a robot is driven, which must not wait.
     fn is_driving(&self) -> bool {
         self.patience.limit() == Some(Duration::ZERO)
     }
 
-    /// Returns `true` if a reader that has taken nothing `since` then is not waited for any longer.
+    /// Returns `true` if the writer no longer waits for a reader that has accepted nothing since `since`.
     fn has_no_patience(&self, since: Instant) -> bool {
         self.given_up || self.patience.limit().is_some_and(|limit| since.elapsed() >= limit)
     }
@@ -200,7 +201,7 @@ impl Outlet {
     }
 }
 
-/// The error of a reader that takes nothing.
+/// Returns the error about a reader that accepts nothing.
 fn too_slow(limit: Duration) -> io::Error {
     io::Error::new(io::ErrorKind::TimedOut, unread(limit))
 }
@@ -233,19 +234,19 @@ impl Drop for Outlet {
     }
 }
 
-/// A handle on an outlet for messages of other threads that cannot wait.
+/// A handle of an outlet, for messages from threads that cannot wait.
 #[derive(Debug, Clone)]
 pub(crate) struct Aside(Arc<Shared>);
 
 impl Aside {
-    /// Hands over a text, or drops it when there is no room.
+    /// Passes a text to the outlet, or drops it if there is no space.
     pub(crate) fn tell(&self, text: String) {
         let _ = self.0.queue().push(text.into_bytes());
         self.0.changed.notify_all();
     }
 }
 
-/// Writes pieces until there are no more.
+/// Writes all pieces of text until the queue is closed.
 fn write_all(mut sink: impl Write, shared: &Shared) {
     let written = loop {
         let mut queue = shared.queue();
@@ -266,7 +267,7 @@ fn write_all(mut sink: impl Write, shared: &Shared) {
     shared.changed.notify_all();
 }
 
-/// Writes a piece, and notes how it gets on.
+/// Writes a piece of text, and records the progress.
 fn write_piece(sink: &mut impl Write, piece: &[u8], shared: &Shared) -> io::Result<()> {
     for chunk in piece.chunks(CHUNK) {
         sink.write_all(chunk)?;

@@ -1,21 +1,21 @@
-//! The runs to be made of one plan.
+//! Several runs of one plan, as the options request them.
 
 use std::fmt;
 use std::num::{NonZeroU64, NonZeroUsize};
 
-/// Runs to be made of one plan.
+/// Several runs of one plan.
 pub struct Batch<R> {
-    /// The seed of the first run; each run's is one more than that of the run before.
+    /// Seed of the first run; each other run has the previous run's seed plus 1.
     pub first: u64,
     /// Number of runs.
     pub runs: NonZeroU64,
-    /// Number of runs that are made at the same time.
+    /// Number of simultaneous runs.
     pub jobs: NonZeroUsize,
-    /// `true` if the summary is to be JSON.
+    /// `true` if the summary is written as JSON.
     pub json: bool,
-    /// Makes the robot of a seed, or returns why that failed.
+    /// Function that creates the robot for a seed, or returns the reason why that failed.
     pub robot: Box<dyn Fn(u64) -> Result<R, String> + Send + Sync>,
-    /// Returns the options that repeat the run of a seed by itself.
+    /// Function that returns the options with which the run of a seed can be repeated alone.
     pub alone: Box<dyn Fn(u64) -> Vec<String> + Send + Sync>,
 }
 

@@ -1,35 +1,35 @@
-//! The call of a program that runs a plan: the words that name it, and its options.
+//! The call of a program that runs a plan: the words of its name, and its options.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use mdle_record::SafetyTexts;
 
-/// The words by which a program that runs a plan was called.
+/// Words of the command line by which a program that runs a plan was called.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Call {
-    /// The words before the options, the program's own name first: `./dock`, or `mdle run dock.mdle --target sim`.
-    /// Usage and summaries show them.
+    /// Words before the options, beginning with the program's own name, such as `./dock` or `mdle run dock.mdle
+    /// --target sim`. Usage and summaries show these words.
     pub words: Vec<OsString>,
-    /// The options.
+    /// Options after these words.
     pub options: Vec<OsString>,
-    /// Files that the program has read for the plan: no option may name one of them to be written.
+    /// Files that the program has read for the plan; no option may name such a file for writing.
     pub read: Vec<PathBuf>,
-    /// The plan's part of a record.
+    /// Data of the plan that a record contains.
     pub recorded: RecordedPlan,
-    /// Name of a path that the run records: its file may be missing at the start.
+    /// Name of a path that the run records; its file may be missing at the start.
     pub later_path: Option<String>,
 }
 
-/// The part of a record that a program knows of its plan.
+/// Data of a plan in a record, as far as the program knows them.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RecordedPlan {
-    /// The name and the text of each file of the plan, its own first; empty for an executable, which has no texts.
+    /// Name and text of each file of the plan, the plan's own file first; empty for an executable, which has no texts.
     pub files: Vec<(String, String)>,
-    /// Causes of inputs besides the plan and the robot's outputs, such as safety rules, for people; empty if there is
-    /// nothing.
+    /// Description of what influences the inputs besides the plan and the robot's outputs, such as safety rules; empty
+    /// if nothing does.
     pub beside: String,
-    /// The safety rules of the run, if there are any.
+    /// Safety rules of the run, if there are any.
     pub safety: Option<SafetyTexts>,
     /// Words besides those of the call that determine the run, such as the target and the modules of a file of
     /// settings.
@@ -37,7 +37,7 @@ pub struct RecordedPlan {
 }
 
 impl Call {
-    /// Returns the call of an executable with these arguments, its own name first.
+    /// Returns the call of an executable with these arguments, which begin with the executable's name.
     pub(crate) fn of_executable(arguments: impl IntoIterator<Item = OsString>) -> Self {
         let mut arguments = arguments.into_iter();
         let words = arguments.next().into_iter().collect();
@@ -50,19 +50,19 @@ impl Call {
         }
     }
 
-    /// Returns the name by which usage calls the program, if it is more than the name of a file.
+    /// Returns the words with which the usage begins, if they are more than the name of a file.
     pub(crate) fn several_words(&self) -> Option<String> {
         let (program, others) = self.words.split_first().filter(|(_, others)| !others.is_empty())?;
         let name = Path::new(program).file_name().unwrap_or(program);
         Some([&[name.to_owned()], others].concat().join(" ".as_ref()).to_string_lossy().into_owned())
     }
 
-    /// Returns all words, as a command line is parsed.
+    /// Returns all words in the form in which a command line is parsed.
     pub(crate) fn arguments(&self) -> impl Iterator<Item = &OsString> {
         self.words.iter().take(1).chain(&self.options)
     }
 
-    /// Returns the words as a shell takes them; the name of the plan if the program was called without a name.
+    /// Returns the words as they are typed in a shell; the name of the plan if the program was called without a name.
     pub(crate) fn command(&self, plan: &str) -> String {
         let words: Vec<String> = self.words.iter().map(|word| quoted(&word.to_string_lossy())).collect();
         if words.is_empty() { quoted(plan) } else { words.join(" ") }
@@ -88,7 +88,7 @@ pub fn without_log(options: &[OsString]) -> impl Iterator<Item = OsString> {
     others.cloned()
 }
 
-/// Returns a word as a shell takes it, in quotes if it needs them.
+/// Returns a word as it is typed in a shell, in quotes if necessary.
 #[must_use]
 pub fn quoted(word: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./,=:+@%".contains(letter);

@@ -1,4 +1,4 @@
-//! The words of a transition: the operands that have fired with their values, as the plan's author wrote them, and
+//! Words for a transition in reports: the operands that fired with their values, as the plan's author wrote them, and
 //! their places.
 
 use std::fmt;
@@ -11,13 +11,13 @@ use crate::passes::{Passes, outwards};
 use crate::position::Texts;
 use crate::transitions::Operand;
 
-/// Cause of a scope's end in a report: `r1 = 0.38 m < 40cm (wall.mdle:7)`.
+/// Cause for which a scope ended, in the words of a report: `r1 = 0.38 m < 40cm (wall.mdle:7)`.
 pub struct CauseText<'a> {
-    /// The plan.
+    /// Plan that contains the scope.
     pub plan: &'a dyn Texts,
-    /// The end of the scope.
+    /// Transition that ended the scope.
     pub transition: &'a Transition,
-    /// The operands that had fired.
+    /// Operands that fired.
     pub operands: &'a [Operand],
 }
 
@@ -34,14 +34,15 @@ impl fmt::Display for CauseText<'_> {
     }
 }
 
-/// Returns the cause of a transition of `plan` with the values of the operands that had fired, as a report has it:
+/// Returns the cause of a transition of `plan` in the words of a report, with the values of the operands that fired:
 /// `r1 = 0.38 m < 40cm (wall.mdle:7)`.
 #[must_use]
 pub fn cause_words(plan: &impl Plan, transition: &Transition, operands: &[Operand]) -> String {
     CauseText { plan, transition, operands }.to_string()
 }
 
-/// Returns the place of an atom in a report: its line, the names of its enclosing scopes and the passes of loops.
+/// Returns the place of an atom in the words of a report: its line, the names of its enclosing scopes and the passes of
+/// loops.
 #[must_use]
 pub fn place(plan: &dyn Texts, passes: &Passes, atom: u32) -> String {
     let (fsm, source) = (plan.fsm(), plan.source());

@@ -1,7 +1,8 @@
-//! Clock of a run: the start and the time of each turn (docs/src/reference/semantics.md, 3.1).
+//! Clock of a run, which determines the start and the time of each turn (docs/src/reference/semantics.md, 3.1).
 //!
-//! Turns begin at absolute deadlines, so lateness never adds up. A real robot that was late skips ahead: it is never
-//! sent a burst of inputs. In stepped time no turn may be skipped: turns that are late follow each other at once.
+//! Turns begin at absolute deadlines, so that lateness does not add up. With a real robot, turns that were missed are
+//! skipped: the robot is never sent a burst of inputs. In stepped time no turn is skipped: late turns follow each other
+//! at once.
 
 use std::time::Duration;
 
@@ -13,31 +14,31 @@ use crate::signals::Signals;
 use crate::timing::Timing;
 use crate::{Pace, Time, scheduling};
 
-/// Maximum sleep between two checks of the signals.
+/// Maximum sleep between two checks for signals.
 const SLICE: Duration = Duration::from_millis(20);
-/// Maximum lateness that stepped time catches up, in nanoseconds. After more, as when the process was suspended, it
-/// goes on from now.
+/// Maximum lateness that stepped time catches up, in nanoseconds. After a longer delay, such as a suspension of the
+/// process, turns continue from the current time.
 const CATCH_UP: u64 = 250_000_000;
 
 /// Maximum delay of a turn, if the robot does not limit the time without a command.
 const GAP: Duration = Duration::from_secs(2);
 
-/// Source of real time; a test drives it by hand.
+/// Source of real time, which a test can control.
 pub(crate) trait Instants {
-    /// The time since some moment before the first turn; never goes back.
+    /// Returns the time since a moment before the first turn; it never goes back.
     fn now(&mut self) -> Duration;
-    /// Lets about this much time pass.
+    /// Sleeps for approximately `time`.
     fn sleep(&mut self, time: Duration);
-    /// Asks the system to wake this thread on time.
+    /// Requests from the system that it wakes this thread on time.
     ///
     /// # Errors
-    /// The sentence about a request that the system does not permit.
+    /// Returns a sentence if the system does not permit that.
     fn keep_time(&mut self) -> Result<(), String> {
         Ok(())
     }
 }
 
-/// The time since the machine was started, in which it may have been suspended.
+/// Clock of the time since the computer was started, including suspensions.
 #[derive(Debug)]
 pub(crate) struct SinceBoot;
 
@@ -56,21 +57,21 @@ impl Instants for SinceBoot {
     }
 }
 
-/// The clock of a run.
+/// Clock of a run.
 #[derive(Debug)]
 pub(crate) struct Clock<I> {
     instants: I,
     time: Time,
     /// Period of a turn in nanoseconds; at least 1.
     period: u64,
-    /// Start of turn 0, or of the turn in which the pace was changed, in real nanoseconds; in stepped time later by the
-    /// lateness that is not caught up.
+    /// Start of turn 0, or of the turn in which the pace was changed, in real nanoseconds. In stepped time, lateness
+    /// that is not caught up is added.
     origin: u64,
     /// Real time of the first output, in nanoseconds: time 0 of the plan.
     zero: u64,
     /// Number of periods from the start of turn 0 to the start of the current turn.
     place: u64,
-    /// Number of periods from the start of turn 0 to the origin: where the pace has been changed.
+    /// Number of periods from the start of turn 0 to the last change of the pace.
     paced_from: u64,
     /// Start of the current turn, in real nanoseconds.
     begun: u64,
@@ -80,8 +81,8 @@ pub(crate) struct Clock<I> {
 }
 
 impl<I: Instants> Clock<I> {
-    /// The clock of a run whose turn 0 begins now. The robot can go without a command for `longest_gap`, by default two
-    /// seconds more than a period.
+    /// Returns the clock of a run whose turn 0 begins now. The robot can be without a command for `longest_gap`; the
+    /// default is two seconds more than a period.
     pub(crate) fn begin(mut instants: I, time: Time, period: Duration, longest_gap: Option<Duration>) -> Self {
         let origin = nanos(instants.now());
         let longest_gap = nanos(longest_gap.unwrap_or(period.saturating_add(GAP)));
@@ -101,13 +102,13 @@ impl<I: Instants> Clock<I> {
         }
     }
 
-    /// Notes that the first output has been taken: this is the plan's time 0.
+    /// Records that the first output has been read, at the plan's time 0.
     pub(crate) fn zero(&mut self) -> Nanos {
         self.zero = nanos(self.instants.now());
         Nanos::ZERO
     }
 
-    /// The plan's time of the output that has just been taken.
+    /// Returns the plan's time of the output that has just been read.
     pub(crate) fn taken(&mut self) -> Nanos {
         match self.time {
             Time::Wall => Nanos(nanos(self.instants.now()).saturating_sub(self.zero)),
@@ -115,7 +116,7 @@ impl<I: Instants> Clock<I> {
         }
     }
 
-    /// Changes the pace of stepped time: the next turn begins a period after now. The wall clock has one pace only.
+    /// Changes the pace of stepped time: the next turn begins one period after now. The wall clock has only one pace.
     pub(crate) fn set_pace(&mut self, pace: Pace) {
         let Time::Stepped(before) = &mut self.time else { return };
         *before = pace;
@@ -131,8 +132,8 @@ impl<I: Instants> Clock<I> {
     /// Waits for the beginning of the next turn.
     ///
     /// # Errors
-    /// A signal, which ends the wait early; too many successive turns longer than the period; or too long a time
-    /// without a command to the robot.
+    /// A signal has arrived, which ends the wait early; too many consecutive turns were longer than the period; or the
+    /// robot was without a command for too long.
     pub(crate) fn next_turn(&mut self, signals: &Signals) -> Result<(), RunEnd> {
         if self.time == Time::Wall {
             let took = nanos(self.instants.now()).saturating_sub(self.begun);
@@ -183,7 +184,7 @@ impl<I: Instants> Clock<I> {
     }
 }
 
-/// Converts a duration into nanoseconds, saturating at `u64::MAX`, which is 584 years.
+/// Converts a duration to nanoseconds; saturates at `u64::MAX`, which is 584 years.
 pub(crate) fn nanos(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }

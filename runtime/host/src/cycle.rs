@@ -1,7 +1,7 @@
-//! The control cycle: exchange, time, a turn, and the wait for the next (docs/src/reference/semantics.md, 5.1).
+//! The control cycle: exchange, time, a turn, and the wait for the next turn (docs/src/reference/semantics.md, 5.1).
 //!
-//! A turn is that of one plan in an executable; others may make it from more than a plan. Exchange, limits, signals and
-//! the end of a run are the cycle's in every case.
+//! In an executable, one plan makes a turn; in other programs more than a plan may take part. The cycle handles
+//! exchange, limits, signals and the end of a run in every case.
 
 use std::time::Duration;
 
@@ -13,49 +13,49 @@ use crate::run_end::RunEnd;
 use crate::signals::Signals;
 use crate::timing::Timing;
 
-/// Limits at which a run ends that is not over.
+/// Limits at which a run ends although its plan has not ended.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
-    /// Time of the run at which the run ends. The turn at that time is still made, since the plan may be over in it.
+    /// Time of the run at which the run ends. The turn at this time is still made, because the plan may end in it.
     pub(crate) timeout: Option<Duration>,
     /// Number of turns after which the run ends.
     pub(crate) turns: Option<u64>,
 }
 
-/// Result of a turn for the cycle.
+/// Result of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// The run goes on.
+    /// The run continues.
     Next,
-    /// The run is over: the null input once more, then the robot's stop.
+    /// The run ends: the null input is sent once more, and then the robot is stopped.
     Over,
 }
 
-/// A robot, and the code that makes its turns.
+/// A robot, with the code that makes its turns.
 pub(crate) trait Turns {
-    /// Sends the input of the last turn, the null input before the first, and takes the output that follows.
+    /// Sends the input of the last turn, or the null input before the first turn, and reads the next output.
     ///
     /// # Errors
-    /// A sentence for the operator about the fault of the robot.
+    /// Returns a sentence for the operator about the robot's fault.
     fn exchange(&mut self) -> Result<(), String>;
-    /// Makes turn `number`, from 0, with the output that was taken at `t`.
+    /// Makes turn `number`, counted from 0, with the output that was read at `t`.
     ///
     /// # Errors
-    /// The reason why the run has to end, though the robot is well.
+    /// Returns the reason why the run must end although the robot has no fault.
     fn turn(&mut self, t: Nanos, number: u64) -> Result<Step, RunEnd>;
-    /// Returns the pace of stepped time from now on, if it is to change.
+    /// Returns the pace of stepped time from now on, if it changes.
     fn pace(&mut self) -> Option<Pace> {
         None
     }
-    /// Reports how late turns begin and how long they take, after a request by SIGUSR1.
+    /// Reports the lateness and the duration of turns, after a request by SIGUSR1.
     fn tell_timing(&mut self, timing: &Timing);
-    /// Called when the cycle ends, the last turn having been at `t`; the robot has not been stopped yet.
+    /// Handles the end of the cycle, whose last turn was at `t`; the robot has not been stopped yet.
     fn ended(&mut self, ending: &RunEnd, t: Nanos);
 }
 
-/// Makes turns, from the exchange of turn 0 until something ends them.
+/// Makes turns, from the exchange of turn 0, until the run ends.
 ///
-/// The robot still executes its last input: the caller has to send the null input and the stop, also after a panic.
+/// The robot still executes its last input: the caller must send the null input and stop the robot, also after a panic.
 pub(crate) fn cycle<I: Instants>(
     turns: &mut dyn Turns,
     limits: Limits,
@@ -101,7 +101,8 @@ pub(crate) fn cycle<I: Instants>(
 }
 
 impl Limits {
-    /// Returns the limit that a run has reached, if it is not over after `turns` turns, the last one at time `t`.
+    /// Returns the limit that a run has reached after `turns` turns, the last of them at time `t`, if its plan has not
+    /// ended.
     fn reached(&self, turns: u64, t: Nanos) -> Option<RunEnd> {
         let timeout = self.timeout.filter(|limit| t.0 >= nanos(*limit)).map(RunEnd::Timeout);
         timeout.or(self.turns.filter(|limit| turns >= *limit).map(RunEnd::Turns))

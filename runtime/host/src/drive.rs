@@ -1,5 +1,5 @@
-//! A plan that drives a robot, behind one interface without the types of either: the host around the turns is compiled
-//! once, and each executable compiles its own turn only.
+//! A plan that drives a robot, behind an interface without the types of the plan and the robot. So the host is compiled
+//! once, and each executable compiles only its own turn.
 
 use std::any::Any;
 use std::time::Duration;
@@ -16,87 +16,87 @@ use crate::run_end::RunEnd;
 use crate::transitions::Transitions;
 use crate::{Break, Intervention, Orders, SettingsOf, Supervisor};
 
-/// A robot with the plan that drives it: exchange and turn alternate, the exchange first.
+/// A robot with the plan that drives it: exchanges and turns alternate, beginning with an exchange.
 pub(crate) trait Drive {
-    /// Sends the input of the last turn, the null input before the first, and takes the output that follows.
+    /// Sends the input of the last turn, or the null input before the first turn, and reads the next output.
     ///
     /// # Errors
-    /// A sentence for the operator about the fault of the robot.
+    /// Returns a sentence for the operator about the robot's fault.
     fn exchange(&mut self) -> Result<(), String>;
     /// Sends the null input.
     ///
     /// # Errors
-    /// A sentence for the operator about the fault of the robot.
+    /// Returns a sentence for the operator about the robot's fault.
     fn release(&mut self) -> Result<(), String>;
     /// Stops the robot.
     ///
     /// # Errors
-    /// A sentence for the operator about the fault of the robot.
+    /// Returns a sentence for the operator about the robot's fault.
     fn stop(&mut self) -> Result<(), String>;
-    /// Returns [`Robot::longest_gap`].
+    /// Returns the value of [`Robot::longest_gap`].
     fn longest_gap(&self) -> Option<Duration>;
-    /// Returns the heading and the speed of the robot by its last output, if it has one and paths are recorded.
+    /// Returns the heading and the speed of the robot in its last output, if there is an output and paths are recorded.
     fn motion(&self) -> Option<(Radians, MetersPerSecond)>;
-    /// Returns the last output, for views of the run; `None` if there is none yet, or if it is of another type.
+    /// Returns the last output, for views of the run; `None` if there is no output, or if it is not a [`Sensed`].
     fn sensed(&self) -> Option<&Sensed>;
-    /// Returns the last output and input, for a record; `None` if they are of other types than a record has.
+    /// Returns the last output and input for a record; `None` if their types are not those of records.
     fn exact(&self) -> Option<Exact<'_>>;
-    /// Notes from now on what [`Drive::take_changes`] returns: called before the first turn.
+    /// Starts recording the changes that [`Drive::take_changes`] returns; called before the first turn.
     fn record(&mut self);
-    /// Takes the causes of the last turn besides its output.
+    /// Removes and returns the causes of the last turn besides its output.
     fn take_changes(&mut self) -> Vec<Change>;
     /// Makes turn `number` with the last output at time `t`; the first turn begins the plan.
     ///
     /// # Errors
-    /// Why the run has to end, though the robot is well.
+    /// Returns the reason why the run must end although the robot has no fault.
     fn turn(&mut self, t: Nanos, number: u64, transitions: &mut Transitions) -> Result<Turn<()>, RunEnd>;
     /// Calls `say` with each message for the operator since the last call.
     fn messages(&mut self, say: &mut dyn FnMut(&str));
-    /// Returns the robot's observer, if it has one, and the position in the plan, if it has begun.
+    /// Returns the robot's observer, if it has an observer, and the position in the plan, if the plan has begun.
     fn parts(&mut self) -> (Option<&mut dyn Observer>, Option<&dyn Position>);
     /// Returns the time of the run at which the plan began.
     fn zero(&self) -> Nanos;
-    /// Returns what the supervisor did in the last turn.
+    /// Returns the supervisor's intervention in the last turn.
     fn intervention(&self) -> Option<Intervention<'_>>;
-    /// Returns the requests that the supervisor has carried out since the last call.
+    /// Returns the requests that the supervisor has fulfilled since the last call.
     fn take_requests(&mut self) -> Vec<String>;
-    /// Returns the number of the plan that runs, from 1, and why it has replaced another one.
+    /// Returns the number of the current plan, from 1, and the reason why it has replaced another plan.
     fn plan(&self) -> (u64, &str);
-    /// Ends the plan for this rule of the supervisor; returns `true` if another plan goes on.
+    /// Ends the plan because of a rule of the supervisor; returns `true` if another plan continues.
     fn ended_by(&mut self, rule: &str) -> bool;
-    /// Calls the supervisor, if there is one, at the break after `turns` turns, the last one at time `t`.
+    /// Calls the supervisor, if there is one, at the break after `turns` turns, the last of them at time `t`.
     fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &Report<'_>) -> Orders;
 
-    /// Returns the robot's observer, if it has one.
+    /// Returns the robot's observer, if it has an observer.
     fn observer(&mut self) -> Option<&mut dyn Observer> {
         self.parts().0
     }
 }
 
-/// The output and the input of a turn.
+/// The output and the inputs of a turn.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Exact<'y> {
-    /// The robot's output.
+    /// Output of the robot.
     pub(crate) y: &'y Sensed,
-    /// The input that the plan asked for.
+    /// Input that the plan requested.
     pub(crate) asked: Twist,
-    /// The input that is sent.
+    /// Input that is sent.
     pub(crate) sent: Twist,
 }
 
-/// A robot, and the pilot that drives it.
+/// A robot, with the pilot that drives it.
 pub(crate) struct PilotOnRobot<'p, R: Robot, B: Pilot> {
     robot: R,
     observer: Observes<R>,
-    /// Returns the speed of the robot by an output, if paths are recorded.
+    /// Function that returns the robot's speed in an output, if paths are recorded.
     speed: Option<Speed<R>>,
     helm: Helm<'p, B>,
-    /// Settings of the robot, for the supervisor.
+    /// Function that returns the settings of the robot, for the supervisor.
     settings: Option<SettingsOf<R>>,
     output: Option<R::Output>,
 }
 
-/// Returns the forward speed of a robot by an output.
+/// A function that returns the forward speed of a robot in an output.
 type Speed<R> = fn(&<R as Robot>::Output) -> MetersPerSecond;
 
 impl<'p, R, B> PilotOnRobot<'p, R, B>
@@ -108,7 +108,7 @@ where
         Self { robot, observer, speed, helm, settings: None, output: None }
     }
 
-    /// Lets the supervisor change these settings of the robot.
+    /// Sets the settings of the robot that the supervisor can change.
     pub(crate) fn with_settings(self, settings: Option<SettingsOf<R>>) -> Self {
         Self { settings, ..self }
     }

@@ -1,4 +1,4 @@
-//! The target and the plan of an executable, behind one interface without the types of either.
+//! The target and the plan of an executable, behind an interface without their types.
 
 use std::marker::PhantomData;
 use std::os::fd::BorrowedFd;
@@ -15,7 +15,7 @@ use crate::runs::Runs;
 use crate::target_options::TargetOptions;
 use crate::{Microphones, Pace, Refusal, Replays, StopRequest, Supervision, Target, Time};
 
-/// Text to type where a robot has no microphones.
+/// Text to type if a robot has no microphones.
 const NO_EARS: &str = "give `--ears FILE.wav`, or `--ears -` for the pipe of a recorder";
 
 /// The target and the plan of an executable.
@@ -26,10 +26,10 @@ pub(crate) trait Executable: Sync {
     fn session(&self) -> Option<BorrowedFd<'_>>;
     /// Makes a plan, for its texts.
     fn plan(&self) -> Box<dyn Texts + '_>;
-    /// Opens the robot, with the plan that will drive it and the paths that the plan replays: [`Target::connect`].
+    /// Opens the robot with [`Target::connect`], the plan that will drive it, and the paths that the plan replays.
     ///
     /// # Errors
-    /// Those of [`Target::connect`].
+    /// [`Target::connect`] failed.
     fn connect(
         &self,
         matches: &ArgMatches,
@@ -37,18 +37,18 @@ pub(crate) trait Executable: Sync {
         request: &StopRequest,
         store: PathStore,
     ) -> Result<Box<dyn Drive + '_>, Refusal>;
-    /// Returns the runs to be made instead of one, if the options ask for several: [`Observation::batch`].
+    /// Returns several runs with [`Observation::batch`], if the options request more than one run.
     ///
     /// # Errors
-    /// A bad option, or a fault.
+    /// An option is invalid, or a fault has occurred.
     fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore) -> Result<Option<Runs<'_>>, Refusal>;
 }
 
 /// An executable of a plan for the target `T`, with the pilot `B` of its runs.
 pub(crate) struct PlanOnTarget<'p, 's, T, P, B: Pilot> {
-    /// Makes the plan.
+    /// Function that creates the plan.
     plan: &'p (dyn Fn() -> P + Sync),
-    /// Makes the pilot of a run.
+    /// Function that creates the pilot of a run.
     pilot: &'p MakePilot<'p, B>,
     supervision: Option<Supervision<'s, B>>,
     target: PhantomData<fn() -> T>,
@@ -62,7 +62,7 @@ where
         Self { plan, pilot, supervision: None, target: PhantomData }
     }
 
-    /// Puts a supervisor between the pilot and the robot.
+    /// Sets the supervisor between the pilot and the robot.
     pub(crate) fn supervised(self, supervision: Option<Supervision<'s, B>>) -> Self {
         Self { supervision, ..self }
     }
@@ -70,7 +70,7 @@ where
     /// Returns the robot with the pilot that drives it, its supervisor, and the paths that the plan replays.
     ///
     /// # Errors
-    /// A module listens, and there is nothing to be heard.
+    /// A module listens, but the robot has no sound.
     fn drive(
         &self,
         mut robot: T::Robot,

@@ -1,4 +1,5 @@
-//! Reads the files that an operator names: regular files, up to a size, and never a pipe that waits for a writer.
+//! Reads files that an operator names: regular files up to a maximum size, but never a pipe, which would wait for a
+//! writer.
 
 use std::fs::{self, FileType, OpenOptions};
 use std::io::{self, Read as _};
@@ -10,7 +11,7 @@ use rustix::fs::OFlags;
 /// Reads a regular file of at most `most` bytes.
 ///
 /// # Errors
-/// The system's; or, as the end of a sentence about the file, that it is no regular file or has more bytes.
+/// Returns the system's error; or, as the end of a sentence about the file, that it is not a regular file or is larger.
 pub fn read_file(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     // To open a device or a pipe may already do something to it.
     regular(fs::metadata(path)?.file_type())?;
@@ -34,7 +35,7 @@ pub fn read_file(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// Reads a regular file of at most `most` bytes as text.
 ///
 /// # Errors
-/// As [`read_file`], or that it is no UTF-8 text.
+/// [`read_file`] failed, or the file is not UTF-8 text.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     String::from_utf8(read_file(path, most)?).map_err(|_| io::Error::other("it is not UTF-8 text"))
 }

@@ -1,11 +1,12 @@
-//! A report that waits until the robot has left the screen; of a very long one, the last part.
+//! A report that is shown only after the live view has left the screen; of a very long report, only the last part is
+//! shown.
 
 use std::io::{self, Write};
 
-/// Maximum size of the text that is kept, in bytes: when there is more, the first half is dropped.
+/// Maximum size of the stored text, in bytes: beyond it, the first half is dropped.
 const MOST: usize = 1 << 20;
 
-/// A writer that passes everything on when it is flushed, and not before.
+/// A writer that stores all text until it is flushed.
 pub(crate) struct HeldReport<W> {
     to: W,
     text: Vec<u8>,
@@ -13,7 +14,7 @@ pub(crate) struct HeldReport<W> {
 }
 
 impl<W: Write> HeldReport<W> {
-    /// Returns an empty writer, which will write to `to`.
+    /// Returns an empty writer, which will write to `to` when it is flushed.
     pub(crate) fn new(to: W) -> Self {
         Self { to, text: Vec::new(), cut: false }
     }

@@ -1,4 +1,4 @@
-//! A pilot and its supervisor: what the robot is sent in each turn, in a run and when a run is made again.
+//! A pilot with its supervisor: determines the input that a robot is sent in each turn, in a run and in a replay.
 
 use std::any::Any;
 use std::fmt;
@@ -10,23 +10,23 @@ use crate::pilot::{Moment, Pilot, PilotFault};
 use crate::transitions::Transitions;
 use crate::{Intervention, PilotInput, PilotOutput, Supervisor, Verdict};
 
-/// A pilot with its supervisor, if it has one.
+/// A pilot, with its supervisor if it has one.
 pub struct Helm<'p, B: Pilot> {
     pilot: B,
     supervised: Option<Supervised<'p, B>>,
     /// Time of the last turn.
     t: Nanos,
-    /// The input that was asked for last, if it is of this type.
+    /// Last requested input, if it is a [`Twist`].
     asked: Option<Twist>,
-    /// The input that is sent next.
+    /// Input that is sent next.
     input: PilotInput<B>,
 }
 
-/// The supervisor of a run, and the plans to which it may divert.
+/// The supervisor of a run, with the plans to which it may divert.
 pub struct Supervised<'p, B: Pilot> {
-    /// The supervisor.
+    /// Supervisor of the run.
     pub supervisor: Box<dyn Supervisor<B> + 'p>,
-    /// Makes the plan of this number; `None` if there is no such plan.
+    /// Function that creates the plan with this number; it returns `None` if there is no such plan.
     pub diversions: Box<dyn Fn(usize) -> Option<B::Plan> + 'p>,
 }
 
@@ -52,10 +52,10 @@ where
         Self { pilot, supervised, t: Nanos::ZERO, asked: None, input: PilotInput::<B>::default() }
     }
 
-    /// Makes turn `number` with output `y` at time `t`; the input is then [`Helm::input`].
+    /// Makes turn `number` with output `y` at time `t`; afterwards the input is [`Helm::input`].
     ///
     /// # Errors
-    /// Those of [`Pilot::turn`].
+    /// [`Pilot::turn`] failed.
     pub fn turn(
         &mut self,
         y: &mut PilotOutput<B>,
@@ -79,7 +79,7 @@ where
         Ok(kind)
     }
 
-    /// Sets the input that is sent next, as the supervisor changes it, if there is an output to look at.
+    /// Sets the input that is sent next: `asked`, as the supervisor changes it if there is an output.
     pub(crate) fn send(&mut self, asked: PilotInput<B>, y: Option<&PilotOutput<B>>) {
         self.asked = (&asked as &dyn Any).downcast_ref().copied();
         self.input = match (&mut self.supervised, y) {
@@ -102,13 +102,13 @@ where
         &self.input
     }
 
-    /// Returns the input that was asked for last, if it is of this type.
+    /// Returns the last requested input, if it is a [`Twist`].
     #[must_use]
     pub fn asked(&self) -> Option<Twist> {
         self.asked
     }
 
-    /// Returns what the supervisor did in the last turn.
+    /// Returns the supervisor's intervention in the last turn.
     #[must_use]
     pub fn intervention(&self) -> Option<Intervention<'_>> {
         self.supervised.as_ref().and_then(|supervised| supervised.supervisor.intervention())
@@ -119,7 +119,7 @@ where
         &self.pilot
     }
 
-    /// Returns the pilot, to change it between two turns.
+    /// Returns the pilot for changes between two turns.
     pub fn pilot_mut(&mut self) -> &mut B {
         &mut self.pilot
     }
@@ -130,12 +130,12 @@ where
         supervised.as_mut().map(|supervised| (&mut *supervised.supervisor, pilot, &*input))
     }
 
-    /// Returns the supervisor, if there is one, to change it between two turns.
+    /// Returns the supervisor, if there is one, for changes between two turns.
     pub fn supervisor_mut(&mut self) -> Option<&mut (dyn Supervisor<B> + 'p)> {
         self.supervised.as_mut().map(|supervised| &mut *supervised.supervisor)
     }
 
-    /// Notes from now on what a record needs besides outputs.
+    /// Starts recording the data that a record needs besides outputs.
     pub(crate) fn record(&mut self) {
         self.pilot.record();
         if let Some(supervisor) = self.supervisor_mut() {
@@ -143,7 +143,7 @@ where
         }
     }
 
-    /// Takes the causes of the last turn besides its output.
+    /// Removes and returns the causes of the last turn besides its output.
     pub(crate) fn take_changes(&mut self) -> Vec<Change> {
         let mut changes = self.pilot.take_changes();
         changes.extend(self.supervisor_mut().map(Supervisor::take_changes).unwrap_or_default());

@@ -1,5 +1,5 @@
-//! The signal that ends a program without a robot of its own, such as a run of several simulated ones: the program ends
-//! in order, with all that it has written so far.
+//! Signals for a program without a robot of its own, such as several simulated runs: after a signal the program ends in
+//! order, with all output written so far.
 
 use std::io::{self, Write};
 
@@ -7,15 +7,15 @@ use crate::run_end::RunEnd;
 use crate::signals::Signals;
 use crate::{Pace, Time, second_signal};
 
-/// The signals that ask a program to end, noted.
+/// Record of the signals that request the end of a program.
 #[derive(Debug)]
 pub struct Interruption(Signals);
 
 impl Interruption {
-    /// Lets signals that end a program be noted from now on. A second one ends it at once.
+    /// Starts recording signals that request the end of the program. A second signal ends the program at once.
     ///
     /// # Errors
-    /// The system does not let a signal be caught, or gives no thread.
+    /// The system does not permit catching a signal, or cannot create a thread.
     pub fn listen() -> io::Result<Self> {
         let signals = Signals::listen()?;
         second_signal::watch(&signals)?;
@@ -31,7 +31,8 @@ impl Interruption {
         self.0.caught().is_some()
     }
 
-    /// Reports the signal that has arrived; returns the exit status of the program, or `None` without a signal.
+    /// Reports the signal that has arrived, and returns the exit status of the program; `None` if no signal has
+    /// arrived.
     pub fn tell(&self, err: &mut dyn Write) -> Option<u8> {
         let ending = RunEnd::Signal(self.0.caught()?);
         ending.tell(true, err);

@@ -1,13 +1,15 @@
-//! Host of a plan's executable: arguments, clock, signals, safe stop, report and run log, around the turns of the plan.
+//! Host of a plan's executable: arguments, clock, signals, safe stop, report and run log around the turns of the plan.
 //!
-//! For people who write a robot: [`Target`], [`Time`] and [`Refusal`], [`Observer`] where its runs are watched and
-//! [`Batch`] where it can be started over, [`Watch`] and [`WholeFile`] where it shows and draws runs itself,
-//! [`Replays`] where it replays paths, [`read_file`] and [`output_format`] where its options name files, [`Quantity`]
-//! where they take lengths and times. For generated code: [`run`]. For an engine that makes the turns of a run itself:
+//! For authors of robots: [`Target`], [`Time`] and [`Refusal`]; [`Observer`] for robots that observe their runs, and
+//! [`Batch`] for robots that can be started over; [`Watch`] and [`WholeFile`] for robots that show and draw runs
+//! themselves;
+//! [`Replays`] for robots that replay paths; [`read_file`] and [`output_format`] for options that name files;
+//! [`Quantity`] for options with lengths and times. For generated code: [`run`]. For an engine that makes the turns of
+//! a run itself:
 //! [`Pilot`].
 //!
-//! The robot is stopped in every case: when the plan is over, when an exchange fails, when code panics, when a signal
-//! arrives, when a limit is reached.
+//! The robot is stopped in every case: when the plan ends, an exchange fails, code panics, a signal arrives, or a limit
+//! is reached.
 #![forbid(unsafe_code)]
 
 mod arguments;
@@ -125,15 +127,15 @@ pub use views::view_options;
 pub use watch::Watch;
 pub use whole_file::{Unfinished, WholeFile};
 
-/// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: the `main` of an
-/// executable that mdlec builds calls this function. `program` is the plan's name, for `--help`, whose usage names the
-/// executable as it was called; a [`Program`] also answers `--version`.
+/// Runs the plan that `plan` creates on the robot of the target `T`, with the arguments of this process. The `main` of
+/// an executable that mdlec builds calls this function. `program` is the plan's name for `--help`, whose usage names
+/// the executable as it was called; a [`Program`] also answers `--version`.
 ///
-/// Exit status: 0 the plan is over; 1 of several runs not all ended as required; 2 a bad option, world or start pose; 3
-/// a fault stopped the robot, or a requested file could not be written; 4 `--timeout` or `--turns`; 5 the plan is over
-/// and ended otherwise than required; 128+N signal N. In every case the robot was stopped.
+/// Exit status: 0 the plan has ended; 1 not all of several runs ended as required; 2 a bad option, world or start pose;
+/// 3 a fault stopped the robot, or a requested file could not be written; 4 `--timeout` or `--turns`; 5 the plan has
+/// ended, but not as required; 128+N signal N. In every case the robot was stopped.
 ///
-/// It handles the signals of the process and replaces its panic hook by one that never makes the robot wait.
+/// The function handles the signals of the process, and replaces its panic hook by one that never makes the robot wait.
 pub fn run<'a, T: Target, P>(program: impl Into<Program<'a>>, plan: impl Fn() -> P + Sync) -> ExitCode
 where
     P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
@@ -141,8 +143,8 @@ where
     run_called::<T, P>(program, Call::of_executable(std::env::args_os()), plan)
 }
 
-/// Runs the plan that `plan` makes on the robot of the target `T`, for a program that was called like this: as [`run`]
-/// does with the arguments of this process.
+/// Runs the plan that `plan` creates on the robot of the target `T` like [`run`], for a program with the call `call`
+/// instead of the arguments of this process.
 pub fn run_called<'a, T: Target, P>(
     program: impl Into<Program<'a>>,
     call: Call,
@@ -154,9 +156,9 @@ where
     execute(program.into(), call, &PlanOnTarget::<T, P, _>::new(&plan, &|_| Ok(PlanAlone::new(&plan))))
 }
 
-/// Runs a plan as [`run_called`] does, with turns that the pilot makes which `pilot` returns, under a supervisor if
-/// there is one. The plan that `plan` makes is read beforehand, for its texts and paths. Exit status 6: the supervisor
-/// ended the plan; 0 also if it ended the run.
+/// Runs a plan like [`run_called`], with turns made by the pilot that `pilot` creates, under a supervisor if there is
+/// one. The plan that `plan` creates is read beforehand for its texts and paths. Exit status 6: the supervisor ended
+/// the plan. The exit status is also 0 if the supervisor ended the run.
 pub fn run_piloted<'a, 's, T: Target, B>(
     program: impl Into<Program<'a>>,
     call: Call,
@@ -170,10 +172,10 @@ where
     execute(program.into(), call, &PlanOnTarget::<T, _, _>::new(plan, &pilot).supervised(supervision))
 }
 
-/// Returns the text that [`run_called`] refuses these options with, if a program for the target `T` does not have them.
+/// Checks the options of `call` as [`run_called`] does, for a program for the target `T`.
 ///
 /// # Errors
-/// The message for standard error.
+/// Returns the message for standard error if an option is invalid.
 pub fn check_options<T: Target>(program: Program<'_>, call: &Call) -> Result<(), String> {
     let command = arguments::command(&target_options::TargetOptions::of::<T>(), program, call);
     match command.try_get_matches_from(call.arguments()) {
@@ -219,8 +221,9 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
     ExitCode::from(session::session(program, call, executable, surroundings))
 }
 
-/// Returns standard output and standard error, each with a thread that writes to it. The library's own buffer of
-/// standard output is left out: its content may be lost when the program ends. In a session both are its stream.
+/// Returns standard output and standard error, each with a thread that writes to it. The standard library's buffer of
+/// standard output is not used, because its content may be lost when the program ends. In a session, both are the
+/// session's stream.
 fn standard_streams(patience: &Patience, session: Option<BorrowedFd<'_>>) -> io::Result<(Outlet, Outlet)> {
     let open = |stream: BorrowedFd<'_>| -> io::Result<Outlet> {
         Outlet::open(File::from(stream.try_clone_to_owned()?), Keeps::WhatIsRead, patience)
