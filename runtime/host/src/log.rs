@@ -1,4 +1,4 @@
-//! The run log: JSON lines, one object a turn, in the format of `mdlec trace`.
+//! The run log in JSON lines, with one object per turn, in the format of `mdlec trace`.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -19,36 +19,36 @@ use crate::transitions::{Operand, Transitions};
 #[derive(Debug)]
 pub(crate) struct Log {
     file: Outlet,
-    /// `true` if each turn reaches the file at once: not at the fastest pace.
+    /// `true` if each turn is written to the file at once; `false` at the fastest pace.
     prompt: bool,
 }
 
-/// Entry of a log: one turn.
+/// A turn for the run log.
 pub(crate) struct Entry<'a> {
-    /// The plan, for its texts.
+    /// Plan, for its texts.
     pub(crate) plan: &'a dyn Texts,
-    /// The number of the turn, from 0.
+    /// Number of the turn, from 0.
     pub(crate) turn: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,
-    /// The state in which it ended.
+    /// State of the plan at the end of the turn.
     pub(crate) state: u64,
-    /// Source of the input.
+    /// Kind of the turn, which determines the source of the input.
     pub(crate) kind: Turn<()>,
-    /// Number of the atom whose law was applied, counted in the plan's text; `None` for the null input.
+    /// Number of the atom whose law was applied, in the order of the plan's text; `None` for the null input.
     pub(crate) applied: Option<u32>,
-    /// Frame of that law, if a `FRAME here` encloses its atom.
+    /// Frame of the applied law, if a `FRAME here` encloses its atom.
     pub(crate) frame: Option<Frame>,
     /// Transitions of the turn, in order.
     pub(crate) transitions: &'a Transitions,
-    /// The number of the plan, from 1.
+    /// Number of the plan, from 1.
     pub(crate) plan_number: u64,
-    /// The supervisor's part in the turn.
+    /// Supervisor's part in the turn.
     pub(crate) supervised: &'a Supervised,
 }
 
 impl Entry<'_> {
-    /// Returns the keys of the turn that a plan without a supervisor has not, each with a comma before it.
+    /// Returns the keys of a turn that appear only with a supervisor, each with a comma before it.
     fn more(&self) -> Option<String> {
         let plan = (self.plan_number > 1).then(|| format!(",\"plan\":{}", self.plan_number));
         let safety = self.supervised.intervention().map(|Intervention { verdict, rule, .. }| {
@@ -61,8 +61,8 @@ impl Entry<'_> {
     }
 }
 
-/// A file that is to be written in a run, such as its log, open and unchanged. If the file is new, dropping this
-/// removes it.
+/// A file that a run is going to write, such as its log, opened but unchanged. Dropping it removes the file if it is
+/// new.
 #[derive(Debug)]
 pub(crate) struct UnchangedFile<'p> {
     file: File,
@@ -73,7 +73,7 @@ impl<'p> UnchangedFile<'p> {
     /// Opens the file at `path`.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// The file cannot be written.
     pub(crate) fn open(path: &'p Path) -> io::Result<Self> {
         match File::create_new(path) {
             Ok(file) => Ok(Self { file, new: Some(New(path)) }),
@@ -85,31 +85,31 @@ impl<'p> UnchangedFile<'p> {
         }
     }
 
-    /// Begins the log and truncates the file. If `prompt`, the log is flushed after each turn.
+    /// Truncates the file and begins the log. With `prompt`, the log is flushed after each turn.
     ///
     /// # Errors
-    /// If the file cannot be truncated.
+    /// The file cannot be truncated.
     pub(crate) fn begin(self, prompt: bool, patience: &Patience) -> io::Result<Log> {
         Ok(Log { file: self.emptied(patience)?, prompt })
     }
 
-    /// Empties the file and returns a writer to it; from now on the file stays.
+    /// Truncates the file and returns a writer to it; from now on the file is kept.
     ///
     /// # Errors
-    /// When the earlier content cannot be cut off.
+    /// The file cannot be truncated.
     pub(crate) fn emptied(self, patience: &Patience) -> io::Result<Outlet> {
         Outlet::open(self.cut()?, Keeps::All, patience)
     }
 
-    /// Empties the file and returns a writer that makes a record of the frames that are written to it.
+    /// Truncates the file and returns a writer that converts frames to a record.
     ///
     /// # Errors
-    /// When the earlier content cannot be cut off.
+    /// The file cannot be truncated.
     pub(crate) fn recorded(self, patience: &Patience) -> io::Result<Outlet> {
         Outlet::open(RecordFile::new(self.cut()?), Keeps::All, patience)
     }
 
-    /// Cuts the earlier content off; from now on the file stays.
+    /// Truncates the file; from now on the file is kept.
     fn cut(self) -> io::Result<File> {
         let Self { file, new } = self;
         // A device or a pipe has no length.
@@ -123,7 +123,7 @@ impl<'p> UnchangedFile<'p> {
     }
 }
 
-/// A file that was not there before; removed again when dropped.
+/// A newly created file, which is removed when this is dropped.
 #[derive(Debug)]
 struct New<'p>(&'p Path);
 
@@ -135,10 +135,10 @@ impl Drop for New<'_> {
 }
 
 impl Log {
-    /// Writes one turn.
+    /// Writes a turn.
     ///
     /// # Errors
-    /// When the file cannot be written, such as when the disk is full.
+    /// The file cannot be written, for example because the disk is full.
     pub(crate) fn turn(&mut self, entry: &Entry<'_>) -> io::Result<()> {
         let Entry { plan, turn, t, state, applied, frame, transitions, .. } = *entry;
         let law = applied.map(|atom| plan.law(atom));
@@ -163,10 +163,10 @@ impl Log {
         if self.prompt { self.flush() } else { Ok(()) }
     }
 
-    /// Hands everything written so far to the system.
+    /// Passes all text written so far to the system.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// The file cannot be written.
     pub(crate) fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
     }

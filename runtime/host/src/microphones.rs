@@ -1,27 +1,27 @@
-//! Sound on its way from a robot with two microphones to the module that listens to it.
+//! Sound from a robot with two microphones for a module that listens.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use mdle_runtime::Nanos;
 
-/// Turns whose sound is kept for a listener that is slow: ten seconds of a robot with a period of 100 ms.
+/// Maximum number of turns whose sound is stored for a slow listener: ten seconds at a period of 100 ms.
 const KEPT: usize = 100;
 
-/// The microphones of a run: a robot fills them turn by turn if a module listens.
+/// Microphones of a run; if a module listens, the robot adds sound in each turn.
 #[derive(Debug, Clone, Default)]
 pub struct Microphones(Arc<Mutex<Sound>>);
 
 #[derive(Debug, Default)]
 struct Sound {
-    /// Radius of the head, in metres, if somebody listens.
+    /// Radius of the head, in metres; `None` if no module listens.
     head: Option<f64>,
     turns: VecDeque<(Nanos, Vec<[f32; 2]>)>,
 }
 
-/// Gives a robot the microphones of its run, on a head of this radius in metres.
+/// A function that gives a robot the microphones of its run, on a head with this radius in metres.
 ///
-/// The function returns a sentence for the operator if there is nothing to be heard.
+/// The function returns a sentence for the operator if the robot has no sound.
 pub type EarsOf<R> = fn(&mut R, Microphones, f64) -> Result<(), String>;
 
 impl Microphones {
@@ -29,18 +29,18 @@ impl Microphones {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Asks for sound, on a head of this radius in metres: called before the robot is connected.
+    /// Requests sound, on a head with this radius in metres; called before the robot is connected.
     pub fn listen(&self, radius: f64) {
         self.lock().head = Some(radius);
     }
 
-    /// Returns the radius of the head in metres; `None` if nobody listens.
+    /// Returns the radius of the head in metres; `None` if no module listens.
     #[must_use]
     pub fn head(&self) -> Option<f64> {
         self.lock().head
     }
 
-    /// Adds the samples of the left and the right ear since the turn before.
+    /// Appends the samples of the left and the right ear since the previous turn.
     pub fn put(&self, at: Nanos, samples: Vec<[f32; 2]>) {
         let mut sound = self.lock();
         if sound.turns.len() >= KEPT {
@@ -49,7 +49,7 @@ impl Microphones {
         sound.turns.push_back((at, samples));
     }
 
-    /// Takes what the ears have heard until this time, the oldest first.
+    /// Removes and returns the samples up to the time `until`, oldest first.
     #[must_use]
     pub fn take(&self, until: Nanos) -> Vec<[f32; 2]> {
         let mut sound = self.lock();

@@ -1,4 +1,4 @@
-//! The files that options name: a file that a run writes is named by one option only, and the run does not read it.
+//! The files that options name: a file that a run writes may be named by only one option, and the run must not read it.
 
 use std::fs;
 use std::io;
@@ -7,33 +7,33 @@ use std::path::{Path, PathBuf};
 
 use crate::Refusal;
 
-/// The maximum number of links that are followed from a name.
+/// Maximum number of symbolic links that are followed from a name.
 const LINKS: usize = 40;
 
 /// A file that an option names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NamedFile {
-    /// The option, as in `--log`.
+    /// Name of the option, such as `--log`.
     pub option: &'static str,
-    /// Path of the file, as on the command line.
+    /// Path of the file as on the command line.
     pub path: PathBuf,
     /// `true` if the run writes the file, `false` if the run reads it.
     pub is_written: bool,
 }
 
-/// Identity of a file, independent of the path that names it.
+/// Identity of a file, independent of the path to it.
 #[derive(Debug, PartialEq, Eq)]
 enum Identity {
-    /// An existing file: its device, and its number on that device.
+    /// An existing file: its device, and its number on the device.
     Known(u64, u64),
-    /// A file that will be created in this place.
+    /// A new file at this path.
     New(PathBuf),
 }
 
-/// Refuses outputs that name a file that another option names, or this program.
+/// Checks that no option names a file for writing that another option names, or this program.
 ///
 /// # Errors
-/// The sentence for the operator: which options name one file.
+/// Returns a sentence for the operator with the options that name the same file.
 pub(crate) fn check(mut files: Vec<NamedFile>) -> Result<(), Refusal> {
     if let Ok(path) = std::env::current_exe() {
         files.push(NamedFile { option: "", path, is_written: false });
@@ -51,7 +51,7 @@ pub(crate) fn check(mut files: Vec<NamedFile>) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// The sentence about an output that is another file as well.
+/// Returns the sentence about a file for writing that is also another file.
 fn clash(file: &NamedFile, other: &NamedFile) -> String {
     let (option, path) = (file.option, file.path.display());
     match other {
@@ -63,7 +63,7 @@ fn clash(file: &NamedFile, other: &NamedFile) -> String {
     }
 }
 
-/// Returns the identity of the file at a path; `None` if that is no regular file, such as a device, or is unknown.
+/// Returns the identity of the file at a path; `None` if it is not a regular file, such as a device, or is unknown.
 fn identity(path: &Path) -> Option<Identity> {
     match fs::metadata(path) {
         Ok(found) => found.is_file().then(|| Identity::Known(found.dev(), found.ino())),

@@ -1,4 +1,4 @@
-//! The functions by which a target lets its runs be observed, and started over.
+//! Functions with which a target lets its runs be observed and started over.
 
 use std::fmt;
 use std::time::Duration;
@@ -7,24 +7,24 @@ use clap::ArgMatches;
 
 use crate::{Batch, Observer, Refusal};
 
-/// The part of a target whose robot has an observer.
+/// Functions of a target whose robot has an observer.
 pub struct Observation<R> {
-    /// Returns the observer.
+    /// Function that returns the robot's observer.
     pub observer: fn(&mut R) -> &mut dyn Observer,
-    /// `true` if the robot itself shows and draws its run as `--watch`, `--plot`, `--record` and `--trail` ask, as a
-    /// simulator does, which knows the world; it leaves the screen when it is stopped. Otherwise the host does, by
+    /// `true` if the robot itself handles `--watch`, `--plot`, `--record` and `--trail`, such as a simulator, which
+    /// knows the world; it leaves the screen when it is stopped. If `false`, the host handles these options by
     /// odometry.
     pub draws: bool,
-    /// Returns the runs to be made instead of one, if these options ask for several: only robots that can be started
-    /// over have such options. No run has begun yet.
+    /// Function that returns several runs, if the options request more than one run; only robots that can be started
+    /// over have such options. No run has begun before the call.
     pub batch: fn(&ArgMatches, Duration) -> SeveralRuns<R>,
 }
 
-/// Runs to be made instead of one, if several were asked for; a bad option or a fault otherwise.
+/// Several runs if the options request more than one run, or the reason why they cannot be made.
 pub type SeveralRuns<R> = Result<Option<Batch<R>>, Refusal>;
 
 impl<R> Observation<R> {
-    /// An observer that draws nothing, of one run at a time.
+    /// Returns the functions of a robot that draws nothing and makes one run at a time.
     pub const fn by(observer: fn(&mut R) -> &mut dyn Observer) -> Self {
         Self { observer, draws: false, batch: |_, _| Ok(None) }
     }

@@ -1,4 +1,4 @@
-//! Compares a text with an operand of the plan: spaces, units and the form of numbers make no difference.
+//! Compares a text with an operand of the plan, independent of spaces, units and the form of numbers.
 
 use mdle_runtime::OperandWords;
 
@@ -7,16 +7,16 @@ use crate::Quantity;
 /// Maximum relative difference of two numbers that count as equal: converting units may change the last digits.
 const TOLERANCE: f64 = 1e-9;
 
-/// A word of a condition.
+/// A word or a number of a condition.
 #[derive(Debug, PartialEq)]
 enum Token<'a> {
-    /// A name, an operator, a text in quotes or a number of which leading zeros are a part.
+    /// A name, an operator, a text in quotes, or a number whose leading zeros are significant.
     Word(&'a str),
-    /// A number in the unit of its quantity, or as it is written if it has no unit.
+    /// A number in the base unit of its quantity, or as written if it has no unit.
     Number(Option<Quantity>, f64),
 }
 
-/// Returns `true` if `text` is this operand: in its canonical form, as written in the plan, or with other units and
+/// Returns `true` if `text` is the operand: in its canonical form, as written in the plan, or with other units and
 /// spaces.
 #[must_use]
 pub fn is_operand(text: &str, operand: &OperandWords<'_>) -> bool {
@@ -28,7 +28,7 @@ pub fn is_operand(text: &str, operand: &OperandWords<'_>) -> bool {
     })
 }
 
-/// Returns `true` if two texts differ in spaces and the form of numbers only.
+/// Returns `true` if two texts differ only in spaces and the form of numbers.
 #[must_use]
 pub fn is_condition(text: &str, condition: &str) -> bool {
     is_operand(text, &OperandWords { text: condition, written: condition, ..NO_OPERAND })
@@ -48,7 +48,7 @@ impl Token<'_> {
     }
 }
 
-/// The words of a condition, in which a number without a unit has this one.
+/// Returns the words of a condition, in which numbers without a unit have the unit `unit`.
 fn tokens<'a>(text: &'a str, unit: &str) -> Vec<Token<'a>> {
     let mut tokens = Vec::new();
     let mut rest = text.trim_start();
@@ -66,7 +66,7 @@ fn tokens<'a>(text: &'a str, unit: &str) -> Vec<Token<'a>> {
     tokens
 }
 
-/// The number of bytes of the name, the quoted text or the operator at the start of `rest`.
+/// Returns the length in bytes of the name, the quoted text or the operator at the start of `rest`.
 fn word_length(rest: &str, first: char) -> usize {
     let length_of = |is_part: fn(char) -> bool| rest.find(|letter| !is_part(letter)).unwrap_or(rest.len());
     match first {
@@ -77,7 +77,7 @@ fn word_length(rest: &str, first: char) -> usize {
     }
 }
 
-/// The number at the start of `rest` with its unit, or else with `bare`, and the number of its bytes.
+/// Returns the number at the start of `rest` with its unit, or with `bare` if it has none, and the length in bytes.
 fn number<'a>(rest: &'a str, bare: &str) -> (Token<'a>, usize) {
     let is_part = |letter: char| letter.is_ascii_digit() || letter == '.';
     let mantissa = rest.find(|letter| !is_part(letter)).unwrap_or(rest.len());

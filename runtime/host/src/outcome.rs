@@ -1,4 +1,4 @@
-//! The outcome of one run among several.
+//! The outcome of a run that is one of several.
 
 use mdle_runtime::Nanos;
 
@@ -7,30 +7,30 @@ use crate::report::Over;
 /// Outcome of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// The plan is over, and there was no goal.
+    /// The plan has ended, and the run has no goal.
     Ended,
-    /// The plan is over, and the robot is in its goal.
+    /// The plan has ended, and the robot is in its goal.
     Arrived,
-    /// The plan is over, and the robot touches an obstacle.
+    /// The plan has ended, and the robot touches an obstacle.
     Bumped,
-    /// The plan is over, and the robot is outside its goal: where.
+    /// The plan has ended, and the robot is outside its goal; the text says where.
     Astray(String),
-    /// The plan is over by another cause than those required.
+    /// The plan has ended by a cause that is not required.
     Otherwise,
-    /// The plan was given up.
+    /// The run has reached its time limit before the plan has ended.
     TimedOut,
-    /// The run could not begin, or a fault stopped it: the reason.
+    /// The run could not begin, or a fault stopped it, for this reason.
     Failed(String),
 }
 
-/// A run that has ended.
+/// A finished run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct EndedRun {
     pub(crate) seed: u64,
     pub(crate) outcome: Outcome,
-    /// The plan's time at which it ended.
+    /// Time of the plan at the end of the run.
     pub(crate) t: Nanos,
-    /// End of the plan; `None` if it was not over.
+    /// End of the plan; `None` if the plan has not ended.
     pub(crate) over: Option<Over>,
     pub(crate) contacts: u64,
 }

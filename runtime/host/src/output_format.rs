@@ -1,11 +1,11 @@
-//! The names of output files: one whose ending promises another format than the option writes is refused.
+//! Names of output files: a name is refused if its ending means another format than that of the option.
 
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
-/// Returns a parser for the value of an option that writes a file in `format`, such as `SVG`, with the ending `ending`,
-/// such as `svg`. It accepts names with this ending, in small or capital letters, and names without an ending.
+/// Returns a parser for an option that writes a file in `format`, such as `SVG`, with the ending `ending`, such as
+/// `svg`. It accepts names with this ending in lower or upper case, and names without an ending.
 pub fn output_format(format: &'static str, ending: &'static str) -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(move |path| match refusal(&path, format, ending) {
         Some(sentence) => Err(sentence),
@@ -13,7 +13,7 @@ pub fn output_format(format: &'static str, ending: &'static str) -> impl TypedVa
     })
 }
 
-/// Returns the sentence with which `path` is refused, if its ending is another one.
+/// Returns the sentence that refuses `path` if its ending means another format.
 fn refusal(path: &Path, format: &str, ending: &str) -> Option<String> {
     let given = path.extension().filter(|given| !given.eq_ignore_ascii_case(ending))?;
     let (given, name) = (given.to_string_lossy(), path.with_extension(ending));

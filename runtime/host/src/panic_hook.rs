@@ -1,4 +1,4 @@
-//! The panic hook: it reports where code panicked, without making the robot wait for the reader of this report.
+//! The panic hook, which reports where code panicked without making the robot wait for the reader of the report.
 
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::panic::{self, PanicHookInfo};
@@ -7,12 +7,12 @@ use std::thread;
 use crate::background_writer::Aside;
 use crate::safety::text;
 
-/// Sends reports of panics through `outlet` from now on.
+/// Sends reports of panics to `outlet` from now on.
 pub(crate) fn tell_to(outlet: Aside) {
     panic::set_hook(Box::new(move |panic| outlet.tell(report(panic))));
 }
 
-/// Returns the text that the library's own hook writes.
+/// Returns the text of the standard library's own panic hook.
 fn report(panic: &PanicHookInfo<'_>) -> String {
     let current = thread::current();
     let thread = current.name().unwrap_or("<unnamed>");

@@ -1,10 +1,10 @@
-//! The pass of each loop that encloses the current atom, counted for reports: a machine counts passes of finite loops
-//! only.
+//! The passes of the loops that enclose the current atom, counted for reports; a machine counts only the passes of
+//! finite loops.
 
 use mdle_runtime::fsm::{Bracket, Kind};
 use mdle_runtime::{Fsm, Transition};
 
-/// The number of the current pass of each loop, from 1, by its bracket.
+/// Number of the current pass of each loop, from 1, indexed by the loop's bracket.
 #[derive(Debug, Default)]
 pub struct Passes(Vec<u64>);
 
@@ -15,13 +15,12 @@ impl Passes {
         self.0.get(bracket as usize).copied().unwrap_or(1)
     }
 
-    /// Counts the passes of the loops that begin with a transition.
+    /// Updates the passes of the loops that a transition begins or repeats.
     pub fn step(&mut self, fsm: Fsm<'_>, transition: &Transition) {
         self.step_into(fsm, transition, |_| ());
     }
 
-    /// Counts the passes as [`Passes::step`] does, and calls `begins` with each bracket that begins with the
-    /// transition.
+    /// Updates the passes like [`Passes::step`], and calls `begins` with each bracket that begins in the transition.
     pub fn step_into(&mut self, fsm: Fsm<'_>, transition: &Transition, mut begins: impl FnMut(u32)) {
         self.0.resize(fsm.brackets.len(), 1);
         let own = transition.atom.and_then(|atom| fsm.atoms.get(atom as usize));
@@ -43,7 +42,7 @@ impl Passes {
         }
     }
 
-    /// Begins the next pass of `bracket`, if it is a loop that has one.
+    /// Begins the next pass of `bracket`; returns `false` if it is not a loop or has no further pass.
     fn spend(&mut self, number: u32, bracket: &Bracket) -> bool {
         let (Kind::Loop { times, .. }, Some(pass)) = (bracket.kind, self.0.get_mut(number as usize)) else {
             return false;
@@ -56,7 +55,7 @@ impl Passes {
     }
 }
 
-/// Returns a bracket and its enclosing brackets, outwards, each with its number.
+/// Returns a bracket and its enclosing brackets from the inside to the outside, each with its number.
 pub fn outwards(fsm: Fsm<'_>, bracket: u32) -> impl Iterator<Item = (u32, &Bracket)> {
     let at = move |number: u32| fsm.brackets.get(number as usize).map(|bracket| (number, bracket));
     std::iter::successors(at(bracket), move |(number, bracket)| {

@@ -1,4 +1,4 @@
-//! The store of paths: replayed paths are read before the robot moves, and the driven path can be recorded.
+//! Paths of a run: paths that the plan replays are read before the robot moves, and the driven path can be recorded.
 
 mod record;
 #[cfg(test)]
@@ -21,10 +21,10 @@ use crate::files::read_file;
 use crate::output_format::output_format;
 use crate::target_options::TargetOptions;
 
-/// Maximum size of a file that is read, in bytes: some eleven hours at ten rows a second.
+/// Maximum size of a path file, in bytes: about eleven hours at ten rows per second.
 const LARGEST: u64 = 10_000_000;
 
-/// Adds the options of a target that replays paths.
+/// Returns `command` with the options of a target that replays paths.
 pub(crate) fn arguments(command: Command) -> Command {
     let option = |name, value| Arg::new(name).long(name).value_name(value);
     command
@@ -40,12 +40,12 @@ pub(crate) fn arguments(command: Command) -> Command {
         )
 }
 
-/// The file of `--record-path`.
+/// Returns the file of the option `--record-path`.
 pub(crate) fn recording(target: &TargetOptions, matches: &ArgMatches) -> Option<PathBuf> {
     target.fastest.and_then(|_| matches.get_one("record-path").cloned())
 }
 
-/// Checks that turns are short enough for a path to be recorded.
+/// Checks that turns are short enough for recording a path.
 ///
 /// # Errors
 /// The turns are too long: the path could not be replayed.
@@ -58,10 +58,11 @@ pub(crate) fn check_period(period: Duration) -> Result<(), Refusal> {
     Err(Refusal::Usage(format!("{sentence}; choose a shorter --period")))
 }
 
-/// Reads the paths that a plan replays. The one called `later` may have no file yet.
+/// Reads the paths that a plan replays. The path with the name `later` may have no file yet.
 ///
 /// # Errors
-/// A file is missing, holds no path, or its path is too fast for the robot: in which file, where and why.
+/// A file is missing or contains no path, or its path is too fast for the robot. The message names the file, place and
+/// reason.
 pub(crate) fn load(
     target: &TargetOptions,
     matches: &ArgMatches,
@@ -88,20 +89,20 @@ pub(crate) fn load(
     Ok(PathStore::new(stored.collect::<Vec<_>>().leak()))
 }
 
-/// The files of the paths that a plan replays.
+/// Returns the files of the paths that a plan replays.
 pub(crate) fn files(matches: &ArgMatches, names: &[&'static str]) -> impl Iterator<Item = PathBuf> {
     // A robot that replays none has no such option.
     let folder = if names.is_empty() { None } else { matches.get_one::<PathBuf>("paths").cloned() };
     names.iter().map(move |name| place(folder.as_deref(), name))
 }
 
-/// The file of the path that a plan calls `name`: a name without an ending is that of a CSV file.
+/// Returns the file of the path with this name in a plan: a name without an ending is that of a CSV file.
 fn place(folder: Option<&Path>, name: &str) -> PathBuf {
     let file = if Path::new(name).extension().is_some() { name.to_owned() } else { format!("{name}.csv") };
     folder.map_or_else(|| PathBuf::from(&file), |folder| folder.join(&file))
 }
 
-/// Reads the path that a plan calls `name`.
+/// Reads the path with this name in a plan.
 fn read(folder: Option<&Path>, name: &str, fastest: Twist) -> Result<Vec<Setpoint>, String> {
     let place = place(folder, name);
     let shown = place.display();
@@ -118,10 +119,11 @@ fn read(folder: Option<&Path>, name: &str, fastest: Twist) -> Result<Vec<Setpoin
     setpoints(&shown.to_string(), &bytes, fastest)
 }
 
-/// The setpoints of a path, by the bytes of its file, for a robot that is so fast; `file` is what errors call it.
+/// Returns the setpoints of a path from the bytes of its file, for a robot with the maximum speeds `fastest`; error
+/// messages call the file `file`.
 ///
 /// # Errors
-/// A sentence that names the defect of the path and its line.
+/// Returns a sentence with the defect of the path and its line.
 pub fn setpoints(file: &str, bytes: &[u8], fastest: Twist) -> Result<Vec<Setpoint>, String> {
     let read = text::utf8(bytes).and_then(|text| text::setpoints(text, fastest));
     read.map_err(|TextFault { place, what }| match place {

@@ -1,5 +1,5 @@
-//! Interface of the code that makes a run's turns: one plan in an executable, an engine with modules in `mdle`.
-//! Exchange, limits, signals, reports and the safe stop are the host's in every case.
+//! Interface of the code that makes a run's turns: a plan in an executable, an engine with modules in `mdle`. The host
+//! handles exchange, limits, signals, reports and the safe stop in every case.
 
 use std::time::Duration;
 
@@ -11,44 +11,45 @@ use crate::{Microphones, Refusal, StopRequest, Time};
 
 /// Computes the input of each turn.
 pub trait Pilot {
-    /// The plan, for reports.
+    /// Type of the plans, for reports.
     type Plan: Plan;
 
-    /// Completes the output of a turn at time `t` before the turn, for the supervisor: with what modules published.
+    /// Completes the output of a turn at time `t` with the values that modules have published, before the supervisor
+    /// reads it.
     fn complete(&mut self, _y: &mut <Self::Plan as Plan>::Output, _t: Nanos) {}
 
-    /// Makes a turn; the first one begins the plan, or waits with null inputs until the plan can begin. `transitions`
-    /// is empty, and takes those of the plan.
+    /// Makes a turn. The first turn begins the plan, or null inputs are sent until the plan can begin. `transitions` is
+    /// empty, and receives the transitions of the plan.
     ///
     /// # Errors
-    /// Why the run has to end, though the robot is well.
+    /// Returns the reason why the run must end although the robot has no fault.
     fn turn(
         &mut self,
         moment: Moment<'_, <Self::Plan as Plan>::Output>,
         transitions: &mut Transitions,
     ) -> Result<Turn<<Self::Plan as Plan>::Input>, PilotFault>;
 
-    /// Replaces the plan by another one, which begins in this turn: a supervisor has asked for it.
+    /// Replaces the plan by `plan`, which begins in this turn, on request of a supervisor.
     fn divert(&mut self, plan: Self::Plan, moment: Moment<'_, <Self::Plan as Plan>::Output>);
 
-    /// Returns the number of the plan that runs, from 1; each plan that replaces one has the next.
+    /// Returns the number of the current plan, from 1; each plan that replaces a plan has the next number.
     fn plan_number(&self) -> u64;
 
-    /// Returns why the plan that runs has replaced another one; empty if [`Pilot::divert`] did it.
+    /// Returns the reason why the current plan has replaced another plan; empty if [`Pilot::divert`] replaced it.
     fn reason(&self) -> &str {
         ""
     }
 
-    /// Called when a rule of the supervisor has ended the plan that runs; returns `true` if another plan goes on with
-    /// the next turn, so that the run does not end.
+    /// Handles the end of the current plan by a rule of the supervisor. Returns `true` if another plan continues in the
+    /// next turn, so that the run does not end.
     fn ended_by(&mut self, _rule: &str) -> bool {
         false
     }
 
-    /// Returns the plan, once it has begun.
+    /// Returns the current plan with its state, once the plan has begun.
     fn machine(&self) -> Option<&Machine<Self::Plan>>;
 
-    /// Returns the time of the run at which the plan began, by which it counts its own time.
+    /// Returns the time of the run at which the plan began, which is time 0 of the plan.
     fn zero(&self) -> Nanos {
         Nanos::ZERO
     }
@@ -56,11 +57,12 @@ pub trait Pilot {
     /// Calls `say` with each message for the operator since the last call.
     fn messages(&mut self, _say: &mut dyn FnMut(&str)) {}
 
-    /// Notes from now on what [`Pilot::take_changes`] returns: called before the first turn of a run that is recorded.
+    /// Starts recording the changes that [`Pilot::take_changes`] returns; called before the first turn of a recorded
+    /// run.
     fn record(&mut self) {}
 
-    /// Takes the causes of the last turn besides the robot's output, in order: with these and the outputs, the run can
-    /// be made again.
+    /// Removes and returns the causes of the last turn besides the robot's output, in order. With these causes and the
+    /// outputs, the run can be repeated.
     fn take_changes(&mut self) -> Vec<Change> {
         Vec::new()
     }
@@ -69,45 +71,45 @@ pub trait Pilot {
 /// A turn of a run.
 #[derive(Debug)]
 pub struct Moment<'y, Y> {
-    /// The robot's output.
+    /// Output of the robot.
     pub y: &'y Y,
-    /// Time of the run at which the output was taken; the first output is at zero.
+    /// Time of the run at which the output was read; the first output is at time 0.
     pub t: Nanos,
     /// Number of the turn, from 0.
     pub number: u64,
 }
 
-/// Reason why the run has to end, though the robot is well (exit status 3).
+/// Reason why a run must end although the robot has no fault (exit status 3).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PilotFault {
-    /// The turns cannot go on: a sentence.
+    /// The turns cannot continue, for the reason in this sentence.
     Stopped(String),
-    /// The plan panicked: the message.
+    /// The plan panicked with this message.
     Panicked(String),
 }
 
-/// Conditions of a run, for its pilot and its supervisor.
+/// Conditions of a run for its pilot and its supervisor.
 #[derive(Debug, Clone)]
 pub struct RunTerms {
-    /// Time of the robot.
+    /// Source of the robot's time.
     pub time: Time,
     /// Period of a turn.
     pub period: Duration,
-    /// The request to end the run, which a signal makes.
+    /// Request to end the run, which a signal makes.
     pub request: StopRequest,
-    /// Microphones of the robot, for a module that listens.
+    /// Microphones of the robot for a module that listens.
     pub microphones: Microphones,
 }
 
-/// Makes the pilot of a run.
+/// A function that creates the pilot of a run.
 pub(crate) type MakePilot<'p, B> = dyn Fn(&RunTerms) -> Result<B, Refusal> + Sync + 'p;
 
-/// The pilot of an executable: its plan alone.
+/// The pilot of an executable, which has only a plan.
 pub(crate) struct PlanAlone<'p, P: Plan> {
-    /// Makes the plan.
+    /// Function that creates the plan.
     plan: &'p (dyn Fn() -> P + Sync),
     machine: Option<Machine<P>>,
-    /// Number of the plan that runs, from 1.
+    /// Number of the current plan, from 1.
     number: u64,
 }
 

@@ -1,20 +1,20 @@
-//! A plan and the position in it, behind interfaces without the types of either.
+//! A plan and the position in it, behind interfaces without their types.
 
 use mdle_runtime::{Frame, Fsm, Machine, Nanos, Plan, Words};
 
 /// Texts and tables of a plan, for reports: [`Plan`] without the types of its robot.
 pub trait Texts {
-    /// The machine's tables.
+    /// Returns the tables of the state machine.
     fn fsm(&self) -> Fsm<'_>;
-    /// The quark text of an atom's law.
+    /// Returns the law of an atom, as the text of a quark.
     fn law(&self, atom: u32) -> &str;
-    /// The condition text of a scope's interrupt, by its bracket.
+    /// Returns the text of the condition of a scope's interrupt, by the scope's bracket.
     fn condition(&self, scope: u32) -> &str;
-    /// The name of a scope, by its bracket; empty for an atom.
+    /// Returns the name of a scope, by its bracket; empty for an atom.
     fn name(&self, scope: u32) -> &str;
-    /// The words and places of the plan's text, if it has one.
+    /// Returns the words and places of the plan's text, if the plan has a text.
     fn source(&self) -> &dyn Words;
-    /// Returns the names of the paths that its laws replay.
+    /// Returns the names of the paths that the plan's laws replay.
     fn paths(&self) -> &[&'static str];
 }
 
@@ -44,19 +44,19 @@ impl<P: Plan> Texts for P {
     }
 }
 
-/// The position in a plan that runs, for reports: [`Machine`] without the types of its plan.
+/// The position in a running plan, for reports: [`Machine`] without the types of its plan.
 pub(crate) trait Position {
-    /// The plan's texts.
+    /// Returns the texts of the plan.
     fn texts(&self) -> &dyn Texts;
-    /// The number of the current state in the expanded plan.
+    /// Returns the number of the current state in the expanded plan.
     fn state(&self) -> u64;
-    /// Returns the index of the current atom in source order, from 0; `None` when the plan is over.
+    /// Returns the index of the current atom in source order, from 0; `None` when the plan has ended.
     fn atom(&self) -> Option<u32>;
-    /// Frame of the current atom if a `FRAME here` encloses it.
+    /// Returns the frame of the current atom, if a `FRAME here` encloses the atom.
     fn frame(&self) -> Option<Frame>;
-    /// The bracket of the enclosing scope at this level.
+    /// Returns the bracket of the enclosing scope at this level.
     fn scope(&self, level: u16) -> u32;
-    /// Time since the enclosing scope of this level was entered, at time `t`.
+    /// Returns the time, at time `t`, since the enclosing scope of this level was entered.
     fn since(&self, level: u16, t: Nanos) -> Nanos;
 }
 

@@ -1,16 +1,16 @@
-//! The program that runs a plan, as `--help` and `--version` name it.
+//! Names of a program that runs a plan, as in `--help` and `--version`.
 
-/// The names of a program that runs a plan.
+/// Names of a program that runs a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Program<'a> {
     /// Name of the plan, which `--help` shows.
     pub plan: &'a str,
-    /// Answer to `--version` after the name of the plan; if it is empty, the executable has no `--version`.
+    /// Answer to `--version` after the plan's name; if it is empty, the executable has no option `--version`.
     pub version: &'a str,
 }
 
 impl<'a> From<&'a str> for Program<'a> {
-    /// Returns the program of the plan of this name, without a version.
+    /// Returns a program with this plan name, without a version.
     fn from(plan: &'a str) -> Self {
         Self { plan, version: "" }
     }

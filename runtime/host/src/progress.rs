@@ -1,4 +1,4 @@
-//! The line on standard error by which a fast run shows that it goes on: only on a terminal, and erased at the end.
+//! The line on standard error that shows the progress of a fast run: only on a terminal, and erased at the end.
 
 use std::fmt;
 use std::io::Write;
@@ -11,15 +11,15 @@ use crate::run_end::say;
 
 /// Minimum time between two updates of the line.
 const EVERY: Duration = Duration::from_millis(100);
-/// Maximum length of the line, in letters, so that it never needs two lines of a terminal.
+/// Maximum length of the line, in characters, so that it never takes two lines of a terminal.
 const LETTERS: usize = 76;
-/// The letters of a bar.
+/// Width of a progress bar, in characters.
 const BAR: usize = 30;
 
 /// A line on standard error that is updated in place, and erased when it is dropped.
 pub struct Progress<'e> {
     err: &'e mut dyn Write,
-    /// The time since it began.
+    /// Function that returns the time since the work began.
     now: Box<dyn FnMut() -> Duration + 'e>,
     next: Duration,
     shown: bool,
@@ -37,8 +37,8 @@ impl<'e> Progress<'e> {
         Self { err, now, next: EVERY, shown: false }
     }
 
-    /// Shows the report of a run and its progress, if it is time to show anything: its atom has the law `law` at time
-    /// `t`.
+    /// Shows the report of a run and its progress, if it is time for an update; the current atom has the law `law` at
+    /// time `t`.
     pub(crate) fn run(&mut self, t: Nanos, law: &str, report: &mut Report<'_>) {
         let Some(now) = self.due() else { return };
         self.clear();
@@ -47,13 +47,13 @@ impl<'e> Progress<'e> {
         self.show(&format!("{:.1} s  {times:.0} times as fast as real  {}", t.seconds(), Printable(law)));
     }
 
-    /// Shows a message in a line of its own, which stays.
+    /// Shows a message on a line of its own, which is not erased.
     pub(crate) fn say(&mut self, message: &str) {
         self.clear();
         say(self.err, format_args!("{message}"));
     }
 
-    /// Shows that `done` of `all` runs are done.
+    /// Shows that `done` of `all` runs have finished.
     pub fn runs(&mut self, done: u64, all: u64) {
         let Some(now) = self.due() else { return };
         let full = (BAR as f64 * done as f64 / all.max(1) as f64) as usize;
@@ -62,7 +62,7 @@ impl<'e> Progress<'e> {
         self.show(&format!("[{full}{empty}] {done} of {all} runs, {left:.0} s to go"));
     }
 
-    /// Shows that the time `t` of `end` was simulated.
+    /// Shows that the simulation has reached time `t` of `end`.
     pub fn simulated(&mut self, t: Nanos, end: Nanos) {
         let Some(now) = self.due() else { return };
         let (t, end) = (t.seconds(), end.seconds());
@@ -72,7 +72,7 @@ impl<'e> Progress<'e> {
         self.show(&format!("[{full}{empty}] {t:.1} of {end:.0} s, {times:.1} times as fast as real"));
     }
 
-    /// The time, if it is time to show something.
+    /// Returns the current time if it is time for an update.
     fn due(&mut self) -> Option<Duration> {
         let now = (self.now)();
         (now >= self.next).then(|| {

@@ -1,5 +1,4 @@
-//! What a run needs before its first turn: the robot and the files, opened in an order in which a refused start changes
-//! no file.
+//! Opens the robot and the files before the first turn of a run, in an order in which a refused start changes no file.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -21,17 +20,18 @@ use crate::target_options::TargetOptions;
 use crate::views::{self, ByOdometry};
 use crate::{NamedFile, Pace, Refusal, Time, named_file};
 
-/// Parts that a run needs before its first turn.
+/// The robot and the files that a run needs before its first turn.
 pub(crate) struct Ready<'p> {
-    /// The open robot with the plan.
+    /// Open robot with the plan that drives it.
     pub(crate) drive: Box<dyn Drive + 'p>,
-    /// Time of the turns.
+    /// Source of the time of the turns.
     pub(crate) time: Time,
-    /// A log that cannot begin is no refusal: the robot is there already, and has to be stopped.
+    /// Log, or the error because of which it cannot begin. The error is not a refusal: the robot is already open, and
+    /// must be stopped.
     pub(crate) log: io::Result<Option<RunLog>>,
-    /// The path that is recorded.
+    /// Recorder of the driven path, if the path is recorded.
     pub(crate) path: io::Result<Option<Recorder>>,
-    /// The views by odometry.
+    /// Views by odometry, if the options request them.
     pub(crate) views: Option<ByOdometry>,
 }
 
@@ -69,13 +69,13 @@ pub(crate) fn ready<'p>(
 /// The files of a plan.
 #[derive(Clone, Copy)]
 pub(crate) struct KnownFiles<'a> {
-    /// Files that the program has read for it.
+    /// Files that the program has read for the plan.
     pub(crate) read: &'a [PathBuf],
-    /// Names of the paths that it replays.
+    /// Names of the paths that the plan replays.
     pub(crate) paths: &'a [&'static str],
 }
 
-/// The files that the options of a run name.
+/// Returns the files that the options of a run name.
 fn named_files(
     target: &TargetOptions,
     matches: &ArgMatches,
@@ -94,7 +94,8 @@ fn named_files(
     written.chain(views::files(matches)).chain(read).chain((target.files)(matches)).collect()
 }
 
-/// Refuses a log without the name of a file, and a record of a robot whose outputs or inputs a record cannot hold.
+/// Returns an error for a log without a file name, or for a record of a robot whose outputs or inputs a record cannot
+/// contain.
 fn check_record(target: &TargetOptions, options: &Options) -> Result<(), Refusal> {
     if options.log.as_deref() == Some(Path::new("-")) {
         let sentence = "--log -: expected the name of a file; `--log /dev/stdout` writes JSON lines to standard output";
@@ -110,7 +111,7 @@ fn check_record(target: &TargetOptions, options: &Options) -> Result<(), Refusal
     )))
 }
 
-/// Begins the log, in the format of its name.
+/// Begins the log in the format that its name determines.
 fn begun(
     file: UnchangedFile<'_>,
     options: &Options,
@@ -126,19 +127,19 @@ fn begun(
     Ok(RunLog::new(format, options.log_best_effort))
 }
 
-/// A file that the run is to write, open and as it was, if it was asked for.
+/// Opens a file that the run writes if the options request it, and leaves it unchanged.
 fn untouched<'p>(what: &str, path: Option<&'p Path>) -> Result<Option<UnchangedFile<'p>>, Refusal> {
     let refused =
         |path: &Path, error| Refusal::Usage(format!("the {what} {} cannot be written: {error}", path.display()));
     path.map(|path| UnchangedFile::open(path).map_err(|error| refused(path, error))).transpose()
 }
 
-/// A panic before anything ran.
+/// Returns the refusal after a panic before the run.
 pub(crate) fn bug_before<T>(Panicked(message): Panicked) -> Result<T, Refusal> {
     Err(Refusal::Fault(format!("the robot's code panicked before it ran, which is a bug: {message}")))
 }
 
-/// Returns `true` if a person may be watching; at the fastest pace it matters more that writing is cheap.
+/// Returns `true` if a person may be watching; at the fastest pace, cheap writing is more important.
 pub(crate) fn is_watched(time: Time) -> bool {
     match time {
         Time::Wall | Time::Stepped(Pace::Times(_)) => true,

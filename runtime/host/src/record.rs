@@ -1,7 +1,8 @@
-//! The record of a run: an MCAP file that a replay re-executes to the bit (docs/src/reference/interfaces.md, 6.6).
+//! The record of a run: an MCAP file with which the run can be repeated to the bit (docs/src/reference/interfaces.md,
+//! 6.6).
 //!
-//! The thread that drives the robot only encodes a turn; the thread of an [`Outlet`] makes the messages of it and
-//! writes the file.
+//! The thread that drives the robot only encodes each turn. The thread of an [`Outlet`] converts the turns to messages,
+//! and writes the file.
 
 use std::io::{self, Write};
 
@@ -18,7 +19,7 @@ use crate::log::Entry;
 use crate::supervised::Supervised;
 use crate::transitions::Operand;
 
-/// Time of the run after which what was recorded is handed to the system, if somebody may be watching.
+/// Time of the run, in nanoseconds, after which recorded data are passed to the system if a person may be watching.
 const FLUSH: u64 = 1_000_000_000;
 
 /// A record that is being written.
@@ -27,30 +28,30 @@ pub(crate) struct Record<W = Outlet> {
     file: W,
     frames: Frames,
     begin: Begin,
-    /// The output of the turn, and the inputs that the plan asked for and that is sent.
+    /// Output of the turn, the input that the plan requested, and the input that is sent.
     exact: Option<(Sensed, Twist, Twist)>,
     /// Causes of the turn besides its output.
     changes: Vec<Change>,
     has_begun: bool,
-    /// `true` if each second reaches the file at once: not at the fastest pace.
+    /// `true` if each second of the run is written to the file at once; `false` at the fastest pace.
     prompt: bool,
     flushed: Nanos,
-    /// The frames of a turn.
+    /// Encoded frames of a turn.
     bytes: Vec<u8>,
-    /// The supervisor's intervention that was recorded last.
+    /// Last intervention of the supervisor in the record.
     intervention: String,
 }
 
-/// A turn, without what a plan has made of it.
+/// A turn without the results of a plan.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct UnmadeTurn<'a> {
-    /// The number of the turn, from 0.
+    /// Number of the turn, from 0.
     pub(crate) number: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,
-    /// The number of the plan, from 1.
+    /// Number of the plan, from 1.
     pub(crate) plan: u64,
-    /// The supervisor's part in the turn.
+    /// Supervisor's part in the turn.
     pub(crate) supervised: &'a Supervised,
 }
 
@@ -63,16 +64,16 @@ impl<W: Write> Record<W> {
         Self { file, frames, begin, exact: None, changes, has_begun: false, prompt, flushed, bytes, intervention }
     }
 
-    /// Takes the output and the input of a turn, and its causes besides the output.
+    /// Stores the output and the input of a turn, and the causes of the turn besides the output.
     pub(crate) fn take(&mut self, exact: Option<Exact<'_>>, changes: Vec<Change>) {
         self.exact = exact.map(|Exact { y, asked, sent }| (*y, asked, sent));
         self.changes = changes;
     }
 
-    /// Writes a turn, whose output was taken.
+    /// Writes a turn whose output has been stored.
     ///
     /// # Errors
-    /// When the file cannot be written, such as when the disk is full.
+    /// The file cannot be written, for example because the disk is full.
     pub(crate) fn turn(&mut self, entry: &Entry<'_>) -> io::Result<()> {
         let Entry { turn, t, state, kind, transitions, plan_number, supervised, .. } = *entry;
         let applied = match kind {
@@ -87,10 +88,10 @@ impl<W: Write> Record<W> {
         self.written(&unmade)
     }
 
-    /// Writes a turn that no plan has made, whose output was taken.
+    /// Writes a turn that no plan has made and whose output has been stored.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// The file cannot be written.
     pub(crate) fn turn_without_plan(&mut self, unmade: &UnmadeTurn<'_>) -> io::Result<()> {
         self.exact(unmade, (Applied::Cut, 0), Vec::new())?;
         self.written(unmade)
@@ -114,7 +115,7 @@ impl<W: Write> Record<W> {
         Ok(())
     }
 
-    /// Writes the events of a turn, and hands all of it over.
+    /// Writes the events of a turn, and passes the whole turn to the writing thread.
     fn written(&mut self, turn: &UnmadeTurn<'_>) -> io::Result<()> {
         let UnmadeTurn { number, t, plan, supervised } = *turn;
         for request in &supervised.requests {
@@ -132,7 +133,7 @@ impl<W: Write> Record<W> {
         Ok(())
     }
 
-    /// Writes the transitions of a turn for people and viewers.
+    /// Writes the transitions of a turn for users and viewers.
     fn transitions(&mut self, entry: &Entry<'_>) {
         let Entry { plan, turn, t, transitions, .. } = *entry;
         for (transition, operands) in transitions.iter() {
@@ -157,7 +158,7 @@ impl<W: Write> Record<W> {
         }
     }
 
-    /// Writes an event if the supervisor's part differs from that of the turn before.
+    /// Writes an event if the supervisor's intervention differs from that in the previous turn.
     fn intervention(&mut self, turn: &UnmadeTurn<'_>) {
         let now = turn.supervised.intervention();
         let now =
@@ -173,10 +174,10 @@ impl<W: Write> Record<W> {
         self.frames.event(t, &json, &mut self.bytes);
     }
 
-    /// Writes the cause of the end of the turns.
+    /// Writes the reason why the turns have ended.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// The file cannot be written.
     pub(crate) fn ended(&mut self, turn: u64, t: Nanos, cause: &str) -> io::Result<()> {
         if !self.has_begun {
             return Ok(());
@@ -189,7 +190,7 @@ impl<W: Write> Record<W> {
     /// Completes the record.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// The file cannot be written.
     pub(crate) fn close(&mut self) -> io::Result<()> {
         self.bytes.clear();
         self.frames.end(&mut self.bytes);

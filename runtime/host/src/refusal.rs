@@ -3,11 +3,11 @@
 /// Reason why a robot could not be opened.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Refusal {
-    /// An option, a world or a start pose is no good.
+    /// An option, a world or a start pose is invalid.
     Usage(String),
-    /// The robot does not answer, or answers that it cannot run.
+    /// The robot does not answer, or reports that it cannot be driven.
     Fault(String),
-    /// The run was asked to end while the robot was opened. The robot was stopped; if not, a sentence with the reason
-    /// (exit status 3).
+    /// The run was asked to end while the robot was being opened. The robot was stopped; if not, the sentence gives the
+    /// reason (exit status 3).
     Ended(Result<(), String>),
 }

@@ -1,5 +1,5 @@
-//! The views of a run: the live view, two pictures and the table of poses, which the options of every executable ask
-//! for. A target that knows its world shows them itself; for all others they are made by odometry.
+//! The views of a run that the options of every executable request: the live view, two pictures and the table of poses.
+//! A target that knows its world shows the views itself; for all other targets they are made by odometry.
 
 mod by_odometry;
 
@@ -16,10 +16,10 @@ use crate::watch::{WATCH, is_asked_for};
 use crate::whole_file::WholeFile;
 use crate::{NamedFile, Refusal};
 
-/// The options of the files, as they are written.
+/// Names of the options that name files of views, without and with dashes.
 const FILES: [(&str, &str); 3] = [("plot", "--plot"), ("record", "--record"), ("trail", "--trail")];
 
-/// Adds the options of the views, which every executable has beside those of its target.
+/// Returns `command` with the options of the views, which every executable has.
 #[must_use]
 pub fn view_options(command: Command) -> Command {
     let file = |name, value| Arg::new(name).long(name).value_name(value);
@@ -47,7 +47,7 @@ pub fn view_options(command: Command) -> Command {
         )
 }
 
-/// The files that the options name.
+/// Returns the files that the options of the views name.
 pub(crate) fn files(matches: &ArgMatches) -> impl Iterator<Item = NamedFile> {
     FILES.into_iter().filter_map(|(name, option)| {
         let path = matches.get_one::<PathBuf>(name)?.clone();
@@ -55,10 +55,10 @@ pub(crate) fn files(matches: &ArgMatches) -> impl Iterator<Item = NamedFile> {
     })
 }
 
-/// Returns the views that the options ask for, where the target does not show them itself.
+/// Returns the views that the options request, if the target does not show them itself.
 ///
 /// # Errors
-/// The robot has no odometry that is known here, a file cannot be written, or there is no terminal.
+/// The robot has no known odometry, a file cannot be written, or there is no terminal.
 pub(crate) fn by_odometry(
     target: &TargetOptions,
     matches: &ArgMatches,

@@ -1,4 +1,4 @@
-//! The live view of `--watch`: the floor with the robot on it, the running atom, and how long each scope has run.
+//! The live view of `--watch`: the floor with the robot on it, the current atom, and the running time of each scope.
 
 mod canvas;
 mod map;
@@ -15,20 +15,20 @@ use crate::PlanPosition;
 use map::Map;
 use screen::Screen;
 
-/// Restores the terminal if the live view has taken it over. May be called from any thread.
+/// Restores the terminal if the live view uses it. May be called from any thread.
 pub(crate) fn leave_screen() {
     screen::leave_at_once();
 }
 
-/// The option of the live view.
+/// Name of the option for the live view.
 pub(crate) const WATCH: &str = "watch";
 
-/// Returns `true` if the run is shown while it goes on.
+/// Returns `true` if the options request the live view.
 pub(crate) fn is_asked_for(matches: &ArgMatches) -> bool {
     matches.get_flag(WATCH)
 }
 
-/// Minimum time between two pictures: the eye sees no faster changes.
+/// Minimum time between two pictures: the eye cannot see faster changes.
 const EVERY: Duration = Duration::from_millis(50);
 
 /// The live view that `--watch` asks for.
@@ -36,25 +36,25 @@ pub struct Watch {
     screen: Option<Screen>,
     world: World,
     map: Option<Map>,
-    /// Places of the way so far, at least a centimetre apart.
+    /// Positions on the way so far, at least a centimetre apart.
     way: Vec<Place>,
     echoes: Vec<Place>,
     /// Displacement of each moving object of the world; `None` for an open door.
     things: Vec<Option<Place>>,
     /// Time of the robot's last output.
     sensed: Option<Nanos>,
-    /// Form of the body.
+    /// Shape of the robot's body.
     form: Form,
     now: view::Now,
     shown: Option<Instant>,
 }
 
 impl Watch {
-    /// Returns the view that the options ask for, of a robot in `world` on standard output; it takes the screen at the
-    /// first turn.
+    /// Returns the live view that the options request, of a robot in `world` on standard output; it takes over the
+    /// screen at the first turn.
     ///
     /// # Errors
-    /// Standard output is not a terminal: a sentence.
+    /// Returns a sentence if standard output is not a terminal.
     pub fn of(matches: &ArgMatches, world: &World) -> Result<Option<Self>, String> {
         if !is_asked_for(matches) {
             return Ok(None);
@@ -77,8 +77,7 @@ impl Watch {
         }))
     }
 
-    /// The robot has come to the place of `body` and senses this, and the moving objects of the world have gone so
-    /// far.
+    /// Updates the place of the robot's body, its output, and the displacement of each moving object of the world.
     pub fn sensed(&mut self, body: &Footprint, sensed: &Sensed, t: Nanos, things: impl Iterator<Item = Option<Place>>) {
         let Footprint { pose, form } = body;
         let place = Place::of(pose);
@@ -92,7 +91,7 @@ impl Watch {
         (self.now.pose, self.form) = (*pose, *form);
     }
 
-    /// Takes in whether the robot is in contact with an obstacle, and the number of contacts so far.
+    /// Updates whether the robot touches an obstacle, and the number of contacts so far.
     pub fn touched(&mut self, touches: bool, contacts: u64) {
         (self.now.touches, self.now.contacts) = (touches, contacts);
     }
@@ -126,7 +125,7 @@ impl Watch {
         screen.show(&lines);
     }
 
-    /// Gives the screen back.
+    /// Restores the screen.
     pub fn leave(&mut self) {
         self.screen = None;
     }

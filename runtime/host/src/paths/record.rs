@@ -1,4 +1,4 @@
-//! Recorder of the path that a robot drives: a row for each turn.
+//! Records the path that a robot drives, with a row for each turn.
 
 use std::io::{self, Write};
 
@@ -9,20 +9,21 @@ use crate::background_writer::Outlet;
 /// A path that is being recorded.
 pub(crate) struct Recorder<W: Write = Outlet> {
     file: W,
-    /// The heading in which the plan began, by odometry.
+    /// Heading by odometry at the beginning of the plan.
     begun: Option<Radians>,
-    /// Nothing more is written after an error, which is reported at the end: a recording is no reason to stop a robot.
+    /// Result of writing. After an error nothing more is written, and the error is reported at the end: it is no reason
+    /// for stopping a robot.
     written: io::Result<()>,
 }
 
 impl<W: Write> Recorder<W> {
-    /// A recording to `file`.
+    /// Returns a recorder that writes to `file`.
     pub(crate) fn new(mut file: W) -> Self {
         let written = file.write_all(b"time s, heading deg, speed cm/s\n");
         Self { file, begun: None, written }
     }
 
-    /// Writes the row of the turn at time `t`, in which the robot had this heading by odometry, and drove this fast.
+    /// Writes the row of the turn at time `t`, in which the robot had this heading and speed by odometry.
     pub(crate) fn take(&mut self, heading: Radians, speed: MetersPerSecond, t: Nanos) {
         let begun = *self.begun.get_or_insert(heading);
         if self.written.is_ok() {
@@ -32,10 +33,10 @@ impl<W: Write> Recorder<W> {
         }
     }
 
-    /// Hands the rest to the system.
+    /// Passes the rest to the system.
     ///
     /// # Errors
-    /// When not all could be written.
+    /// A row could not be written.
     pub(crate) fn close(mut self) -> io::Result<()> {
         self.written?;
         self.file.flush()

@@ -1,4 +1,4 @@
-//! The text of a path: a line of columns with their units, then a row for each setpoint; `#` begins a comment.
+//! Text of a path: a header with the columns and their units, then a row for each setpoint; `#` begins a comment.
 
 use std::f64::consts::PI;
 use std::str::from_utf8;
@@ -6,17 +6,17 @@ use std::time::Duration;
 
 use mdle_runtime::{MetersPerSecond, Nanos, Radians, Setpoint, Twist};
 
-/// Maximum time between two rows: over a longer time, the motion between them would be a guess.
+/// Maximum time between two rows; over a longer time the motion between them would be a guess.
 pub(super) const APART: Duration = Duration::from_secs(1);
 
 /// Header of a path file, as messages show it.
 const HEADER: &str = "`time s, heading deg, speed cm/s`";
-/// Factor by which a path may exceed the robot's limits: values that were measured at the limits may lie above them.
+/// Factor by which a path may exceed the robot's limits, because speeds measured at the limits may be above them.
 const MARGIN: f64 = 1.05;
-/// The latest time of a row, in nanoseconds: three months. An `f64` holds every whole number up to it.
+/// Latest time of a row, in nanoseconds: three months. An `f64` represents every whole number up to this time exactly.
 const LATEST: f64 = (1_u64 << 53) as f64;
 
-/// A column, and its units as nanoseconds, radians, or metres a second.
+/// A column, with its units as factors to nanoseconds, radians, or metres per second.
 struct Column {
     name: &'static str,
     units: [(&'static str, f64); 2],
@@ -28,14 +28,14 @@ const COLUMNS: [Column; 3] = [
     Column { name: "speed", units: [("cm/s", 0.01), ("m/s", 1.0)] },
 ];
 
-/// Error in a path: the place, by line and column from 1, and the message.
+/// An error in a path: its line and column, from 1, and the message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct TextFault {
     pub(super) place: Option<(usize, usize)>,
     pub(super) what: String,
 }
 
-/// A value between commas.
+/// Text between commas.
 #[derive(Debug, Clone, Copy)]
 struct Cell<'t> {
     place: (usize, usize),
@@ -47,7 +47,7 @@ impl Cell<'_> {
         TextFault { place: Some(self.place), what }
     }
 
-    /// Returns the number in the cell; `what` names it in messages.
+    /// Returns the number in the cell; messages call it `what`.
     fn number(&self, what: &str) -> Result<f64, TextFault> {
         match self.text.parse::<f64>() {
             _ if self.text.is_empty() => Err(self.wrong(format!("the {what} is missing"))),
@@ -67,8 +67,8 @@ pub(super) fn utf8(bytes: &[u8]) -> Result<&str, TextFault> {
     })
 }
 
-/// Returns the setpoints in `text`, for a robot that is no faster than `fastest`: the first at time 0, each later than
-/// its predecessor.
+/// Returns the setpoints in `text`, for a robot with the maximum speeds `fastest`. The first setpoint is at time 0, and
+/// each other setpoint is later than the previous one.
 pub(super) fn setpoints(text: &str, fastest: Twist) -> Result<Vec<Setpoint>, TextFault> {
     // Spreadsheets like to put it in front.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -87,7 +87,7 @@ pub(super) fn setpoints(text: &str, fastest: Twist) -> Result<Vec<Setpoint>, Tex
     Ok(rows.setpoints)
 }
 
-/// The values of a line.
+/// Returns the cells of a line.
 fn cells(line: usize, text: &str) -> Vec<Cell<'_>> {
     let mut column = 1;
     let cells = text.split(',').map(|cell| {
@@ -100,7 +100,7 @@ fn cells(line: usize, text: &str) -> Vec<Cell<'_>> {
     cells.collect()
 }
 
-/// The unit of each column.
+/// Returns the unit of each column.
 fn units(header: &[Cell<'_>]) -> Result<[(&'static str, f64); 3], TextFault> {
     if let [cell] = header
         && cell.text.contains([';', '\t'])
@@ -145,7 +145,7 @@ impl Column {
     }
 }
 
-/// The rows read so far.
+/// Setpoints of the rows so far.
 struct Rows {
     units: [(&'static str, f64); 3],
     fastest: Twist,
@@ -175,7 +175,7 @@ impl Rows {
         Ok(())
     }
 
-    /// Returns the time of the next row, `nanos` nanoseconds after the first.
+    /// Returns the time of the next setpoint, `nanos` nanoseconds after the first.
     fn time(&self, cell: &Cell<'_>, nanos: f64) -> Result<Nanos, TextFault> {
         if nanos > LATEST {
             return Err(cell.wrong(format!("no path is as long as {}", self.shown(cell))));
@@ -202,7 +202,7 @@ impl Rows {
         }
     }
 
-    /// A time as it is written, with its unit.
+    /// Returns a time as it is written, with its unit.
     fn shown(&self, cell: &Cell<'_>) -> String {
         let [(unit, _), ..] = self.units;
         format!("{} {unit}", cell.text)
@@ -217,7 +217,7 @@ impl Rows {
         Err(cell.wrong(format!("{} {unit} is too fast: this robot drives at {fastest} {unit} at most", cell.text)))
     }
 
-    /// Checks that the robot can turn in time to this heading from the previous one.
+    /// Checks that the robot can turn from the previous heading to this heading in time.
     fn check_turn(&self, cell: &Cell<'_>, to: &Setpoint) -> Result<(), TextFault> {
         let Some(from) = self.setpoints.last() else { return Ok(()) };
         let (turn, seconds) = (Radians(to.heading.0 - from.heading.0).wrapped(), to.at.since(from.at).seconds());

@@ -12,7 +12,7 @@ use crate::watch::Watch;
 use crate::whole_file::{Unfinished, WholeFile};
 use crate::{Ended, Observer, PlanPosition};
 
-/// The observer of a robot whose world is not known.
+/// Observer of a robot whose world is unknown.
 pub(crate) struct ByOdometry {
     /// Text about the run for titles.
     setup: String,
@@ -26,19 +26,19 @@ pub(crate) struct ByOdometry {
     contacts: u64,
 }
 
-/// The table of poses: a line for each turn.
+/// The table of poses, with a line for each turn.
 struct Trail {
     file: WholeFile,
     patience: Patience,
-    /// The lines; `None` before the first output. A slow disk does not make the robot wait.
+    /// Writer of the lines; `None` before the first output. A slow disk does not make the robot wait.
     lines: Option<Unfinished<Outlet>>,
 }
 
 impl ByOdometry {
-    /// Returns the views of a run on the robot of this name.
+    /// Returns the views of a run on the robot with this name.
     ///
     /// # Errors
-    /// The run is to be shown, and standard output is not a terminal: a sentence.
+    /// Returns a sentence if the options request the live view and standard output is not a terminal.
     pub(crate) fn new(
         robot: &str,
         matches: &ArgMatches,
@@ -53,7 +53,7 @@ impl ByOdometry {
         Ok(Self { setup, watch, plot, record, trail, drawing: None, touches: false, contacts: 0 })
     }
 
-    /// Takes the output of the turn at time `t`.
+    /// Updates the views with the output of the turn at time `t`.
     pub(crate) fn sensed(&mut self, y: &Sensed, t: Nanos) {
         // A driver that loses its pose for a moment leaves a gap in the picture.
         if !is_finite(&y.odometry) {
@@ -78,7 +78,7 @@ impl ByOdometry {
         }
     }
 
-    /// The robot was stopped after this output, if there was one: gives the screen back.
+    /// Updates the views with the output after which the robot was stopped, if there is one, and restores the screen.
     pub(crate) fn stopped(&mut self, y: Option<&Sensed>) {
         if let Some(watch) = &mut self.watch {
             watch.leave();
@@ -89,7 +89,7 @@ impl ByOdometry {
     }
 }
 
-/// Returns `true` if all coordinates of a pose are numbers that can be drawn.
+/// Returns `true` if all coordinates of a pose are finite, so that they can be drawn.
 fn is_finite(pose: &Pose) -> bool {
     [pose.x.0, pose.y.0, pose.theta.0].into_iter().all(f64::is_finite)
 }

@@ -1,9 +1,9 @@
-//! A picture of dots in letters: each letter of a terminal holds two dots by four, and one colour.
+//! A picture of dots in characters of a terminal: each character has two by four dots and one colour.
 
-/// The colour of a letter, as the number that terminals know it by; the greater covers the less.
+/// Colour of a character; a greater colour covers a lesser one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(super) enum Ink {
-    /// Nothing is drawn.
+    /// No dot is drawn.
     #[default]
     None,
     Goal,
@@ -26,7 +26,7 @@ impl Ink {
     }
 }
 
-/// A drawing in Braille letters, each of which is a block of 2 by 4 dots.
+/// A drawing in Braille characters, each of which is a block of 2 by 4 dots.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Canvas {
     pub(super) columns: usize,
@@ -52,7 +52,7 @@ impl Canvas {
         letter.1 = letter.1.max(ink);
     }
 
-    /// The rows as text, with `sign` in place of one letter.
+    /// Returns the rows as text, with `sign` in place of one character.
     pub(super) fn text(&self, sign: Option<((usize, usize), &str)>) -> Vec<String> {
         let rows = self.letters.chunks(self.columns.max(1)).enumerate();
         rows.map(|(row, letters)| {

@@ -1,4 +1,4 @@
-//! The floor as dots: walls and goal once, the growing way, and over them the robot with its echoes.
+//! The floor as dots: walls and goal are drawn once, then the growing way, and on top the robot with its echoes.
 
 use mdle_runtime::{Meters, Radians};
 use mdle_simulator::{Footprint, Form, Place, Thing, World, Zone, edge};
@@ -7,19 +7,19 @@ use super::canvas::{Canvas, Ink};
 
 /// Margin around the drawing, in metres.
 const AROUND: f64 = 0.3;
-/// Minimum radius of a body, in dots, whose edge is drawn, and the number of dots of the edge.
+/// Minimum radius of a body whose edge is drawn, in dots. The next constant is the number of dots of the edge.
 const BODY_LEAST: f64 = 2.5;
 const BODY_DOTS: u32 = 60;
-/// Eight directions of a robot, from the first axis counter-clockwise.
+/// Arrows for eight directions of a robot, counter-clockwise from the first axis.
 const ARROWS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];
 
 /// A map for one size of the terminal.
 #[derive(Debug, Clone)]
 pub(super) struct Map {
     canvas: Canvas,
-    /// The upper left corner, in metres.
+    /// Position of the upper left corner, in metres.
     corner: Place,
-    /// The dots of a metre.
+    /// Number of dots per metre.
     scale: f64,
     /// Number of places of the way that are drawn.
     way_count: usize,
@@ -63,7 +63,7 @@ impl Map {
         (self.canvas.columns, self.canvas.rows) == (columns, rows)
     }
 
-    /// Returns `true` if a place is on the map.
+    /// Returns `true` if a position is on the map.
     pub(super) fn shows(&self, place: Place) -> bool {
         let (x, y) = self.at(place);
         (0.0..2.0 * self.canvas.columns as f64).contains(&x) && (0.0..4.0 * self.canvas.rows as f64).contains(&y)
@@ -90,7 +90,7 @@ impl Map {
         self.way_count = way.len();
     }
 
-    /// Returns the map with the moving objects on it, each with its displacement.
+    /// Returns a map with the moving objects, each with its displacement.
     pub(super) fn with<'t>(&self, things: impl Iterator<Item = (&'t Thing, Place)>) -> Self {
         let mut map = self.clone();
         for (thing, displacement) in things {
@@ -120,7 +120,7 @@ impl Map {
         self.canvas.text(Some((((x / 2.0).max(0.0) as usize, (y / 4.0).max(0.0) as usize), &sign)))
     }
 
-    /// Converts a place to dots, from the upper left corner.
+    /// Converts a position to dots from the upper left corner.
     fn at(&self, place: Place) -> (f64, f64) {
         ((place.x - self.corner.x) * self.scale, (self.corner.y - place.y) * self.scale)
     }
@@ -140,7 +140,7 @@ impl Map {
         }
     }
 
-    /// The edge of the body, where it is seen around its arrow.
+    /// Draws the edge of the body, where the robot's arrow does not cover it.
     fn body(&mut self, robot: &Footprint) {
         if robot.form.radius() * self.scale < BODY_LEAST {
             return;
@@ -155,7 +155,7 @@ impl Map {
         }
     }
 
-    /// Draws every other dot of the edge of a rectangular goal.
+    /// Draws every second dot of the edge of a rectangular goal.
     fn rectangle(&mut self, min: Place, max: Place) {
         let ((left, low), (right, high)) = (self.at(min), self.at(max));
         let within = |value: f64, most: usize| value.clamp(0.0, most as f64) as i64;

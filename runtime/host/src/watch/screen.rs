@@ -1,4 +1,4 @@
-//! The alternate screen of a terminal: its settings are restored on every way out.
+//! The alternate screen of a terminal, whose settings are restored in every case.
 
 use std::fs::File;
 use std::io::{self, IsTerminal, Write, stdout};
@@ -13,9 +13,9 @@ use rustix::termios::{
     LocalModes, OptionalActions, QueueSelector, Termios, tcflush, tcgetattr, tcgetwinsize, tcsetattr,
 };
 
-/// Codes that switch to the terminal's alternate screen, without a cursor.
+/// Codes that switch to the terminal's alternate screen without a cursor.
 const ENTER: &str = "\x1b[?1049h\x1b[?25l\x1b[2J";
-/// Colours, cursor and screen as they were.
+/// Codes that restore colours, cursor and screen.
 const LEAVE: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
 
 /// Settings of the terminal before its screen was taken, as long as it is taken: a process has one screen, and its
@@ -24,7 +24,7 @@ static SETTINGS: Mutex<Option<SavedSettings>> = Mutex::new(None);
 
 struct SavedSettings(Option<Termios>);
 
-/// The terminal, opened so that writes never wait, and the unwritten rest of a picture.
+/// The terminal, opened so that writes never wait, with the unwritten rest of a picture.
 static TERMINAL: Mutex<Option<Terminal>> = Mutex::new(None);
 
 struct Terminal {
@@ -32,12 +32,12 @@ struct Terminal {
     left: Vec<u8>,
 }
 
-/// Maximum number of columns and rows that are drawn: a terminal may say that it has very many.
+/// Maximum number of columns and rows of the live view; a terminal may report far more.
 const SIZE_MOST: (usize, usize) = (500, 200);
-/// The time that restoring the terminal may take.
+/// Maximum time for restoring the terminal.
 const LEAVING: Duration = Duration::from_millis(500);
 
-/// A screen that is taken; dropped, it is given back.
+/// A screen that has been taken over; dropping this restores it.
 #[derive(Debug)]
 pub(super) struct Screen;
 
@@ -46,7 +46,7 @@ pub(super) fn is_there() -> bool {
     stdout().is_terminal()
 }
 
-/// Returns the columns and rows of the terminal; 80 and 24 if the terminal does not report them.
+/// Returns the number of columns and rows of the terminal; 80 and 24 if the terminal does not report them.
 pub(super) fn size() -> (usize, usize) {
     let size = tcgetwinsize(stdout()).ok().map(|size| (usize::from(size.ws_col), usize::from(size.ws_row)));
     size.filter(|(columns, rows)| *columns > 0 && *rows > 0)
@@ -54,7 +54,7 @@ pub(super) fn size() -> (usize, usize) {
 }
 
 impl Screen {
-    /// Takes the screen. Keys are not echoed; Ctrl-C is still the signal it always is.
+    /// Takes over the screen. Keys are not echoed; Ctrl-C still sends its signal.
     pub(super) fn enter() -> Self {
         static HOOK: Once = Once::new();
         // A panic tells of itself before anything is dropped: on a screen that goes away nobody would read it.
@@ -76,7 +76,7 @@ impl Screen {
         Self
     }
 
-    /// Shows these lines, from the top.
+    /// Shows `lines` from the top of the screen.
     pub(super) fn show(&mut self, lines: &[String]) {
         // Shown at once by terminals that know how to; the others do not mind.
         let mut text = "\x1b[?2026h\x1b[H".to_owned();
@@ -96,14 +96,14 @@ impl Drop for Screen {
     }
 }
 
-/// Gives the screen back, if it is taken.
+/// Restores the screen if it is taken over.
 fn leave() {
     let Some(SavedSettings(settings)) = SETTINGS.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
     write_to_the_end(LEAVE);
     restore(settings);
 }
 
-/// Gives the screen back while the thread that has it hangs: nothing here waits for a lock of that thread.
+/// Restores the screen while the thread that uses it hangs: the function waits for no lock of that thread.
 pub(super) fn leave_at_once() {
     if terminal().is_some() {
         return leave();
@@ -121,7 +121,7 @@ fn restore(settings: Option<Termios>) {
     }
 }
 
-/// Opens the terminal once more, in a way that does not wait. Where that is not allowed, writing may wait.
+/// Opens the terminal a second time, so that writes do not wait. If that is not permitted, writes may wait.
 fn opened() -> Option<Terminal> {
     let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits() as i32;
     let file = File::options().write(true).custom_flags(flags).open("/proc/self/fd/1").ok()?;
@@ -133,7 +133,8 @@ fn terminal() -> MutexGuard<'static, Option<Terminal>> {
 }
 
 impl Terminal {
-    /// Writes as much of the rest as the terminal takes. Returns `true` if that was all, or if no more can be written.
+    /// Writes as much of the rest as the terminal accepts. Returns `true` if the rest is empty, or if nothing can be
+    /// written any more.
     fn push(&mut self) -> bool {
         while !self.left.is_empty() {
             match self.file.write(&self.left) {
@@ -148,7 +149,7 @@ impl Terminal {
     }
 }
 
-/// Shows a picture, unless the terminal has not yet taken the one before.
+/// Shows a picture, unless the terminal has not yet accepted the previous picture completely.
 fn write(text: &str) {
     let mut terminal = terminal();
     if let Some(terminal) = terminal.as_mut() {
@@ -163,7 +164,7 @@ fn write(text: &str) {
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
-/// Writes this after the rest, for as long as giving the terminal back may take.
+/// Writes `text` after the rest, within the maximum time for restoring the terminal.
 fn write_to_the_end(text: &str) {
     let mut terminal = terminal();
     let Some(terminal) = terminal.as_mut() else {

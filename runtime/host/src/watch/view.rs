@@ -1,15 +1,15 @@
-//! The words around the map: time and place above it, the running atom and the scopes around it below.
+//! The text around the map: time and place above it, and the current atom with its enclosing scopes below it.
 
 use mdle_runtime::{Pose, Printable};
 
 use crate::{Around, PlanPosition};
 
-/// Maximum number of scopes that are shown: the outermost and the innermost count most.
+/// Maximum number of scopes in the view; the outermost and the innermost scopes are most important.
 const SCOPES_MOST: usize = 4;
-/// The letters of a bar.
+/// Width of a bar, in characters.
 const BAR: usize = 20;
 
-/// The data that are shown of a moment.
+/// Data that the live view shows.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Now {
     pub(super) pose: Pose,
@@ -20,17 +20,17 @@ pub(super) struct Now {
     scopes: Vec<Scope>,
 }
 
-/// A scope as it is shown.
+/// A scope in the live view.
 #[derive(Debug, Clone, PartialEq)]
 struct Scope {
     title: String,
     seconds: f64,
-    /// Seconds of the scope's `wait`, if its condition has one.
+    /// Time in the scope's `wait`, in seconds, if its condition has a `wait`.
     wait: Option<f64>,
 }
 
 impl Now {
-    /// Takes in the current state of the plan.
+    /// Updates the data with the current position in the plan.
     pub(super) fn stands(&mut self, standing: &PlanPosition<'_>) {
         self.seconds = standing.t.seconds();
         let place = if standing.place.is_empty() { String::new() } else { format!("  ({})", standing.place) };
@@ -92,14 +92,14 @@ impl Scope {
     }
 }
 
-/// The seconds of the first `wait` of a condition text, where it is a number.
+/// Returns the time of the first `wait` in the text of a condition, in seconds, if it is a number.
 fn wait(condition: &str) -> Option<f64> {
     let words: Vec<&str> = condition.split([' ', '(', ')']).filter(|word| !word.is_empty()).collect();
     let at = words.iter().position(|word| *word == "wait")?;
     words.get(at + 1)?.parse().ok().filter(|seconds: &f64| seconds.is_finite())
 }
 
-/// Returns the beginning of a text for which there is room.
+/// Returns the beginning of a text that fits into `room` characters.
 fn cut(text: &str, room: usize) -> String {
     let text = Printable(text).to_string();
     if text.chars().count() <= room {
