@@ -1,4 +1,4 @@
-//! The state of a plan that runs, for observers and supervisors.
+//! The position in a running plan for observers and supervisors.
 
 use mdle_runtime::Nanos;
 use mdle_runtime::fsm::Kind;
@@ -8,16 +8,16 @@ use crate::passes::Passes;
 use crate::position::Position;
 use crate::{Around, PlanPosition};
 
-/// The course of the run up to its last turn, as far as a plan does not know it.
+/// Course of a run up to its last turn, as far as the plan itself does not record it.
 #[derive(Debug, Default)]
 pub(crate) struct Course {
-    /// The passes of loops.
+    /// Passes of the loops.
     pub(crate) passes: Passes,
-    /// Cause of the last transition, which began the current atom; empty for the plan's first atom.
+    /// Cause of the last transition, with which the current atom began; empty for the plan's first atom.
     pub(crate) since: String,
 }
 
-/// Returns the state of a plan that is not over, and that began at time `zero`.
+/// Returns the position in a plan that has not ended, and that began at time `zero`.
 pub(crate) fn standing<'m>(position: &'m dyn Position, t: Nanos, zero: Nanos, course: &'m Course) -> PlanPosition<'m> {
     let (plan, fsm) = (position.texts(), position.texts().fsm());
     let atom = position.atom().and_then(|atom| fsm.atoms.get(atom as usize));

@@ -1,5 +1,5 @@
 //! The summary of several runs: the number of runs with each outcome, their times, and a command that repeats the first
-//! of each kind.
+//! run of each group.
 
 use std::fmt::{self, Write as _};
 use std::time::Duration;
@@ -12,18 +12,18 @@ use crate::outcome::{EndedRun, Outcome};
 use crate::report::Over;
 use crate::run_end;
 
-/// The runs of a batch, in the order of their seeds.
+/// Runs of a batch, in the order of their seeds.
 pub(crate) struct Summary<'a> {
     pub(crate) runs: &'a [EndedRun],
-    /// Number of runs that were to be made: more than were made if a signal ended the batch.
+    /// Number of requested runs; more than the runs made if a signal ended the batch.
     pub(crate) asked: u64,
     /// Seed of the first run.
     pub(crate) first: u64,
-    /// Returns the options that repeat the run of a seed by itself.
+    /// Function that returns the options with which the run of a seed can be repeated alone.
     pub(crate) alone: &'a dyn Fn(u64) -> Vec<String>,
-    /// Timeout of the runs, if no option limits them.
+    /// Time limit of the runs, if no option limits them.
     pub(crate) timeout: Option<Duration>,
-    /// The words by which the program was called, as a shell takes them.
+    /// Command line of the program before its options, as typed in a shell.
     pub(crate) program: &'a str,
 }
 
@@ -43,7 +43,7 @@ impl Outcome {
         }
     }
 
-    /// Returns `true` if the run is as it was to be.
+    /// Returns `true` if the run ended as required.
     fn is_good(&self) -> bool {
         match self {
             Self::Ended | Self::Arrived => true,
@@ -53,7 +53,7 @@ impl Outcome {
 }
 
 impl Summary<'_> {
-    /// The exit status of the batch, if no signal ended it.
+    /// Returns the exit status of the batch, if no signal ended it.
     pub(crate) fn status(&self) -> u8 {
         if self.count("failed") > 0 {
             run_end::FAULT
@@ -68,18 +68,18 @@ impl Summary<'_> {
         self.runs.iter().filter(|run| run.outcome.name() == name).count() as u64
     }
 
-    /// Returns the number of contacts, and the number of runs in which there were contacts.
+    /// Returns the number of contacts, and the number of runs with contacts.
     fn contacts(&self) -> (u64, usize) {
         let touched = self.runs.iter().filter(|run| run.contacts > 0);
         (touched.clone().map(|run| run.contacts).sum(), touched.count())
     }
 
-    /// The runs that are as they were to be.
+    /// Returns the runs that ended as required.
     fn good(&self) -> impl Iterator<Item = &EndedRun> {
         self.runs.iter().filter(|run| run.outcome.is_good())
     }
 
-    /// The median of the times of the good runs, and the slowest of these.
+    /// Returns the median time of the runs that ended as required, and the slowest of these runs.
     fn times(&self) -> Option<(Nanos, &EndedRun)> {
         let mut good: Vec<&EndedRun> = self.good().collect();
         // The first of equals is the one with the first seed: sorting keeps their order.
@@ -91,7 +91,7 @@ impl Summary<'_> {
         Some((Nanos(low.0 + (high.0 - low.0) / 2), worst))
     }
 
-    /// The command that makes a run alone.
+    /// Returns the command that repeats a run alone.
     fn command(&self, run: &EndedRun) -> String {
         let timeout = self.timeout.filter(|_| run.outcome == Outcome::TimedOut);
         let timeout = timeout.map(|timeout| ["--timeout".to_owned(), timeout.as_secs().to_string()]);
@@ -99,7 +99,7 @@ impl Summary<'_> {
         options.fold(self.program.to_owned(), |command, word| command + " " + &quoted(&word))
     }
 
-    /// Runs that went alike, in the order of their first seeds. Those that arrived need no second look.
+    /// Returns groups of similar runs in the order of their first seeds. Runs that reached their goal are left out.
     fn groups(&self) -> Vec<Group<'_>> {
         let mut groups: Vec<Group<'_>> = Vec::new();
         for run in self.runs.iter().filter(|run| run.outcome != Outcome::Arrived) {
@@ -111,7 +111,7 @@ impl Summary<'_> {
         groups
     }
 
-    /// The summary as a JSON object, without the line break.
+    /// Returns the summary as a JSON object, without a line break.
     pub(crate) fn json(&self) -> String {
         let mut json = format!("{{\"runs\":{},\"done\":{},\"first_seed\":{}", self.asked, self.runs.len(), self.first);
         for name in Outcome::NAMES {
@@ -174,14 +174,15 @@ impl fmt::Display for Summary<'_> {
     }
 }
 
-/// Runs with the same outcome, by the same cause.
+/// Runs with the same outcome and the same cause.
 struct Group<'a> {
     first: &'a EndedRun,
     count: u64,
 }
 
 impl Group<'_> {
-    /// Returns `true` if a run went as those of the group. Measured values and places differ from run to run.
+    /// Returns `true` if a run belongs to the group. Measured values and places, which differ from run to run, do not
+    /// count.
     fn holds(&self, run: &EndedRun) -> bool {
         let is_alike = match (&self.first.outcome, &run.outcome) {
             (Outcome::Astray(_), Outcome::Astray(_)) => true,

@@ -1,27 +1,27 @@
-//! The part of a supervisor in a turn, for reports.
+//! A supervisor's part in a turn, for reports.
 
 use crate::{Intervention, LimitedQuantity, Verdict};
 
-/// The intervention of a turn, and the plan that a diversion has begun.
+/// The intervention of a supervisor in a turn, and the plan that a diversion has begun.
 #[derive(Debug, Default)]
 pub(crate) struct Supervised {
-    /// The intervention's strength, if there was one.
+    /// Strength of the intervention, if there was one.
     pub(crate) verdict: Option<Verdict>,
-    /// The rule that asked for it.
+    /// Rule that caused the intervention.
     pub(crate) rule: String,
-    /// The quantity that the rule limited.
+    /// Quantity that the rule limited.
     limited: Option<LimitedQuantity>,
     /// Reason why another plan has replaced the plan in this turn, if one has.
     pub(crate) begins: Option<String>,
-    /// The requests that were carried out before the turn.
+    /// Requests that were fulfilled before the turn.
     pub(crate) requests: Vec<String>,
-    /// The rule that replaced the plan last; empty if none did, or if people have replaced the plan since.
+    /// Rule that last replaced the plan; empty if no rule did, or if a user has replaced the plan since.
     pub(crate) diverted_by: String,
 }
 
 impl Supervised {
-    /// Notes what the supervisor did in a turn, and that another plan began in it for this reason, which is empty for
-    /// a diversion.
+    /// Stores the supervisor's intervention in a turn, and the reason why another plan began in the turn, which is
+    /// empty for a diversion.
     pub(crate) fn note(&mut self, intervention: Option<Intervention<'_>>, begins: Option<&str>) {
         self.begins = match begins {
             Some("") => Some(format!("safety: {}", self.diverted_by)),

@@ -7,70 +7,71 @@ use mdle_runtime::Robot;
 
 use crate::{EarsOf, NamedFile, Observation, Refusal, Replays, SettingsOf, StopRequest, Time};
 
-/// A robot that executables are built for; implemented once in each target crate. A driver needs no more than a
-/// [`Robot`] and [`Target::connect`].
+/// A robot for which executables are built. Each target crate implements it once; a driver needs only a [`Robot`] and
+/// [`Target::connect`].
 pub trait Target {
-    /// The name of the target, as `mdlec --target` takes it.
+    /// Name of the target, as in `mdlec --target`.
     const NAME: &'static str;
-    /// The period of a turn unless `--period` says otherwise.
+    /// Period of a turn without the option `--period`.
     const PERIOD: Duration;
-    /// The robot.
+    /// Type of the robot.
     type Robot: Robot + 'static;
     /// Functions to replay and to record paths, if the alphabet has the capability `paths`: the executable then takes
     /// `--paths` and `--record-path`.
     const PATHS: Option<Replays<Self::Robot>> = None;
-    /// The observer of its runs, if it has one, as a simulator does.
+    /// Functions that observe the robot's runs, if there are any, as for a simulator.
     const OBSERVATION: Option<Observation<Self::Robot>> = None;
 
-    /// The settings that people change while it drives, if there are any.
+    /// Function that returns the settings that a user can change while the robot drives, if there are any.
     const SETTINGS: Option<SettingsOf<Self::Robot>> = None;
 
-    /// Gives its robot microphones, if it can have some.
+    /// Function that gives the robot microphones, if it can have any.
     const EARS: Option<EarsOf<Self::Robot>> = None;
 
-    /// Adds the target's own options to the executable's.
+    /// Returns `command` with the target's own options.
     fn arguments(command: Command) -> Command {
         command
     }
 
-    /// Returns how time passes for this robot with these options: by the wall clock, as for every real one.
+    /// Returns the source of time of this robot with these options; the default, for every real robot, is the wall
+    /// clock.
     ///
     /// # Errors
-    /// A sentence for the operator about an option that makes no sense.
+    /// Returns a sentence for the operator about an invalid option.
     fn time(_matches: &ArgMatches) -> Result<Time, String> {
         Ok(Time::Wall)
     }
 
-    /// Checks that the robot, as these options configure it, has what a plan needs. `texts` are the laws and the
-    /// conditions of the plan, as its text has them. Called before [`Target::connect`]; a robot that always has all
+    /// Checks that the robot, as the options configure it, has the capabilities that a plan needs. `texts` are the laws
+    /// and the conditions in the text of the plan. Called before [`Target::connect`]. A robot that always has all
     /// capabilities of its alphabet needs no check.
     ///
     /// # Errors
-    /// A sentence with the quark and the setting that it needs (exit status 2).
+    /// Returns a sentence with the quark and the setting that it needs (exit status 2).
     fn accepts(_matches: &ArgMatches, _texts: &[&str]) -> Result<(), Refusal> {
         Ok(())
     }
 
-    /// Opens the robot; no motion yet.
+    /// Opens the robot, which does not move yet.
     ///
-    /// From the call on, signals no longer end the program: they make `request`. A robot that opens at once ignores it,
-    /// and the host stops the robot before its first turn. A robot that takes longer checks `request` between its
-    /// steps, and when it is made, stops and returns [`Refusal::Ended`].
+    /// From this call on, signals no longer end the program, but make `request`. A robot that opens at once can ignore
+    /// it: the host stops the robot before its first turn. A robot that takes longer checks `request` between its
+    /// steps; when it is made, the robot stops and returns [`Refusal::Ended`].
     ///
     /// # Errors
-    /// A bad option (exit status 2), a fault (exit status 3), or `request`.
+    /// An option is invalid (exit status 2), a fault has occurred (exit status 3), or `request` was made.
     fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Self::Robot, Refusal>;
 
-    /// Returns the files that the target's own options name: the host refuses to write a file that another option names
-    /// too.
+    /// Returns the files that the target's own options name; the host refuses to write a file that another option also
+    /// names.
     fn files(_matches: &ArgMatches) -> Vec<NamedFile> {
         Vec::new()
     }
 
-    /// Returns the text to print instead of a run, if these options ask for something that needs no run.
+    /// Returns the text to print instead of a run, if the options request information that needs no run.
     ///
     /// # Errors
-    /// Why there is no answer: a bad option (exit status 2).
+    /// Returns the reason why there is no answer: an invalid option (exit status 2).
     fn answer(_matches: &ArgMatches) -> Result<Option<String>, Refusal> {
         Ok(None)
     }

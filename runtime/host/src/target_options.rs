@@ -1,4 +1,4 @@
-//! The parts of a target that have none of its types.
+//! The parts of a target that do not depend on its types.
 
 use std::any::TypeId;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use mdle_runtime::{Robot, Sensed, Twist};
 
 use crate::{NamedFile, Refusal, Target, Time};
 
-/// The parts of [`Target`] that have none of its types.
+/// The parts of [`Target`] that do not depend on its types.
 #[derive(Clone, Copy)]
 pub(crate) struct TargetOptions {
     pub(crate) name: &'static str,
@@ -22,7 +22,7 @@ pub(crate) struct TargetOptions {
     pub(crate) fastest: Option<Twist>,
     /// `true` if a record can hold the robot's outputs and inputs.
     pub(crate) records: bool,
-    /// `true` if the robot's outputs have the odometry that views of a run show.
+    /// `true` if the robot's outputs contain the odometry that views of a run show.
     pub(crate) has_odometry: bool,
     /// `true` if the robot shows and draws its run itself.
     pub(crate) draws: bool,

@@ -1,9 +1,9 @@
-//! Histograms of the lateness and the duration of a robot's turns; recording a turn allocates no memory.
+//! Histograms of the lateness and the duration of a robot's turns; recording a turn does not allocate memory.
 
 use std::fmt;
 use std::time::Duration;
 
-/// The upper bounds of all classes but the last, in nanoseconds.
+/// Upper bounds of all classes but the last, in nanoseconds.
 const BOUNDS: [u64; 19] = {
     let mut bounds = [0; 19];
     let (mut class, mut decade) = (0, 10_000);
@@ -17,11 +17,11 @@ const BOUNDS: [u64; 19] = {
     bounds
 };
 
-/// Number of successive turns longer than the period after which a run ends, since the robot gets its commands too
-/// late.
+/// Number of consecutive turns longer than the period after which a run ends, because the robot receives its commands
+/// too late.
 const LIMIT: u32 = 10;
 
-/// Statistics of a run's turns: how many were on time, and how many were late.
+/// Lateness and duration of a run's turns.
 #[derive(Debug)]
 pub(crate) struct Timing {
     /// Period of a turn, in nanoseconds.
@@ -36,7 +36,7 @@ pub(crate) struct Timing {
 #[derive(Debug, Default)]
 struct Counts {
     classes: [u64; BOUNDS.len() + 1],
-    /// Maximum, in nanoseconds.
+    /// Maximum value, in nanoseconds.
     most: u64,
 }
 
@@ -46,20 +46,20 @@ impl Timing {
         self.took.most > 0
     }
 
-    /// Creates an empty record for turns with a period in nanoseconds.
+    /// Returns empty statistics for turns with a period in nanoseconds.
     pub(crate) fn new(period: u64) -> Self {
         Self { period, late: Counts::default(), took: Counts::default(), overruns: 0, in_a_row: 0 }
     }
 
-    /// Counts the start of a turn, `late` nanoseconds after its time.
+    /// Records the start of a turn, `late` nanoseconds after its time.
     pub(crate) fn begins(&mut self, late: u64) {
         self.late.add(late);
     }
 
-    /// Counts a turn that has taken `nanos` nanoseconds.
+    /// Records a turn that took `nanos` nanoseconds.
     ///
     /// # Errors
-    /// When this turn and the turns before it were too long: a sentence for the operator.
+    /// Returns a sentence for the operator if this turn and the turns before it were too long.
     pub(crate) fn took(&mut self, nanos: u64) -> Result<(), String> {
         self.took.add(nanos);
         if nanos <= self.period {

@@ -1,8 +1,8 @@
-//! The transitions of a turn, each with the operands by which it was made.
+//! The transitions of a turn, each with the operands that caused it.
 
 use mdle_runtime::{Measured, Transition, Watch};
 
-/// The transitions of a turn, for reports. The plan, which has their texts, is not at hand while they are made.
+/// The transitions of a turn, for reports. The plan, which has their texts, is not accessible while they are made.
 #[derive(Debug, Default)]
 pub struct Transitions {
     /// Transitions in order, each with the number of operands up to its own.
@@ -26,7 +26,7 @@ impl Transitions {
         self.transitions.is_empty()
     }
 
-    /// Returns the transitions in order, each with the operands that had fired.
+    /// Returns the transitions in order, each with the operands that fired.
     pub fn iter(&self) -> impl Iterator<Item = (&Transition, &[Operand])> + Clone {
         let begins = std::iter::once(0).chain(self.transitions.iter().map(|(_, end)| *end));
         let operands = |first, end| self.operands.get(first..end).unwrap_or(&[]);

@@ -1,4 +1,4 @@
-//! Robots for runs that another program makes and judges, as `mdle test` does.
+//! Robots for runs that another program makes and judges, such as `mdle test`.
 
 use std::fmt;
 use std::time::Duration;
@@ -9,19 +9,19 @@ use crate::call::Call;
 use crate::target_options::TargetOptions;
 use crate::{Program, Refusal, StopRequest, Target, arguments, paths};
 
-/// The option that asks a target for robots that differ in a seed.
+/// Option with which a target is asked for robots that differ in a seed.
 const SEVERAL: &str = "--runs=1";
 
-/// The robots that the options of a run describe, and the limits of such a run.
+/// Robots that the options of a run describe, and the limits of such a run.
 pub struct Trials<R> {
     /// Period of a turn.
     pub period: Duration,
-    /// Time of the run at which it ends, if an option limits it.
+    /// Time of the run at which it ends; `None` if no option limits it.
     pub timeout: Option<Duration>,
     robot: MakeRobot<R>,
 }
 
-/// Makes the robot of a seed, or the robot without random errors.
+/// A function that creates the robot for a seed, or a robot without random errors if there is no seed.
 type MakeRobot<R> = Box<dyn Fn(Option<u64>) -> Result<R, String> + Send + Sync>;
 
 impl<R> fmt::Debug for Trials<R> {
@@ -32,20 +32,20 @@ impl<R> fmt::Debug for Trials<R> {
 }
 
 impl<R> Trials<R> {
-    /// Returns the robot of a seed, before its first exchange; without a seed it has no random errors.
+    /// Returns the robot for a seed before its first exchange; without a seed the robot has no random errors.
     ///
     /// # Errors
-    /// The robot cannot be made: a sentence.
+    /// Returns a sentence if the robot cannot be created.
     pub fn robot(&self, seed: Option<u64>) -> Result<R, String> {
         (self.robot)(seed)
     }
 }
 
-/// Returns the robots of the target `T` that the options of `call` describe, which have the paths of these names to
-/// replay.
+/// Returns the robots of the target `T` that the options of `call` describe; they can replay the paths with these
+/// names.
 ///
 /// # Errors
-/// An option, a world or a path is no good, or the robots of the target cannot be started over: a sentence.
+/// Returns a sentence if an option, a world or a path is invalid, or if the target's robots cannot be started over.
 pub fn trials<T: Target>(
     program: Program<'_>,
     call: &Call,
@@ -75,7 +75,7 @@ pub fn trials<T: Target>(
     Ok(Trials { period, timeout: options.timeout, robot: Box::new(robot) })
 }
 
-/// Gives a robot the paths that its plan replays.
+/// Gives a robot the paths that its plan replays, and returns the robot.
 fn with_paths<T: Target>(mut robot: T::Robot, store: PathStore) -> T::Robot {
     if let Some(replays) = T::PATHS {
         (replays.take)(&mut robot, store);

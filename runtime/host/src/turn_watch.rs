@@ -1,4 +1,4 @@
-//! Limits the time of a turn: a plan or a module whose code never returns blocks the thread that drives the robot, so
+//! Limits the time of a turn. A plan or a module whose code never returns blocks the thread that drives the robot, so
 //! another thread ends the program.
 
 use std::io::{self, IsTerminal as _};
@@ -13,19 +13,19 @@ use crate::Time;
 use crate::background_writer::{Aside, STACK};
 use crate::run_end;
 
-/// Time between two looks at the turns.
+/// Time between two checks of the turns.
 const LOOK: Duration = Duration::from_millis(100);
-/// Maximum number of looks that find the same turn; then the program ends. Looks are counted instead of time, because a
-/// suspended computer does not look.
+/// Maximum number of checks that find the same turn, after which the program ends. Checks are counted instead of time,
+/// because a suspended computer makes no checks.
 const LOOKS: u32 = 100;
-/// Time that the writers of the program have for what was handed over before.
+/// Time in which the program's writers can write text that they received before.
 const LAST_LINES: Duration = Duration::from_millis(300);
 
-/// The runs of a program, whose turns another thread watches.
+/// Runs of a program, whose turns another thread watches.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TurnWatch(Arc<Mutex<Vec<Entry>>>);
 
-/// A run, and what the watching thread has seen of it.
+/// A run, with the last observation of the watching thread.
 #[derive(Debug)]
 struct Entry {
     run: Weak<WatchedRun>,
@@ -33,7 +33,7 @@ struct Entry {
     looks: u32,
 }
 
-/// The turn that a run is making.
+/// The turn that a run is making at present.
 #[derive(Debug)]
 pub(crate) struct WatchedRun {
     /// Number of the turn, from 1; 0 between two turns.
@@ -41,21 +41,21 @@ pub(crate) struct WatchedRun {
     time: Time,
 }
 
-/// A turn that has not ended in time.
+/// A turn that did not end in time.
 #[derive(Debug, PartialEq, Eq)]
 struct Hung {
     /// Number of the turn, from 0.
     turn: u64,
-    /// `true` if the robot moves by the wall clock, and so may still move.
+    /// `true` if the robot's time is the wall clock, so that the robot may still move.
     is_real: bool,
 }
 
 impl TurnWatch {
-    /// Watches the turns of this program from now on. It is ended by a sentence on standard error and exit status 3;
-    /// `leave_screen` gives the terminal back.
+    /// Starts watching the turns of this program. A turn that hangs ends the program with a sentence on standard error
+    /// and exit status 3; `leave_screen` restores the terminal.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// The system cannot create a thread.
     pub(crate) fn begin(err: Aside, leave_screen: fn()) -> io::Result<Self> {
         let watch = Self::default();
         let own = watch.clone();
@@ -85,7 +85,7 @@ impl TurnWatch {
         run
     }
 
-    /// Looks at all turns; returns one that has not ended in time.
+    /// Checks all turns; returns a turn that did not end in time.
     fn look(&self) -> Option<Hung> {
         let mut hung = None;
         self.entries().retain_mut(|entry| {
@@ -107,9 +107,9 @@ impl TurnWatch {
 }
 
 impl WatchedRun {
-    /// Makes a turn.
+    /// Makes a turn, which is watched.
     pub(crate) fn make<T>(&self, number: u64, turn: impl FnOnce() -> T) -> T {
-        /// Notes the end of a turn, also after a panic.
+        /// Guard that records the end of a turn, also after a panic.
         struct Turn<'r>(&'r WatchedRun);
         impl Drop for Turn<'_> {
             fn drop(&mut self) {
@@ -123,7 +123,7 @@ impl WatchedRun {
 }
 
 impl Hung {
-    /// Returns the sentence for the operator.
+    /// Returns the sentence about the turn for the operator.
     fn sentence(&self) -> String {
         let Self { turn, is_real } = self;
         let came = if *is_real {

@@ -1,4 +1,4 @@
-//! The turns of a plan on a robot, and their recipients.
+//! The turns of a plan on a robot, and the recipients of their reports.
 
 use std::io::{self, Write};
 
@@ -24,23 +24,23 @@ use crate::turn_watch::WatchedRun;
 use crate::views::ByOdometry;
 use crate::{Ended, Observer, Orders, Pace, Verdict};
 
-/// Recipients of the turns' reports.
+/// Recipients of the reports about turns.
 pub(crate) struct Witnesses<'a, 'o> {
-    /// The lines on standard output.
+    /// Report on standard output.
     pub(crate) report: &'a mut Report<'o>,
-    /// The run log, if one was asked for.
+    /// Run log, if the options request it.
     pub(crate) log: Option<&'a mut RunLog>,
-    /// The path that is driven, if it is to be recorded.
+    /// Recorder of the driven path, if the options request it.
     pub(crate) path: Option<&'a mut Recorder>,
-    /// The views by odometry, if some were asked for.
+    /// Views by odometry, if the options request them.
     pub(crate) views: Option<&'a mut ByOdometry>,
-    /// The line that shows that a fast run goes on, if standard error is a terminal.
+    /// Line that shows the progress of a fast run, if standard error is a terminal.
     pub(crate) progress: Option<Progress<'a>>,
-    /// Standard error, where it does not show that line.
+    /// Standard error, if it does not show the progress line.
     pub(crate) err: Option<&'a mut dyn Write>,
 }
 
-/// Makes the turns of a plan on its robot: see [`cycle`].
+/// Makes the turns of a plan on its robot; see [`cycle`].
 pub(crate) fn run<I: Instants>(
     drive: &mut dyn Drive,
     limits: Limits,
@@ -59,23 +59,23 @@ pub(crate) fn run<I: Instants>(
     cycle(&mut turns, limits, clock, signals)
 }
 
-/// The turns of a plan, with those who follow them.
+/// The turns of a plan, with the recipients of their reports.
 struct OnePlan<'t, 'a, 'o> {
     drive: &'t mut dyn Drive,
     witnesses: &'t mut Witnesses<'a, 'o>,
-    /// Limit of the time of each turn.
+    /// Watchdog that limits the time of each turn.
     limit: &'t WatchedRun,
-    /// The transitions of the last turn.
+    /// Transitions of the last turn.
     transitions: Transitions,
-    /// `true` if the current atom has been entered since a law was applied last.
+    /// `true` if the current atom was entered after a law was last applied.
     fresh: bool,
-    /// The number of the plan that runs, from 1: a supervisor may replace it.
+    /// Number of the current plan, from 1; a supervisor may replace the plan.
     plan: u64,
-    /// The supervisor's part in the last turn.
+    /// Supervisor's part in the last turn.
     supervised: Supervised,
-    /// A pace that the supervisor has asked for.
+    /// Pace that the supervisor has requested.
     pace: Option<Pace>,
-    /// The number of the last turn.
+    /// Number of the last turn.
     number: u64,
 }
 
@@ -87,7 +87,7 @@ impl OnePlan<'_, '_, '_> {
         if end && !is_over { Err(RunEnd::Quit) } else { Ok(()) }
     }
 
-    /// Returns how the run goes on after a turn, as far as the plan and the supervisor's intervention decide it.
+    /// Returns how the run continues after a turn, as the plan and the supervisor's intervention determine.
     fn step(&mut self, turn: Turn<()>) -> Result<Step, RunEnd> {
         let Supervised { verdict, rule, diverted_by, .. } = &self.supervised;
         match turn {
@@ -175,7 +175,8 @@ impl Turns for OnePlan<'_, '_, '_> {
     }
 }
 
-/// Tells the observer about a turn at time `t` of a plan that began at `zero`, and first which atom `has_begun` in it.
+/// Informs the observer about a turn at time `t` of a plan that began at `zero`, and before that about the atom that
+/// began in the turn if `has_begun` is `true`.
 fn watched(
     observer: &mut dyn Observer,
     position: &dyn Position,
@@ -194,7 +195,7 @@ fn watched(
     }
 }
 
-/// Tells the observer that the turns have ended, and by what.
+/// Informs the observer that the turns have ended, with the cause.
 fn ended(observer: &mut dyn Observer, position: &dyn Position, ending: &RunEnd, report: &Report<'_>, t: Nanos) {
     let by = report.over().map_or_else(|| ending.brief(), |over| over.cause.clone());
     observer.ended(&Ended { plan: position.texts().name(0), is_over: *ending == RunEnd::Over, by: &by, t });
@@ -210,7 +211,7 @@ impl Witnesses<'_, '_> {
         }
     }
 
-    /// Reports a turn to the recipients.
+    /// Reports a turn to all recipients.
     fn tell(
         &mut self,
         position: &dyn Position,
@@ -241,13 +242,13 @@ impl Witnesses<'_, '_> {
     }
 }
 
-/// A turn that was made.
+/// Data of a turn.
 #[derive(Debug, Clone, Copy)]
 struct MadeTurn {
     turn: Turn<()>,
-    /// The number of the turn, from 0.
+    /// Number of the turn, from 0.
     number: u64,
     t: Nanos,
-    /// The number of the plan that made it, from 1.
+    /// Number of the plan that made the turn, from 1.
     plan: u64,
 }
