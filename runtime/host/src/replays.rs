@@ -6,8 +6,9 @@ use mdle_runtime::{MetersPerSecond, PathStore, Robot, Twist};
 pub struct Replays<R: Robot> {
     /// Maximum forward or backward speed and turn rate of a path.
     pub fastest: Twist,
-    /// Hands the robot the paths that the plan replays, before the first exchange: from then on each output has them.
+    /// Function that gives the robot the paths that the plan replays, before the first exchange; from then on each
+    /// output contains them.
     pub take: fn(&mut R, PathStore),
-    /// Returns the forward speed of the robot, by this output.
+    /// Function that returns the robot's forward speed in an output.
     pub speed: fn(&R::Output) -> MetersPerSecond,
 }

@@ -1,5 +1,5 @@
-//! Report of a run on standard output: a line for each transition, and at the end why the plan is over. See
-//! docs/src/reference/interfaces.md, 6.2.
+//! Report of a run on standard output: a line for each transition, and at the end the reason why the plan has ended.
+//! See docs/src/reference/interfaces.md, 6.2.
 
 use std::io::{self, Write};
 
@@ -14,15 +14,16 @@ use crate::supervised::Supervised;
 use crate::transitions::{Operand, Transitions};
 use crate::{Judgement, Verdict};
 
-/// The report of a run; it stops writing when its reader has gone.
+/// Writer of the report of a run; it stops writing when its reader closes the stream.
 pub(crate) struct Report<'a> {
     out: &'a mut dyn Write,
-    /// `true` if lines are shown as soon as they are written: not at the fastest pace.
+    /// `true` if lines are shown as soon as they are written; `false` at the fastest pace.
     prompt: bool,
-    /// Nothing more is written after an error; the error is kept unless it means that the reader has gone.
+    /// State of the report: after an error nothing more is written. The error is kept, unless the reader has closed the
+    /// stream.
     state: ReportState,
     course: Course,
-    /// End of the plan, once it is over.
+    /// End of the plan; `None` until the plan has ended.
     over: Option<Over>,
     /// The strength and the rule of the intervention that was reported last, if it lasts.
     last_verdict: Option<(Verdict, String)>,
@@ -33,28 +34,28 @@ pub(crate) struct Report<'a> {
 /// End of a plan.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Over {
-    /// Cause of the end, in the words of a report.
+    /// Cause of the end, as in a report.
     pub(crate) cause: String,
-    /// The condition text of the interrupt, or `completed`.
+    /// Text of the interrupt's condition, or `completed`.
     pub(crate) by: String,
-    /// The condition texts of the operands that had fired.
+    /// Texts of the operands that fired.
     pub(crate) operands: Vec<String>,
-    /// The words of a report without the values that were measured.
+    /// Cause of the end as in a report, but without measured values.
     pub(crate) words: String,
-    /// The bracket of the scope that ended.
+    /// Bracket of the scope that ended.
     pub(crate) bracket: u32,
-    /// The numbers of the operands that had fired.
+    /// Numbers of the operands that fired.
     pub(crate) numbers: Vec<u32>,
 }
 
-/// State of a report: open, or no longer written.
+/// State of a report: open, or closed.
 enum ReportState {
     Open,
     Closed(Option<io::Error>),
 }
 
 impl<'a> Report<'a> {
-    /// A report to `out`.
+    /// Returns a report that is written to `out`.
     pub(crate) fn new(out: &'a mut dyn Write, prompt: bool) -> Self {
         Self {
             out,
@@ -67,12 +68,12 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Returns how the plan ended, if it has.
+    /// Returns the end of the plan, if the plan has ended.
     pub(crate) fn over(&self) -> Option<&Over> {
         self.over.as_ref()
     }
 
-    /// Returns the course of the run, as of the last turn.
+    /// Returns the course of the run up to the last turn.
     pub(crate) fn course(&self) -> &Course {
         &self.course
     }
@@ -102,8 +103,8 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Reports that `plan` drives from the turn at time `t` on with this atom, because it replaced the plan before for
-    /// this reason.
+    /// Reports that `plan` drives the robot from the turn at time `t` on, with the atom `atom`, after it has replaced
+    /// another plan for this reason.
     pub(crate) fn begins(&mut self, plan: &dyn Texts, t: Nanos, atom: Option<u32>, reason: &str) {
         self.course = Course { since: reason.to_owned(), ..Course::default() };
         let Some(atom) = atom else { return };
@@ -113,8 +114,8 @@ impl<'a> Report<'a> {
         self.line(t, &line);
     }
 
-    /// Reports the supervisor's part in the turn at time `t`, unless it is that of the turn before. A rule that limits
-    /// inputs is reported once, as it may come and go with every turn.
+    /// Reports the supervisor's part in the turn at time `t`, unless it equals that in the previous turn. A rule that
+    /// limits inputs is reported only once, because it may start and stop with every turn.
     pub(crate) fn supervised(&mut self, t: Nanos, supervised: &Supervised) {
         let intervention = supervised.intervention();
         if let Some(limit) = intervention.filter(|it| it.verdict == Verdict::Limited)
@@ -168,10 +169,10 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Shows the rest.
+    /// Shows the remaining lines.
     ///
     /// # Errors
-    /// Why lines are missing, unless the reader has simply gone.
+    /// Returns the error because of which lines are missing, unless the reader has closed the stream.
     pub(crate) fn close(mut self) -> io::Result<()> {
         self.flush();
         match self.state {
@@ -180,7 +181,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Goes quiet on an error: a report is no reason to stop a robot.
+    /// Closes the report after an error: a report is no reason for stopping a robot.
     fn note(&mut self, written: io::Result<()>) {
         if let Err(error) = written {
             self.state = ReportState::Closed((error.kind() != io::ErrorKind::BrokenPipe).then_some(error));
@@ -189,7 +190,7 @@ impl<'a> Report<'a> {
 }
 
 impl Over {
-    /// Returns the end of `plan` by this transition.
+    /// Returns the end of `plan` by a transition.
     fn of(plan: &dyn Texts, transition: &Transition, operands: &[Operand], cause: String) -> Self {
         let source = plan.source();
         let unmeasured: Vec<Operand> = operands.iter().map(|(number, _)| (*number, Measured::Nothing)).collect();

@@ -1,4 +1,4 @@
-//! `--require`: the causes by which a plan must end.
+//! The option `--require`: the causes by which a plan must end.
 
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use mdle_runtime::Fsm;
@@ -10,13 +10,13 @@ use crate::passes::outwards;
 use crate::position::Texts;
 use crate::report::Over;
 
-/// Minimum similarity, from 0 to 1, of a name that is proposed.
+/// Minimum similarity of a proposed name, from 0 to 1.
 const SIMILAR: f64 = 0.75;
 
-/// The causes of `--require`; empty if any end will do.
+/// Causes in the options `--require`; empty if the plan may end by any cause.
 #[derive(Debug, Default)]
 pub(crate) struct Required {
-    /// The required causes of the end, as typed on the command line.
+    /// Required causes as typed on the command line.
     texts: Vec<String>,
     causes: Vec<Cause>,
 }
@@ -24,15 +24,15 @@ pub(crate) struct Required {
 /// A cause of a plan's end.
 #[derive(Debug, PartialEq, Eq)]
 enum Cause {
-    /// The law of the last atom was done.
+    /// The law of the last atom completed.
     Completed,
     /// The interrupt of this bracket fired.
     Scope(u32),
-    /// An operand of a bracket's interrupt had fired: the numbers of the bracket and of the operand.
+    /// An operand of a bracket's interrupt fired: the numbers of the bracket and of the operand.
     Operand(u32, u32),
 }
 
-/// Adds the option to `command`.
+/// Returns `command` with the option `--require`.
 pub(crate) fn argument(command: Command) -> Command {
     command.arg(
         Arg::new("require")
@@ -49,10 +49,10 @@ pub(crate) fn argument(command: Command) -> Command {
 }
 
 impl Required {
-    /// Reads the causes, each of which must be one by which `plan` can end.
+    /// Reads the required causes, and checks that `plan` can end by each of them.
     ///
     /// # Errors
-    /// The plan cannot end by a cause: a sentence with what to type instead.
+    /// Returns a sentence with a text to type instead if the plan cannot end by a cause.
     pub(crate) fn of(matches: &ArgMatches, plan: &dyn Texts) -> Result<Self, String> {
         let texts: Vec<String> = matches.get_many("require").into_iter().flatten().cloned().collect();
         let mut causes = Vec::new();
@@ -66,7 +66,7 @@ impl Required {
         Ok(Self { texts, causes })
     }
 
-    /// Returns `true` if a plan may end like this.
+    /// Returns `true` if the end `over` of a plan has a required cause.
     pub(crate) fn allows(&self, over: &Over) -> bool {
         let is_cause = |cause: &Cause| match cause {
             Cause::Completed => over.by == COMPLETED,
@@ -78,13 +78,13 @@ impl Required {
         self.causes.is_empty() || self.causes.iter().any(is_cause)
     }
 
-    /// The causes as they were typed: `bumper` or `completed`.
+    /// Returns the causes as typed, such as `bumper` or `completed`.
     pub(crate) fn words(&self) -> String {
         self.texts.iter().map(|text| format!("`{text}`")).collect::<Vec<_>>().join(" or ")
     }
 }
 
-/// The causes that are called `text`, by the scopes that `may` choose.
+/// Returns the causes with the name or condition `text`, for the scopes that `may` accepts.
 fn endings(plan: &dyn Texts, text: &str, may: impl Fn(u32) -> bool) -> impl Iterator<Item = Cause> {
     let completed = (text == COMPLETED).then_some(Cause::Completed);
     let scopes = scopes(plan.fsm()).filter(|scope| may(*scope)).flat_map(|scope| {
@@ -99,7 +99,7 @@ fn endings(plan: &dyn Texts, text: &str, may: impl Fn(u32) -> bool) -> impl Iter
     completed.into_iter().chain(scopes).collect::<Vec<_>>().into_iter()
 }
 
-/// The brackets of scopes, in order.
+/// Returns the brackets of scopes, in order.
 pub(crate) fn scopes(fsm: Fsm<'_>) -> impl Iterator<Item = u32> {
     let is_scope = |kind| match kind {
         Kind::Scope { .. } => true,
@@ -120,7 +120,7 @@ fn ends_plan(fsm: Fsm<'_>, scope: u32) -> bool {
     })
 }
 
-/// Returns the message that the plan cannot end by this cause, and by which causes it can.
+/// Returns the message that the plan cannot end by this cause, with the causes by which it can end.
 fn refused(plan: &dyn Texts, text: &str) -> String {
     let source = plan.source();
     let mut known: Vec<String> = Vec::new();

@@ -1,29 +1,30 @@
-//! Settings of a robot that people change while it drives, such as the order in which its sonars ping (paper, Fig. 7).
+//! Settings of a robot that a user can change while it drives, such as the order in which its sonars ping (paper, Fig.
+//! 7).
 
 use mdle_runtime::SONARS;
 
-/// Settings of a robot, as texts that people read and type.
+/// Settings of a robot, as texts that a user reads and types.
 pub trait RobotSettings {
-    /// Returns the name of each setting, and a noun phrase about it. They stay the same in a run.
+    /// Returns the name and a description of each setting. The result does not change in a run.
     fn settings(&self) -> &'static [(&'static str, &'static str)];
 
-    /// Returns the value of a setting, as it may be typed; `None` if there is no such setting.
+    /// Returns the value of a setting as a user may type it; `None` if there is no such setting.
     fn setting(&self, name: &str) -> Option<String>;
 
     /// Changes a setting from the next exchange on.
     ///
     /// # Errors
-    /// There is no such setting, or the value is none for it: a sentence with what to type instead.
+    /// Returns a sentence with a text to type instead if there is no such setting, or if the value is invalid.
     fn set(&mut self, name: &str, value: &str) -> Result<(), String>;
 }
 
-/// Returns the settings of a robot.
+/// A function that returns the settings of a robot.
 pub type SettingsOf<R> = fn(&mut R) -> &mut dyn RobotSettings;
 
-/// Reads an order in which sonars ping: from one to sixteen of their numbers, which begin with 0.
+/// Reads an order in which sonars ping: one to sixteen numbers of sonars, which count from 0.
 ///
 /// # Errors
-/// A sentence with what to type instead.
+/// Returns a sentence with a text to type instead.
 pub fn sonar_order(text: &str) -> Result<Vec<u8>, String> {
     let number = |word: &str| word.parse().ok().filter(|number: &u8| usize::from(*number) < SONARS);
     let order: Option<Vec<u8>> = text.split_whitespace().map(number).collect();

@@ -9,67 +9,67 @@ use mdle_runtime::PrintableLines;
 use crate::Refusal;
 use crate::signals::Signal;
 
-/// Exit status: the plan is over, by any cause.
+/// Exit status after the plan has ended by any cause.
 pub(crate) const OVER: u8 = 0;
-/// Exit status: of several runs, not all ended as required.
+/// Exit status if not all of several runs ended as required.
 pub(crate) const MISSED: u8 = 1;
-/// Exit status: a bad option, world or start pose.
+/// Exit status after a bad option, world or start pose.
 pub(crate) const USAGE: u8 = 2;
-/// Exit status: a fault stopped the robot.
+/// Exit status after a fault that stopped the robot.
 pub(crate) const FAULT: u8 = 3;
-/// Exit status: timeout or turn limit.
+/// Exit status after the time limit or the maximum number of turns.
 pub(crate) const LIMIT: u8 = 4;
-/// Exit status: the plan is over, and ended otherwise than required.
+/// Exit status if the plan has ended, but not as required.
 pub(crate) const OTHERWISE: u8 = 5;
-/// Exit status: a rule of the supervisor ended the plan.
+/// Exit status if a rule of the supervisor ended the plan.
 pub(crate) const SAFETY: u8 = 6;
 
-/// Reason of the end of a run.
+/// Reason why a run has ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum RunEnd {
-    /// The plan is over.
+    /// The plan has ended.
     Over,
-    /// The plan is over, and ended otherwise than `--require` or `--goal` ask: a sentence.
+    /// The plan has ended, but not as `--require` or `--goal` demand, as the sentence says.
     Otherwise(String),
-    /// The plan was not over at this time.
+    /// The plan had not ended at this time.
     Timeout(Duration),
-    /// The plan was not over after this many turns.
+    /// The plan had not ended after this number of turns.
     Turns(u64),
-    /// The supervisor of the run asked for it.
+    /// The supervisor of the run requested the end.
     Quit,
-    /// A rule of the supervisor ended the plan: its name.
+    /// A rule of the supervisor, with this name, ended the plan.
     Safety(String),
-    /// A signal asked for it.
+    /// A signal requested the end.
     Signal(Signal),
-    /// The first exchange failed, before any law was applied: the robot's sentence.
+    /// The first exchange failed, before any law was applied, with the robot's sentence.
     Unstarted(String),
-    /// An exchange failed: the robot's sentence.
+    /// An exchange failed, with the robot's sentence.
     Robot(String),
-    /// An exchange failed, and then the stop failed too: the robot's sentence about the exchange.
+    /// An exchange failed, with the robot's sentence, and then the stop failed too.
     Unstopped(String),
-    /// The run log could not be written: why.
+    /// The run log could not be written, for this reason.
     Log(String),
-    /// Too many turns took too long: how long.
+    /// Too many turns took too long, as the sentence says.
     Overrun(String),
-    /// The turns could not go on: why.
+    /// The turns could not continue, for this reason.
     Pilot(String),
-    /// The robot went without a command for `gap`, longer than for `longest`, both in nanoseconds.
+    /// The robot was without a command for `gap`, which is longer than `longest`.
     Suspended {
-        /// Length of the gap, in nanoseconds.
+        /// Time without a command, in nanoseconds.
         gap: u64,
-        /// Maximum length of a gap, in nanoseconds.
+        /// Maximum time without a command, in nanoseconds.
         longest: u64,
     },
-    /// Code panicked: its message.
+    /// Code panicked with this message.
     Bug(String),
 }
 
 impl RunEnd {
-    /// Returns the exit status of the executable, after these faults on the way out.
+    /// Returns the exit status of the executable, given the faults after the end of the turns.
     ///
-    /// A robot that could not be stopped in good order, or a log that is cut short, is a fault whatever came before.
-    /// What [`Observer::finish`](crate::Observer::finish) could not write makes one only of a plan that is over: any
-    /// other ending says more.
+    /// A robot that could not be stopped in good order, or an incomplete log, is a fault after any end. A file that
+    /// [`Observer::finish`](crate::Observer::finish) could not write is a fault only after the end of the plan: any
+    /// other reason for the end is more important.
     pub(crate) fn status(&self, faults: &[RunFault]) -> u8 {
         let grave = faults.iter().any(|fault| match fault {
             RunFault::Exchange(_) | RunFault::Log(_) | RunFault::Stop(_) => true,
@@ -93,8 +93,9 @@ impl RunEnd {
         }
     }
 
-    /// Returns this ending after a stop that failed for the reason `stop`, if any, and the reason if it is still to be
-    /// reported: after a failed exchange it is not, as the exchange's error says enough, and is mostly the same.
+    /// Returns this end after a stop that failed for the reason `stop`, if it failed, and the reason if it must still
+    /// be reported. After a failed exchange it is not reported, because the exchange's error is sufficient and mostly
+    /// the same.
     pub(crate) fn with_stop(self, stop: Option<String>) -> (Self, Option<String>) {
         match (self, stop) {
             (Self::Unstarted(fault) | Self::Robot(fault), Some(_)) => (Self::Unstopped(fault), None),
@@ -102,8 +103,8 @@ impl RunEnd {
         }
     }
 
-    /// Returns `true` if the robot still takes inputs. It is not used again once an exchange has failed, and after a
-    /// panic its state is unknown; its stop command is sent all the same.
+    /// Returns `true` if the robot still accepts inputs. No input is sent after a failed exchange, or after a panic,
+    /// which leaves the robot in an unknown state; the stop command is sent in any case.
     pub(crate) fn robot_listens(&self) -> bool {
         match self {
             Self::Over
@@ -120,7 +121,7 @@ impl RunEnd {
         }
     }
 
-    /// Returns `true` if the robot's own code can still be trusted to write the files that the options name.
+    /// Returns `true` if the robot's code can still be relied on to write the files that the options name.
     pub(crate) fn is_orderly(&self) -> bool {
         match self {
             Self::Over
@@ -141,7 +142,7 @@ impl RunEnd {
         }
     }
 
-    /// Returns a word or two for what ended a run before its plan was over.
+    /// Returns one or two words for the reason why a run ended before its plan.
     pub(crate) fn brief(&self) -> String {
         match self {
             Self::Over | Self::Otherwise(_) => "plan over".to_owned(),
@@ -161,8 +162,8 @@ impl RunEnd {
         }
     }
 
-    /// Reports the ending on standard error, and whether the robot was stopped; a plan that is over has been reported
-    /// on standard output.
+    /// Reports the end on standard error, and whether the robot was stopped. The end of a plan has already been
+    /// reported on standard output.
     pub(crate) fn tell(&self, is_stopped: bool, err: &mut dyn Write) {
         let came = if is_stopped { "a fault stopped the robot" } else { "a fault ended the plan" };
         match self {
@@ -205,18 +206,18 @@ impl RunEnd {
     }
 }
 
-/// Fault on the way out.
+/// A fault after the end of the turns.
 #[derive(Debug)]
 pub(crate) enum RunFault {
-    /// The null input could not be exchanged once more.
+    /// The final exchange of the null input failed.
     Exchange(RunEnd),
     /// The rest of the run log could not be written.
     Log(io::Error),
-    /// The path that was driven could not be written whole.
+    /// The driven path could not be written completely.
     Path(io::Error),
-    /// The stop command could not be delivered, or the robot did not stop: the robot's sentence.
+    /// The stop command could not be delivered, or the robot did not stop, with the robot's sentence.
     Stop(String),
-    /// The files that the robot was to write could not be written: the robot's sentence.
+    /// Files of the robot could not be written, with the robot's sentence.
     Finish(String),
 }
 

@@ -1,4 +1,4 @@
-//! The log of a run in the format that its name asks for: JSON lines, or a record.
+//! The log of a run in the format that its name determines: JSON lines or a record.
 
 use std::io;
 use std::path::Path;
@@ -11,16 +11,16 @@ use crate::drive::Exact;
 use crate::log::{Entry, Log};
 use crate::record::{Record, UnmadeTurn};
 
-/// Ending of the name of a record.
+/// Ending of a record's file name.
 const MCAP: &str = "mcap";
 
-/// A log that is being written.
+/// A run log that is being written.
 #[derive(Debug)]
 pub(crate) struct RunLog {
     format: Format,
-    /// `true` if the run goes on without the log when it cannot be written.
+    /// `true` if the run continues without the log when it cannot be written.
     is_best_effort: bool,
-    /// `true` once the log has ended before the run.
+    /// `true` once writing the log has failed and the run continues.
     has_ended: bool,
     /// Time of the last turn.
     t: Nanos,
@@ -28,12 +28,12 @@ pub(crate) struct RunLog {
     message: Option<String>,
 }
 
-/// The format of a log.
+/// Format of a log, with its writer.
 #[derive(Debug)]
 pub(crate) enum Format {
-    /// A JSON object for each turn.
+    /// JSON lines, with an object for each turn.
     Lines(Log),
-    /// A record that can be replayed.
+    /// A record with which the run can be repeated.
     Record(Box<Record>),
 }
 
@@ -43,12 +43,12 @@ pub fn is_record(path: &Path) -> bool {
 }
 
 impl RunLog {
-    /// A log that begins; if `is_best_effort`, the run goes on without it when it cannot be written.
+    /// Returns a log that begins; with `is_best_effort`, the run continues without the log when it cannot be written.
     pub(crate) fn new(format: Format, is_best_effort: bool) -> Self {
         Self { format, is_best_effort, has_ended: false, t: Nanos::ZERO, message: None }
     }
 
-    /// Returns `true` if the log is a record, which takes more of a turn than an entry has.
+    /// Returns `true` if the log is a record, which needs more data of a turn than an entry contains.
     pub(crate) fn is_record(&self) -> bool {
         match self.format {
             Format::Lines(_) => false,
@@ -56,7 +56,7 @@ impl RunLog {
         }
     }
 
-    /// Takes the output and the input of a turn, and its causes besides the output.
+    /// Stores the output and the input of a turn, and the causes of the turn besides the output.
     pub(crate) fn take(&mut self, exact: Option<Exact<'_>>, changes: Vec<Change>) {
         match &mut self.format {
             Format::Lines(_) => {}
@@ -67,7 +67,7 @@ impl RunLog {
     /// Writes a turn that no plan has made.
     ///
     /// # Errors
-    /// When the file cannot be written, and the run must not go on without it.
+    /// The file cannot be written, and the run must not continue without the log.
     pub(crate) fn turn_without_plan(&mut self, unmade: &UnmadeTurn<'_>) -> io::Result<()> {
         self.t = unmade.t;
         self.write(|format| match format {
@@ -76,10 +76,10 @@ impl RunLog {
         })
     }
 
-    /// Writes one turn.
+    /// Writes a turn.
     ///
     /// # Errors
-    /// When the file cannot be written, and the run must not go on without it.
+    /// The file cannot be written, and the run must not continue without the log.
     pub(crate) fn turn(&mut self, entry: &Entry<'_>) -> io::Result<()> {
         self.t = entry.t;
         self.write(|format| match format {
@@ -88,7 +88,7 @@ impl RunLog {
         })
     }
 
-    /// Notes the end of the turns, the last of which had this number.
+    /// Writes the reason why the turns have ended; `turn` is the number of the last turn.
     pub(crate) fn ended(&mut self, turn: u64, t: Nanos, cause: &str) {
         match &mut self.format {
             // An error comes back when the record is closed.
@@ -97,10 +97,10 @@ impl RunLog {
         }
     }
 
-    /// Hands everything to the system; nothing more is written.
+    /// Passes all data to the system; nothing is written afterwards.
     ///
     /// # Errors
-    /// When the file cannot be written, and a run must not be without it.
+    /// The file cannot be written, and the run must have a log.
     pub(crate) fn close(&mut self) -> io::Result<()> {
         self.write(|format| match format {
             Format::Lines(log) => log.flush(),
@@ -108,12 +108,12 @@ impl RunLog {
         })
     }
 
-    /// Returns the message that the log has ended before the run, once.
+    /// Removes and returns the message that the log has ended before the run.
     pub(crate) fn take_message(&mut self) -> Option<String> {
         self.message.take()
     }
 
-    /// Writes something, unless the log has ended.
+    /// Calls `write` with the log, unless the log has ended.
     fn write(&mut self, write: impl FnOnce(&mut Format) -> io::Result<()>) -> io::Result<()> {
         if self.has_ended {
             return Ok(());

@@ -1,8 +1,7 @@
-//! Several runs of one plan, by robots that differ in a seed: made by several threads, reported in the order of the
-//! seeds.
+//! Several runs of one plan, with robots that differ in a seed. Several threads make the runs, and the results are
+//! reported in the order of the seeds.
 //!
-//! A run has the same result on every thread and beside any other runs: each has a robot, a clock and a plan
-//! of its own.
+//! A run has the same result on every thread and beside any other runs: each run has its own robot, clock and plan.
 
 use std::io::Write;
 use std::num::{NonZeroU64, NonZeroUsize};
@@ -28,25 +27,25 @@ use crate::turn_watch::TurnWatch;
 use crate::turns::{self, Witnesses};
 use crate::{Batch, Judgement, Pace, Time};
 
-/// Timeout of runs that no option limits: no batch shall go on for ever.
+/// Time limit of runs without an option that limits them, so that no batch continues forever.
 const TIMEOUT: Duration = Duration::from_secs(3600);
 
-/// The runs of a [`Batch`], without the type of its robots.
+/// Runs of a [`Batch`], without the type of its robots.
 pub(crate) struct Runs<'p> {
     first: u64,
     runs: NonZeroU64,
     jobs: NonZeroUsize,
     json: bool,
-    /// Makes the robot of a seed, with the plan that drives it, or returns why that failed.
+    /// Function that creates the robot for a seed, with the plan that drives it, or returns the reason why that failed.
     drive: Box<dyn Fn(u64) -> Prepared<'p> + Send + Sync + 'p>,
     alone: Box<dyn Fn(u64) -> Vec<String> + Send + Sync>,
 }
 
-/// A robot with its plan, before the first exchange, or the reason why the robot could not be made.
+/// A robot with its plan before the first exchange, or the reason why the robot could not be created.
 pub(crate) type Prepared<'p> = Result<Box<dyn Drive + 'p>, String>;
 
 impl<'p> Runs<'p> {
-    /// Returns the runs of `batch`, in which `drive` gives each robot its pilot.
+    /// Returns the runs of `batch`; `drive` gives each robot its pilot.
     pub(crate) fn of<R: 'p>(batch: Batch<R>, drive: impl Fn(R) -> Prepared<'p> + Send + Sync + 'p) -> Self {
         let Batch { first, runs, jobs, json, robot, alone } = batch;
         Self { first, runs, jobs, json, drive: Box::new(move |seed| robot(seed).and_then(&drive)), alone }
@@ -58,16 +57,16 @@ pub(crate) struct Terms<'a> {
     pub(crate) period: Duration,
     pub(crate) limits: Limits,
     pub(crate) signals: &'a Signals,
-    /// Limit of the time of each turn.
+    /// Watchdog that limits the time of each turn.
     pub(crate) watch: &'a TurnWatch,
-    /// The words by which the program was called, as a shell takes them.
+    /// Command line of the program before its options, as typed in a shell.
     pub(crate) program: &'a str,
-    /// The causes by which the plan must end.
+    /// Causes by which the plan must end.
     pub(crate) required: &'a Required,
 }
 
 impl Terms<'_> {
-    /// The timeout of runs that no option limits.
+    /// Returns the default time limit if no option limits the runs.
     fn by_default(&self) -> Option<Duration> {
         (self.limits.timeout.is_none() && self.limits.turns.is_none()).then_some(TIMEOUT)
     }
@@ -116,7 +115,7 @@ pub(crate) fn run(
     (status, written.and_then(|()| out.flush()).err())
 }
 
-/// Makes runs as long as there are some to be made, and no signal comes.
+/// Makes runs until all runs are made or a signal arrives.
 fn work(batch: &Runs<'_>, terms: &Terms<'_>, next: &AtomicU64, done: Sender<EndedRun>) {
     loop {
         let number = next.fetch_add(1, Ordering::Relaxed);
@@ -130,7 +129,7 @@ fn work(batch: &Runs<'_>, terms: &Terms<'_>, next: &AtomicU64, done: Sender<Ende
     }
 }
 
-/// Performs the run of a seed; `None` if a signal cut it short.
+/// Makes the run of a seed; returns `None` if a signal interrupted it.
 fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<EndedRun> {
     let mut run = EndedRun { seed, outcome: Outcome::Ended, t: Nanos::ZERO, over: None, contacts: 0 };
     let mut drive = match shielded(|| (batch.drive)(seed)).unwrap_or_else(panicked) {
@@ -195,7 +194,7 @@ fn panicked<T>(Panicked(message): Panicked) -> Result<T, String> {
     Err(format!("a panic, which is a bug: {message}"))
 }
 
-/// Clock of a batch, whose time never advances: runs are made as fast as possible.
+/// Clock of a batch, whose time never advances, so that runs are made as fast as possible.
 #[derive(Debug)]
 struct StoppedClock;
 

@@ -1,4 +1,5 @@
-//! The shield for code of the robot and of the plan: a panic in it becomes a value, so that the robot is stopped.
+//! Protection against panics in code of the robot and of the plan: a panic becomes a value, so that the robot is
+//! stopped.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -7,10 +8,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Panicked(pub(crate) String);
 
-/// Runs `code`. Its data may be inconsistent after a panic: do no more with them than stop the robot.
+/// Runs `code`. After a panic its data may be inconsistent, so that the robot may only be stopped.
 ///
 /// # Errors
-/// When it panicked. The panic hook has then reported where, on standard error.
+/// The code panicked. The panic hook has then reported the place on standard error.
 pub(crate) fn shielded<T>(code: impl FnOnce() -> T) -> Result<T, Panicked> {
     catch_unwind(AssertUnwindSafe(code)).map_err(|payload| {
         let message = text(&*payload);
@@ -20,7 +21,7 @@ pub(crate) fn shielded<T>(code: impl FnOnce() -> T) -> Result<T, Panicked> {
     })
 }
 
-/// The message of a panic.
+/// Returns the message of a panic.
 pub(crate) fn text(payload: &dyn Any) -> String {
     match (payload.downcast_ref::<&str>(), payload.downcast_ref::<String>()) {
         (Some(message), _) => (*message).to_owned(),

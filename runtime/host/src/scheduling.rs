@@ -1,4 +1,5 @@
-//! Protection from other programs that make turns late: real-time scheduling, and memory that is not paged out.
+//! Protection against other programs that would make turns late: real-time scheduling, and memory that is not paged
+//! out.
 
 use rustix::mm::{MlockAllFlags, mlockall};
 use thread_priority::{
@@ -6,19 +7,19 @@ use thread_priority::{
     thread_native_id,
 };
 
-/// The priority among real-time threads, from 1 to 99: above ordinary programs, below the kernel's own threads.
+/// Priority among real-time threads, from 1 to 99: above ordinary programs, but below the kernel's own threads.
 const PRIORITY: u8 = 50;
 /// Name of real-time scheduling in messages.
 const SCHEDULING: &str = "real-time scheduling";
 /// Name of locked memory in messages.
 const MEMORY: &str = "locked memory";
 
-/// Lets this thread run before all ordinary threads whenever it is ready, and keeps all memory of this process in RAM.
-/// Memory that is allocated later may be paged out: a limit on locked memory would make allocations fail during a run,
-/// and a turn allocates nothing.
+/// Gives this thread precedence over all ordinary threads, and keeps all memory of this process in RAM. Memory that is
+/// allocated later may be paged out: a limit on locked memory would make allocations fail during a run, and a turn
+/// allocates nothing.
 ///
 /// # Errors
-/// The sentence about a request that the system does not permit. The run goes on without it.
+/// Returns a sentence about a request that the system does not permit. The run continues without it.
 pub(crate) fn claim() -> Result<(), String> {
     let is_scheduled = schedule(PRIORITY);
     let is_locked = mlockall(MlockAllFlags::CURRENT).is_ok();
@@ -27,13 +28,13 @@ pub(crate) fn claim() -> Result<(), String> {
     if refused.is_empty() { Ok(()) } else { Err(refused.join(" and ")) }
 }
 
-/// Lets this thread, which works for the one that makes the turns, run before all ordinary threads, and after that one.
-/// Without the permission it runs as an ordinary thread does; the run warns of that.
+/// Gives this thread, which works for the thread that makes the turns, precedence over all ordinary threads, but not
+/// over that thread. Without permission the thread stays an ordinary one; the run warns about that.
 pub fn claim_for_worker() {
     let _ = schedule(PRIORITY.saturating_sub(1));
 }
 
-/// Schedules this thread in real time with this priority; returns `true` if the system permits it.
+/// Sets real-time scheduling with this priority for this thread; returns `true` if the system permits it.
 fn schedule(priority: u8) -> bool {
     let first_in_first_out = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     ThreadPriority::try_from(priority)

@@ -1,4 +1,4 @@
-//! The second signal: it ends a program that hangs, but not before the stop was tried.
+//! Handling of a second signal: it ends a program that hangs, but not before the stop of the robot was attempted.
 
 use std::io;
 use std::thread::{self, Builder};
@@ -13,17 +13,18 @@ use crate::run_end;
 use crate::signals::Signals;
 use crate::watch::leave_screen;
 
-/// The time that the program may go on after the attempt to stop, if a second signal came.
+/// Maximum time that the program continues after the attempt to stop the robot, if a second signal arrived.
 const AFTER_THE_STOP: Duration = Duration::from_secs(1);
-/// The time that the program may go on after the second signal if the stop is not tried at all: the robot's code hangs.
+/// Maximum time that the program continues after the second signal without an attempt to stop the robot, whose code
+/// hangs.
 const WITHOUT_A_STOP: Duration = Duration::from_secs(10);
-/// The time between two looks at whether the stop was tried.
+/// Time between two checks for the attempt to stop the robot.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// Lets the second signal end the program, with the exit status known by then. The terminal is given back.
+/// Lets a second signal end the program, with the exit status known at that time. The terminal is restored.
 ///
 /// # Errors
-/// When the system does not let a signal be caught, or gives no thread.
+/// The system does not permit catching a signal, or cannot create a thread.
 pub(crate) fn watch(signals: &Signals) -> io::Result<()> {
     let mut incoming = Incoming::new(signals.noted().iter().map(|signal| i32::from(signal.number())))?;
     let signals = signals.share();
@@ -36,7 +37,7 @@ pub(crate) fn watch(signals: &Signals) -> io::Result<()> {
     Ok(())
 }
 
-/// Ends the program when the stop was tried and a moment has passed, or the stop is not tried for too long.
+/// Ends the program some time after the attempt to stop the robot, or when there is no attempt for too long.
 fn end(signals: &Signals) {
     let begun = Instant::now();
     let known = loop {

@@ -1,4 +1,4 @@
-//! A whole run: options, robot, turns, and the way out, on which the robot is always stopped.
+//! A complete run: options, robot, turns, and the end, at which the robot is always stopped.
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -29,15 +29,15 @@ use crate::turn_watch::TurnWatch;
 use crate::turns::{self, Witnesses};
 use crate::{Pace, Program, Refusal, Time, watch, way_out};
 
-/// Environment of a run: time, signals and output; a test provides its own.
+/// Environment of a run: time, signals and output; tests provide their own.
 pub(crate) struct Surroundings<'e, I, O> {
     /// Source of real time.
     pub(crate) instants: I,
-    /// The signals that end the run.
+    /// Signals that end the run.
     pub(crate) signals: Signals,
-    /// Limit of the time of each turn.
+    /// Watchdog that limits the time of each turn.
     pub(crate) watch: TurnWatch,
-    /// Opens standard output.
+    /// Function that opens standard output.
     pub(crate) out: O,
     /// Standard error.
     pub(crate) err: &'e mut dyn Write,
@@ -45,7 +45,7 @@ pub(crate) struct Surroundings<'e, I, O> {
     pub(crate) elapsed: Option<Box<dyn FnMut() -> Duration + 'e>>,
 }
 
-/// Runs an executable that was called like this; returns the exit status.
+/// Runs an executable with the call `call`; returns the exit status.
 pub(crate) fn session<'o, I, O>(
     program: Program<'_>,
     call: Call,
@@ -164,7 +164,7 @@ where
     status
 }
 
-/// Warns of the permission that this computer does not give, and names the command that gives it.
+/// Warns about a permission that this computer does not give, and names the command that gives it.
 fn warn_of_lateness(refused: &str, program: Option<&OsString>, err: &mut dyn Write) {
     let program = program.map_or_else(|| "FILE".into(), |program| program.to_string_lossy());
     say(
@@ -176,18 +176,18 @@ fn warn_of_lateness(refused: &str, program: Option<&OsString>, err: &mut dyn Wri
     );
 }
 
-/// Data of the plan that the options ask for.
+/// Data of the plan that the options determine.
 struct PlanData {
-    /// The paths that the plan replays, read.
+    /// Paths that the plan replays.
     store: PathStore,
-    /// The names of these paths.
+    /// Names of these paths.
     paths: Vec<&'static str>,
-    /// The causes by which the plan must end.
+    /// Causes by which the plan must end.
     required: Required,
 }
 
-/// Reads the paths that the plan replays, of which the one called `later` may be missing, and the causes by which it
-/// must end.
+/// Reads the paths that the plan replays, where the path with the name `later` may be missing, and the causes by which
+/// the plan must end.
 fn prepared(
     target: &TargetOptions,
     matches: &ArgMatches,
@@ -206,7 +206,7 @@ fn prepared(
     prepared.unwrap_or_else(bug_before)
 }
 
-/// The runs of a batch, if these options ask for several.
+/// Returns the runs of a batch if the options request several runs.
 fn batch<'p>(
     executable: &'p dyn Executable,
     matches: &ArgMatches,
@@ -243,8 +243,8 @@ fn several<'e>(
     status
 }
 
-/// Removes an option that clap proposes for an unknown one, unless a letter of three or less differs: `--period` is no
-/// help for `--speed`, which a simulated robot has.
+/// Removes clap's proposal for an unknown option unless at most a third of the letters differ: `--period`, for example,
+/// is no help for `--speed`, which only simulated robots have.
 fn with_near_option(mut error: clap::Error) -> clap::Error {
     let text = |kind| match error.get(kind) {
         Some(ContextValue::String(text)) => text.trim_start_matches('-').split('=').next().unwrap_or_default(),
@@ -273,7 +273,7 @@ fn print_answer(answer: &str, out: &mut dyn Write) -> u8 {
     run_end::OVER
 }
 
-/// Reports that a signal ended the run while the robot was opened; returns the exit status.
+/// Reports that a signal ended the run while the robot was being opened; returns the exit status.
 fn ended_at_the_start(signals: &Signals, stopped: Result<(), String>, err: &mut dyn Write) -> u8 {
     let Some(signal) = signals.caught() else {
         signals.patience().stop_was_tried(None);

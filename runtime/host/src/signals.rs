@@ -1,4 +1,4 @@
-//! Signals that ask the program to end: they are noted, so that the robot is stopped first.
+//! Signals that request the end of the program. They are only recorded, so that the robot is stopped first.
 
 use std::borrow::Cow;
 use std::io;
@@ -17,8 +17,8 @@ use crate::stop_request::StopRequest;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Signal(u8);
 
-/// The signals that end a program by default and can be caught, without those that mean something else here: SIGUSR1
-/// asks for the timing, SIGPIPE and SIGXFSZ are errors of the file that is written.
+/// Signals that end a program by default and can be caught. Signals with another meaning here are left out: SIGUSR1
+/// requests the timing, and SIGPIPE and SIGXFSZ are errors of the file that is written.
 const NAMED: [(Number, &str); 16] = [
     (Number::HUP, "SIGHUP"),
     (Number::INT, "SIGINT"),
@@ -37,17 +37,17 @@ const NAMED: [(Number, &str); 16] = [
     (Number::POWER, "SIGPWR"),
     (Number::SYS, "SIGSYS"),
 ];
-/// The first and the last real-time signal. A C library keeps some of the first ones to itself.
+/// Numbers of the first and the last real-time signal. A C library reserves some of the first ones for itself.
 const REAL_TIME: (u8, u8) = (34, 64);
 
 impl Signal {
-    /// Ctrl-C.
+    /// The signal SIGINT, which Ctrl-C sends.
     #[cfg(test)]
     pub(crate) const INTERRUPT: Self = Self::of(Number::INT);
-    /// A polite `kill`.
+    /// The signal SIGTERM, which `kill` sends by default.
     #[cfg(test)]
     pub(crate) const TERMINATE: Self = Self::of(Number::TERM);
-    /// The terminal is gone, such as a lost connection to the robot's computer.
+    /// The signal SIGHUP: the terminal was closed, for example because the connection to the robot's computer was lost.
     #[cfg(test)]
     pub(crate) const HANG_UP: Self = Self::of(Number::HUP);
 
@@ -55,12 +55,12 @@ impl Signal {
         Self(number.as_raw() as u8)
     }
 
-    /// The signals that end a run.
+    /// Returns the signals that end a run.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         NAMED.into_iter().map(|(number, _)| Self::of(number)).chain((REAL_TIME.0..=REAL_TIME.1).map(Self))
     }
 
-    /// Returns the signal's name, for the operator.
+    /// Returns the name of the signal for the operator.
     pub(crate) fn name(self) -> Cow<'static, str> {
         match NAMED.into_iter().find(|(number, _)| Self::of(*number) == self) {
             Some((_, name)) => name.into(),
@@ -68,7 +68,8 @@ impl Signal {
         }
     }
 
-    /// Returns the signal's number; a shell reports 128 more as the status of a program that the signal ended.
+    /// Returns the number of the signal. For a program that the signal ended, a shell reports a status of 128 plus this
+    /// number.
     pub(crate) fn number(self) -> u8 {
         self.0
     }
@@ -77,34 +78,35 @@ impl Signal {
         self.0 >= REAL_TIME.0
     }
 
-    /// Returns `true` if a program that was started with this signal ignored goes on ignoring it.
+    /// Returns `true` if a program that was started with this signal ignored keeps ignoring it.
     ///
-    /// `nohup` asks for that. A script's shell starts jobs in the background with SIGINT and SIGQUIT ignored, which is
-    /// not intended: a person who presses Ctrl-C wants the robot to stop.
+    /// `nohup` requires that. But a script's shell starts background jobs with SIGINT and SIGQUIT ignored, which is not
+    /// intended: a person who presses Ctrl-C wants the robot to stop.
     fn may_be_ignored(self) -> bool {
         ![Number::INT, Number::QUIT, Number::TERM].map(Self::of).contains(&self)
     }
 }
 
-/// The signals caught so far.
+/// Record of the signals that have arrived.
 #[derive(Debug)]
 pub(crate) struct Signals {
-    /// The number of the signal that arrived last; 0 before the first.
+    /// Number of the last signal that has arrived; 0 before the first.
     caught: Arc<AtomicUsize>,
-    /// `true` if a signal ends the program at once, as it does by default.
+    /// `true` if a signal ends the program at once, as by default.
     deadly: Arc<AtomicBool>,
-    /// `true` if SIGUSR1 has arrived, which asks how late the turns are.
+    /// `true` if SIGUSR1 has arrived, which requests the timing of turns.
     timing: Arc<AtomicBool>,
-    /// The signals that are noted: all but those that were ignored already.
+    /// Signals that are recorded: all signals but those that were ignored at the start.
     noted: Vec<Signal>,
     patience: Patience,
 }
 
 impl Signals {
-    /// Listens to the signals of this process. They still end it at once, until [`Signals::robot_runs`].
+    /// Starts recording the signals of this process. Signals still end the process at once, until
+    /// [`Signals::robot_runs`].
     ///
     /// # Errors
-    /// When the system does not let a signal be caught.
+    /// The system does not permit catching a signal.
     pub(crate) fn listen() -> io::Result<Self> {
         let mut signals = Self { deadly: Arc::new(AtomicBool::new(true)), ..Self::unheard() };
         flag::register(Number::USR1.as_raw(), Arc::clone(&signals.timing))?;
@@ -126,7 +128,7 @@ impl Signals {
         Ok(signals)
     }
 
-    /// Lets a signal be noted, or end the program while signals end it at once.
+    /// Installs a handler that records a signal, or ends the program while signals end it at once.
     fn note(&self, signal: Signal) -> io::Result<()> {
         let number = i32::from(signal.number());
         if signal == Signal::of(Number::BUS) {
@@ -143,8 +145,8 @@ impl Signals {
         }
     }
 
-    /// Lets signals only be noted from now on: the robot must be stopped first. Output must not delay a robot in real
-    /// time.
+    /// Lets signals only be recorded from now on, because the robot must be stopped first. From now on, output does not
+    /// delay a robot in real time.
     pub(crate) fn robot_runs(&self, time: Time) {
         self.deadly.store(false, Ordering::SeqCst);
         if time == Time::Wall {
@@ -152,12 +154,12 @@ impl Signals {
         }
     }
 
-    /// The signals that are noted.
+    /// Returns the signals that are recorded.
     pub(crate) fn noted(&self) -> &[Signal] {
         &self.noted
     }
 
-    /// The time that writers wait for their readers.
+    /// Returns the phase of the run, which determines how long writers wait for their readers.
     pub(crate) fn patience(&self) -> &Patience {
         &self.patience
     }
@@ -167,29 +169,29 @@ impl Signals {
         self.deadly.load(Ordering::SeqCst)
     }
 
-    /// Returns the signal that arrived last, if any.
+    /// Returns the last signal that has arrived, if any.
     pub(crate) fn caught(&self) -> Option<Signal> {
         u8::try_from(self.caught.load(Ordering::SeqCst)).ok().filter(|number| *number > 0).map(Signal)
     }
 
-    /// Returns the request by which code that opens a robot learns of a signal.
+    /// Returns the request by which code that opens a robot is informed about a signal.
     pub(crate) fn stop_request(&self) -> StopRequest {
         StopRequest::of(&self.caught)
     }
 
-    /// Returns `true` if SIGUSR1 has arrived since the last call, which asks how late the turns are.
+    /// Returns `true` if SIGUSR1 has arrived since the last call, which requests the timing of turns.
     pub(crate) fn timing_is_asked_for(&self) -> bool {
         self.timing.swap(false, Ordering::SeqCst)
     }
 
-    /// Signals that only [`Signals::raise`] raises.
+    /// Returns a record of signals that only [`Signals::raise`] can raise.
     pub(crate) fn unheard() -> Self {
         let caught = Arc::default();
         let patience = Patience::new(StopRequest::of(&caught));
         Self { caught, deadly: Arc::default(), timing: Arc::default(), noted: Vec::new(), patience }
     }
 
-    /// Another handle on the same signals.
+    /// Returns another handle on the same record.
     pub(crate) fn share(&self) -> Self {
         let Self { caught, deadly, timing, noted, patience } = self;
         Self {
@@ -208,7 +210,8 @@ impl Signals {
     }
 }
 
-/// Returns the signals that this process ignores since its start, a bit for each from SIGHUP; 0 if that is unknown.
+/// Returns the signals that this process has ignored since its start, with one bit for each signal from SIGHUP on; 0 if
+/// they are unknown.
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

@@ -1,4 +1,4 @@
-//! The request to end a run, as code sees it that opens a robot.
+//! The request to end a run, for code that opens a robot.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -7,23 +7,23 @@ use std::time::{Duration, Instant};
 /// Maximum wait between two checks of the request.
 const SLICE: Duration = Duration::from_millis(20);
 
-/// The request to end a run, which a signal makes. The default is one that nothing makes.
+/// A request to end a run, which a signal makes. The default value is a request that is never made.
 #[derive(Debug, Clone, Default)]
 pub struct StopRequest(Arc<AtomicUsize>);
 
 impl StopRequest {
-    /// The request that a signal makes by storing its number in `caught`.
+    /// Returns the request that a signal makes by storing its number in `caught`.
     pub(crate) fn of(caught: &Arc<AtomicUsize>) -> Self {
         Self(Arc::clone(caught))
     }
 
-    /// A request that is made already.
+    /// Returns a request that has already been made.
     #[must_use]
     pub fn at_once() -> Self {
         Self(Arc::new(AtomicUsize::new(1)))
     }
 
-    /// Returns `true` from the moment at which the run is asked to end.
+    /// Returns `true` once the run is asked to end.
     #[must_use]
     pub fn is_made(&self) -> bool {
         self.0.load(Ordering::SeqCst) != 0

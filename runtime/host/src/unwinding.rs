@@ -1,4 +1,4 @@
-//! Refuses to be compiled where a panic would end the program before the robot was stopped.
+//! Prevents compilation with a setting by which a panic would end the program before the robot was stopped.
 
 #[cfg(panic = "abort")]
 compile_error!(

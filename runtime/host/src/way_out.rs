@@ -1,4 +1,4 @@
-//! The way out of a run: the robot is stopped, and then the cause of the end and all faults are reported.
+//! The end of a run: the robot is stopped, and then the cause of the end and all faults are reported.
 
 use std::io::{self, Write};
 
@@ -12,15 +12,15 @@ use crate::run_log::RunLog;
 use crate::safety::{Panicked, shielded};
 use crate::views::ByOdometry;
 
-/// A panic as an ending.
+/// Returns the end of a run by a panic.
 pub(crate) fn bug(Panicked(message): Panicked) -> RunEnd {
     RunEnd::Bug(message)
 }
 
-/// Stops the robot; returns the end of the run after the stop, `true` if the robot's code can still be trusted, and the
-/// faults.
+/// Stops the robot. Returns the end of the run after the stop, `true` if the robot's code can still be relied on, and
+/// the faults.
 ///
-/// The null input is sent once more where the robot still listens, then the stop command in any case.
+/// The null input is sent once more if the robot still accepts inputs; the stop command is sent in any case.
 pub(crate) fn stop(drive: &mut dyn Drive, ending: RunEnd) -> (RunEnd, bool, Vec<RunFault>) {
     let last = if ending.robot_listens() {
         let last = shielded(|| drive.release().map_err(RunEnd::Robot));
@@ -45,8 +45,8 @@ pub(crate) fn stop(drive: &mut dyn Drive, ending: RunEnd) -> (RunEnd, bool, Vec<
     (ending, orderly, faults)
 }
 
-/// Returns the ending of a plan that is over, or else an [`Ending::Otherwise`], by the causes that are required and by
-/// the robot's goal. The result of a goal is reported.
+/// Returns [`RunEnd::Over`] for a plan that ended as the options and the robot's goal require, and a
+/// [`RunEnd::Otherwise`] if it ended otherwise; other ends stay as they are. Reports the result of a goal.
 pub(crate) fn judge(drive: &mut dyn Drive, ending: RunEnd, required: &Required, report: &mut Report<'_>) -> RunEnd {
     if ending != RunEnd::Over {
         return ending;
@@ -70,16 +70,16 @@ pub(crate) fn judge(drive: &mut dyn Drive, ending: RunEnd, required: &Required, 
     }
 }
 
-/// The files that a run has written or draws at its end.
+/// Files that a run writes at its end.
 pub(crate) struct Files {
     pub(crate) log: Option<RunLog>,
-    /// Error that kept the path from being written.
+    /// Error because of which the path could not be written.
     pub(crate) path: Option<io::Error>,
     /// The views by odometry.
     pub(crate) views: Option<ByOdometry>,
 }
 
-/// Reports why the run ended, and all faults, once the robot was stopped; returns the exit status.
+/// Reports why the run ended, and all faults, after the robot was stopped; returns the exit status.
 pub(crate) fn tell(
     drive: &mut dyn Drive,
     ending: RunEnd,

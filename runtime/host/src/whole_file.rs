@@ -1,24 +1,26 @@
-//! A file that an option names: refused before the run when it could not be written, and written whole or not at all.
+//! A file that an option names. The run is refused if the file cannot be written; the file is written completely or not
+//! at all.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// The path of the file.
+/// A file that is written completely or not at all.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WholeFile {
     path: PathBuf,
-    /// Path of the unfinished file, in the same folder so that a rename puts it in place at once.
+    /// Path of the unfinished file, which is in the same folder, so that a rename puts the complete file in place at
+    /// once.
     unfinished: PathBuf,
 }
 
 impl WholeFile {
-    /// Returns the file at `path`, which `option` names, after checking that it can probably be written. Leaves no file
-    /// there.
+    /// Returns the file at `path`, which `option` names, after a check that it can probably be written. The check
+    /// leaves no file.
     ///
     /// # Errors
-    /// A sentence for the user, if the file cannot be written.
+    /// Returns a sentence for the user if the file cannot be written.
     pub fn at(option: &str, path: &Path) -> Result<Self, String> {
         let shown = path.display();
         if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
@@ -55,10 +57,10 @@ impl WholeFile {
         Ok(Self { path, unfinished })
     }
 
-    /// Writes the file; an error names it as `what`.
+    /// Writes the file; an error calls it `what`.
     ///
     /// # Errors
-    /// A sentence for the user, if the file cannot be written.
+    /// Returns a sentence for the user if the file cannot be written.
     pub fn write(&self, what: &str, text: &str) -> Result<(), String> {
         let mut unfinished = Unfinished::new(self.clone());
         unfinished.write(text);
@@ -66,17 +68,17 @@ impl WholeFile {
     }
 }
 
-/// A file that is being written, through a writer to it.
+/// A file that is being written in parts.
 #[derive(Debug)]
 pub struct Unfinished<W: Write = BufWriter<File>> {
     file: WholeFile,
-    /// The first error, which `finish` reports; nothing is written after it.
+    /// Writer of the file, or the first error, which `finish` reports; nothing is written after an error.
     written: io::Result<W>,
     is_finished: bool,
 }
 
 impl Unfinished {
-    /// Begins the file.
+    /// Begins writing the file.
     #[must_use]
     pub fn new(file: WholeFile) -> Self {
         Self::through(file, |file| Ok(BufWriter::new(file)))
@@ -84,7 +86,7 @@ impl Unfinished {
 }
 
 impl<W: Write> Unfinished<W> {
-    /// Begins the file, and writes to it through what `writer` returns.
+    /// Begins writing the file through the writer that `writer` returns.
     pub(crate) fn through(file: WholeFile, writer: impl FnOnce(File) -> io::Result<W>) -> Self {
         let opened = File::create_new(&file.unfinished);
         // What is there already is not this program's to remove.
@@ -92,7 +94,7 @@ impl<W: Write> Unfinished<W> {
         Self { file, written: opened.and_then(writer), is_finished }
     }
 
-    /// Writes more.
+    /// Appends `text` to the file.
     pub fn write(&mut self, text: &str) {
         if let Ok(file) = &mut self.written
             && let Err(error) = file.write_all(text.as_bytes())
@@ -101,10 +103,10 @@ impl<W: Write> Unfinished<W> {
         }
     }
 
-    /// Puts the file in its place; an error names it as `what`.
+    /// Puts the file in its place; an error calls it `what`.
     ///
     /// # Errors
-    /// A sentence for the user, if the file cannot be written.
+    /// Returns a sentence for the user if the file cannot be written.
     pub fn finish(mut self, what: &str) -> Result<(), String> {
         let written = std::mem::replace(&mut self.written, Err(ErrorKind::Other.into()));
         let put = written.and_then(|mut file| file.flush());
