@@ -1,12 +1,10 @@
 //! Host of a plan's executable: arguments, clock, signals, safe stop, report and run log around the turns of the plan.
 //!
-//! For authors of robots: [`Target`], [`Time`] and [`Refusal`]; [`Observer`] for robots that observe their runs, and
+//! Authors of robots use [`Target`], [`Time`] and [`Refusal`]; [`Observer`] for robots that observe their runs, and
 //! [`Batch`] for robots that can be started over; [`Watch`] and [`WholeFile`] for robots that show and draw runs
-//! themselves;
-//! [`Replays`] for robots that replay paths; [`read_file`] and [`output_format`] for options that name files;
-//! [`Quantity`] for options with lengths and times. For generated code: [`run`]. For an engine that makes the turns of
-//! a run itself:
-//! [`Pilot`].
+//! themselves; [`Replays`] for robots that replay paths; [`read_file`] and [`output_format`] for options that name
+//! files; and [`Quantity`] for options with lengths and times. Generated code uses [`run`]. An engine that makes the
+//! turns of a run itself implements the trait [`Pilot`].
 //!
 //! The robot is stopped in every case: when the plan ends, an exchange fails, code panics, a signal arrives, or a limit
 //! is reached.

@@ -13,7 +13,7 @@ use crate::Time;
 use crate::patience::Patience;
 use crate::stop_request::StopRequest;
 
-/// A signal that asks the program to end, by its number.
+/// A signal that requests the end of the program, by its number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Signal(u8);
 

@@ -107,7 +107,7 @@ impl TurnWatch {
 }
 
 impl WatchedRun {
-    /// Makes a turn, which is watched.
+    /// Makes a turn whose time is limited.
     pub(crate) fn make<T>(&self, number: u64, turn: impl FnOnce() -> T) -> T {
         /// Guard that records the end of a turn, also after a panic.
         struct Turn<'r>(&'r WatchedRun);

@@ -31,7 +31,7 @@ pub(crate) fn is_asked_for(matches: &ArgMatches) -> bool {
 /// Minimum time between two pictures: the eye cannot see faster changes.
 const EVERY: Duration = Duration::from_millis(50);
 
-/// The live view that `--watch` asks for.
+/// The live view that the option `--watch` requests.
 pub struct Watch {
     screen: Option<Screen>,
     world: World,

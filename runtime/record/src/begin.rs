@@ -75,7 +75,8 @@ impl Begin {
         }
     }
 
-    /// Reads the beginning of a run. Its paths stay in memory until the program ends, like those of a run.
+    /// Reads the beginning of a run. Its paths stay in memory until the program ends, like the paths that a plan
+    /// replays.
     pub(crate) fn take(from: &mut Bytes<'_>) -> Option<(Self, Constants)> {
         let [version, target, plan, command, beside] =
             [from.text()?, from.text()?, from.text()?, from.text()?, from.text()?];

@@ -44,7 +44,7 @@ pub struct RecordedTurn {
     pub number: u64,
     /// Time of the turn in the run.
     pub t: Nanos,
-    /// The robot's output.
+    /// Output of the robot.
     pub y: Sensed,
     /// Input that was sent after the output.
     pub sent: Twist,

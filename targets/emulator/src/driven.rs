@@ -15,7 +15,7 @@ pub struct Driven<R, T> {
     pub result: T,
     /// The result of serving the line: an error if the robot closed it.
     pub served: io::Result<()>,
-    /// The emulated robot.
+    /// Emulated robot after the drive.
     pub robot: R,
 }
 

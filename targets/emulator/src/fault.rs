@@ -40,7 +40,7 @@ pub enum Fault {
 pub enum Ailment {
     /// The robot receives nothing: the line to it is cut.
     Deaf,
-    /// The robot keeps its speed, whatever commands arrive; its watchdog does not stop it.
+    /// The robot keeps its speed: it ignores all commands, and its watchdog does not stop it.
     Runaway,
     /// The right wheels do not move.
     StuckWheel,
@@ -103,7 +103,7 @@ const KINDS: [(&str, Fault); 24] = [
 /// A fault with the time at which it begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct At {
-    /// The fault.
+    /// Fault that begins at `time`.
     pub fault: Fault,
     /// Time since the robot was switched on at which the fault begins, by the clock of the robot's world.
     pub time: Duration,
@@ -116,8 +116,8 @@ impl Fault {
         KINDS.into_iter().map(|(_, fault)| fault)
     }
 
-    /// Returns the fault with the number in `text` instead of its default number; `None` if the fault takes no number,
-    /// or the number is invalid or too large.
+    /// Returns the fault with the number in `text` instead of its default number; `None` if faults of this kind have no
+    /// number, or if `text` is not a valid number.
     fn numbered(self, text: &str) -> Option<Self> {
         match self {
             Self::Noise(_) => text.parse().ok().filter(|number| *number <= MOST).map(Self::Noise),

@@ -54,7 +54,7 @@ impl<R: Emulated> Faulty<R> {
         &self.robot
     }
 
-    /// Returns the robot, and ends its faults.
+    /// Returns the robot itself, without the faults of its line.
     #[must_use]
     pub fn into_robot(self) -> R {
         self.robot

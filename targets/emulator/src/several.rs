@@ -19,7 +19,7 @@ use crate::serve::{self, Embodied, Emulated, Pace, SLICE, STEP, say};
 /// A robot and its line.
 #[derive(Debug)]
 pub struct Seat<R> {
-    /// The robot.
+    /// Emulated robot at the line.
     pub robot: R,
     /// Line of the robot.
     pub port: Port,

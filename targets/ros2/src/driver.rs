@@ -35,7 +35,7 @@ pub struct Ros2<L> {
     sensing: Sensing,
     pacing: Pacing,
     times: Times,
-    /// Time at which the robot was found.
+    /// Moment at which connecting to the robot began.
     begun: Moment,
     request: StopRequest,
     /// Time of `/clock` at the first turn, in nanoseconds.

@@ -1,4 +1,4 @@
-//! Reasons why a robot that speaks ROS 2 cannot go on.
+//! Reasons why the driver of a robot that speaks ROS 2 ends a run.
 
 use std::fmt;
 
@@ -17,7 +17,7 @@ pub enum Fault {
     NoNumber,
     /// The odometry has no valid pose.
     NoPose,
-    /// Odometry went back in time by this many seconds.
+    /// Odometry went back in time by this number of seconds.
     Backwards(f64),
     /// Odometry jumped farther than the robot can have moved.
     Jumped {
@@ -32,7 +32,7 @@ pub enum Fault {
     Several {
         /// Name of the topic.
         topic: String,
-        /// Number of publishers.
+        /// Number of programs that publish the topic.
         count: usize,
     },
     /// The last message of a topic is too old.

@@ -26,7 +26,7 @@ use crate::source::{Input, Source, has_variance, inputs};
 #[derive(Debug, Clone)]
 struct Seen {
     input: Input,
-    /// Host's time at which the last message was accepted; `None` before the first message.
+    /// Time at which the last message was accepted, for the message's age; `None` before the first message.
     at: Option<Duration>,
     /// Time stamp of the last accepted message, in nanoseconds.
     stamp: i64,
@@ -43,7 +43,7 @@ pub struct Sensing {
     seen: Vec<Seen>,
     odometer: Odometer,
     pings: [Pings; SONARS],
-    /// Host's time at which each direction was last known.
+    /// Time at which each direction was last known, for the age of its ping.
     known: [Duration; SONARS],
     switches: u32,
     supply: Supply,

@@ -15,7 +15,7 @@ use crate::dds_link::DdsLink;
 use crate::driver::Ros2;
 use crate::pacing::Pacing;
 
-/// The target `ros2`.
+/// The target `ros2`, on which the host runs a plan.
 #[derive(Debug, Clone, Copy)]
 pub struct Target;
 

@@ -28,7 +28,7 @@ pub struct Alphabet {
     declarations: Vec<Declaration>,
 }
 
-/// Combines a target's alphabet with those of `shared` that it uses.
+/// Combines a target's alphabet with the alphabets in `shared` that it uses; returns the result with its diagnostics.
 #[must_use]
 pub fn combine(target: AlphabetFile, shared: &[AlphabetFile]) -> (Alphabet, Vec<Diagnostic>) {
     let mut found = Vec::new();

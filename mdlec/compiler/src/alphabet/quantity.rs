@@ -19,7 +19,7 @@ pub enum Kind {
     Frequency,
     /// A number without a unit.
     Number,
-    /// A whole number.
+    /// A whole number without a unit.
     Integer,
     /// A number of passes: a positive whole number, or `inf`.
     Count,

@@ -13,7 +13,7 @@ use crate::plan::{After, Condition};
 pub(super) enum When {
     /// The turn in which the condition's scope is entered.
     Entered,
-    /// Any turn.
+    /// Any turn of the condition's scope.
     Later,
     /// The turn in which the condition's scope has just ended.
     Past,

@@ -107,8 +107,8 @@ impl<'l> Constants<'l> {
         }
     }
 
-    /// Returns the text of the condition with negated operands, for those that are true at once; `None` if no such text
-    /// helps.
+    /// Returns the text of the condition, in which operands that are true at once are negated; `None` if there is no
+    /// such operand, or if one of them is always true.
     fn opposite(&self, bracket: u32, condition: &'l Condition) -> Option<String> {
         // Where each operand may be false at once, only what joins them is at fault.
         if condition.operands().iter().all(|operand| self.stays(bracket, operand)) {

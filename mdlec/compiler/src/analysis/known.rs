@@ -17,8 +17,8 @@ use crate::plan::{Condition, QuarkId};
 /// Maximum number of conditions of enclosing scopes that are considered for each variable of a question.
 const CLAUSES: usize = 8;
 
-/// A question about conditions: can at least one of them have fired (`fired` is `true`), or can all of them not have
-/// fired?
+/// A question about conditions: if `fired` is `true`, can at least one condition have fired; if `false`, can all
+/// conditions not have fired?
 #[derive(Debug, Clone)]
 pub(super) struct Question<'l> {
     pub(super) any: Vec<Read<'l>>,
@@ -227,7 +227,7 @@ impl<'l> KnownFacts<'l> {
         leaf(read.condition).map(|variable| (variable, false))
     }
 
-    /// Adds the variables of a condition, known or not; returns `false` if there are too many.
+    /// Collects the variables of a condition, known or not, in `found`; returns `false` if there are too many.
     pub(super) fn variables(&self, read: Read<'l>, found: &mut BTreeSet<Variable>) -> bool {
         choices::variables(read, self.machine, found)
     }

@@ -1,5 +1,5 @@
 //! Removes elements from the tree that a syntax error has affected: the parser may have read other words as names, and
-//! later stages must not report these names. Elements beside the defect remain.
+//! later stages must not report these names. Elements outside the error's region remain.
 
 use bumpalo::Bump;
 

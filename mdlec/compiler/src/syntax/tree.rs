@@ -9,7 +9,7 @@ use crate::diagnostic::Span;
 /// A node with the place where it is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Spanned<T> {
-    /// The node.
+    /// Node of the tree, without its place.
     pub node: T,
     /// Span of the node.
     pub span: Span,
@@ -115,7 +115,7 @@ pub enum Frame<'s> {
 pub enum Primary<'s> {
     /// An atom, with the syntax `(Atom condition control)`.
     Atom(&'s Atom<'s>),
-    /// A behavior that is defined in its place.
+    /// A behavior that is defined inside the string.
     Plan(&'s Plan<'s>),
     /// A plan by name, with its arguments if it has arguments.
     Ref(&'s Call<'s>),

@@ -75,7 +75,7 @@ pub enum Broken {
         from: State,
         /// State to which the interrupt leads.
         to: State,
-        /// Closed stretch.
+        /// Closed stretch into whose middle the interrupt leads.
         whole: Stretch,
     },
     /// An interrupt must lead back to the first state of an enclosing loop, but leads to another state.

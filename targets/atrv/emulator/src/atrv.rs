@@ -32,7 +32,7 @@ pub fn step(pace: Pace) -> Duration {
     step / step.as_nanos().div_ceil(STEP.as_nanos()).max(1) as u32
 }
 
-/// The emulated ATRV-mini.
+/// An emulated ATRV-mini.
 #[allow(missing_debug_implementations, reason = "its body has none")]
 pub struct Atrv {
     body: Simulated,
@@ -67,9 +67,8 @@ pub struct Atrv {
 }
 
 impl Atrv {
-    /// Returns a robot that has just been switched on and whose body's time advances in steps of `step`. `marks` is
-    /// passed to
-    /// [`Incoming::new`].
+    /// Returns a robot that has just been switched on and whose body's time advances in steps of `step`. The function
+    /// passes `marks` to [`Incoming::new`].
     ///
     /// # Errors
     /// Returns the world's error about an input that it cannot accept, which does not occur here.

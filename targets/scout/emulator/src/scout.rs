@@ -22,7 +22,7 @@ const LEAP: i64 = 1181;
 /// Type of the answer to a command that a Scout does not know.
 const REFUSED: u8 = 8;
 
-/// The emulated Scout.
+/// An emulated Scout.
 #[allow(missing_debug_implementations, reason = "its body has none")]
 pub struct Scout {
     body: Simulated,

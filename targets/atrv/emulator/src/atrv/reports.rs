@@ -54,7 +54,7 @@ impl Atrv {
         [&[0; 4][..], &self.time(), &[axis], &position.to_be_bytes(), &speed.to_be_bytes(), &[0; 8]].concat()
     }
 
-    /// Reports the sonars that have pinged since the last report of sonars, if there are such sonars.
+    /// Reports the sonars that have pinged since the last report of sonars; sends no report if there are none.
     pub(super) fn report_pings(&mut self) {
         let is_dead = self.has(Ailment::DeadSonar);
         let is_mute = self.has(Ailment::NoPings);
