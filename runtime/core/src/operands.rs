@@ -1,22 +1,23 @@
 //! Operands of a condition that have fired, with their values: evaluated when a scope ends and an observer is attached.
 //!
-//! The operands of a condition are the parts that AND and OR join, from left to right. NOT and RISING belong to their
-//! operand.
+//! The operands of a condition are the parts that AND and OR join, from left to right. A NOT or RISING is one
+//! operand together with its own operand.
 
 use crate::condition::Reading;
 use crate::fsm::Kind;
 use crate::{Condition, Cursor, Entries, Examined, Fsm, Interrupt, Measured, Memory, Nanos, Slots};
 
-/// The conditions of a plan that is code, as rows: read only where a scope has ended and an observer is attached.
+/// The conditions of a plan in generated code, as rows. They are read only when a scope has ended and an
+/// observer is attached.
 pub struct Conditions<'a, I> {
-    /// The condition of each bracket, in their order.
+    /// The condition of each bracket, in the order of the brackets.
     pub conditions: &'a [Condition<I>],
-    /// The operands of conditions; the operands of an operand come after it.
+    /// The operands of conditions. The operands of an operand come after it.
     pub operands: &'a [Condition<I>],
 }
 
 impl<I> Conditions<'_, I> {
-    /// Calls `tell` with the number and the values of each operand of the interrupt of `scope` that has fired.
+    /// Calls `tell` with the number and the values of each fired operand in the interrupt of `scope`.
     pub fn fired<Y, E: Entries, P: Slots<u64>>(
         &self,
         fsm: Fsm<'_>,
@@ -38,7 +39,7 @@ impl<I> Conditions<'_, I> {
 }
 
 impl<I> Condition<I> {
-    /// Calls `tell` with the number and the values of each operand that has fired, in their order.
+    /// Calls `tell` with the number and the values of each fired operand, in order.
     pub(crate) fn tell_fired<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, tell: &mut dyn FnMut(u32, Measured))
     where
         I: Interrupt<Y>,
@@ -52,7 +53,7 @@ impl<I> Condition<I> {
         });
     }
 
-    /// Calls `tell` with the value of the condition and of all its parts, a part before its own operands.
+    /// Calls `tell` with the value of the condition and of all its parts; a part comes before its own operands.
     pub(crate) fn examine<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32, tell: &mut dyn FnMut(Examined))
     where
         I: Interrupt<Y>,
@@ -70,7 +71,7 @@ impl<I> Condition<I> {
         }
     }
 
-    /// Visits its operands, each with the number from which its own operands are.
+    /// Visits the operands of the condition, each with the number from which its own operands are numbered.
     fn each_operand(&self, operands: &[Self], from: u32, visit: &mut dyn FnMut(&Self, u32)) {
         match self {
             Self::Or(first, count) | Self::And(first, count) => {
@@ -85,7 +86,8 @@ impl<I> Condition<I> {
         }
     }
 
-    /// The values of an operand; of what NOT and RISING are about, if that is no AND and no OR.
+    /// Returns the values of an operand. For NOT and RISING, these are the values of their operand, unless it
+    /// is an AND or OR.
     fn measured<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> Measured
     where
         I: Interrupt<Y>,

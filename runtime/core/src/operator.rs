@@ -2,12 +2,12 @@
 
 use crate::Radians;
 
-/// Operator of a comparison.
+/// Operator that compares two values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Operator {
     /// The values differ by at most this tolerance.
     Equal(f64),
-    /// Two directions not further apart than this, the shortest way round.
+    /// Two directions differ by at most this tolerance, the shorter way round.
     SameDirection(f64),
     /// The first value is less than the second.
     Less,

@@ -1,15 +1,15 @@
-//! Paths that a robot can drive: headings and forward speeds against time, and the store that has them by name.
+//! Paths that a robot can drive: headings and forward speeds over time, and a store that holds them by name.
 
 use crate::{MetersPerSecond, Nanos, Radians};
 
 /// Setpoint of a path: the heading and the forward speed at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setpoint {
-    /// The time since the path began.
+    /// Time since the path began.
     pub at: Nanos,
-    /// The heading, in the frame of the atom that replays it; between -π and π.
+    /// Heading in the frame of the atom that replays the path; between -π and π.
     pub heading: Radians,
-    /// The forward speed.
+    /// Forward speed.
     pub speed: MetersPerSecond,
 }
 
@@ -22,29 +22,29 @@ pub struct StoredPath {
     pub setpoints: &'static [Setpoint],
 }
 
-/// The paths that a plan can replay. They are read before the robot moves and stay until the program ends, so an output
-/// can hold them all and still be copied in a turn.
+/// The paths that a plan can replay. They are read before the robot moves and stay until the program ends, so
+/// an output can refer to all of them and still be copied in every turn.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PathStore(&'static [StoredPath]);
 
 impl PathStore {
-    /// A store without any path.
+    /// A store without paths.
     pub const EMPTY: Self = Self(&[]);
 
-    /// The store of these paths, in the order of their names.
+    /// Returns a store of these paths, which are in the order of their names.
     #[must_use]
     pub const fn new(paths: &'static [StoredPath]) -> Self {
         Self(paths)
     }
 
-    /// The setpoints of a path; `None` if there is no path of this name.
+    /// Returns the setpoints of the path `name`; `None` if no path has this name.
     #[must_use]
     pub fn path(&self, name: &str) -> Option<&'static [Setpoint]> {
         let place = self.0.binary_search_by(|path| path.name.cmp(name)).ok()?;
         self.0.get(place).map(|path| path.setpoints)
     }
 
-    /// Returns the names of the paths, in their order.
+    /// Returns the names of the paths, in alphabetical order.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
         self.0.iter().map(|path| path.name)
     }

@@ -5,29 +5,30 @@ use crate::{Begin, Cursor, Entries, Follows, Fsm, Measured, Meeting, ModuleRead,
 
 /// Meaning of the atoms and the scopes of a plan on one robot: emitted by `mdlec`, or loaded from text.
 ///
-/// The order of atoms is not its task: [`Cursor`] decides that, or [`Fsm::follows`] has done so beforehand.
+/// A plan does not decide the order of atoms: [`Cursor`] does, or [`Fsm::follows`] did beforehand.
 pub trait Plan {
-    /// The robot's output.
+    /// Output of the robot.
     type Output: Output;
-    /// The robot's input; its default is the null input.
+    /// Input of the robot; the default is the null input.
     type Input: Default;
     /// Storage for the entry of each level of scopes.
     type Entered: Entries;
-    /// A place for the counter of each level of loops.
+    /// Storage for the counter of each level of loops.
     type Left: Slots<u64>;
 
-    /// The machine's tables.
+    /// Returns the machine's tables.
     fn fsm(&self) -> Fsm<'_>;
-    /// Storage for a cursor; values do not matter.
+    /// Returns storage for a cursor; its values do not matter.
     fn slots(&self) -> (Self::Entered, Self::Left);
-    /// Makes the law of `atom`, which is now the current one; called once for each atom entered.
+    /// Creates the law of `atom`, which is now the current atom. Called once for each atom entered.
     fn enter(&mut self, atom: u32, y: &Self::Output, begin: Begin);
-    /// Asks the interrupts around the current atom, the outermost first, and the law's completion last. Returns the
-    /// scope that ends, of the first that has fired; `None` if the atom goes on.
+    /// Evaluates the interrupts of the scopes that enclose the current atom, the outermost first, and then the
+    /// completion of the law. Returns the ending of the first scope whose interrupt has fired; `None` if the
+    /// atom continues.
     fn next(&self, cursor: &Cursor<Self::Entered, Self::Left>, y: &Self::Output, t: Nanos) -> Option<Ending>;
 
-    /// Returns how long the current atom's law has made no progress towards its goal ([`Law::stalled`]); `None` in a
-    /// plan that does not ask.
+    /// Returns how long the current atom's law has made no progress towards its goal ([`Law::stalled`]); `None`
+    /// in a plan without `stuck`.
     ///
     /// [`Law::stalled`]: crate::Law::stalled
     #[inline(always)]
@@ -35,22 +36,22 @@ pub trait Plan {
         None
     }
 
-    /// Called before the cursor leaves a scope: a plan that remembers endings records this one, and clears the memories
-    /// of nested scopes. [`Cursor::ending`] returns the brackets that end.
+    /// Called before the cursor leaves a scope. A plan with memories of endings records this one and clears the
+    /// memories of nested scopes. [`Cursor::ending`] returns the brackets that end.
     #[inline(always)]
     fn leave(&mut self, _cursor: &Cursor<Self::Entered, Self::Left>, _cause: Cause, _y: &Self::Output, _t: Nanos) {}
 
-    /// Called when the atom of a turn is found, before its law is applied: a plan that remembers conditions that have
-    /// not fired records them.
+    /// Called when the atom of a turn is known, before its law is applied. A plan with RISING records which
+    /// conditions have not fired.
     #[inline(always)]
     fn settle(&mut self, _cursor: &Cursor<Self::Entered, Self::Left>, _y: &Self::Output, _t: Nanos) {}
 
-    /// The input that the current atom's law computes.
+    /// Returns the input that the current atom's law computes.
     fn input(&mut self, y: &Self::Output, t: Nanos) -> Self::Input;
 
-    /// Calls `tell` with each operand that has fired of the interrupt of `scope`, which encloses the current atom: its
-    /// number, in the order of [`Words::operand`], and its values. The machine calls it only for a
-    /// [`Watch`](crate::Watch), before the scope is left; a plan written by hand may know no operands.
+    /// Calls `tell` with the number, in the order of [`Words::operand`], and the values of each fired operand
+    /// in the interrupt of `scope`, which encloses the current atom. The machine calls this function only for a
+    /// [`Watch`](crate::Watch), before the scope is left. A plan written by hand may report no operands.
     fn operands(
         &self,
         _cursor: &Cursor<Self::Entered, Self::Left>,
@@ -61,34 +62,36 @@ pub trait Plan {
     ) {
     }
 
-    /// The quark text of an atom's law.
+    /// Returns the quark text of an atom's law.
     fn law(&self, atom: u32) -> &str;
-    /// The condition text of a scope's interrupt, by its bracket.
+    /// Returns the condition text of a scope's interrupt; `scope` is the number of its bracket.
     fn condition(&self, scope: u32) -> &str;
-    /// The name of a scope, by its bracket; empty for an atom.
+    /// Returns the name of a scope, given the number of its bracket; an empty text for an atom.
     fn name(&self, scope: u32) -> &str;
 
-    /// The words and places of the plan's text, if it has one.
+    /// Returns the words and places of the plan's source text, which may be empty.
     fn source(&self) -> &dyn Words {
         &Source::NONE
     }
 
-    /// Returns the names of the paths that its laws replay: the caller loads these paths before the plan begins.
+    /// Returns the names of the paths that the plan's laws replay. The caller loads these paths before the plan
+    /// begins.
     fn paths(&self) -> &[&'static str] {
         &[]
     }
 
-    /// Returns the attributes of modules that it reads: it begins once all of them have been published.
+    /// Returns the attributes of modules that the plan reads. The plan begins once all of them have been
+    /// published.
     fn reads(&self) -> &'static [ModuleRead] {
         &[]
     }
 
-    /// Returns the names of the other robots that it reads by the state link.
+    /// Returns the names of the other robots that the plan reads by the state link.
     fn robots(&self) -> &[&'static str] {
         &[]
     }
 
-    /// Returns its scopes that wait for other robots by `rendezvous`, in their order.
+    /// Returns the scopes that wait for other robots by `rendezvous`, in order.
     fn meetings(&self) -> &[Meeting] {
         &[]
     }
@@ -97,14 +100,14 @@ pub trait Plan {
 /// Cause of the end of a scope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
-    /// The interrupt of the scope of this level has fired.
+    /// The interrupt of the scope at this level has fired.
     Fired(u16),
-    /// The law of the atom, whose scope is of this level, is done, and no enclosing interrupt has fired.
+    /// The law of the atom, whose scope is at this level, is done, and no enclosing interrupt has fired.
     Completed(u16),
 }
 
 impl Cause {
-    /// The level of the scope that ends: 0 is the plan.
+    /// Returns the level of the scope that ends; the plan has level 0.
     #[must_use]
     pub const fn level(self) -> u16 {
         match self {
@@ -116,9 +119,9 @@ impl Cause {
 /// A scope that ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Ending {
-    /// The enclosing scope that ends, and the cause.
+    /// Cause of the end, with the level of the enclosing scope that ends.
     pub cause: Cause,
-    /// The successor, if the plan knows it beforehand; the cursor finds it otherwise.
+    /// The successor, if it is known before the plan runs; the cursor finds it otherwise.
     pub follows: Option<Follows>,
 }
 

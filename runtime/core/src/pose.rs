@@ -5,9 +5,9 @@ use crate::{Meters, MetersPerSecond, Radians, RadiansPerSecond};
 /// A place and a heading in the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pose {
-    /// Along the first axis.
+    /// Coordinate along the first axis, in metres.
     pub x: Meters,
-    /// Along the second axis, to the left of the first.
+    /// Coordinate along the second axis, which points to the left of the first, in metres.
     pub y: Meters,
     /// Heading, counter-clockwise from the first axis.
     pub theta: Radians,
@@ -17,20 +17,21 @@ impl Pose {
     /// The origin, heading along the first axis.
     pub const ORIGIN: Self = Self { x: Meters(0.0), y: Meters(0.0), theta: Radians(0.0) };
 
-    /// The distance to the place of `other`.
+    /// Returns the distance to the position of `other`.
     #[must_use]
     pub fn distance(&self, other: &Self) -> Meters {
         Meters(libm::hypot(other.x.0 - self.x.0, other.y.0 - self.y.0))
     }
 
-    /// The place `range` away in direction `bearing` (of the axes in which this pose is given), with that heading.
+    /// Returns the pose with this heading at distance `range` in direction `bearing`, both in the axes of this
+    /// pose.
     #[must_use]
     pub fn towards(&self, bearing: Radians, range: Meters) -> Self {
         let (sin, cos) = libm::sincos(bearing.0);
         Self { x: Meters(self.x.0 + range.0 * cos), y: Meters(self.y.0 + range.0 * sin), theta: bearing }
     }
 
-    /// The pose after an arc of length `way` that turns by `turn`: exactly, by its chord.
+    /// Returns the pose after an arc of length `way` that turns by `turn`, computed exactly from its chord.
     #[must_use]
     pub fn moved(&self, way: Meters, turn: Radians) -> Self {
         let half = turn.0 / 2.0;
@@ -49,8 +50,8 @@ pub struct Twist {
     pub omega: RadiansPerSecond,
 }
 
-/// The frame of an atom's headings: the robot's heading by odometry when the outermost plan began, turned by the
-/// enclosing `FRAME`s. The position does not matter, as a plan names directions only.
+/// The frame of an atom's headings: the robot's heading by odometry when the outermost plan began, turned by
+/// the enclosing `FRAME`s. A frame has no position, as a plan refers only to directions.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Frame(pub Radians);
 
@@ -61,7 +62,7 @@ impl Frame {
         Self(Radians(self.0.0 + by.0))
     }
 
-    /// An angle of this frame as an angle of the odometry's axes.
+    /// Returns an angle of this frame as an angle in the axes of odometry.
     #[must_use]
     pub fn outward(&self, angle: Radians) -> Radians {
         Radians(self.0.0 + angle.0).wrapped()

@@ -1,14 +1,16 @@
-//! Foreign text as people see it: no character in it moves the cursor, colours the terminal or turns text around.
+//! Foreign text as people see it: no character in it moves the cursor, colours the terminal or reverses the
+//! direction of text.
 
 use core::fmt::{self, Write};
 
-/// Shows a text on one line, each character that [is not printable](is_printable) as its number: `U+001B`.
+/// Shows a text on one line, with each character that [is not printable](is_printable) replaced by its number:
+/// `U+001B`.
 ///
-/// Widths and precisions of format strings do not apply.
+/// Widths and precisions of format strings have no effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Printable<T>(pub T);
 
-/// Shows a text of several lines as [`Printable`] shows one of them: line breaks and tabs stay.
+/// Shows a text of several lines as [`Printable`] shows a single line: line breaks and tabs remain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PrintableLines<T>(pub T);
 
@@ -25,11 +27,12 @@ impl<T: fmt::Display> fmt::Display for PrintableLines<T> {
     }
 }
 
-/// Returns `true` if a character has a form of its own, or belongs to that of its neighbours as an accent does.
+/// Returns `true` if a character has a visible form, or is part of its neighbour's form, as an accent is.
 ///
-/// These have no form of their own: control characters (`Cc`), separators of lines and paragraphs (`Zl`, `Zp`), what
-/// turns text around, joins it, or cannot be seen (`Cf`, but for the signs of Arabic, Syriac and Kaithi that enclose
-/// numbers, and the layout of hieroglyphs), and the two characters `U+FFFE` and `U+FFFF`, which no XML may have.
+/// These characters are not printable: control characters (`Cc`), separators of lines and paragraphs (`Zl`,
+/// `Zp`), characters that reverse text, join it, or are invisible (`Cf`, except the signs of Arabic, Syriac and
+/// Kaithi that enclose numbers, and the layout of hieroglyphs), and the two characters `U+FFFE` and `U+FFFF`,
+/// which no XML may have.
 #[must_use]
 pub const fn is_printable(letter: char) -> bool {
     !matches!(
@@ -51,7 +54,7 @@ pub const fn is_printable(letter: char) -> bool {
     )
 }
 
-/// Passes text on, with the numbers of the characters that are not kept in their places.
+/// Writes text, with the number in place of each character that `keeps` rejects.
 struct Replacing<'a, 'f, K> {
     to: &'a mut fmt::Formatter<'f>,
     is_kept: K,

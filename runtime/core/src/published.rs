@@ -1,5 +1,5 @@
-//! Numbers that modules publish for a plan: those alone that the plan reads, with their times (paper, section III-B).
-//! And the other robots that the plan names.
+//! Numbers that modules publish for a plan, with their times, limited to those that the plan reads (paper,
+//! section III-B), and the states of the other robots that the plan names.
 
 use crate::{Links, Nanos};
 
@@ -13,37 +13,37 @@ pub struct ModuleRead {
     pub module: &'static str,
     /// Name of the attribute in the module.
     pub attribute: &'static str,
-    /// SI unit of its values; `None` if any number will do.
+    /// SI unit of the attribute's values; `None` if the plan accepts any number.
     pub unit: Option<&'static str>,
 }
 
 /// A number that a module has published.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PublishedNumber {
-    /// The number, in SI units.
+    /// The value, in SI units.
     pub value: f64,
-    /// Time of its publication, on the engine's clock.
+    /// Time of the publication, on the engine's clock.
     pub at: Nanos,
-    /// Time since its publication.
+    /// Time since the publication.
     pub age: Nanos,
 }
 
-/// The numbers that a plan reads, as they were published last. Without an engine there are none.
+/// The latest published numbers that a plan reads. Without an engine there are none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Published {
     names: &'static [ModuleRead],
     numbers: [Option<PublishedNumber>; PUBLISHED],
-    /// Age of the oldest number that somebody waits for.
+    /// Age of the oldest number that a plan or a safety rule reads.
     oldest: Nanos,
     links: Links,
 }
 
 impl Published {
-    /// No number of any module.
+    /// Published numbers of no module.
     pub const NONE: Self = Self::new(&[]);
 
-    /// Returns the numbers of these attributes before any is published; attributes after the first [`PUBLISHED`] have
-    /// none.
+    /// Returns the numbers of these attributes before any is published. Attributes after the first
+    /// [`PUBLISHED`] have no number.
     #[must_use]
     pub const fn new(names: &'static [ModuleRead]) -> Self {
         Self { names, numbers: [None; PUBLISHED], oldest: Nanos::ZERO, links: Links::NONE }
@@ -61,26 +61,26 @@ impl Published {
         self.oldest
     }
 
-    /// Sets what the state link knows of other robots.
+    /// Sets the states of other robots, which the state link provides.
     #[must_use]
     pub const fn with_links(self, links: Links) -> Self {
         Self { links, ..self }
     }
 
-    /// Returns what the state link knows of other robots.
+    /// Returns the states of other robots, which the state link provides.
     #[must_use]
     pub const fn links(&self) -> &Links {
         &self.links
     }
 
-    /// Sets the number of the attribute at this place among the names.
+    /// Sets the number of the attribute at this position in the list of names.
     pub fn set(&mut self, place: usize, number: Option<PublishedNumber>) {
         if let Some(entry) = self.numbers.get_mut(place) {
             *entry = number;
         }
     }
 
-    /// Returns the number that the module has published last; `None` before the first.
+    /// Returns the number that the module has published last; `None` before the first publication.
     #[must_use]
     pub fn number(&self, module: &str, attribute: &str) -> Option<PublishedNumber> {
         let place = self.names.iter().position(|name| name.module == module && name.attribute == attribute)?;

@@ -8,14 +8,14 @@ pub trait Interrupt<Y: ?Sized> {
     /// Returns `true` if the interrupt has fired: where the paper's active-low function is 0.
     fn fired(&self, y: &Y) -> bool;
 
-    /// Returns `true` if the interrupt has fired, where the law of the turn before reports that it is `stalled`
-    /// ([`Law::stalled`]). Called instead of [`Interrupt::fired`]; only `stuck` reads the report.
+    /// Returns `true` if the interrupt has fired, given that the law of the turn before reports `stalled`
+    /// ([`Law::stalled`]). Called instead of [`Interrupt::fired`]; only `stuck` uses the report.
     #[inline(always)]
     fn fired_during(&self, y: &Y, _stalled: Option<Nanos>) -> bool {
         self.fired(y)
     }
 
-    /// Returns the values that it compares, for reports; not asked while nothing fires.
+    /// Returns the values that the interrupt compares, for reports. Not called while no interrupt fires.
     fn measured(&self, _y: &Y) -> Measured {
         Measured::Nothing
     }
@@ -26,7 +26,7 @@ pub trait Interrupt<Y: ?Sized> {
 pub struct Begin {
     /// The time of the turn in which the atom is entered.
     pub now: Nanos,
-    /// The frame of the atom, `FRAME`s included.
+    /// The frame of the atom, which includes the enclosing `FRAME`s.
     pub frame: Frame,
 }
 
@@ -38,22 +38,23 @@ impl Begin {
     }
 }
 
-/// A control quark with its arguments; an atom that begins makes a [`Law`] of it.
+/// A control quark with its arguments. An atom that begins creates a [`Law`] from it.
 pub trait Control<Y: ?Sized> {
-    /// The law with its state.
+    /// Type of the law, which has the state.
     type Law: Law<Y>;
 
-    /// Returns the law as it is when its atom is entered. Has no effect outside: a skipped atom's law is created and
-    /// never run.
+    /// Returns the law in the state in which its atom is entered. The function has no side effects: the law of
+    /// a skipped atom is created and never runs.
     fn begin(&self, y: &Y, begin: Begin) -> Self::Law;
 }
 
-/// A control law `u(y, t)` with its state since its atom began.
+/// A control law `u(y, t)` and its state since its atom began.
 pub trait Law<Y: ?Sized> {
-    /// The input it computes.
+    /// Type of the input that the law computes.
     type Input;
 
-    /// The input for this turn; called once a turn while the atom runs, with the output and the time of the turn.
+    /// Returns the input for this turn. Called once a turn while the atom runs, with the output `y` and the
+    /// time `t` of the turn.
     fn input(&mut self, y: &Y, t: Nanos) -> Self::Input;
 
     /// Returns how long the law has made no progress towards its goal; `None` for a law without a goal. Read at the
@@ -65,7 +66,7 @@ pub trait Law<Y: ?Sized> {
 
 /// A law that can end its atom, as the alphabet declares with `completes`.
 pub trait Completes<Y: ?Sized>: Law<Y> {
-    /// Returns `true` if the law is done; called before the input is computed, also in the turn in which the atom
-    /// begins.
+    /// Returns `true` if the law is done. Called before the input is computed, also in the turn in which the
+    /// atom begins.
     fn completed(&self, y: &Y, t: Nanos) -> bool;
 }

@@ -4,12 +4,12 @@ use core::time::Duration;
 
 use crate::{Links, Nanometers, Nanos, Pose, Published, Twist};
 
-/// A robot: takes an input, gives the output that follows it, and can be stopped.
+/// A robot, which takes an input, returns the output that follows, and can be stopped.
 ///
 /// Once an `exchange` has failed the robot is stopped and not used again. An implementation must leave the hardware's
 /// own watchdog armed, so that a program that dies stops the robot as well.
 pub trait Robot {
-    /// Output `y` of the sensors, with everything that the quarks of this robot read.
+    /// Output `y` of the sensors, which includes all values that this robot's quarks read.
     type Output: Output;
     /// Input `u` of the actuators; its default is the null input.
     type Input: Default;
@@ -28,39 +28,41 @@ pub trait Robot {
     /// When the command could not be delivered; the hardware's watchdog is then what stops it.
     fn stop(&mut self) -> Result<(), Self::Error>;
 
-    /// Returns the longest time without a command after which the robot is still driven on, by the wall clock: that of
-    /// the robot's own watchdog, or how long its data stay fresh. After a longer gap, as when the program was
-    /// suspended, the run ends with a fault before a command is sent. `None` for two seconds more than the period.
-    /// Simulated time has no gaps.
+    /// Returns the longest time without a command, by the wall clock, after which the robot may still be
+    /// driven: the timeout of the robot's own watchdog, or the time for which its data stay fresh. After a
+    /// longer gap, for example when the program was suspended, the run ends with a fault before a command is
+    /// sent. `None` means two seconds more than the period. Simulated time has no gaps.
     fn longest_gap(&self) -> Option<Duration> {
         None
     }
 }
 
-/// Output of a robot with any sensors: what every robot offers. The traits of [`crate::capability`] have the rest.
+/// The part of an output that every robot offers, whatever its sensors. The traits of [`crate::capability`] add
+/// the rest.
 pub trait Output {
-    /// Returns the pose by odometry, where a plan that began now would put its frame; the origin on a robot without
-    /// odometry.
+    /// Returns the pose by odometry, at which a plan that begins now would put its frame; the origin on a robot
+    /// without odometry.
     fn here(&self) -> Pose {
         Pose::ORIGIN
     }
 
-    /// Returns the reading of an odometer that counts the path driven. `None` on a robot without an odometer: the
-    /// machine then adds up the distances between [`Output::here`] of successive turns.
+    /// Returns the reading of an odometer that measures the length of the path driven; `None` on a robot
+    /// without an odometer. The machine then adds up the distances between [`Output::here`] of successive
+    /// turns.
     fn way(&self) -> Option<Nanometers> {
         None
     }
 
-    /// Takes the numbers that modules have published for the plan. An engine calls it before each turn; an output whose
-    /// quarks read no modules ignores them.
+    /// Takes the numbers that modules have published for the plan. An engine calls it before each turn; an
+    /// output whose quarks read no modules ignores the numbers.
     fn take_published(&mut self, _published: Published) {}
 
-    /// Takes what the state link knows of other robots. An engine calls it before each turn; an output whose quarks
-    /// name no robots ignores it.
+    /// Takes the states of other robots from the state link. An engine calls this function before each turn; an
+    /// output whose quarks name no robots ignores them.
     fn take_links(&mut self, _links: Links) {}
 
-    /// Returns the velocities of the robot, which it tells others by the state link; at rest on a robot that does not
-    /// measure them.
+    /// Returns the velocities of the robot, which the state link sends to other robots; zero on a robot that
+    /// does not measure them.
     fn velocities(&self) -> Twist {
         Twist::default()
     }

@@ -1,4 +1,4 @@
-//! A plan as rows of tables, which the machine looks up.
+//! A table-driven plan, whose rows the machine looks up.
 
 mod examined;
 
@@ -11,13 +11,13 @@ use crate::{
 
 pub use examined::Examined;
 
-/// A plan in rows that a [`Machine`](crate::Machine) runs.
+/// A table-driven plan that a [`Machine`](crate::Machine) runs.
 pub struct InRows<T: Table, E, P, M = ()> {
     table: T,
     slots: (E, P),
     memory: M,
     running: Option<<T::Alphabet as Alphabet>::Law>,
-    /// The bracket of the current atom.
+    /// Number of the current atom's bracket.
     own: u32,
 }
 
@@ -26,7 +26,8 @@ type OutputOf<T> = <<T as Table>::Alphabet as Alphabet>::Output;
 type InputOf<T> = <<T as Table>::Alphabet as Alphabet>::Input;
 
 impl<T: Table, E: Entries, P: Slots<u64>> InRows<T, E, P> {
-    /// The plan before it begins, with a place for each level of scopes and of loops; values do not matter.
+    /// Returns the plan before it begins, with storage for each level of scopes and of loops, whose values do
+    /// not matter.
     #[must_use]
     pub const fn new(table: T, entered: E, left: P) -> Self {
         Self { table, slots: (entered, left), memory: (), running: None, own: 0 }
@@ -34,7 +35,7 @@ impl<T: Table, E: Entries, P: Slots<u64>> InRows<T, E, P> {
 }
 
 impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
-    /// Returns a plan in rows that remembers; `memory` is empty at first.
+    /// Returns a plan with a memory for RISING and `after`; `memory` is empty at first.
     #[must_use]
     pub const fn remembering(table: T, entered: E, left: P, memory: M) -> Self {
         Self { table, slots: (entered, left), memory, running: None, own: 0 }
@@ -77,8 +78,8 @@ impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
         guard.condition.fired(&reading(&self.table, &self.memory, guard, cursor, y, t), 0)
     }
 
-    /// Records the facts about the elements that end with a scope by this cause, and clears the facts of elements
-    /// inside it.
+    /// Records the facts about the elements that end with a scope for this cause, and clears the facts of the
+    /// elements inside the scope.
     fn record(&mut self, cursor: &Cursor<E, P>, cause: Cause, y: &OutputOf<T>, t: Nanos) {
         let Self { table, memory, .. } = self;
         let (fsm, marks, facts) = (table.fsm(), table.marks(), table.facts());
@@ -107,7 +108,7 @@ impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
         memory.forget(outermost);
     }
 
-    /// Sets the memory of every RISING in the enclosing scopes' conditions whose operand has not fired.
+    /// Sets the memory of every RISING in the conditions of the enclosing scopes whose operand has not fired.
     fn remember(&mut self, cursor: &Cursor<E, P>, y: &OutputOf<T>, t: Nanos) {
         let Self { table, memory, own, .. } = self;
         let mut here = *own;

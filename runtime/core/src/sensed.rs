@@ -1,5 +1,5 @@
-//! The output of a robot on two driven wheels with odometry, bumper switches, sixteen sonars, a battery and a store of
-//! paths: the values, and the capabilities that they give it (`y = h(x)`, paper, Eq. 1).
+//! The output of a robot on two driven wheels with odometry, bumper switches, sixteen sonars, a battery and a
+//! store of paths: its values, and the capabilities that they implement (`y = h(x)`, paper, Eq. 1).
 
 use crate::capability::{Bumpers, DiffDrive, Modules, Odometry, Paths, Power, SonarRing, StateLink, Steering};
 use crate::{
@@ -10,7 +10,8 @@ use crate::{
 /// The output of one turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensed {
-    /// Time of the exchange that brought this output, since the first exchange; pings have times on the same clock.
+    /// Time of the exchange that brought this output, since the first exchange. Times of pings are on the same
+    /// clock.
     pub at: Nanos,
     /// Pose of the robot by its own odometry.
     pub odometry: Pose,
@@ -19,11 +20,12 @@ pub struct Sensed {
     /// The bumper switches in contact: bit `i` for switch `i`. A simulated Scout has six, counted counter-clockwise
     /// from the front, an ATRV-mini one at the front and one at the back.
     pub switches: u32,
-    /// The last pings of each sonar.
+    /// The newest pings of each sonar.
     pub pings: [Pings; SONARS],
-    /// The drift of its heading by odometry, measured by walls; the default on a robot whose odometry does not drift.
+    /// Drift of the heading by odometry, measured by walls; the default on a robot whose odometry does not
+    /// drift.
     pub compass: Compass,
-    /// Power supply as the robot reports it; the default on a robot that reports nothing of it.
+    /// Power supply as the robot reports it; the default on a robot that does not report it.
     pub supply: Supply,
     /// Constants of the body.
     pub shape: Shape,
@@ -36,7 +38,7 @@ pub struct Sensed {
 /// Power supply as a robot reports it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Supply {
-    /// The voltage of its battery.
+    /// Voltage of the battery.
     pub battery: Volts,
     /// `true` if the battery has to be charged.
     pub is_low: bool,

@@ -1,4 +1,4 @@
-//! The body of a robot, as laws need it.
+//! The body of a robot: the constants that laws need.
 
 use crate::Meters;
 use crate::capability::Steering;
@@ -8,18 +8,18 @@ use crate::capability::Steering;
 pub struct Shape {
     /// Radius of the smallest circle around the body.
     pub body_radius: Meters,
-    /// Half the length of the body, along which it drives; of a disc its radius.
+    /// Half the length of the body, measured along its driving direction; the radius of a disc.
     pub half_length: Meters,
-    /// Half the width of the body; of a disc its radius.
+    /// Half the width of the body; the radius of a disc.
     pub half_width: Meters,
-    /// The distance between its wheels.
+    /// Distance between the wheels.
     pub wheel_base: Meters,
-    /// Distance, on a wall beside the robot, between the places that the two neighbours of the sonar square to it hear;
-    /// `None` for a robot whose heading by odometry is better than its heading by walls.
+    /// Distance, on a wall beside the robot, between the points that the two neighbours of the sonar square to
+    /// the wall hear; `None` for a robot whose odometry measures the heading better than walls do.
     pub sonars_apart: Option<Meters>,
-    /// The distance of the sonars from its centre.
+    /// Distance of the sonars from the robot's centre.
     pub ring_radius: Meters,
-    /// Number of pings that must agree that a way is free.
+    /// Number of pings that must agree before a direction counts as free.
     pub confirmation: usize,
     /// Gains by which laws steer the robot.
     pub steering: Steering,

@@ -4,16 +4,16 @@ use crate::{Interrupt, Measured, Operator};
 
 /// A number of the output that comparisons read, in SI units.
 pub trait Signal<Y: ?Sized> {
-    /// Returns the current value; infinite where the sensor saw nothing.
+    /// Returns the current value, in SI units; infinite where the sensor had no echo.
     fn value(&self, y: &Y) -> f64;
 }
 
-/// Right side of a comparison.
+/// Right-hand side of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Operand<S> {
-    /// Another signal.
+    /// Another signal, with which the first signal is compared.
     Signal(S),
-    /// A value.
+    /// A constant, in SI units.
     Value(f64),
 }
 
@@ -26,7 +26,7 @@ impl<Y: ?Sized, S: Signal<Y>> Signal<Y> for Operand<S> {
     }
 }
 
-/// A comparison of a signal: an interrupt that has fired while it holds.
+/// A comparison of a signal: an interrupt that has fired while the comparison is true.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Comparison<S, O> {
     signal: S,
@@ -35,7 +35,7 @@ pub struct Comparison<S, O> {
 }
 
 impl<S, O> Comparison<S, O> {
-    /// Returns the comparison of `signal` with `with`.
+    /// Returns a comparison of `signal` with `with`.
     #[must_use]
     pub const fn new(signal: S, operator: Operator, with: Operand<O>) -> Self {
         Self { signal, operator, with }
@@ -52,7 +52,7 @@ impl<Y: ?Sized, S: Signal<Y>, O: Signal<Y>> Interrupt<Y> for Comparison<S, O> {
     }
 }
 
-/// The signals of a robot without signals.
+/// Type for the signals of a robot without signals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoSignal {}
 

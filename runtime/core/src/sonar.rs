@@ -1,12 +1,12 @@
-//! Sonar readings with their age and the pose they were taken from, in the paper's sixteen directions.
+//! Sonar readings in the paper's sixteen directions, each with its age and the pose from which it was taken.
 
 use core::f64::consts::FRAC_PI_2;
 
 use crate::{Meters, Nanos, Pose, Radians};
 
-/// The number of sonars, and of the directions the paper's plans count them in.
+/// Number of sonars, which is also the number of directions in the paper's plans.
 pub const SONARS: usize = 16;
-/// Number of pings of each sonar that an output keeps: as many as it takes to confirm that a way is free.
+/// Number of pings of each sonar that an output keeps: the number that confirms that a direction is free.
 pub const PINGS_KEPT: usize = 3;
 
 /// One of the sixteen sonars: number `i` looks along `i · 22.5°`, counter-clockwise from the front, on every robot.
@@ -14,7 +14,7 @@ pub const PINGS_KEPT: usize = 3;
 pub struct SonarId(u8);
 
 impl SonarId {
-    /// Sonar `number`, counted round the ring (16 is 0 again).
+    /// Returns the sonar with this number, counted round the ring (16 is 0 again).
     #[must_use]
     pub const fn new(number: u8) -> Self {
         Self(number & 15)
@@ -37,7 +37,7 @@ impl SonarId {
 /// One ping.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ping {
-    /// The range from the transducer; `None` when no echo came back.
+    /// Range from the transducer; `None` if no echo returned.
     pub range: Option<Meters>,
     /// Time at which the ping was taken.
     pub at: Nanos,
@@ -47,8 +47,8 @@ pub struct Ping {
     pub mount: Mount,
 }
 
-/// Place and direction of a transducer compared to those of its sonar on the ring. Single precision: an output keeps 48
-/// pings.
+/// Position and direction of a transducer relative to its sonar on the ring. The type has single precision, as
+/// an output keeps 48 pings.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Mount {
     /// Distance, in metres, by which the transducer's axis passes the robot's centre on the left.
@@ -58,8 +58,8 @@ pub struct Mount {
 }
 
 impl Mount {
-    /// Returns the mount of a transducer at `x` metres ahead and `y` to the left of the centre, which looks along
-    /// `bearing` and speaks for `sonar`.
+    /// Returns the mount of a transducer at `x` metres ahead and `y` metres to the left of the centre, which
+    /// faces along `bearing` and represents `sonar`.
     #[must_use]
     pub fn of(x: f64, y: f64, bearing: Radians, sonar: SonarId) -> Self {
         let (sin, cos) = libm::sincos(bearing.0);
@@ -69,8 +69,9 @@ impl Mount {
 }
 
 impl Ping {
-    /// Returns the transducer's axis as a pose: its heading, and the place from which the range, with the ring's radius
-    /// added, counts along it. For a transducer on the ring that is the robot's centre.
+    /// Returns the transducer's axis as a pose: the heading of the axis, and the point from which the range
+    /// plus the ring's radius is measured along it. For a transducer on the ring, this point is the robot's
+    /// centre.
     #[must_use]
     pub fn axis(&self, sonar: SonarId) -> Pose {
         let theta = Radians(self.pose.theta.0 + sonar.bearing().0 + f64::from(self.mount.turned));
@@ -100,7 +101,7 @@ impl Pings {
         self.latest.iter().flatten()
     }
 
-    /// Returns the smallest range among the newest `count` pings; `None` if no such ping brought an echo.
+    /// Returns the smallest range among the newest `count` pings; `None` if none of these pings had an echo.
     #[must_use]
     pub fn nearest(&self, count: usize) -> Option<Meters> {
         let ranges = self.newest_first().take(count).filter_map(|ping| ping.range);

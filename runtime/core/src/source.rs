@@ -1,14 +1,15 @@
-//! The source text of a plan: the words of conditions and operands, and their lines.
+//! The source text of a plan: the words of its conditions and operands, and their lines.
 
 use crate::TextList;
 
-/// The words and places of a plan, for reports: constants of an executable, or owned by a plan that was loaded.
+/// The words and places of a plan, for reports: constants of an executable, or owned by a plan that is loaded
+/// at run time.
 pub trait Words {
     /// Returns the words of a bracket; `None` for a plan without source text.
     fn bracket(&self, bracket: u32) -> Option<BracketWords<'_>>;
-    /// Returns the words of an operand of a bracket's condition, by its number among them, from 0.
+    /// Returns the words of an operand in a bracket's condition; `number` numbers its operands from 0.
     fn operand(&self, bracket: u32, number: u32) -> Option<OperandWords<'_>>;
-    /// Returns the name of the file of a line; empty if the file is not known.
+    /// Returns the name of the file that contains this line; an empty text if the file is not known.
     fn file(&self, at: SourceLine) -> &str;
 }
 
@@ -19,70 +20,70 @@ impl<'w> dyn Words + 'w {
     }
 }
 
-/// The words and places of a plan as constants: rows of numbers and long texts, as rustc takes long for many texts.
+/// The words and places of a plan as constants. They are rows of numbers and long texts, because rustc takes
+/// long to compile many texts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source<'a> {
-    /// The names of the files, without folders.
+    /// Names of the files, without folders.
     pub files: &'a [&'a str],
-    /// For each bracket its file, its line, the first of its operands, and the number of its operands.
+    /// For each bracket: its file, its line, its first operand, and the number of its operands.
     pub brackets: &'a [[u32; 4]],
-    /// The condition of each bracket as it is written.
+    /// The condition of each bracket as written.
     pub conditions: TextList<'a>,
-    /// For each operand of the conditions of all brackets its file, its line, the first of its values, and the number
-    /// of its values.
+    /// For each operand of all conditions: its file, its line, its first value, and the number of its values.
     pub operands: &'a [[u32; 4]],
-    /// The condition text of each operand, as traces have it.
+    /// The condition text of each operand, as traces show it.
     pub texts: TextList<'a>,
-    /// The words of each operand as they are written.
+    /// The words of each operand as written.
     pub written: TextList<'a>,
-    /// The values of all operands.
+    /// The places of the values of all operands.
     pub values: &'a [ValueWords<'a>],
 }
 
-/// A line of a file.
+/// A line of a source file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SourceLine {
-    /// The number of the file in [`Source::files`].
+    /// Number of the file in [`Source::files`].
     pub file: u16,
     /// Number of the line, from 1.
     pub line: u32,
 }
 
-/// The words of a bracket.
+/// The words of a bracket, for reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BracketWords<'a> {
-    /// The line in which the atom or the scope begins; 0 for a loop.
+    /// Line in which the atom or the scope begins; 0 for a loop.
     pub at: SourceLine,
-    /// The condition of the scope as it is written; empty for a loop and for a scope without a condition.
+    /// Condition of the scope as written; empty for a loop and for a scope without a condition.
     pub condition: &'a str,
-    /// The first of its operands among those of all brackets.
+    /// Position of the bracket's first operand among the operands of all brackets.
     pub first: u32,
-    /// The number of its operands.
+    /// Number of the bracket's operands.
     pub count: u32,
 }
 
-/// The words of an operand: of a part of a condition that AND and OR join.
+/// The words of an operand: a part of a condition that AND and OR join.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OperandWords<'a> {
-    /// The condition text, as traces have it.
+    /// Condition text of the operand, as traces show it.
     pub text: &'a str,
-    /// The operand as it is written.
+    /// The operand as written.
     pub written: &'a str,
-    /// The line in which the bracket begins.
+    /// Line in which the operand begins.
     pub at: SourceLine,
-    /// The places in the written words at which measured values are shown: of the signal, then of the signal that it is
-    /// compared with.
+    /// The places in the written words at which measured values are shown: of the signal, then of the signal
+    /// with which it is compared.
     pub values: &'a [ValueWords<'a>],
 }
 
 /// A place in the words of an operand at which a measured value is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ValueWords<'a> {
-    /// The number of bytes of the words before it.
+    /// Number of bytes of the words before this place.
     pub after: u32,
-    /// The unit of the signal; empty for a number.
+    /// Unit of the signal; empty for a number.
     pub unit: &'a str,
-    /// The SI value of this unit.
+    /// SI value of one such unit.
     pub scale: f64,
 }
 

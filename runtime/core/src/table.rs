@@ -1,25 +1,26 @@
 //! Tables of a plan: the meaning of its scopes and atoms, as values instead of code.
 //!
-//! `mdlec` emits tables for plans that are too long to be code of their own, and a plan loaded at run time owns its
-//! tables. A row costs rustc next to nothing, and a turn reads as many rows as there are scopes that enclose the
-//! current atom.
+//! `mdlec` emits tables for plans that are too long for inline code, and a plan loaded at run time owns its
+//! tables. A row takes rustc almost no time, and a turn reads one row for each scope that encloses the current
+//! atom.
 
 use crate::{Alphabet, Condition, Fact, Follows, Fsm, MarkRow, Meeting, ModuleRead, Radians, Source, TextList, Words};
 
 /// The tables of a plan: [`Rows`] of constants, or tables that a loaded plan owns.
 pub trait Table {
-    /// The robot's alphabet.
+    /// Alphabet of the robot.
     type Alphabet: Alphabet;
 
     /// Returns the machine's tables.
     fn fsm(&self) -> Fsm<'_>;
     /// Returns the condition that ends each bracket, in the order of the brackets.
     fn guards(&self) -> &[Guard<<Self::Alphabet as Alphabet>::Interrupt>];
-    /// Returns the operands of conditions. The operands of an operand come after it, so there can be no cycle.
+    /// Returns the operands of conditions. The operands of an operand come after it, so they cannot form a
+    /// cycle.
     fn operands(&self) -> &[Condition<<Self::Alphabet as Alphabet>::Interrupt>];
     /// Returns the law of each atom, in the order of the atoms.
     fn laws(&self) -> &[LawRow<<Self::Alphabet as Alphabet>::Control>];
-    /// Returns the labels of what ends with each bracket, in the order of the brackets.
+    /// Returns the labels of the elements that end with each bracket, in the order of the brackets.
     fn marks(&self) -> &[MarkRow];
     /// Returns the facts of all labels, which `after` reads.
     fn facts(&self) -> &[Fact];
@@ -31,7 +32,7 @@ pub trait Table {
     fn name(&self, scope: u32) -> &str;
     /// Returns the words and places of the plan's text.
     fn source(&self) -> &dyn Words;
-    /// Returns the names of the paths that its laws replay.
+    /// Returns the names of the paths that the plan's laws replay.
     fn paths(&self) -> &[&'static str];
 
     /// Returns the attributes of modules that the plan reads.
@@ -54,13 +55,13 @@ pub trait Table {
 pub struct Rows<'a, A: Alphabet> {
     /// The machine's tables.
     pub fsm: Fsm<'a>,
-    /// Condition by which each bracket ends, in the order of the brackets.
+    /// Condition that ends each bracket, in the order of the brackets.
     pub guards: &'a [Guard<A::Interrupt>],
-    /// The operands of conditions. The operands of an operand come after it, so there can be no cycle.
+    /// The operands of conditions. The operands of an operand come after it, so they cannot form a cycle.
     pub operands: &'a [Condition<A::Interrupt>],
     /// Law of each atom, in the order of the atoms.
     pub laws: &'a [LawRow<A::Control>],
-    /// The labels of what ends with each bracket, in the order of the brackets.
+    /// The labels of the elements that end with each bracket, in the order of the brackets.
     pub marks: &'a [MarkRow],
     /// The facts of all labels, which `after` reads.
     pub facts: &'a [Fact],
@@ -122,16 +123,17 @@ impl<A: Alphabet> Table for &Rows<'_, A> {
     }
 }
 
-/// Condition by which a scope ends, and the successor; a loop has a row that never fires.
+/// Condition that ends a scope, and the scope's successor. A loop has a row that never fires.
 #[derive(Debug)]
 pub struct Guard<I> {
     /// Condition of the scope's interrupt.
     pub condition: Condition<I>,
     /// Number of enclosing scopes.
     pub level: u16,
-    /// Nearest enclosing bracket whose condition can fire; the bracket's own number if there is no such bracket.
+    /// Number of the nearest enclosing bracket whose condition can fire; the bracket's own number if there is
+    /// none.
     pub around: u32,
-    /// Successor of the scope, if it is known beforehand: [`Fsm::follows`].
+    /// Successor of the scope, if it is known before the plan runs ([`Fsm::follows`]).
     pub follows: Option<Follows>,
 }
 
@@ -140,7 +142,7 @@ pub struct Guard<I> {
 pub struct LawRow<C> {
     /// The law with its arguments.
     pub control: C,
-    /// Counter-clockwise.
+    /// Angle by which the atom's frame is turned, counter-clockwise.
     pub frame: Radians,
 }
 
@@ -155,7 +157,7 @@ pub struct Texts<'a> {
     pub names: TextList<'a>,
     /// The words and places of the plan's text.
     pub source: Source<'a>,
-    /// The names of the paths that its laws replay.
+    /// The names of the paths that the plan's laws replay.
     pub paths: &'a [&'static str],
 }
 

@@ -5,12 +5,12 @@
 pub struct Nanos(pub u64);
 
 impl Nanos {
-    /// The start of the plan.
+    /// Time at which the plan started.
     pub const ZERO: Self = Self(0);
-    /// Later than any plan lives: 584 years.
+    /// The latest time: 584 years, which no plan reaches.
     pub const MAX: Self = Self(u64::MAX);
 
-    /// The time from `earlier` to this one; zero if that is later.
+    /// Returns the time from `earlier` to this one; zero if `earlier` is later.
     #[must_use]
     pub const fn since(self, earlier: Self) -> Self {
         Self(self.0.saturating_sub(earlier.0))

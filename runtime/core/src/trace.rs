@@ -1,4 +1,4 @@
-//! The line of a trace: a JSON object for each turn, in which every machine reports its transitions and its law
+//! The line of a trace: a JSON object for each turn, which has the transitions and the law
 //! (docs/src/reference/interfaces.md, 4).
 
 use core::fmt::{self, Write};
@@ -12,34 +12,34 @@ pub struct Line<'a, F> {
     pub turn: u64,
     /// Time of the turn.
     pub t: Nanos,
-    /// The state in which it ended, in the expanded plan, from 1.
+    /// State in which the turn ended, in the expanded plan, from 1.
     pub state: u64,
     /// The quark text of the law that was applied; `None` for the null input.
     pub law: Option<&'a str>,
     /// Frame of the law, if a `FRAME here` encloses its atom.
     pub frame: Option<Frame>,
-    /// Transitions of the turn, in order: anything that gives [`Fired`].
+    /// Transitions of the turn, in order: any iterator over [`Fired`].
     pub fired: F,
 }
 
 /// A transition in a trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fired<'a, O> {
-    /// The state left.
+    /// Number of the state left, in the expanded plan, from 1.
     pub from: u64,
     /// Number of scopes that enclose the scope that ended.
     pub level: usize,
-    /// The condition text of its interrupt, or [`COMPLETED`].
+    /// Condition text of the ended scope's interrupt, or [`COMPLETED`].
     pub by: &'a str,
     /// Condition texts of the interrupt's operands that have fired, in order; empty if the law completed.
     pub operands: O,
 }
 
-/// Text of a trace for a scope that ended only because its law completed.
+/// Text in a trace for a scope that ended because its law completed.
 pub const COMPLETED: &str = "completed";
 
 impl Cause {
-    /// Returns the text of a trace for this cause, in a scope whose interrupt has this condition text.
+    /// Returns the trace text for this cause, in a scope whose interrupt has this condition text.
     #[must_use]
     pub const fn by(self, condition: &str) -> &str {
         match self {
@@ -50,12 +50,12 @@ impl Cause {
 }
 
 impl Transition {
-    /// Returns the text of a trace for the cause: the condition text of the scope's interrupt, or [`COMPLETED`].
+    /// Returns the trace text for the cause: the condition text of the scope's interrupt, or [`COMPLETED`].
     pub fn by<'p, P: Plan>(&self, plan: &'p P) -> &'p str {
         self.cause.by(plan.condition(self.scope))
     }
 
-    /// Returns this transition of `plan` for a trace, with the texts of the operands that have fired.
+    /// Returns this transition of `plan` as a trace shows it, with the texts of the operands that have fired.
     pub fn fired<'p, P: Plan, O>(&self, plan: &'p P, operands: O) -> Fired<'p, O> {
         Fired { from: self.from, level: usize::from(self.cause.level()), by: self.by(plan), operands }
     }
@@ -88,7 +88,8 @@ where
     }
 }
 
-/// A time as a JSON number of seconds: exact, which an `f64` is not after some months, with at least one decimal.
+/// A time as a JSON number of seconds, with at least one decimal. It is exact, while an `f64` would lose
+/// precision after some months.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Seconds(pub Nanos);
 
@@ -125,7 +126,7 @@ impl fmt::Display for Degrees {
     }
 }
 
-/// A text as a JSON string.
+/// A JSON string.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Json<'a>(pub &'a str);
 

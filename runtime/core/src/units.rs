@@ -1,4 +1,5 @@
-//! The quantities a quark can take, one type each, so that a speed cannot be passed where an angle is meant.
+//! The quantities that a quark can take. Each has a type of its own, so that a speed cannot be passed where an
+//! angle is expected.
 
 /// Declares quantities: a newtype over `f64` in one SI unit.
 macro_rules! quantities {
@@ -10,7 +11,7 @@ macro_rules! quantities {
 }
 
 quantities! {
-    /// A length in metres.
+    /// A length, in metres.
     Meters;
     /// A speed in metres a second.
     MetersPerSecond;
@@ -23,7 +24,7 @@ quantities! {
 }
 
 impl Radians {
-    /// The angle of this many degrees.
+    /// Returns the angle of this many degrees, in radians.
     #[must_use]
     pub const fn from_degrees(degrees: f64) -> Self {
         Self(degrees * (core::f64::consts::PI / 180.0))
@@ -51,7 +52,7 @@ impl Radians {
     }
 }
 
-/// A word of `N` bits, as `atIsection 0100` takes it: the first is the one written first.
+/// A word of `N` bits, as in `atIsection 0100`; the first bit is the one written first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bits<const N: usize>(pub [bool; N]);
 

@@ -1,5 +1,5 @@
-//! Lengths of the path driven, as plans compare them: whole nanometres, so that every machine counts the same
-//! (docs/src/reference/semantics.md, 3.3).
+//! Lengths of the path driven, as plans compare them: in whole nanometres, so that every computer gets the same
+//! sum (docs/src/reference/semantics.md, 3.3).
 
 use crate::Meters;
 
@@ -8,7 +8,7 @@ use crate::Meters;
 pub struct Nanometers(pub u64);
 
 impl Nanometers {
-    /// Way of length zero.
+    /// A path of length zero.
     pub const ZERO: Self = Self(0);
 
     /// Returns the length rounded to the nearest nanometre; zero for a negative length or NaN.
@@ -18,13 +18,13 @@ impl Nanometers {
         Self(libm::round(length.0 * 1e9) as u64)
     }
 
-    /// The way from an `earlier` reading to this one; zero if that is larger.
+    /// Returns the length of the path since an `earlier` reading; zero if `earlier` is larger.
     #[must_use]
     pub const fn since(self, earlier: Self) -> Self {
         Self(self.0.saturating_sub(earlier.0))
     }
 
-    /// Returns the reading after another `length`.
+    /// Returns the reading after a further path of this `length`.
     #[must_use]
     pub const fn plus(self, length: Self) -> Self {
         Self(self.0.saturating_add(length.0))

@@ -1,20 +1,22 @@
-//! The value of every part of a condition in a turn, for explanations: read beside a run, never by it.
+//! The value of every part of a condition in a turn, for explanations. It is read beside a run and never by the
+//! run itself.
 
 use super::{InRows, OutputOf, reading};
 use crate::{Completes as _, Cursor, Entries, Measured, Memory, Nanos, Slots, Table};
 
-/// A condition or a part of one in a turn.
+/// The value of a condition, or of a part of a condition, in a turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Examined {
-    /// `true` if it has fired.
+    /// `true` if the condition or part has fired.
     pub fired: bool,
-    /// The values from which it was evaluated.
+    /// Values from which the condition or part was evaluated.
     pub measured: Measured,
 }
 
 impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
-    /// Calls `tell` with the condition of `scope`, which encloses the current atom, and with all its parts: a part
-    /// comes before its own operands, which come from left to right. `stuck` is one part.
+    /// Calls `tell` with the condition of `scope`, which encloses the current atom, and with all parts of the
+    /// condition. A part comes before its own operands, which come from left to right. `stuck` counts as one
+    /// part.
     pub fn examine(
         &self,
         cursor: &Cursor<E, P>,

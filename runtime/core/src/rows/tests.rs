@@ -1,4 +1,4 @@
-//! Tests of conditions in rows, and of the memory of a plan in rows.
+//! Tests of conditions in table rows, and of the memory of a table-driven plan.
 
 use std::vec::Vec;
 
@@ -23,7 +23,8 @@ impl Interrupt<Sensed> for Fires {
     }
 }
 
-/// Law whose input is the heading of the frame in which it began; it is done when the output contains 99.
+/// Law whose input is the heading of the frame in which the law began. The law is done when the output contains
+/// 99.
 #[derive(Default)]
 struct Points(f64);
 
@@ -210,7 +211,8 @@ fn each_low_rising_is_noted_once() {
     assert_eq!(memories, [0, 1, 3, 4], "the operand of 2 has fired");
 }
 
-/// `{ P { Q (Atom) } (Atom) }`, where all conditions are given, and what ends with the first atom and with `Q`.
+/// `{ P { Q (Atom) } (Atom) }` with all conditions given, and with labels for the elements that end with the
+/// first atom and with `Q`.
 struct Remembering {
     guards: [Guard<Fires>; 4],
     operands: Vec<Condition<Fires>>,
@@ -245,8 +247,8 @@ impl Remembering {
         Self { guards, operands: operands.into() }
     }
 
-    /// Acts on a plan whose memories were set as in `before`; returns the places of the memories set afterwards, by
-    /// level.
+    /// Calls `act` on a plan whose memories are set as in `before`; returns the result and, for each level, the
+    /// memories that are then set.
     fn after<R>(&self, before: Set, act: impl FnOnce(&mut Remembers<'_>, &mut At) -> R) -> (R, Vec<usize>) {
         let laws = [0.0, 1.0].map(|angle| LawRow { control: Points::default(), frame: Radians(angle) });
         let fsm = Fsm { brackets: &BRACKETS, atoms: &ATOMS, termination: 3 };
@@ -284,7 +286,7 @@ fn a_turn_sets_the_memory_of_every_rising_around_its_atom_that_is_low() {
     assert_eq!(low(Sensed(&[0, 2])), [0]);
 }
 
-/// A plan whose first atom ends with one of these two.
+/// Returns a plan whose first atom ends when either of two conditions fires.
 fn ends_by_either() -> Remembering {
     let operands = [Condition::Quark(Fires(0)), Condition::Quark(Fires(1))];
     Remembering::new(Condition::Null, Condition::Or(0, 2), operands)

@@ -52,7 +52,7 @@ fn start(fsm: Fsm<'_>) -> Walk {
     Cursor::start(fsm, [Nanos(77); 3], [77; 2], Nanos(100))
 }
 
-/// Returns the states of a plan whose scopes of this level end one after another, at most `most` states.
+/// Returns the states, at most `most`, of a plan whose scopes at this level end one after another.
 fn states(fsm: Fsm<'_>, level: u16, most: usize) -> Vec<u64> {
     let mut cursor = start(fsm);
     let mut states = std::vec![cursor.state(fsm)];

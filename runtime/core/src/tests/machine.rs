@@ -8,17 +8,17 @@ use crate::{
     Watch,
 };
 
-/// An output: the brackets whose interrupts have fired, and whether the current law is done.
+/// An output: the brackets whose interrupts have fired, and `true` if the current law is done.
 struct Sensed(&'static [u32], bool);
 
 impl Output for Sensed {}
 
-/// A plan by hand. The input of atom `a`, as written and from 0, is `a + 1`.
+/// A handwritten plan. The input of atom `a`, numbered as written from 0, is `a + 1`.
 struct Toy {
     brackets: Vec<Bracket>,
     atoms: Vec<Atom>,
     termination: u64,
-    /// The atoms entered, in order.
+    /// Numbers of the atoms entered, in order.
     entered: Vec<u32>,
     /// Number of inputs computed.
     computed: u32,
@@ -26,7 +26,7 @@ struct Toy {
     foresees: bool,
 }
 
-/// The brackets of [`Toy::nested`].
+/// Bracket of the plan in [`Toy::nested`].
 const PLAN: u32 = 0;
 const SCOPE: u32 = 1;
 const FIRST: u32 = 2;
@@ -49,7 +49,8 @@ impl Toy {
         )
     }
 
-    /// `{ Plan ((Atom first))^times (Atom last) }`, where bracket 2 is the first atom's; 0 times is for ever.
+    /// Returns `{ Plan ((Atom first))^times (Atom last) }`, where bracket 2 is the first atom's; 0 times is a
+    /// loop without end.
     fn repeated(times: u64) -> Self {
         Self::new(
             [
@@ -135,7 +136,7 @@ fn begin(plan: Toy) -> Machine<Toy> {
     Machine::begin(plan, &QUIET, Nanos::ZERO)
 }
 
-/// One turn, and its transitions.
+/// Makes one turn; returns its result and its transitions.
 fn turn(machine: &mut Machine<Toy>, y: Sensed) -> (Turn<u32>, Vec<Transition>) {
     let mut watched = Watched::default();
     (machine.turn(&y, Nanos::ZERO, &mut watched), watched.0)
