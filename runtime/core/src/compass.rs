@@ -1,8 +1,9 @@
-//! The drift of a heading by odometry, measured by walls: wheels that slip in turns leave odometry a heading that is
-//! off, and walls do not turn.
+//! The drift of a heading by odometry, measured by walls: wheels slip in turns, so the heading by odometry
+//! becomes wrong, while walls do not turn.
 //!
-//! Walls are taken to run at right angles to each other. The drift is a number with an error, which grows with each
-//! turn and way; a measurement counts by its own error, and one that is off by more than both is of something else.
+//! Walls are assumed to run at right angles to each other. The drift is an estimate with an error, which grows
+//! with each turn and with the distance driven. A measurement is weighted by its own error; a measurement that
+//! deviates by more than both errors is rejected, as the echo is not from such a wall.
 
 mod line;
 #[cfg(test)]
@@ -13,17 +14,18 @@ use core::f64::consts::FRAC_PI_2;
 use crate::{Meters, Nanos, PINGS_KEPT, Pings, Pose, Radians, SONARS, Shape};
 use line::Line;
 
-/// The sonars that look to the left and to the right, and the sign of the direction.
+/// The sonars that look to the left and to the right, each with the sign of its direction.
 const SIDES: [(usize, f64); 2] = [(4, 1.0), (12, -1.0)];
 /// Greatest angle between the robot's heading and walls along which it drives.
 const ALONG: Radians = Radians::from_degrees(25.0);
-/// Walls further away than this, in metres, are not looked at.
+/// Distance, in metres, beyond which walls are ignored.
 const WITHIN: f64 = 1.5;
 /// Least sum of squared distances along a single wall, in square metres, by which its direction is known.
 const LONG: f64 = 4.0;
 /// Greatest difference of the slopes of walls on both sides.
 const PARALLEL: f64 = 0.14;
-/// Greatest difference, in metres, of the ranges to both sides of a wall to which the robot is nearly square.
+/// Greatest difference, in metres, between the ranges of the two sonars beside the one that faces a wall, at
+/// which the robot counts as nearly square to the wall.
 const SQUARE: f64 = 0.12;
 /// Greatest distance, in metres, of the middle of a straight wall from the mean of its sides.
 const STRAIGHT: f64 = 0.1;
@@ -34,26 +36,27 @@ const BOTH: f64 = 0.026;
 const ONE: f64 = 0.06;
 /// Error of a direction, in radians, by three pings of a wall.
 const THREE: f64 = 0.12;
-/// Least time between two measurements by three pings.
+/// Least time, in nanoseconds, between two measurements by three pings.
 const AGAIN: Nanos = Nanos(1_000_000_000);
-/// Error of the drift, in radians, before any wall was heard.
+/// Error of the drift, in radians, before any wall is measured.
 const AT_FIRST: f64 = 0.1;
 /// Greatest error of the drift, in radians.
 const UNKNOWN: f64 = 0.35;
-/// Greatest error, in radians, of a drift that is known.
+/// Greatest error, in radians, at which the drift counts as known.
 const BELIEVED: f64 = 0.3;
-/// Measurements off by more than this many times their error are of something else.
+/// Number of errors by which a measurement may deviate; beyond that it is rejected, as it is not from a wall.
 const GATE: f64 = 2.0;
-/// Error of a turn by odometry, as a part of the angle.
+/// Error of a turn by odometry, as a fraction of the angle.
 const OF_TURNS: f64 = 0.025;
-/// Square of the error of the heading after a metre, in radians squared.
+/// Square of the error of the heading that a metre of driving adds, in square radians.
 const OF_WAYS: f64 = 2e-4;
-/// Angle, in radians, from the axes of odometry below which a frame is along them.
+/// Angle, in radians, up to which a frame counts as aligned with the axes of odometry.
 const ALIGNED: f64 = 0.02;
-/// Greatest angle, in radians, of the first walls from the axes of odometry: a plan that begins further off them does
-/// not take walls for its axes.
+/// Greatest angle, in radians, between the first walls and the axes of odometry at which the walls count as
+/// parallel to these axes.
 const ALONG_AXES: f64 = 0.17;
-/// Greatest drift from an axis of a frame that is not one of odometry: further off, the frame lies askew in the room.
+/// Greatest drift of a frame whose axes are not those of odometry. At a larger angle, the frame lies askew in
+/// the room.
 const MOST: Radians = Radians::from_degrees(20.0);
 
 /// The drift of the heading by odometry from walls at right angles to each other.
@@ -63,16 +66,16 @@ pub struct Compass {
     drift: f64,
     /// Error of `drift`, in radians.
     error: f64,
-    /// The part of `drift` that the first walls account for, as they lay askew to the axes of odometry; `None` before
-    /// any were measured.
+    /// The part of `drift` by which the first walls lay askew to the axes of odometry; `None` before any wall
+    /// is measured.
     askew: Option<f64>,
-    /// The pose by odometry when the last output was taken in.
+    /// The pose by odometry at the last output.
     last: Pose,
-    /// The place from which lines are measured, with the direction along which the robot drives; `None` while it drives
-    /// along no wall.
+    /// The place from which lines are measured, and the direction along which the robot drives; `None` while
+    /// the robot drives along no wall.
     way: Option<Pose>,
     sides: [Line; 2],
-    /// Time of the last ping when three pings were last looked at.
+    /// Time of the newest ping when three pings were last evaluated.
     judged: Nanos,
 }
 
@@ -91,11 +94,11 @@ impl Default for Compass {
 }
 
 impl Compass {
-    /// Returns the angle by which odometry has turned a frame, one of whose axes has the direction `axis` by odometry;
-    /// 0 while it is not known.
+    /// Returns the angle by which the drift of odometry has turned a frame, one of whose axes has the direction
+    /// `axis` by odometry; 0 while the drift is not known.
     ///
-    /// A frame is taken to be along the walls, unless the first walls lay askew to the axes of odometry: then the drift
-    /// of those axes since is known, and that of other frames is not.
+    /// A frame is taken to be along the walls, unless the first walls lay askew to the axes of odometry: then
+    /// only the later drift of those axes is known, and the drift of other frames is not.
     #[must_use]
     pub fn drift(&self, axis: Radians) -> Radians {
         let (of_frame, askew) = (-off_quarter(axis.0), self.askew.unwrap_or(0.0));
@@ -104,8 +107,8 @@ impl Compass {
         Radians(if self.error <= BELIEVED && is_sound { drift } else { 0.0 })
     }
 
-    /// Takes in the last pings of a robot of this shape, and its pose by odometry. A robot whose sonars all ping in
-    /// every turn is taken to have odometry that does not drift.
+    /// Takes in the last pings of a robot of this shape, and its pose by odometry. The odometry of a robot
+    /// whose sonars all ping in every turn is assumed not to drift.
     pub fn take(&mut self, pings: &[Pings; SONARS], odometry: Pose, shape: &Shape) {
         if shape.confirmation >= PINGS_KEPT {
             return;
@@ -121,7 +124,8 @@ impl Compass {
         }
     }
 
-    /// Takes a measurement of the drift in. The first one tells whether walls are along the axes of odometry.
+    /// Includes a measurement of the drift. The first measurement decides whether walls are parallel to the
+    /// axes of odometry.
     fn measure(&mut self, drift: f64, error: f64) {
         let off = drift - self.drift;
         if self.askew.is_none() {
@@ -186,7 +190,8 @@ impl Compass {
         }
     }
 
-    /// Returns the slope of the walls beside the way, and its error in radians, if it is known.
+    /// Returns the slope of the walls beside the robot's way, and the error of the slope in radians; `None`
+    /// while it is not known.
     fn slope(&self) -> Option<(f64, f64)> {
         let [left, right] = self.sides;
         match (left.slope(), right.slope()) {
@@ -200,11 +205,11 @@ impl Compass {
         }
     }
 
-    /// Measures the drift by a straight wall that three adjacent sonars hear, the middle one about at a right angle,
-    /// while the drift is not known more precisely. Three pings are too few to tell first whether the room is askew to
-    /// the axes of odometry.
+    /// Measures the drift by a straight wall that three adjacent sonars hear, unless the drift is known more
+    /// precisely; the middle sonar is about square to the wall. Three pings are too few to tell first whether
+    /// the room is askew to the axes of odometry.
     ///
-    /// The sonars to both sides of the middle one hear equal ranges if the robot is square to the wall.
+    /// The sonars on both sides of the middle sonar hear equal ranges if the robot is square to the wall.
     fn faces(&mut self, pings: &[Pings; SONARS], odometry: Pose, apart: Meters) {
         let newest = pings.iter().filter_map(|pings| pings.newest_first().next()).map(|ping| ping.at).max();
         let Some(newest) =
@@ -233,7 +238,7 @@ impl Compass {
     }
 }
 
-/// Returns the angle from the nearest whole quarter of a circle, -π/4 to π/4.
+/// Returns the difference of `angle` from the nearest multiple of a right angle: -π/4 to π/4.
 fn off_quarter(angle: f64) -> f64 {
     let Radians(angle) = Radians(angle).wrapped();
     angle - libm::round(angle / FRAC_PI_2) * FRAC_PI_2

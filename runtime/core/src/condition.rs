@@ -1,43 +1,45 @@
-//! Conditions of interrupts as rows, and their evaluation (docs/src/reference/semantics.md, 2).
+//! Conditions of interrupts as table rows, and their evaluation (docs/src/reference/semantics.md, 2).
 
 use crate::{Interrupt, Memory, Nanometers, Nanos};
 
-/// The condition of an interrupt, or an operand of one.
+/// The condition of an interrupt, or an operand of a condition.
 #[derive(Debug)]
 pub enum Condition<I> {
-    /// Never fires.
+    /// The null interrupt, which never fires.
     Null,
-    /// A quark.
+    /// An interrupt quark.
     Quark(I),
-    /// Fires once this much time has passed since its scope was entered.
+    /// Fires once this much time has passed since the condition's scope was entered.
     Wait(Nanos),
-    /// Fires while the time since its scope was entered is at least the first value and below the second.
-    Elapsed(Nanos, Nanos),
-    /// Fires while the length of the path driven since its scope was entered is at least the first value and below the
+    /// Fires while the time since the condition's scope was entered is at least the first value and below the
     /// second.
+    Elapsed(Nanos, Nanos),
+    /// Fires while the length of the path driven since the condition's scope was entered is at least the first
+    /// value and below the second.
     Driven(Nanometers, Nanometers),
-    /// Fires when its quark has fired and this much time has passed since its scope was entered: `stuck`.
+    /// Fires when the quark has fired and this much time has passed since the condition's scope was entered:
+    /// `stuck`.
     Lasting(I, Nanos),
     /// Fires when any operand fires: the number of the first operand, and the number of operands.
     Or(u32, u32),
     /// Fires when all operands fire: the number of the first operand, and the number of operands.
     And(u32, u32),
-    /// Fires when its operand does not: the number of the operand.
+    /// Fires when the operand does not fire: the number of the operand.
     Not(u32),
-    /// Fires when its operand fires and did not in an earlier turn of this scope, as the memory records: the numbers of
-    /// the memory and of the operand.
+    /// Fires when the operand fires and was false in an earlier turn of this scope, as a memory records: the
+    /// numbers of the memory and of the operand.
     Rising(u32, u32),
-    /// Fires while a memory of an ending is set: the level of its scope, and its number.
+    /// Fires while a memory of an ending is set: the level of the memory's scope, and the number of the memory.
     After(u16, u32),
 }
 
 /// Values that a condition reads.
 pub(crate) struct Reading<'r, I, Y, M> {
     pub(crate) y: &'r Y,
-    /// Time since the scope of the condition was entered, and the number of that scope's enclosing scopes.
+    /// Time since the scope of the condition was entered.
     pub(crate) since: Nanos,
     pub(crate) level: u16,
-    /// The length of the path driven since then.
+    /// Length of the path driven since the scope of the condition was entered.
     pub(crate) way: Nanometers,
     /// Time for which the law of the turn before has made no progress.
     pub(crate) stalled: Option<Nanos>,
@@ -46,8 +48,8 @@ pub(crate) struct Reading<'r, I, Y, M> {
 }
 
 impl<I> Condition<I> {
-    /// Returns `true` if the condition has fired; reads every operand, whose numbers are `from` or more. The recursion
-    /// is as deep as the text's parentheses.
+    /// Returns `true` if the condition has fired. Only operands with numbers from `from` on are read. The
+    /// recursion is as deep as the text's parentheses.
     pub(crate) fn fired<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> bool
     where
         I: Interrupt<Y>,
@@ -85,7 +87,8 @@ impl<I> Condition<I> {
         operands.next().unwrap_or(0)
     }
 
-    /// Returns the first RISING in the condition, from memory `from` on, whose operand has not fired.
+    /// Returns the first RISING in the condition, from memory `from` on, whose operand has not fired; `None` if
+    /// there is no such RISING.
     pub(crate) fn first_low<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> Option<u32>
     where
         I: Interrupt<Y>,

@@ -1,5 +1,6 @@
-//! The cursor that walks a plan's machine: what follows when a scope ends and what then starts afresh
-//! (docs/src/reference/semantics.md, 5.3 and 6; the paper's third type of transition with its counter c(t)).
+//! The cursor that walks a plan's machine: which atom follows when a scope ends, and which scopes and loops
+//! then restart (docs/src/reference/semantics.md, 5.3 and 6; the paper's third type of transition with its
+//! counter c(t)).
 
 use crate::fsm::{Bracket, Kind};
 use crate::{Begin, Entries, Follows, Frame, Fsm, Here, Nanometers, Nanos, Output, Slots};
@@ -13,17 +14,17 @@ pub struct Cursor<E, P> {
 }
 
 impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
-    /// A cursor at the first atom of `fsm`, everything entered at `t`.
+    /// Returns a cursor at the first atom of `fsm`, with all its scopes entered at time `t`.
     ///
-    /// `entered` needs a place for each level of scopes whose [`Cursor::since`] is asked, and `left` one for each level
-    /// of loops; values do not matter.
+    /// `entered` needs a place for each level of scopes for which [`Cursor::since`] is called, and `left` needs
+    /// a place for each level of loops; their values do not matter.
     pub fn start(fsm: Fsm<'_>, entered: E, left: P, t: Nanos) -> Self {
         let mut cursor = Self { atom: 0, entered, left };
         cursor.open(fsm, 0, None, t);
         cursor
     }
 
-    /// The current atom, as written, from 0; the number of atoms when the plan is over.
+    /// Returns the number of the current atom as written, from 0; the number of atoms when the plan is over.
     pub fn atom(&self) -> u32 {
         self.atom
     }
@@ -64,14 +65,15 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         Some(Frame(self.entered.heading(level)).turned(turned))
     }
 
-    /// The beginning that the law of the current atom gets; `begin` has the frame of the plan.
+    /// Returns the time and frame in which the law of the current atom begins; `begin` has the frame of the
+    /// plan.
     #[inline(always)]
     pub(crate) fn begins(&self, begin: Begin) -> Begin {
         self.frame().map_or(begin, |frame| Begin { frame, ..begin })
     }
 
-    /// Returns the bracket of the enclosing scope of this level; the atom's own if there is no such scope, and the
-    /// plan's when the plan is over.
+    /// Returns the bracket of the enclosing scope of this level; the atom's own bracket if there is no such
+    /// scope, and the plan's bracket when the plan is over.
     pub fn scope(&self, fsm: Fsm<'_>, level: u16) -> u32 {
         let own = fsm.atoms.get(self.atom as usize).map_or(0, |atom| atom.scope);
         let mut outwards = fsm.outwards(own);
@@ -82,7 +84,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         scope.map_or(own, |(number, _)| number)
     }
 
-    /// The number of the current state in the expanded plan, from 1; the termination state when the plan is over.
+    /// Returns the number of the current state in the expanded plan, from 1; the termination state when the
+    /// plan is over.
     pub fn state(&self, fsm: Fsm<'_>) -> u64 {
         let Some(atom) = fsm.atoms.get(self.atom as usize) else { return fsm.termination };
         fsm.outwards(atom.scope).fold(atom.state, |state, (_, bracket)| match bracket.kind {
@@ -95,8 +98,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         })
     }
 
-    /// Returns the brackets that end when the enclosing scope of this level ends: that scope first, then the brackets
-    /// that enclose it and whose last element has ended, a loop with its last pass.
+    /// Returns the brackets that end when the enclosing scope of this level ends: first that scope, then each
+    /// enclosing bracket whose last element has ended; a loop ends with its last pass.
     pub fn ending<'f>(&self, fsm: Fsm<'f>, level: u16) -> impl Iterator<Item = (u32, &'f Bracket)> {
         let mut outwards = fsm.outwards(self.scope(fsm, level));
         let scope = outwards.next();
@@ -111,8 +114,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         times == 0 || self.left.as_ref().get(usize::from(slot)).is_some_and(|left| *left > 0)
     }
 
-    /// Ends the enclosing scope of this level at time `t`, and moves to the atom that follows. Returns `true` if there
-    /// is such an atom, and `false` if the plan is over.
+    /// Ends the enclosing scope of this level at time `t`, and moves to the atom that follows. Returns `false`
+    /// if the plan is then over.
     pub fn end(&mut self, fsm: Fsm<'_>, level: u16, t: Nanos) -> bool {
         let mut outwards = fsm.outwards(self.scope(fsm, level));
         // What ends together with the scope has the same last atom.
@@ -139,7 +142,7 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         }
     }
 
-    /// Spends a pass of `bracket` if it is a loop that has one left.
+    /// Uses up a pass of `bracket`; returns `true` if `bracket` is a loop that had a pass left.
     fn spend(&mut self, bracket: &Bracket) -> bool {
         let Kind::Loop { times, slot, .. } = bracket.kind else { return false };
         if times == 0 {

@@ -3,13 +3,13 @@
 
 use crate::{Nanometers, Nanos, Output, Pose, Radians, Slots};
 
-/// Storage for when each level of scopes was entered: times alone, or [`Stamps`].
+/// Storage for the moment at which each level of scopes was entered: times alone, or [`Stamps`].
 pub trait Entries {
-    /// Returns `true` if this stores no level.
+    /// Returns `true` if no level is stored.
     fn is_empty(&self) -> bool;
     /// Returns the time at which the scope of this level was entered; `None` if the level is not stored.
     fn time(&self, level: u16) -> Option<Nanos>;
-    /// Notes that the scope of this level is entered at time `t`.
+    /// Records that the scope of this level is entered at time `t`.
     fn note(&mut self, level: u16, t: Nanos);
     /// Takes the output of a turn and the report of the law of the turn before ([`Law::stalled`](crate::Law::stalled)),
     /// before anything in the turn is read or entered.
@@ -28,7 +28,8 @@ pub trait Entries {
     fn way(&self, _level: u16) -> Nanometers {
         Nanometers::ZERO
     }
-    /// Returns the frame of an atom that is inside a `FRAME here`, by its number as written, from 0.
+    /// Returns the frame of an atom, numbered as written from 0; `None` if the atom is not inside a `FRAME
+    /// here`.
     #[inline(always)]
     fn here(&self, _atom: u32) -> Option<Here> {
         None
@@ -40,7 +41,7 @@ pub trait Entries {
     }
 }
 
-/// Times alone.
+/// Entries that are times alone.
 impl<S: AsRef<[Nanos]> + AsMut<[Nanos]>> Entries for S {
     #[inline(always)]
     fn is_empty(&self) -> bool {
@@ -65,18 +66,18 @@ impl<S: AsRef<[Nanos]> + AsMut<[Nanos]>> Entries for S {
 pub struct Here {
     /// The level of the scope at whose entry the heading is taken.
     pub level: u16,
-    /// The sum of the `FRAME a` inside that scope that enclose the atom, counter-clockwise.
+    /// The sum of the angles of those `FRAME a` inside that scope that enclose the atom, counter-clockwise.
     pub turned: Radians,
 }
 
 /// The moment at which a scope was entered.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Stamp {
-    /// The time.
+    /// Time of the entry.
     pub time: Nanos,
-    /// The odometer's reading.
+    /// Reading of the odometer.
     pub way: Nanometers,
-    /// The heading by odometry.
+    /// Heading by odometry.
     pub heading: Radians,
 }
 
@@ -89,9 +90,9 @@ impl Stamp {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stamps<S, F = &'static [Option<Here>]> {
     slots: S,
-    /// The frame of each atom, in their order.
+    /// The frame of each atom, in the order of the atoms.
     frames: F,
-    /// The odometer and the heading in this turn; its time is that of no turn.
+    /// The odometer's reading and the heading in this turn; the `time` is not used.
     now: Stamp,
     /// The pose in the turn before; `None` before the first.
     last: Option<Pose>,
@@ -100,8 +101,8 @@ pub struct Stamps<S, F = &'static [Option<Here>]> {
 }
 
 impl<S: Slots<Stamp>, F: AsRef<[Option<Here>]>> Stamps<S, F> {
-    /// A stamp for each level that `slots` has room for; the values do not matter. `frames` has the frame of each atom
-    /// as written, and may be empty in a plan without `FRAME here`.
+    /// Returns a stamp for each level that `slots` has room for; the values do not matter. `frames` has the
+    /// frame of each atom as written, and may be empty in a plan without `FRAME here`.
     #[must_use]
     pub const fn new(slots: S, frames: F) -> Self {
         Self { slots, frames, now: Stamp::START, last: None, stalled: None }
@@ -165,7 +166,7 @@ mod tests {
     use super::*;
     use crate::Meters;
 
-    /// A robot at a pose, perhaps with an odometer of its own.
+    /// Output of a robot: its pose, and the reading of its odometer if it has one.
     struct At(Pose, Option<Nanometers>);
 
     impl Output for At {

@@ -1,5 +1,5 @@
-//! Successor of a scope, where it is known before the plan runs (docs/src/reference/semantics.md, 5.3; Eq. 2: the one
-//! destination of a transition matrix).
+//! Successor of a scope, where it is known before the plan runs (docs/src/reference/semantics.md, 5.3; Eq. 2:
+//! the single destination of a transition matrix).
 
 use crate::Fsm;
 use crate::fsm::Kind;
@@ -11,12 +11,12 @@ pub struct Follows {
     pub atom: u32,
     /// The first level of the scopes that are entered with the atom.
     pub from: u16,
-    /// End of these levels, exclusive; `from` or less when the plan is over.
+    /// The end of these levels, exclusive; at most `from` when the plan is over.
     pub to: u16,
 }
 
 impl Follows {
-    /// The atom that becomes current, and the scopes that are entered with it: of levels `from..to`.
+    /// Returns the successor that makes `atom` current and enters the scopes of levels `from..to`.
     #[must_use]
     pub const fn new(atom: u32, from: u16, to: u16) -> Self {
         Self { atom, from, to }
@@ -24,8 +24,8 @@ impl Follows {
 }
 
 impl Fsm<'_> {
-    /// Returns the successor of this scope; `None` if a loop ends with the scope or begins after it, as a loop counts
-    /// passes.
+    /// Returns the successor of this scope; `None` if a loop ends with the scope or begins after it, as the
+    /// successor then depends on the passes left.
     #[must_use]
     pub fn follows(self, scope: u32) -> Option<Follows> {
         let mut outwards = self.outwards(scope);

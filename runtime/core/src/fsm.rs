@@ -1,9 +1,10 @@
 //! The finite state machine of a plan, as a tree of brackets instead of N×N matrices (Algorithm 1; Eq. 2).
 //! See docs/src/reference/generated_code.md, 1.
 //!
-//! A transition matrix `E_i` is an interval of columns and one destination, so a scope that holds atoms `a..b` is
-//! stored as those two numbers. It is a tree and not a list of intervals because `((s)^2, ξ)` and `(s, ξ)^2` cover the
-//! same atoms, and ξ leaves the first but starts the second pass of the other.
+//! A transition matrix `E_i` is an interval of columns and one destination, so a scope that holds atoms `a..b`
+//! is stored as those two numbers. It is a tree and not a list of intervals because `((s)^2, ξ)` and `(s, ξ)^2`
+//! cover the same atoms, but an interrupt ξ leaves the first plan, while it starts the second pass of the
+//! second plan.
 
 /// A plan's machine: tables that generated code holds as constants and a loaded plan owns.
 ///
@@ -20,8 +21,9 @@ pub struct Fsm<'a> {
 }
 
 impl<'a> Fsm<'a> {
-    /// Returns a bracket and its enclosing brackets with their numbers, outwards to the plan's own. Stops at a parent
-    /// whose number is not lower, so it ends even if a table contains a cycle.
+    /// Returns a bracket and all brackets that enclose it, with their numbers, from the inside outwards to the
+    /// plan's own bracket. Stops at a parent whose number is not lower, so the iteration ends even if a table
+    /// contains a cycle.
     pub fn outwards(self, bracket: u32) -> impl Iterator<Item = (u32, &'a Bracket)> {
         let at = move |number: u32| self.brackets.get(number as usize).map(|bracket| (number, bracket));
         core::iter::successors(
@@ -36,32 +38,33 @@ impl<'a> Fsm<'a> {
 /// A scope or a loop, and the atoms inside it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bracket {
-    /// A scope or a loop.
+    /// Kind of the bracket: a scope or a loop.
     pub kind: Kind,
-    /// First atom of the bracket.
+    /// Number of the first atom of the bracket, as written, from 0.
     pub first: u32,
-    /// Last atom of the bracket.
+    /// Number of the last atom of the bracket, as written, from 0.
     pub last: u32,
-    /// Enclosing bracket; the plan's own bracket is its own parent.
+    /// Number of the enclosing bracket; the plan's own bracket is its own parent.
     pub parent: u32,
 }
 
 /// Kind of a bracket: a scope or a loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A closed string: an atom, a behavior or a plan. Its interrupt leads from each of its atoms to after its last
-    /// one.
+    /// A closed string: an atom, a behavior or a plan. Its interrupt leads from each of its atoms to the
+    /// element after the string.
     Scope {
         /// Number of enclosing scopes.
         level: u16,
     },
     /// An open string that is run several times: the paper's counter c(t).
     Loop {
-        /// Passes in all; 0 is for ever.
+        /// Number of passes in all; 0 for a loop without end.
         times: u64,
         /// Number of enclosing loops: the place of the loop's counter in a cursor.
         slot: u16,
-        /// The states of one pass in the expanded plan, or 0 where passes share their states (a loop without end).
+        /// Number of states of one pass in the expanded plan; 0 where passes share their states (a loop without
+        /// end).
         stride: u64,
     },
 }
@@ -69,20 +72,20 @@ pub enum Kind {
 /// An atom as written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Atom {
-    /// Bracket of the atom's own scope.
+    /// Number of the bracket that is the atom's own scope.
     pub scope: u32,
-    /// State of the atom in the expanded plan in the first pass of every enclosing loop, from 1.
+    /// Number of the atom's state, from 1, in the expanded plan in the first pass of every enclosing loop.
     pub state: u64,
 }
 
 impl Bracket {
-    /// A scope of atoms `first..=last`.
+    /// Returns a scope of atoms `first..=last`.
     #[must_use]
     pub const fn scope(level: u16, first: u32, last: u32, parent: u32) -> Self {
         Self { kind: Kind::Scope { level }, first, last, parent }
     }
 
-    /// A loop over atoms `first..=last`; see [`Kind::Loop`].
+    /// Returns a loop over atoms `first..=last`; see [`Kind::Loop`] for the other parameters.
     #[must_use]
     pub const fn repeat(times: u64, slot: u16, stride: u64, first: u32, last: u32, parent: u32) -> Self {
         Self { kind: Kind::Loop { times, slot, stride }, first, last, parent }
@@ -90,7 +93,7 @@ impl Bracket {
 }
 
 impl Atom {
-    /// An atom whose bracket is `scope` and whose first number is `state`.
+    /// Returns an atom whose bracket is `scope` and whose first number is `state`.
     #[must_use]
     pub const fn new(scope: u32, state: u64) -> Self {
         Self { scope, state }

@@ -1,11 +1,11 @@
 //! Runtime of every plan: the machine of Algorithm 1, the traits of a kinetic state machine, quarks, units and time.
 //!
-//! For people who write a robot: [`Robot`], [`Output`] and the traits of [`capability`].
-//! For people who write a quark: [`Interrupt`], [`Control`], [`Law`] and [`Completes`].
-//! For generated code and its callers: [`fsm`], [`Cursor`], [`Plan`] and [`Machine`], whose turns [`trace`] writes
-//! down. For everything that shows text to people: [`Printable`].
+//! To implement a robot: [`Robot`], [`Output`] and the traits of [`capability`]. To implement a quark:
+//! [`Interrupt`], [`Control`], [`Law`] and [`Completes`]. For generated code and its callers: [`fsm`],
+//! [`Cursor`], [`Plan`] and [`Machine`], whose turns [`trace`] formats. For programs that show text to people:
+//! [`Printable`].
 //!
-//! No allocation, no unsafe code, no path that panics: what is here runs in a robot's control loop.
+//! This crate runs in a robot's control loop: it does not allocate, has no unsafe code and cannot panic.
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(clippy::indexing_slicing, clippy::arithmetic_side_effects)]

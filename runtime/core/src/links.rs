@@ -1,11 +1,12 @@
-//! Knowledge of a robot about other robots by its state link: those alone that its plan names (paper, section IV-A).
+//! Knowledge that a robot has of other robots by its state link, limited to the robots that its plan names
+//! (paper, section IV-A).
 
 use crate::{Nanos, Pose, Twist};
 
 /// Maximum number of other robots that one plan names.
 pub const PEERS: usize = 8;
 
-/// Age from which the state of another robot is no longer fresh: the link to it counts as down.
+/// Age from which the state of another robot counts as stale and the link to it as down.
 pub const STALE: Nanos = Nanos(500_000_000);
 
 /// The newest state of another robot.
@@ -17,7 +18,7 @@ pub struct PeerState {
     pub velocity: Twist,
     /// Time since the state arrived.
     pub age: Nanos,
-    /// Number of scopes with a `rendezvous` with the receiver that the robot had entered.
+    /// Number of scopes with a `rendezvous` with the receiver that the robot has entered.
     pub rounds: u64,
     /// Number of the atom that the robot's plan ran, from 1 in the order of its text; [`PeerState::OVER`] once the plan
     /// was over, and 0 before it began.
@@ -25,7 +26,7 @@ pub struct PeerState {
 }
 
 impl PeerState {
-    /// Number in place of an atom's once a plan is over.
+    /// Value of [`PeerState::atom`] once a plan is over.
     pub const OVER: u64 = u64::MAX;
 }
 
@@ -34,14 +35,15 @@ impl PeerState {
 pub struct Peer {
     /// Name of the robot.
     pub name: &'static str,
-    /// Number of scopes with a `rendezvous` with it that the receiver had entered by the end of the turn before.
+    /// Number of scopes with a `rendezvous` with this robot that the receiver had entered by the end of the
+    /// turn before.
     pub rounds: u64,
-    /// The newest state that has arrived; `None` before the first.
+    /// The newest state that has arrived; `None` before the first arrival.
     pub state: Option<PeerState>,
 }
 
 impl Peer {
-    /// Returns the state of the robot while it is fresh: less than [`STALE`] old.
+    /// Returns the state of the robot while it is less than [`STALE`] old; `None` otherwise.
     #[must_use]
     pub fn fresh(&self) -> Option<&PeerState> {
         self.state.as_ref().filter(|state| state.age < STALE)
@@ -57,7 +59,7 @@ impl Peer {
 /// A scope of a plan whose interrupt has a `rendezvous` with another robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Meeting {
-    /// The scope, by its bracket.
+    /// Number of the scope's bracket.
     pub scope: u32,
     /// Name of the other robot.
     pub robot: &'static str,
@@ -68,22 +70,22 @@ pub struct Meeting {
 pub struct Links([Option<Peer>; PEERS]);
 
 impl Links {
-    /// No other robot.
+    /// Links to no other robot.
     pub const NONE: Self = Self([None; PEERS]);
 
-    /// Adds another robot; returns `false` if there are [`PEERS`] of them already.
+    /// Adds another robot; returns `false` if there are already [`PEERS`] robots.
     pub fn add(&mut self, peer: Peer) -> bool {
         let Some(place) = self.0.iter_mut().find(|place| place.is_none()) else { return false };
         *place = Some(peer);
         true
     }
 
-    /// Returns all of the robots.
+    /// Returns the other robots.
     pub fn peers(&self) -> impl Iterator<Item = &Peer> {
         self.0.iter().flatten()
     }
 
-    /// Returns the robot of this name.
+    /// Returns the robot of this name; `None` if the plan names no such robot.
     #[must_use]
     pub fn peer(&self, name: &str) -> Option<&Peer> {
         self.peers().find(|peer| peer.name == name)

@@ -3,38 +3,39 @@
 
 use crate::{Begin, Cause, Cursor, Ending, Entries as _, Frame, Measured, Nanos, Output as _, Plan};
 
-/// Maximum number of transitions of one turn; the search for the next atom then goes on in the next turn.
+/// Maximum number of transitions in one turn; beyond it, the search for the next atom continues in the next
+/// turn.
 pub const TRANSITIONS_PER_TURN: u32 = 4096;
 
 /// A transition of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transition {
-    /// The state left, in the expanded plan, from 1.
+    /// Number of the state left, in the expanded plan, from 1.
     pub from: u64,
-    /// The scope that ended, by its bracket.
+    /// Number of the bracket of the scope that ended.
     pub scope: u32,
-    /// Cause of the end.
+    /// Cause for which the scope ended.
     pub cause: Cause,
-    /// The atom entered, as written, from 0; `None` when the plan is over.
+    /// Number of the atom entered, as written, from 0; `None` when the plan is over.
     pub atom: Option<u32>,
-    /// The state entered.
+    /// Number of the state entered, in the expanded plan, from 1.
     pub to: u64,
 }
 
 /// Observer of a plan, which is called for every transition, in order.
 pub trait Watch {
-    /// `false` if the observer ignores its arguments, so that the numbers of states need not be computed.
+    /// `false` if the observer ignores its arguments, so that the state numbers need not be computed.
     const LOOKS: bool = true;
 
-    /// Reports that the operand of this number has fired in the interrupt that ends a scope. Called for each such
-    /// operand, in order, before [`Watch::transition`].
+    /// Reports that the operand of this number has fired, in the interrupt that ends a scope. The machine calls
+    /// this for each such operand, in order, before [`Watch::transition`].
     fn operand(&mut self, _number: u32, _measured: Measured) {}
 
-    /// A transition was made.
+    /// Reports a transition, after it is made.
     fn transition(&mut self, transition: Transition);
 }
 
-/// The observer of a plan without observers.
+/// An observer that ignores all transitions.
 impl Watch for () {
     const LOOKS: bool = false;
 
@@ -44,16 +45,16 @@ impl Watch for () {
 /// Result of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Turn<U> {
-    /// The current atom's law computed this input.
+    /// The input that the current atom's law computed.
     Law(U),
-    /// The limit of transitions cut the search: the null input, and the search goes on in the next turn.
+    /// The limit of transitions was reached: the null input is sent, and the search continues in the next turn.
     Cut,
-    /// The plan is over: the null input once more, then the robot's stop.
+    /// The plan is over: the null input is sent once more, then the robot is stopped.
     Over,
 }
 
 impl<U: Default> Turn<U> {
-    /// The input to send: the law's, or the null input.
+    /// Returns the input to send: the input of the law, or the null input.
     pub fn input(self) -> U {
         match self {
             Self::Law(input) => input,
@@ -62,7 +63,7 @@ impl<U: Default> Turn<U> {
     }
 }
 
-/// A plan that runs.
+/// A running plan.
 #[derive(Debug)]
 pub struct Machine<P: Plan> {
     plan: P,
@@ -71,8 +72,8 @@ pub struct Machine<P: Plan> {
 }
 
 impl<P: Plan> Machine<P> {
-    /// Begins `plan` at the first output `y` and its time; [`Machine::turn`] then makes the turn, with the same output
-    /// and time.
+    /// Begins `plan` with the first output `y` and its time `t`. [`Machine::turn`] then makes the first turn,
+    /// with the same output and time.
     pub fn begin(mut plan: P, y: &P::Output, t: Nanos) -> Self {
         let frame = Frame(y.here().theta);
         let (mut entered, left) = plan.slots();
@@ -108,7 +109,8 @@ impl<P: Plan> Machine<P> {
 
     /// Leaves the scope that ends, and enters the atom that follows, if there is one.
     ///
-    /// Inlined, so that a plan whose code names what follows needs no table to enter it.
+    /// The function is inlined, so that a plan whose code names the atom that follows needs no table to enter
+    /// it.
     #[inline(always)]
     fn step<W: Watch>(&mut self, ending: Ending, y: &P::Output, t: Nanos, watch: &mut W) {
         let looked = W::LOOKS.then(|| self.look(ending.cause, y, t, watch));
@@ -141,13 +143,13 @@ impl<P: Plan> Machine<P> {
         (self.cursor.state(fsm), scope)
     }
 
-    /// Takes the output at which the plan is suspended, to which its last input has led.
+    /// Takes the output at which the plan is suspended: the output that followed its last input.
     pub fn suspend(&mut self, y: &P::Output) {
         self.cursor.observe(y, None);
     }
 
-    /// Makes the law of the current atom anew, for a plan that goes on after another plan has driven the robot. The
-    /// path driven since [`Machine::suspend`] does not count.
+    /// Creates the law of the current atom anew, for a plan that continues after another plan has driven the
+    /// robot. The path driven since [`Machine::suspend`] does not count.
     pub fn reenter(&mut self, y: &P::Output, t: Nanos) {
         self.cursor.resume(y);
         if !self.is_over() {
@@ -160,12 +162,13 @@ impl<P: Plan> Machine<P> {
         self.cursor.atom() as usize >= self.plan.fsm().atoms.len()
     }
 
-    /// The number of the current state in the expanded plan; the termination state when the plan is over.
+    /// Returns the number of the current state in the expanded plan; the termination state when the plan is
+    /// over.
     pub fn state(&self) -> u64 {
         self.cursor.state(self.plan.fsm())
     }
 
-    /// The current atom, as written, from 0; `None` when the plan is over.
+    /// Returns the number of the current atom as written, from 0; `None` when the plan is over.
     pub fn atom(&self) -> Option<u32> {
         (!self.is_over()).then_some(self.cursor.atom())
     }
@@ -180,7 +183,7 @@ impl<P: Plan> Machine<P> {
         &self.cursor
     }
 
-    /// The plan, for its texts.
+    /// Returns the plan, for example to read its texts.
     pub fn plan(&self) -> &P {
         &self.plan
     }

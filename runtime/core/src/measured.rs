@@ -2,18 +2,18 @@
 
 use crate::{Nanometers, Nanos, Operator};
 
-/// The values from which an operand has its value.
+/// The values from which an operand was evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Measured {
     /// No value can be shown: a quark only reports that it has fired, or the operand consists of several conditions.
     Nothing,
     /// Both sides of a comparison, in SI units.
     Compared {
-        /// The value of the signal.
+        /// Value of the signal, on the left.
         left: f64,
-        /// The comparison.
+        /// Operator of the comparison.
         operator: Operator,
-        /// The value that the signal is compared with.
+        /// Value with which the signal is compared, on the right.
         right: f64,
     },
     /// The time since the scope was entered.

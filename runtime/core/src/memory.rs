@@ -3,13 +3,13 @@
 
 use crate::Slots;
 
-/// The memories of a plan, a row for each level of scopes; `()` for a plan that remembers nothing.
+/// The memories of a plan, in one row for each level of scopes; `()` for a plan without memories.
 pub trait Memory {
     /// Returns `true` if the plan has memories.
     fn keeps(&self) -> bool;
-    /// Returns `true` if this memory of the scope of this level is set.
+    /// Returns `true` if this memory in the row of this level is set.
     fn is_set(&self, level: u16, memory: u32) -> bool;
-    /// Sets this memory of the scope of this level, or clears it.
+    /// Sets or clears this memory in the row of this level.
     fn set(&mut self, level: u16, memory: u32, value: bool);
     /// Clears the memories of this level and of all nested levels.
     fn forget(&mut self, level: u16);
@@ -30,57 +30,57 @@ impl Memory for () {
     fn forget(&mut self, _: u16) {}
 }
 
-/// A label of what ends with a bracket, and the record that it is written down in.
+/// A label of an element that ends with a bracket, and the place of its memories.
 #[derive(Debug, Clone, Copy)]
 pub struct MarkRow {
-    /// The bracket.
+    /// Number of the bracket with which the labelled element ends.
     pub bracket: u32,
-    /// The level of the record.
+    /// Level of the scopes in whose row the label's memories are.
     pub level: u16,
-    /// The first of its memories ...
+    /// Number of the label's first memory in the row.
     pub first: u32,
-    /// ... and how many there are.
+    /// Number of the label's memories.
     pub count: u32,
-    /// The first of its facts in [`Table::facts`](crate::Table::facts) ...
+    /// Position of the label's first fact in [`Table::facts`](crate::Table::facts).
     pub first_fact: u32,
-    /// ... and how many there are.
+    /// Number of the label's facts.
     pub facts: u32,
 }
 
-/// A memory that `after` reads about a label.
+/// A memory of a label that `after` reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fact {
-    /// The memory, which is of the level of the label's record.
+    /// Number of the memory, in the row that [`MarkRow::level`] gives.
     pub memory: u32,
-    /// The operand of the bracket's interrupt that must be the cause, if the condition names one.
+    /// Operand of the bracket's interrupt that must have fired, if the condition names an operand.
     pub operand: Option<u32>,
 }
 
 impl MarkRow {
-    /// Returns the labels of the parts of a plan that end with a bracket; `marks` are those of the plan, in the order
-    /// of their brackets.
+    /// Returns the labels of the elements that end with `bracket`; `marks` holds the labels of the plan, in the
+    /// order of their brackets.
     pub(crate) fn of(marks: &[Self], bracket: u32) -> &[Self] {
         let before = |bound: u32| marks.partition_point(|mark| mark.bracket < bound);
         marks.get(before(bracket)..before(bracket.saturating_add(1))).unwrap_or(&[])
     }
 
-    /// Returns the facts of the label among `facts`, those of the plan.
+    /// Returns the facts of this label; `facts` holds the facts of the plan.
     pub(crate) fn facts(self, facts: &[Fact]) -> &[Fact] {
         let (first, count) = (self.first_fact as usize, self.facts as usize);
         facts.get(first..first.saturating_add(count)).unwrap_or(&[])
     }
 }
 
-/// The memories of a plan that remembers.
+/// The memories of a plan that has some.
 #[derive(Debug, Clone, Copy)]
 pub struct Memories<S> {
-    /// Number of memories of each level.
+    /// Number of memories for each level.
     width: u32,
     set: S,
 }
 
 impl<S: Slots<bool>> Memories<S> {
-    /// Memories that are empty: `width` for each level of scopes, as many as `set` has room for.
+    /// Returns memories that are not set: `width` for each level of scopes. `set` limits their number.
     #[must_use]
     pub const fn new(width: u32, set: S) -> Self {
         Self { width, set }

@@ -1,38 +1,38 @@
-//! A wall as a line through the echoes of the sonar that looks at it, while the robot drives along.
+//! A wall as a line through the echoes of the sonar that faces it, while the robot drives along the wall.
 
 use crate::Nanos;
 
 /// Greatest distance, in metres, of an echo from the line of its wall.
 const APART: f64 = 0.1;
-/// Greatest number of echoes that a line remembers.
+/// Greatest number of echoes that a line takes into account.
 const KEPT: f64 = 24.0;
-/// Least sum of squared distances along a wall, in square metres, by which its direction is known: errors of 1.5 cm are
-/// then 1 degree. Sides of boxes are shorter, and may stand at any angle.
+/// Least sum of squared distances along a wall, in square metres, at which its direction counts as known:
+/// errors of 1.5 cm then amount to 1 degree. Sides of boxes are shorter, and may lie at any angle.
 const KNOWN: f64 = 1.0;
-/// Least such sum by which the next echo of the wall is expected.
+/// Least sum of squared distances, in square metres, from which the line predicts the next echo of the wall.
 const GUESSED: f64 = 0.02;
 
-/// A line through echoes: distances along the axis and across it, in metres.
+/// A line through echoes, from their distances along the axis and across it, in metres.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Line {
     count: f64,
     along: f64,
     across: f64,
-    /// Sums of squares and of products of the distances from the means.
+    /// Sums of the squares and of the products of the deviations from the means, in square metres.
     pub(super) squares: f64,
     products: f64,
-    /// `true` if the last echo was not of this line.
+    /// `true` if the last echo did not fit the line.
     strays: bool,
     pub(super) last: Nanos,
 }
 
 impl Line {
-    /// The line before the first echo after this time.
+    /// Returns a line without echoes, which takes only echoes after the time `last`.
     pub(super) fn since(last: Nanos) -> Self {
         Self { last, ..Self::default() }
     }
 
-    /// Takes in an echo; the second one in a row that is not of the line begins another.
+    /// Includes an echo in the line. The second consecutive echo that does not fit the line begins a new line.
     pub(super) fn take(&mut self, along: f64, across: f64) {
         let slope = if self.squares >= GUESSED { self.products / self.squares } else { 0.0 };
         let line = self.across + slope * (along - self.along);
@@ -58,7 +58,7 @@ impl Line {
         self.products += from_along * (across - self.across);
     }
 
-    /// The slope of the line, if it is known.
+    /// Returns the slope of the line; `None` while it is not known.
     pub(super) fn slope(&self) -> Option<f64> {
         (self.squares >= KNOWN).then(|| self.products / self.squares)
     }

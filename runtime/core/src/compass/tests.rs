@@ -27,7 +27,7 @@ impl Trial {
         Self { pings: [Pings::default(); SONARS], compass: Compass::default(), now: Nanos::ZERO }
     }
 
-    /// Takes in these ranges, in metres, heard half a second later at a pose.
+    /// Lets the compass take in these ranges, in metres, heard half a second later at this pose.
     fn hears(&mut self, pose: Pose, ranges: &[(usize, f64)], shape: &Shape) {
         self.now = Nanos(self.now.0 + 500_000_000);
         for (sonar, range) in ranges {
@@ -37,8 +37,8 @@ impl Trial {
         self.compass.take(&self.pings, pose, shape);
     }
 
-    /// Drives in a hallway 1.5 m wide that odometry has this many degrees off its axis. Every seventh echo of the
-    /// left sonar strays, and the right wall leads off by `leads` for each step of 10 cm.
+    /// Drives in a hallway 1.5 m wide whose axis deviates from that of odometry by `turned` degrees. Every
+    /// seventh echo of the left sonar strays, and the right wall recedes by `leads` in each step of 10 cm.
     fn drives(&mut self, turned: f64, metres: f64, leads: f64) {
         let theta = Radians::from_degrees(turned);
         for step in 1..=libm::round(metres / 0.1) as u32 {
@@ -48,7 +48,7 @@ impl Trial {
         }
     }
 
-    /// Returns the drift, in degrees, in a frame of which an axis has this direction, in degrees.
+    /// Returns the drift, in degrees, in a frame one of whose axes has this direction, in degrees.
     fn drift(&self, axis: f64) -> f64 {
         self.compass.drift(Radians::from_degrees(axis)).degrees()
     }
@@ -64,7 +64,8 @@ fn walls_on_both_sides_tell_how_far_the_heading_is_off() {
     }
 }
 
-/// A plan that begins 20 degrees off the walls keeps its heading in the room, and knows what odometry drifts later.
+/// A plan that begins 20 degrees off the walls keeps its heading in the room, and measures the later drift of
+/// odometry.
 #[test]
 fn walls_askew_to_the_first_heading_are_no_drift() {
     let mut trial = Trial::new();
