@@ -11,7 +11,7 @@ use crate::plan::{Interrupt, Mark, Quark, QuarkId, RecordId};
 /// The tables of a machine, and the meaning of its brackets and atoms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Draft {
-    /// Scopes and loops in pre-order.
+    /// The scopes and loops, in pre-order.
     pub brackets: Vec<Bracket>,
     /// The atoms as written, from left to right.
     pub atoms: Vec<Atom>,
@@ -25,11 +25,12 @@ pub struct Draft {
     pub laws: Vec<LawMeaning>,
     /// The frame of each atom that is inside a `FRAME here`.
     pub frames: Vec<Option<Here>>,
-    /// The labels of what ends with a bracket, where there are any.
+    /// For each bracket, the labels of the elements that end with it; only brackets with such labels are
+    /// listed.
     pub marks: BTreeMap<u32, Vec<Mark>>,
-    /// The place of the record of each use of a definition that `after` asks.
+    /// The place of each record that `after` reads; a record belongs to one use of a definition.
     pub records: BTreeMap<RecordId, RecordPlace>,
-    /// Every quark with its arguments.
+    /// The quarks with their arguments, each once.
     pub quarks: Vec<Quark>,
     /// Sizes of the state that a machine keeps between turns.
     pub sizes: Sizes,
@@ -38,40 +39,41 @@ pub struct Draft {
 /// The meaning of a scope.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScopeMeaning {
-    /// The name; empty for an atom, and for a scope in formal notation.
+    /// Name of the scope; empty for an atom, and for a scope in formal notation.
     pub name: String,
-    /// The interrupt.
+    /// Interrupt of the scope.
     pub interrupt: Interrupt,
 }
 
 /// The meaning of an atom.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawMeaning {
-    /// The law.
+    /// Law of the atom.
     pub quark: QuarkId,
-    /// The angle by which its frame is turned, in radians; from the innermost `FRAME here` on, if there is one.
+    /// Angle by which the atom's frame is turned, in radians; relative to the innermost enclosing `FRAME here`,
+    /// if there is one.
     pub frame: f64,
 }
 
 /// The place of a record among the memories of a level of scopes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RecordPlace {
-    /// The level of the outermost scope of the definition.
+    /// Level of the outermost scope of the definition.
     pub level: u16,
-    /// The first of its memories.
+    /// Number of the record's first memory at that level.
     pub first: u32,
-    /// The number of its memories.
+    /// Number of the record's memories.
     pub facts: u32,
 }
 
 /// Sizes of the state that a machine keeps between turns.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Sizes {
-    /// Maximum number of memories of a level of scopes: those of RISING in the scope's interrupt, and after them the
-    /// facts of its record. All are empty when the scope is entered.
+    /// Maximum number of memories at a level of scopes: the memories of RISING in the scope's interrupt, and
+    /// after them the facts of the scope's record. All are empty when the scope is entered.
     pub memories: usize,
-    /// The levels of scopes down to the last one that has a `wait`, a `way` or a `FRAME here`: nothing is kept of the
-    /// entry of those below.
+    /// Number of levels of scopes, down to the last level with a `wait`, a `way` or a `FRAME here`. The machine
+    /// does not record the entry of scopes at deeper levels.
     pub levels: usize,
     /// `true` if the machine keeps odometer and heading at the entry of scopes and the progress of the law, and not the
     /// time alone: where there is a `way`, a `FRAME here`, a `stuck` or a `rendezvous`.

@@ -4,18 +4,18 @@ use super::{STATES, lower};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Loop, Node, Nondegenerate, Part, Scope};
 
-/// Maximum number of states that an expanded form is made for.
+/// Maximum number of states of an expanded plan.
 const EXPANDED: u64 = 100_000;
-/// Maximum number of parts of its conditions, and of bytes of their texts and of names, unless the plan has more
-/// itself.
+/// Maximum number of parts of an expanded plan's conditions, and of bytes of their texts and of names, unless
+/// the plan as written has more.
 const PARTS: u64 = 1 << 20;
 const TEXT: u64 = 1 << 26;
 
-/// The plan with its finite loops written out; a loop without end is left as it is.
+/// Returns the plan with its finite loops written out; a loop without end is left as it is.
 ///
 /// # Errors
-/// E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states, or of too many conditions in all
-/// of them.
+/// E0501 for a plan that cannot be lowered; E0502 for a plan with more than 100,000 states, or with too many
+/// conditions in these states.
 pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
     expands(plan)?;
     Ok(plan.map(expand_scope))
@@ -48,10 +48,10 @@ pub fn expands(plan: &Nondegenerate) -> Result<(), Diagnostic> {
     Ok(())
 }
 
-/// The number of states of a plan with its finite loops written out, the termination state included.
+/// Returns the number of states of a plan with its finite loops written out, the termination state included.
 ///
 /// # Errors
-/// E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states.
+/// E0501 for a plan that cannot be lowered, E0502 for a plan with more than 100,000 states.
 pub fn expanded_states(plan: &Nondegenerate) -> Result<u64, Diagnostic> {
     let count = Count { unit: "states", of: |part| u64::from(part.atom().is_some()) };
     let expanded = Expanded::of(Part::Scope(&plan.plan().root), &count, true);
@@ -104,14 +104,14 @@ fn expand_sequence(body: &[Node]) -> Vec<Node> {
     expanded
 }
 
-/// A quantity that elements have, and the amount of one element.
+/// A quantity of elements, and the amount that one element has.
 struct Count {
     /// Name of the quantity, in the plural.
     unit: &'static str,
     of: fn(Part<'_>) -> u64,
 }
 
-/// A count over a plan, and the loop that multiplies it most.
+/// The amount of a quantity in a plan, and the loop that multiplies it most.
 #[derive(Default)]
 struct Expanded {
     all: u64,
@@ -119,7 +119,8 @@ struct Expanded {
 }
 
 impl Expanded {
-    /// Counts in all passes of finite loops, or in one pass of each.
+    /// Counts the quantity in all passes of finite loops if `passes` is `true`, and otherwise in one pass of
+    /// each loop.
     fn of(part: Part<'_>, count: &Count, passes: bool) -> Self {
         let inside = part.body().iter().map(|node| Self::of(node.part(), count, passes));
         let size = |repeated: &Option<(u64, Span)>| repeated.map_or(0, |(size, _)| size);

@@ -1,5 +1,5 @@
-//! The machine as an FSM file (docs/src/reference/interfaces.md, 5): states, interrupts with their moves, finite loops
-//! expanded.
+//! The machine as an FSM file (docs/src/reference/interfaces.md, 5): its states, and its interrupts with their
+//! moves; finite loops are expanded.
 
 use serde::Serialize;
 
@@ -8,42 +8,43 @@ use super::{Transition, matrices};
 use crate::diagnostic::Diagnostic;
 use crate::plan::{Condition, Nondegenerate};
 
-/// The version of the format.
+/// Version of the format that the compiler writes.
 const VERSION: u32 = 1;
 
-/// An FSM file.
+/// The content of an FSM file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FsmFile {
-    /// The version of the format.
+    /// Version of the format.
     pub version: u32,
-    /// The plan's name.
+    /// Name of the plan.
     pub source: String,
-    /// The states; the last is the termination state.
+    /// Names of the states; the last is the termination state.
     pub states: Vec<String>,
-    /// The state in which the plan begins.
+    /// Name of the state in which the plan begins.
     pub start: String,
-    /// The quark text of each state's law, without the termination state.
+    /// Quark text of the law of each state except the termination state.
     pub laws: Vec<String>,
-    /// The interrupts in pre-order of the expanded plan, then completion.
+    /// The interrupts, in pre-order of the expanded plan, then the completion of laws.
     pub interrupts: Vec<InterruptEntry>,
-    /// The interrupts that never fire: null, or removed because an outer one repeats them.
+    /// Texts of the interrupts that never fire: null interrupts, and interrupts that were removed because an
+    /// outer scope repeats them.
     pub never: Vec<String>,
-    /// The scopes in pre-order: name, first and last state.
+    /// The scopes in pre-order, with their names and their first and last states.
     pub scopes: Vec<ScopeEntry>,
 }
 
-/// An interrupt with its transition matrix, as the columns that it moves.
+/// An interrupt with its transition matrix, given by the columns that the matrix moves.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InterruptEntry {
-    /// `x1`, `x2`, …, or `completed`.
+    /// Name of the interrupt: `x1`, `x2`, …, or `completed`.
     pub name: String,
     /// Text of the interrupt's condition.
     pub text: String,
-    /// Moves from state to state.
+    /// The moves of the transition matrix, from state to state.
     pub moves: Moves,
 }
 
-/// Moves in the order of the states they leave.
+/// Pairs of the state left and the state entered, in the order of the states left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moves(pub Vec<(String, String)>);
 
@@ -53,7 +54,7 @@ impl Serialize for Moves {
     }
 }
 
-/// A scope, as the states it holds.
+/// A scope, given by its first and last states.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ScopeEntry {
     /// Name of the scope's interrupt.
@@ -66,7 +67,7 @@ pub struct ScopeEntry {
     pub last: String,
 }
 
-/// Returns the file of a plan: its transition matrices, with the columns that each lists.
+/// Returns the FSM file of a plan: its transition matrices, each with the columns that its interrupt lists.
 ///
 /// # Errors
 /// Fails with E0501 or E0502 as [`expand`](super::expand) does.
@@ -106,7 +107,7 @@ pub fn fsm_file(plan: &Nondegenerate) -> Result<FsmFile, Diagnostic> {
 }
 
 impl FsmFile {
-    /// The file as JSON, on several lines.
+    /// Returns the file as JSON, on several lines.
     #[must_use]
     pub fn to_json(&self) -> String {
         // Only maps with keys that are no strings cannot be written, and there are none.

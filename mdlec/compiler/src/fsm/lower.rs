@@ -1,4 +1,5 @@
-//! Lowers a plan to its state machine (paper, Algorithm 1; docs/src/reference/semantics.md, 8.1), loops as counters.
+//! Lowers a plan to its state machine (paper, Algorithm 1; docs/src/reference/semantics.md, 8.1), with loops as
+//! counters.
 
 use std::collections::BTreeMap;
 
@@ -10,14 +11,14 @@ use super::{Machine, observation1, validate};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{self, Mark, Node, Nondegenerate, Record, Scope};
 
-/// Maximum number of states of a plan: numbers up to here are exact in JSON as well.
+/// Maximum number of states of a plan. Numbers up to this one are exact in JSON as well.
 pub const STATES: u64 = 1 << 53;
 
 /// Lowers a plan, and validates the machine against it.
 ///
 /// # Errors
-/// E0501 when the plan, expanded, has more than [`STATES`] states; E0901 when the machine is not the plan's, which
-/// would be a defect of this compiler.
+/// E0501 if the expanded plan has more than [`STATES`] states; E0901 if the machine does not agree with the
+/// plan, which would be a defect of this compiler.
 pub fn lower(nondegenerate: &Nondegenerate) -> Result<Machine, Diagnostic> {
     let plan = nondegenerate.plan();
     let mut lowering = Lowering {
@@ -47,19 +48,20 @@ struct Lowering {
     draft: Draft,
 }
 
-/// Place of a node: the enclosing bracket, the number of scopes and of loops around the node, and its first state.
+/// Place of a node: the enclosing bracket, the numbers of enclosing scopes and loops, and the node's first
+/// state.
 #[derive(Clone, Copy)]
 struct NodePlace {
     parent: u32,
     level: u16,
     slot: u16,
     state: u64,
-    /// The level of the innermost scope around it with `FRAME here`.
+    /// Level of the innermost enclosing scope with `FRAME here`.
     here: Option<u16>,
 }
 
 impl Lowering {
-    /// Lowers a scope and returns the number of its states.
+    /// Lowers a scope, and returns the number of its states.
     fn scope(&mut self, scope: &Scope, place: NodePlace) -> Result<u64, Diagnostic> {
         let meaning = ScopeMeaning { name: scope.name.clone(), interrupt: scope.interrupt.clone() };
         let bracket =
@@ -103,8 +105,8 @@ impl Lowering {
         1
     }
 
-    /// Returns the innermost scope with `FRAME here` that encloses the elements of a scope at `place`, which may be
-    /// that scope itself.
+    /// Returns the level of the innermost scope with `FRAME here` for the elements of a scope at `place`; that
+    /// scope may be the innermost itself.
     fn here(&mut self, is_here: bool, place: NodePlace) -> Option<u16> {
         if !is_here {
             return place.here;
@@ -136,7 +138,7 @@ impl Lowering {
         pass.checked_mul(times).filter(|states| *states < STATES).ok_or_else(|| too_many(repeated.span))
     }
 
-    /// Opens a bracket at the next atom; [`Lowering::close`] sets its last one.
+    /// Opens a bracket whose first atom is the next atom; [`Lowering::close`] sets its last atom.
     fn bracket(&mut self, kind: Kind, parent: u32, meaning: Option<ScopeMeaning>, marks: &[Mark], span: Span) -> u32 {
         self.memories(meaning.as_ref().map_or(0, |meaning| meaning.interrupt.memories));
         if let (Kind::Scope { level }, Some(meaning)) = (kind, &meaning)

@@ -1,6 +1,6 @@
 //! The state machine of a plan: its tables, and a view of each scope, loop and atom in them.
 //!
-//! All tables of a machine are read here, and nowhere else by number but in [`validate`](super::validate).
+//! Only this file and [`validate`](super::validate) read the tables of a machine by number.
 
 use std::fmt;
 use std::iter;
@@ -12,17 +12,17 @@ use super::draft::{Draft, RecordPlace, Sizes};
 use crate::diagnostic::Span;
 use crate::plan::{Condition, Interrupt, Mark, Quark, QuarkId, RecordId};
 
-/// The state machine of a plan, as [`lower`](super::lower) alone makes it: validated against the plan.
+/// The state machine of a plan, validated against the plan; only [`lower`](super::lower) constructs it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Machine(Draft);
 
 impl Machine {
-    /// Takes tables that were validated.
+    /// Returns the machine with these validated tables.
     pub(super) fn new(draft: Draft) -> Self {
         Self(draft)
     }
 
-    /// Takes tables that no plan has.
+    /// Returns a machine with tables that were not validated, for tests of tables that no plan has.
     #[cfg(test)]
     pub(crate) fn unvalidated(draft: Draft) -> Self {
         Self(draft)
@@ -40,18 +40,19 @@ impl Machine {
         Fsm { brackets: &self.0.brackets, atoms: &self.0.atoms, termination: self.0.termination }
     }
 
-    /// The plan.
+    /// Returns the element of the plan itself.
     #[must_use]
     pub fn root(&self) -> Element<'_> {
         self.element(0)
     }
 
-    /// Returns all scopes, loops and atoms in pre-order: an element comes before those inside it.
+    /// Returns all scopes, loops and atoms in pre-order: an element comes before its nested elements.
     pub fn elements(&self) -> impl DoubleEndedIterator<Item = Element<'_>> + ExactSizeIterator {
         (0..self.0.brackets.len()).map(|index| self.element(as_number(index)))
     }
 
-    /// Returns each element twice, when it is entered and when it is left: all inside it come between.
+    /// Returns two visits of each element, at its entry and at its end; the visits of nested elements come
+    /// between them.
     pub fn walk(&self) -> impl Iterator<Item = Visit<'_>> {
         iter::successors(Some(Visit::Enter(self.root())), |visit| match *visit {
             Visit::Enter(element) => Some(element.children().next().map_or(Visit::Leave(element), Visit::Enter)),
@@ -68,49 +69,50 @@ impl Machine {
         (0..self.0.atoms.len()).map(|index| self.atom(as_number(index)))
     }
 
-    /// Returns the element of a number, which is one of this machine's.
+    /// Returns the element of this machine with this number.
     #[must_use]
     pub fn element(&self, number: u32) -> Element<'_> {
         Element { machine: self, number }
     }
 
-    /// Returns the atom of a number, which is one of this machine's.
+    /// Returns the atom of this machine with this number.
     #[must_use]
     pub fn atom(&self, number: u32) -> Atom<'_> {
         Atom { machine: self, number }
     }
 
-    /// Returns the number of states, the termination state included.
+    /// Returns the number of states, including the termination state.
     #[must_use]
     pub fn states(&self) -> u64 {
         self.0.termination
     }
 
-    /// Returns the number of scopes that enclose each other at most, the plan and an atom's own included.
+    /// Returns the maximum number of scopes that enclose each other, including the plan and an atom's own
+    /// scope.
     #[must_use]
     pub fn depth(&self) -> usize {
         self.elements().filter_map(Element::level).max().map_or(0, |level| usize::from(level) + 1)
     }
 
-    /// Every quark with its arguments.
+    /// Returns the quarks with their arguments, each once.
     #[must_use]
     pub fn quarks(&self) -> &[Quark] {
         &self.0.quarks
     }
 
-    /// Returns the quark of an id.
+    /// Returns the quark with this id.
     #[must_use]
     pub fn quark(&self, id: QuarkId) -> &Quark {
         &self.0.quarks[id.0 as usize]
     }
 
-    /// The frame of each atom that is inside a `FRAME here`.
+    /// Returns the frame of each atom; `None` for an atom that is not inside a `FRAME here`.
     #[must_use]
     pub fn frames(&self) -> &[Option<Here>] {
         &self.0.frames
     }
 
-    /// Returns the place of the record of one use of a definition, if `after` asks that record.
+    /// Returns the place of a record; `None` if `after` does not read this record.
     #[must_use]
     pub fn record(&self, id: RecordId) -> Option<RecordPlace> {
         self.0.records.get(&id).copied()
@@ -130,9 +132,9 @@ fn as_number(index: usize) -> u32 {
 /// A step of a walk over the elements of a machine.
 #[derive(Debug, Clone, Copy)]
 pub enum Visit<'m> {
-    /// The element is entered.
+    /// Visit at the entry of the element.
     Enter(Element<'m>),
-    /// The element is left.
+    /// Visit at the end of the element.
     Leave(Element<'m>),
 }
 
@@ -143,14 +145,14 @@ pub struct Element<'m> {
     number: u32,
 }
 
-/// The kind of an element.
+/// Kind of an element.
 #[derive(Debug, Clone, Copy)]
 pub enum ElementKind<'m> {
     /// A behavior, or the plan.
     Scope,
     /// A string that is run several times.
     Loop {
-        /// The number of passes; `None` is for ever.
+        /// Number of passes; `None` for a loop without end.
         times: Option<u64>,
     },
     /// An atom.
@@ -169,13 +171,13 @@ pub enum Exit<'m> {
 }
 
 impl<'m> Element<'m> {
-    /// Returns its number among all elements in pre-order, from 0.
+    /// Returns the element's number among all elements in pre-order, from 0.
     #[must_use]
     pub fn number(self) -> u32 {
         self.number
     }
 
-    /// Returns its number as the index of a list that has an entry for each element.
+    /// Returns the element's number as an index into a list with an entry for each element.
     #[must_use]
     pub fn index(self) -> usize {
         self.number as usize
@@ -213,7 +215,7 @@ impl<'m> Element<'m> {
         (self.number > 0).then(|| self.machine.element(self.bracket().parent))
     }
 
-    /// Returns the elements of its string, in order.
+    /// Returns the elements of the element's string, in order.
     pub fn children(self) -> impl Iterator<Item = Self> {
         let first = self.atom().is_none().then(|| self.machine.element(self.number + 1));
         iter::successors(first, |child| match child.exit() {
@@ -222,7 +224,7 @@ impl<'m> Element<'m> {
         })
     }
 
-    /// Returns the element itself and all that enclose it, outwards to the plan.
+    /// Returns the element itself and all elements that enclose it, outwards to the plan.
     pub fn outwards(self) -> impl Iterator<Item = Self> {
         iter::successors(Some(self), |element| element.parent())
     }
@@ -245,7 +247,7 @@ impl<'m> Element<'m> {
         self.machine.0.scopes[self.index()].as_ref().map_or("", |scope| &scope.name)
     }
 
-    /// Returns the interrupt of a scope or an atom; a loop has none.
+    /// Returns the interrupt of a scope or an atom; `None` for a loop.
     #[must_use]
     pub fn interrupt(self) -> Option<&'m Interrupt> {
         self.machine.0.scopes[self.index()].as_ref().map(|scope| &scope.interrupt)
@@ -257,13 +259,14 @@ impl<'m> Element<'m> {
         self.interrupt().map_or(&Condition::Null, |interrupt| &interrupt.condition)
     }
 
-    /// Returns the text of its condition; empty for a loop.
+    /// Returns the text of the element's condition; empty for a loop.
     #[must_use]
     pub fn condition_text(self) -> &'m str {
         self.interrupt().map_or("", |interrupt| &interrupt.text)
     }
 
-    /// Returns the number of scopes that enclose a scope or an atom; a loop has no level of its own.
+    /// Returns the number of scopes that enclose a scope or an atom; `None` for a loop, which has no level of
+    /// its own.
     #[must_use]
     pub fn level(self) -> Option<u16> {
         match self.bracket().kind {
@@ -272,8 +275,8 @@ impl<'m> Element<'m> {
         }
     }
 
-    /// Returns the place of a loop's counter, and the states of one pass in the expanded plan: 0 for a loop without
-    /// end.
+    /// Returns the number of a loop's counter, and the number of states of one pass in the expanded plan (0 for
+    /// a loop without end); `None` for an element that is no loop.
     #[must_use]
     pub fn counter(self) -> Option<(u16, u64)> {
         match self.bracket().kind {
@@ -294,7 +297,7 @@ impl<'m> Element<'m> {
         self.machine.0.marks.get(&self.number).map_or(&[], Vec::as_slice)
     }
 
-    /// Returns what follows when the element ends.
+    /// Returns the consequence of the element's end, one step outwards.
     #[must_use]
     pub fn exit(self) -> Exit<'m> {
         let Some(parent) = self.parent() else { return Exit::Over };
@@ -313,13 +316,13 @@ impl<'m> Element<'m> {
         Exit::Next(self.machine.element(as_number(after + nested)))
     }
 
-    /// Returns what follows when the element ends, as far as no loop decides that at run time.
+    /// Returns the successor of the element; `None` if it depends on a loop at run time.
     #[must_use]
     pub fn follows(self) -> Option<Follows> {
         self.machine.tables().follows(self.number)
     }
 
-    /// The place of an atom, a loop, or the definition of a scope.
+    /// Returns the span of an atom, of a loop, or of a scope's definition.
     #[must_use]
     pub fn span(self) -> Span {
         self.machine.0.spans[self.index()]
@@ -340,13 +343,13 @@ pub struct Atom<'m> {
 }
 
 impl<'m> Atom<'m> {
-    /// Returns its number among the atoms as written, from 0.
+    /// Returns the atom's number among the atoms as written, from 0.
     #[must_use]
     pub fn number(self) -> u32 {
         self.number
     }
 
-    /// Returns its number as the index of a list that has an entry for each atom.
+    /// Returns the atom's number as an index into a list with an entry for each atom.
     #[must_use]
     pub fn index(self) -> usize {
         self.number as usize
@@ -358,33 +361,33 @@ impl<'m> Atom<'m> {
         self.machine.element(self.machine.0.atoms[self.index()].scope)
     }
 
-    /// Returns the number of its state, from 1, in the first pass of every loop.
+    /// Returns the number of the atom's state, from 1, in the first pass of every loop.
     #[must_use]
     pub fn state(self) -> u64 {
         self.machine.0.atoms[self.index()].state
     }
 
-    /// Returns the id of its law.
+    /// Returns the id of the atom's law.
     #[must_use]
     pub fn law_id(self) -> QuarkId {
         self.machine.0.laws[self.index()].quark
     }
 
-    /// Returns its law.
+    /// Returns the atom's law.
     #[must_use]
     pub fn law(self) -> &'m Quark {
         self.machine.quark(self.law_id())
     }
 
-    /// Returns the angle by which the atom's frame is turned, in radians; relative to the innermost `FRAME here`, if
-    /// any.
+    /// Returns the angle by which the atom's frame is turned, in radians; relative to the innermost enclosing
+    /// `FRAME here`, if there is one.
     #[must_use]
     pub fn frame(self) -> f64 {
         self.machine.0.laws[self.index()].frame
     }
 
-    /// Returns the angle by which the plan's own frame is turned for it, in radians; 0 inside a `FRAME here`, which the
-    /// run-time system applies.
+    /// Returns the angle by which the plan's own frame is turned for the atom, in radians; 0 inside a `FRAME
+    /// here`, which the run-time system applies.
     #[must_use]
     pub fn turned(self) -> f64 {
         if self.machine.0.frames[self.index()].is_some() { 0.0 } else { self.frame() }

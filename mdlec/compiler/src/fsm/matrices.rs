@@ -1,8 +1,8 @@
 //! The transition matrices of a plan (paper, Eqs. 2 to 4; docs/src/reference/semantics.md, 8.3), its finite loops
 //! written out.
 //!
-//! Afterwards: every column of a matrix is a standard basis vector (Observation 1), and interrupts are in pre-order, so
-//! that of those that list a column the outermost has the lowest number.
+//! Every column of a matrix is a standard basis vector (Observation 1). Interrupts are in pre-order: of the
+//! interrupts that list a column, the outermost has the lowest number.
 
 use std::ops::{Mul, RangeInclusive};
 
@@ -13,17 +13,17 @@ use crate::plan::{Atom, Interrupt, Mark, Node, Nondegenerate, Plan, QuarkId, Rec
 /// The transition matrices of a plan with `N` states.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Matrices<'p> {
-    /// The law of each state but the last, which is the termination state.
+    /// The law of each state except the last, which is the termination state.
     pub laws: Vec<QuarkId>,
-    /// The angle by which the frame of each of these is turned, in radians.
+    /// Angle, in radians, by which the frame of each of these laws is turned.
     pub frames: Vec<f64>,
-    /// The interrupts in pre-order, atoms' own ones included.
+    /// The interrupts in pre-order, including those of atoms.
     pub transitions: Vec<Transition<'p>>,
 }
 
 impl<'p> Matrices<'p> {
-    /// Returns the atoms whose laws may complete, in order: the number of the atom's own interrupt among
-    /// [`transitions`](Self::transitions), and its matrix, by which the atom ends.
+    /// Returns, for each atom whose law may complete, the number of the atom's own interrupt in
+    /// [`transitions`](Self::transitions) and the matrix by which the atom ends; in order.
     pub fn completion(&self, plan: &Plan) -> impl Iterator<Item = (usize, Matrix)> {
         let mut own = vec![None; self.laws.len()];
         // An atom is inside every scope that encloses it, so it comes last of those that list its column.
@@ -40,29 +40,30 @@ impl<'p> Matrices<'p> {
 /// An interrupt with its transition matrix.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transition<'p> {
-    /// The interrupt.
+    /// Interrupt of the transition.
     pub interrupt: &'p Interrupt,
     /// Name of the interrupt's scope; empty for an atom.
     pub name: &'p str,
-    /// Number of scopes around the interrupt's scope.
+    /// Number of scopes that enclose the interrupt's scope.
     pub level: usize,
     /// `true` if the scope is entered in a frame of its own: `FRAME here`.
     pub here: bool,
     /// Transition matrix of the interrupt.
     pub matrix: Matrix,
-    /// Index of the first interrupt, in pre-order, whose scope starts afresh when this one has fired: all later ones
-    /// that list the new state start afresh too. Matrices do not express that; the tree does.
+    /// Index of the first interrupt, in pre-order, whose scope restarts when this interrupt has fired. The
+    /// scopes of all later interrupts that list the new state restart too. Matrices do not express restarts;
+    /// the tree does.
     pub afresh: usize,
-    /// The record that is kept with its scope.
+    /// Record that is kept with the interrupt's scope.
     pub record: Option<Record>,
-    /// The labels of its scope.
+    /// Labels of the interrupt's scope.
     pub marks: &'p [Mark],
     /// Labels of the elements that end because the interrupt's scope was their last element.
     pub ends_with: Vec<&'p Mark>,
 }
 
-/// A transition matrix, `N` by `N`: the identity but for some neighboring columns, which have their 1 in one row.
-/// Columns and rows count from 0.
+/// A transition matrix, `N` by `N`: the identity, except for some neighboring columns that have their 1 in the
+/// same row. Columns and rows count from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Matrix {
     first: usize,
@@ -73,7 +74,7 @@ pub struct Matrix {
 /// A standard basis vector: the state of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct UnitVector {
-    /// The row of its 1, from 0.
+    /// Row of the vector's 1, from 0.
     pub row: usize,
 }
 
@@ -83,7 +84,7 @@ impl Matrix {
         self.first..=self.last
     }
 
-    /// The row that these columns have their 1 in.
+    /// Returns the row in which the listed columns have their 1.
     #[must_use]
     pub fn row(&self) -> usize {
         self.row
@@ -98,7 +99,7 @@ impl Mul<UnitVector> for &Matrix {
     }
 }
 
-/// The transition matrices of a plan.
+/// Returns the transition matrices of a plan.
 ///
 /// # Errors
 /// Fails with E0501 or E0502 as [`expand`](super::expand) does.
@@ -120,7 +121,7 @@ struct Brackets<'p> {
     all: Vec<Bracket<'p>>,
     laws: Vec<QuarkId>,
     frames: Vec<f64>,
-    /// The interrupts so far.
+    /// Number of interrupts so far.
     interrupts: usize,
 }
 
@@ -133,7 +134,7 @@ struct Bracket<'p> {
     /// First and last state of the bracket, from 0.
     first: usize,
     last: usize,
-    /// First interrupt of the bracket; `ends` is the one after its last interrupt.
+    /// Number of the bracket's first interrupt; `ends` is the number after its last interrupt.
     begins: usize,
     ends: usize,
 }
@@ -147,12 +148,12 @@ enum BracketKind<'p> {
         here: bool,
         record: Option<Record>,
     },
-    /// All passes of a finite loop, one after the other.
+    /// A finite loop, whose passes are written out one after the other.
     WrittenOut,
     WithoutEnd,
 }
 
-/// Place of a bracket: the enclosing bracket, and the number of scopes around it.
+/// Place of a bracket: the enclosing bracket, and the number of enclosing scopes.
 #[derive(Clone, Copy)]
 struct BracketPlace {
     around: Option<usize>,
@@ -162,9 +163,9 @@ struct BracketPlace {
 /// Destination of an interrupt.
 struct Destination<'p> {
     row: usize,
-    /// First interrupt whose scope restarts at the destination.
+    /// Number of the first interrupt whose scope restarts at the destination.
     afresh: usize,
-    /// The labels of what ends because its last element has.
+    /// Labels of the elements that end because their last element has ended.
     ends_with: Vec<&'p Mark>,
 }
 
@@ -215,8 +216,9 @@ impl<'p> Brackets<'p> {
         (bracket.last, bracket.ends) = (self.laws.len() - 1, self.interrupts);
     }
 
-    /// Returns the destination of a scope's interrupt: the start of the innermost enclosing loop without end whose last
-    /// state is that of the scope, or else the state after the scope's last state.
+    /// Returns the destination of a scope's interrupt: the start of the innermost enclosing loop without end
+    /// whose last state is also the scope's last state; without such a loop, the state after the scope's last
+    /// state.
     fn destination(&self, scope: &Bracket<'_>) -> Destination<'p> {
         let (mut outermost, mut ends_with) = (scope, Vec::new());
         while let Some(around) = outermost.around {
@@ -241,13 +243,14 @@ mod tests {
     use super::*;
     use crate::samples::compiled;
 
-    /// A matrix of `size` states with all its zeros.
+    /// Returns the matrix of `size` states as a dense matrix, zeros included.
     fn with_zeros(matrix: &Matrix, size: usize) -> DMatrix<u8> {
         let one = |row, column| u8::from((matrix * UnitVector { row: column }).row == row);
         DMatrix::from_fn(size, size, one)
     }
 
-    /// The matrices of a plan, dense, with its condition texts, and that every column is a standard basis vector.
+    /// Returns the dense matrices of a plan with their condition texts, and checks that every column is a
+    /// standard basis vector.
     fn dense(plan: &str) -> Vec<(String, DMatrix<u8>)> {
         let plan = compiled(plan).swap_remove(0).nondegenerate;
         let Matrices { laws, transitions, .. } = matrices(&plan).unwrap();

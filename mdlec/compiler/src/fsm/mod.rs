@@ -1,5 +1,5 @@
-//! State machine of a plan: lowering, validation, matrices, files. [`lower`] alone makes a [`Machine`]; everything
-//! reads it by its elements.
+//! State machine of a plan: lowering, validation, matrices, files. Only [`lower`] constructs a [`Machine`]; all
+//! other code reads it by its elements.
 
 mod draft;
 mod expand;

@@ -1,9 +1,11 @@
-//! Holds a machine to Observation 1 of the paper: every column of its transition matrices is a standard basis vector.
+//! Checks Observation 1 of the paper on a machine: every column of its transition matrices is a standard basis
+//! vector.
 //!
-//! The matrix of one scope has such columns by its form: those of its atoms have their one in a single row. Where an
-//! interrupt is counted once, its matrix is a sum over all scopes that have it (Eq. 3), and a column in two of them
-//! would have two ones and a minus one. Intervals of a machine are nested or disjoint, so no scope may have the
-//! interrupt of one around it: the machine is that of a non-degenerate plan.
+//! The matrix of a single scope has such columns by construction: the columns of its atoms have their 1 in the
+//! same row. If an interrupt that several scopes have is counted once, its matrix is a sum over these scopes
+//! (Eq. 3), and a column that two of them list would have two ones and a minus one. Intervals of a machine are
+//! nested or disjoint, so no scope may have the same interrupt as an enclosing scope: the plan of the machine
+//! is non-degenerate.
 
 use std::collections::BTreeMap;
 
@@ -11,12 +13,12 @@ use super::{Machine, Visit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Function, Functions};
 
-/// Says whether all transition matrices of a machine have columns that are standard basis vectors, also those that
-/// count an interrupt once. The brackets are to be in pre-order and nested, as [`validate`](super::validate) finds
-/// them.
+/// Checks that all columns of a machine's transition matrices are standard basis vectors, also in matrices that
+/// count an interrupt once. The brackets must be in pre-order and nested, which [`validate`](super::validate)
+/// checks.
 ///
 /// # Errors
-/// E0901: the first interrupt that is repeated inside its scope. That is a defect of the compiler.
+/// E0901 for the first interrupt that is repeated inside its scope, which is a defect of the compiler.
 pub fn observation1(machine: &Machine) -> Result<(), Diagnostic> {
     let functions = Functions::new(machine.quarks());
     let mut open: BTreeMap<Function, &str> = BTreeMap::new();

@@ -9,11 +9,11 @@ use crate::plan::{Quark, Value};
 /// An attribute of a module that a plan reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct AttributeRead<'m> {
-    /// Name of the module, from the plan.
+    /// Name of the module, as in the plan.
     pub module: &'m str,
-    /// Name of the attribute, from the alphabet.
+    /// Name of the attribute, as in the alphabet.
     pub attribute: &'m str,
-    /// SI unit of its values; `None` if the alphabet has no signal of this name.
+    /// SI unit of the attribute's values; `None` if the alphabet has no signal of this name.
     pub unit: Option<&'static str>,
 }
 
@@ -45,7 +45,7 @@ fn reads_of<'m>(quark: &'m Quark, alphabet: &'m Alphabet) -> Vec<AttributeRead<'
     reads.collect()
 }
 
-/// Returns the SI unit of an attribute: that of the signal of this name which reads a module.
+/// Returns the SI unit of an attribute: the unit of the signal that has this name and reads a module.
 fn unit(attribute: &str, alphabet: &Alphabet) -> Option<&'static str> {
     let is_read = |declaration: &&Declaration| {
         let own = |param: &crate::alphabet::Param| param.kind == Kind::Module && param.with.is_empty();

@@ -21,7 +21,8 @@ pub fn other_robots(machine: &Machine) -> BTreeSet<&str> {
     machine.quarks().iter().flat_map(robots_of).collect()
 }
 
-/// Returns each `rendezvous` of the elements of a machine; two with one robot in one interrupt are one.
+/// Returns the `rendezvous` of each element of a machine; several with the same robot in one interrupt count
+/// once.
 #[must_use]
 pub fn meetings(machine: &Machine) -> BTreeSet<Rendezvous<'_>> {
     let mut meetings = BTreeSet::new();

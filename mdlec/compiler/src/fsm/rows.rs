@@ -1,4 +1,5 @@
-//! A machine as rows of tables, whose quarks are still ids: `rust` prints them, and `load` makes them real.
+//! A machine as rows of tables, whose quarks are still ids: `rust` prints the rows, and `load` replaces the ids
+//! by quarks.
 
 use std::collections::{BTreeSet, VecDeque};
 
@@ -8,22 +9,23 @@ use super::{Atom, Element, Machine};
 use crate::alphabet::{Alphabet, Kind};
 use crate::plan::{Condition, Quark, QuarkId, Value};
 
-/// The meaning of the brackets and atoms of a plan, as rows.
+/// The meaning of the brackets and atoms of a plan, as table rows.
 #[derive(Debug)]
 pub struct Rows {
-    /// Condition by which each bracket ends, in the order of the brackets.
+    /// Condition that ends each bracket, in the order of the brackets.
     pub guards: Vec<Guard<QuarkId>>,
-    /// The operands of conditions, breadth first: those of one condition are consecutive, and after the condition.
+    /// The operands of conditions, breadth first: the operands of one condition are consecutive, and come after
+    /// the condition.
     pub operands: Vec<Row<QuarkId>>,
     /// Law of each atom, in the order of the atoms.
     pub laws: Vec<LawRow<QuarkId>>,
-    /// The labels of what ends with each bracket, in the order of the brackets.
+    /// The labels of the elements that end with each bracket, in the order of the brackets.
     pub marks: Vec<MarkRow>,
     /// The facts of all labels, which `after` reads.
     pub facts: Vec<Fact>,
 }
 
-/// Returns the rows of a machine.
+/// Returns the table rows of a machine.
 #[must_use]
 pub fn rows(machine: &Machine) -> Rows {
     let mut operands = Operands { machine, waiting: VecDeque::new(), count: 0 };
@@ -39,7 +41,7 @@ pub fn rows(machine: &Machine) -> Rows {
     Rows { guards, operands: operands.rows(), laws: laws.collect(), marks, facts }
 }
 
-/// Returns the files whose paths the laws of a machine replay, each once.
+/// Returns the names of the path files that the laws of a machine replay, each once.
 #[must_use]
 pub fn replayed_files<'m>(machine: &'m Machine, alphabet: &Alphabet) -> BTreeSet<&'m str> {
     let replays = |quark: &Quark| {
@@ -50,7 +52,7 @@ pub fn replayed_files<'m>(machine: &'m Machine, alphabet: &Alphabet) -> BTreeSet
     laws.flat_map(|quark| quark.args.iter().filter_map(file)).collect()
 }
 
-/// The name of the file that an argument is.
+/// Returns the name of the file that an argument names; `None` for an argument that is no file.
 fn file(argument: &Value) -> Option<&str> {
     match argument {
         Value::Name(Kind::File, name) => Some(name),
@@ -63,13 +65,13 @@ fn file(argument: &Value) -> Option<&str> {
     }
 }
 
-/// Returns the nearest enclosing element whose condition can fire; the element itself where there is none.
+/// Returns the nearest enclosing element whose condition can fire; the element itself if there is none.
 fn around(element: Element<'_>) -> Element<'_> {
     let can_fire = |enclosing: &Element<'_>| *enclosing.condition() != Condition::Null;
     element.outwards().skip(1).find(can_fire).unwrap_or(element)
 }
 
-/// Returns the labels of what ends with a bracket, and their facts.
+/// Returns the labels of the elements that end with each bracket, and the facts of these labels.
 fn marks(machine: &Machine) -> (Vec<MarkRow>, Vec<Fact>) {
     let (mut marks, mut facts) = (Vec::new(), Vec::new());
     for element in machine.elements() {
@@ -94,11 +96,11 @@ fn marks(machine: &Machine) -> (Vec<MarkRow>, Vec<Fact>) {
     (marks, facts)
 }
 
-/// Operands of conditions that are numbered, and not yet rows.
+/// Operands of conditions that have a number, but no row yet.
 struct Operands<'m> {
     machine: &'m Machine,
     waiting: VecDeque<&'m Condition>,
-    /// Number of conditions that have been given a number.
+    /// Number of operands that have a number.
     count: u32,
 }
 
@@ -133,7 +135,7 @@ impl<'m> Operands<'m> {
         }
     }
 
-    /// Gives operands the next numbers; returns the first of these, and how many there are.
+    /// Gives the next numbers to operands; returns the first of these numbers, and the number of operands.
     fn numbered(&mut self, operands: impl IntoIterator<Item = &'m Condition>) -> (u32, u32) {
         let (first, waiting) = (self.count, self.waiting.len());
         self.waiting.extend(operands);
@@ -142,7 +144,7 @@ impl<'m> Operands<'m> {
         (first, count)
     }
 
-    /// Returns the rows of all conditions that were given a number, in that order.
+    /// Returns the rows of all numbered conditions, in the order of their numbers.
     fn rows(mut self) -> Vec<Row<QuarkId>> {
         let mut rows = Vec::new();
         while let Some(operand) = self.waiting.pop_front() {

@@ -1,4 +1,4 @@
-//! The tables of a plan and the limit of its states, written out by hand from the rules
+//! The tables of a plan and the limit on its states, as derived by hand from the rules
 //! (docs/src/reference/semantics.md, 8.1).
 
 use mdle_runtime::fsm::{Atom, Bracket};
@@ -72,12 +72,12 @@ fn a_plan_of_more_than_two_to_the_53_states_is_refused() {
     assert!(judged.contains("plan.mdle:1:5"), "the loop is named, and not the plan: {judged}");
 }
 
-/// The plan of the tests of elements: a scope in a loop, an atom after it.
+/// The plan in the tests of elements: a scope in a loop, and an atom after the loop.
 const NESTED: &str =
     "{ P (bumper) (((Atom (wait 1) stop) { Q (wait 9) (Atom (null) rotate 9) })^2 (Atom (wait 3) stop))^inf
     (Atom (wait 4) stop) }";
 
-/// An element in a word.
+/// Returns an element as a word.
 fn word(element: Element<'_>) -> String {
     match element.kind() {
         ElementKind::Scope => element.name().to_owned(),

@@ -1,10 +1,12 @@
-//! Oracle of the lowering, which shares no code with it: holds the tables of a machine against its plan.
+//! Oracle of the lowering, which compares the tables of a machine with its plan and shares no code with the
+//! lowering.
 //!
-//! Every transition is the one that the plan asks for (paper, Eq. 2; docs/src/reference/semantics.md, 5.3 and 8). The
-//! oracle walks the plan and determines for each scope, loop and atom what follows when it ends, by the plan's own
-//! nesting; the machine has the same in its intervals of atoms. As each step outwards agrees, so does every chain of
-//! them: where a transition leads, which scopes and counters it starts afresh, and which loop it repeats. So the cost
-//! does not depend on loop counts, and every lowering is validated.
+//! Every transition must be as the plan requires (paper, Eq. 2; docs/src/reference/semantics.md, 5.3 and 8).
+//! The oracle walks the plan and determines for each scope, loop and atom what follows when it ends, by the
+//! plan's own nesting; the machine has the same information in its intervals of atoms. If every step outwards
+//! agrees, every chain of steps agrees: the state to which a transition leads, the scopes and counters that it
+//! restarts, and the loop that it repeats. The cost therefore does not depend on loop counts, so every lowering
+//! can be validated.
 
 use std::fmt;
 
@@ -18,7 +20,7 @@ use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Record, Scope};
 /// Checks that `draft` is the machine of `plan`.
 ///
 /// # Errors
-/// E0901: the first difference between plan and machine, which is a defect of the compiler.
+/// E0901 for the first difference between plan and machine, which is a defect of the compiler.
 pub fn validate(plan: &Nondegenerate, draft: &Draft) -> Result<(), Diagnostic> {
     let root = &plan.plan().root;
     let mut walk = Walk { draft, brackets: 0, atoms: 0 };
@@ -32,13 +34,13 @@ pub fn validate(plan: &Nondegenerate, draft: &Draft) -> Result<(), Diagnostic> {
 /// Surroundings of a node of the plan.
 #[derive(Clone, Copy)]
 struct Around {
-    /// Bracket of the enclosing node; for the plan, the plan's own bracket.
+    /// Bracket of the enclosing node; for the plan, its own bracket.
     holder: u32,
-    /// Set to `true` if another node follows in the same string; `None` for the plan.
+    /// `true` if another node follows in the same string; `None` for the plan.
     behind: Option<bool>,
-    /// Number of scopes around the node.
+    /// Number of scopes that enclose the node.
     scopes: u16,
-    /// Number of loops around the node.
+    /// Number of loops that enclose the node.
     loops: u16,
     /// Number of states of the expanded plan before the node, in the first pass of every loop.
     states: u128,
@@ -59,7 +61,7 @@ enum Step {
 
 struct Walk<'l> {
     draft: &'l Draft,
-    /// Number of brackets of the plan that the walk has met; `atoms` is the number of atoms.
+    /// Number of brackets that the walk has visited; `atoms` is the number of atoms.
     brackets: u32,
     atoms: u32,
 }
@@ -137,8 +139,8 @@ impl Walk<'_> {
         Ok(1)
     }
 
-    /// Returns the level of the innermost scope with `FRAME here` for the nodes of a scope, and checks that the machine
-    /// has room for its heading if it is that scope itself.
+    /// Returns the level of the innermost scope with `FRAME here` for the nodes of a scope. If the scope itself
+    /// is the innermost, also checks that the machine has room for its heading.
     fn here(&self, is_here: bool, around: Around, span: Span) -> Result<Option<u16>, Diagnostic> {
         let Sizes { stamps, levels, .. } = self.draft.sizes;
         match is_here {
@@ -159,7 +161,7 @@ impl Walk<'_> {
         (self.brackets - 1, self.atoms)
     }
 
-    /// Checks that a bracket is of this kind, begins with this atom, and is followed by what follows it in the plan.
+    /// Checks that a bracket has this kind and this first atom, and that its successor is the one in the plan.
     fn bracket(&self, number: u32, first: u32, kind: Kind, around: Around, span: Span) -> Result<(), Diagnostic> {
         let in_machine = self.draft.brackets.get(number as usize);
         same(
@@ -198,7 +200,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Checks that a bracket has this name, interrupt and labels, and that there are enough memories.
+    /// Checks that a bracket has this name, interrupt and labels, and that the machine has enough memories.
     fn meaning(
         &self,
         number: u32,
@@ -231,7 +233,8 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Checks that a record is after the memories of its scope's interrupt, and that there is room for all of it.
+    /// Checks that a record is stored after the memories of its scope's interrupt, and that the machine has
+    /// room for the record.
     fn record(&self, record: Record, scope: &Scope, around: Around) -> Result<(), Diagnostic> {
         let (first, facts) = (scope.interrupt.memories, record.facts);
         let in_plan = RecordPlace { level: around.scopes, first, facts };

@@ -1,4 +1,4 @@
-//! The words of a plan as its writer has them, and their lines, for reports.
+//! The words of a plan as written, and their lines, for reports.
 
 use std::path::Path;
 
@@ -10,10 +10,10 @@ use crate::diagnostic::{Sources, Span};
 use crate::plan::{Compared, Condition, OperandPlace, Quark, QuarkId};
 use crate::syntax::one_line;
 
-/// The words of each bracket, and those of each operand.
+/// The words of the brackets and of the operands of a plan.
 #[derive(Debug, Default)]
 pub struct PlanWords {
-    /// The names of the files, in the order in which they are met.
+    /// Names of the files, in order of first appearance.
     pub files: Vec<String>,
     /// The words of each element, in the order of elements.
     pub elements: Vec<BracketText>,
@@ -24,26 +24,26 @@ pub struct PlanWords {
 /// The words of a bracket; see [`BracketWords`].
 #[derive(Debug)]
 pub struct BracketText {
-    /// The line in which the atom or the scope begins; 0 for a loop.
+    /// Line in which the atom or the scope begins; 0 for a loop.
     pub at: SourceLine,
-    /// The condition of the scope as it is written.
+    /// Condition of the scope as written.
     pub condition: String,
-    /// The first of its operands among those of all brackets.
+    /// Position of the bracket's first operand among the operands of all brackets.
     pub first: u32,
-    /// The number of its operands.
+    /// Number of the bracket's operands.
     pub count: u32,
 }
 
 /// The words of an operand; see [`OperandWords`].
 #[derive(Debug)]
 pub struct OperandText {
-    /// The condition text, as traces have it.
+    /// Condition text of the operand, as traces show it.
     pub text: String,
-    /// The operand as it is written.
+    /// The operand as written.
     pub written: String,
-    /// The line in which the element begins.
+    /// Line in which the operand begins.
     pub at: SourceLine,
-    /// The places at which measured values are shown.
+    /// The places in the operand at which measured values are shown.
     pub values: Vec<ValueWords<'static>>,
 }
 
@@ -126,7 +126,7 @@ impl Writing<'_> {
         OperandText { text, written, at, values: values.collect() }
     }
 
-    /// The units of the signals that an operand compares.
+    /// Returns the units of the signals that an operand compares.
     fn units(&self, part: &Condition) -> [Option<Unit>; 2] {
         let quark = match part {
             Condition::Quark(id) | Condition::Elapsed { quark: id, .. } | Condition::Driven { quark: id, .. } => {
@@ -149,7 +149,7 @@ impl Writing<'_> {
         self.alphabet.declarations_of(name).nth(*overload)?.unit.map(|(unit, _)| unit)
     }
 
-    /// Returns the line in which a place begins, and remembers the name of its file.
+    /// Returns the line in which a span begins, and records the name of its file.
     fn line(&mut self, span: Option<Span>) -> SourceLine {
         let Some(span) = span else { return SourceLine { file: 0, line: 0 } };
         let (name, line) = self.sources.line(span);
