@@ -1,5 +1,5 @@
 //! The machine `counted`: the run-time system's machine on a lowered plan, with loops as the paper's counters
-//! (docs/src/reference/semantics.md, 9). Robots run the same machine; here a script replaces the robot.
+//! (docs/src/reference/semantics.md, 9). Robots run the same machine; in a trace, a script replaces the robot.
 
 use mdle_runtime::{
     Begin, Cause, Cursor, Ending, Fsm, Here, Measured, Nanometers, Nanos, Pose, Stamp, Stamps, Transition, Turn, Watch,
@@ -13,7 +13,7 @@ use crate::plan::{Interrupt, QuarkId, RecordId, Situation};
 #[derive(Debug)]
 pub struct Counted<'p> {
     plan_machine: &'p fsm::Machine,
-    /// The machine; `None` before the first turn, since the machine needs that turn's output to begin.
+    /// The machine; `None` before the first turn, because the machine needs the output of that turn to begin.
     machine: Option<mdle_runtime::Machine<Scripted<'p>>>,
 }
 
@@ -24,7 +24,7 @@ impl<'p> Counted<'p> {
         Self { plan_machine, machine: None }
     }
 
-    /// Runs one turn, which `watch` observes; not called again after the plan is over.
+    /// Runs one turn, which `watch` observes. Must not be called after the plan has ended.
     pub fn watched(&mut self, reports: &Reports, watch: &mut impl Watch) -> Turn<()> {
         let begin = || mdle_runtime::Machine::begin(Scripted::new(self.plan_machine), reports, reports.t);
         self.machine.get_or_insert_with(begin).turn(reports, reports.t, watch)
@@ -37,7 +37,7 @@ impl<'p> Counted<'p> {
         self.machine.as_ref()?.atom()
     }
 
-    /// Calls `tell` with the number of each operand that has fired of the interrupt of `scope`, which encloses the
+    /// Calls `tell` with the number of each fired operand in the interrupt of `scope`, which encloses the
     /// current atom.
     pub fn operands(&self, scope: u32, reports: &Reports, tell: &mut dyn FnMut(u32)) {
         if let Some(machine) = &self.machine {
@@ -154,13 +154,14 @@ impl<'p> Scripted<'p> {
         usize::from(level) * self.plan_machine.sizes().memories + memory as usize
     }
 
-    /// Scopes around the current atom, from its own outwards: level and interrupt.
+    /// Returns the level and the interrupt of the scopes that enclose the current atom, from the atom's own
+    /// scope outwards.
     fn scopes(&self, cursor: &At) -> impl Iterator<Item = (u16, &'p Interrupt)> + use<'p> {
         let own = self.plan_machine.atom(cursor.atom()).element();
         own.outwards().filter_map(|element| Some((element.level()?, element.interrupt()?)))
     }
 
-    /// Returns the outermost scope that ends, as the cause of the transition; the completion of the law comes last.
+    /// Returns the cause of the outermost scope that ends. The completion of the law comes last.
     fn ending(&self, cursor: &At<'_>, y: &Reports) -> Option<Cause> {
         let fired = |(level, interrupt): &(u16, &Interrupt)| {
             interrupt.condition.fired(&Read { scripted: self, cursor, level: *level, y })
@@ -170,15 +171,15 @@ impl<'p> Scripted<'p> {
         outermost.or_else(|| self.completed(cursor, y))
     }
 
-    /// The completion of the current atom's law.
+    /// Returns the completion of the current atom's law as a cause; `None` if the law has not completed.
     fn completed(&self, cursor: &At<'_>, y: &Reports) -> Option<Cause> {
         let atom = self.plan_machine.atom(cursor.atom());
         let level = atom.element().level()?;
         (atom.law().completes && y.completed.contains(&atom.law().text)).then_some(Cause::Completed(level))
     }
 
-    /// Records the labelled elements that end with the scope of this cause; the records of scopes inside it are
-    /// forgotten.
+    /// Records the labelled elements that end with the scope of this cause, and clears the records of nested
+    /// scopes.
     fn record(&mut self, cursor: &At<'_>, cause: Cause, y: &Reports) {
         let level = cause.level();
         let operand = match cause {

@@ -2,9 +2,9 @@
 //! Eq. 4; docs/src/reference/semantics.md, 8.4 and 9). The machines that robots run are compared with it; it shares no
 //! stepping code with them.
 //!
-//! Of the product `E_i(tm) … E_i(t2) E_i(t1)` of the interrupts that have fired, in order, only the column of the first
-//! state is ever computed: `e(t)` is that product applied to `e(0)`. The matrices do
-//! not say which scopes begin anew when a state is entered.
+//! Only the first state's column of the product `E_i(tm) … E_i(t2) E_i(t1)` of the interrupts that have fired,
+//! in order, is computed: `e(t)` is this product applied to `e(0)`. The matrices do not express which scopes
+//! restart when a state is entered.
 
 use std::collections::BTreeSet;
 
@@ -15,22 +15,22 @@ use crate::diagnostic::Diagnostic;
 use crate::fsm::{Matrices, Transition, UnitVector, matrices};
 use crate::plan::{Nondegenerate, Plan, Quark, QuarkId, RecordId, Situation};
 
-/// A plan as its transition matrices, and the vector that they are applied to.
+/// A plan as its transition matrices, with the vector to which they are applied.
 #[derive(Debug)]
 pub struct MatrixProduct<'p> {
     plan: &'p Plan,
     matrices: Matrices<'p>,
     /// For each column, the indices of the interrupts whose matrices move it, outermost first.
     listing: Vec<Vec<u32>>,
-    /// For each interrupt the moment when its scope was entered.
+    /// For each interrupt, the moment at which its scope was entered.
     entered: Vec<Moment>,
-    /// Set memories of RISING, by the number of their interrupt and their own number.
+    /// Set memories of RISING, each by the number of its interrupt and by its own number.
     risen: BTreeSet<(usize, u32)>,
     /// Facts that hold in the records of the elements that ended last.
     facts: BTreeSet<(RecordId, u32)>,
-    /// Product so far, applied to the first state.
+    /// The product so far, applied to the first state.
     e: UnitVector,
-    /// `true` after the first turn.
+    /// `true` from the first turn on.
     has_begun: bool,
 }
 
@@ -39,9 +39,9 @@ struct Factor<'p> {
     number: usize,
     /// Text of the interrupt for the trace.
     by: &'p str,
-    /// Operands that have fired.
+    /// Texts of the interrupt's operands that have fired.
     operands: Vec<String>,
-    /// Operand that was the cause; `None` if the law has completed.
+    /// Number of the operand that was the cause; `None` if the law has completed.
     operand: Option<u32>,
 }
 
@@ -90,13 +90,13 @@ impl<'p> MatrixProduct<'p> {
         Ok(Self { plan: plan.plan(), matrices, listing, entered, risen, facts, e, has_begun: false })
     }
 
-    /// Interrupts whose matrices list the column of the state.
+    /// Returns the numbers of the interrupts whose matrices list the column of the state.
     fn listed(&self) -> impl DoubleEndedIterator<Item = usize> + use<'_, 'p> {
         self.listing[self.e.row].iter().map(|number| *number as usize)
     }
 
-    /// Returns the fired interrupt with the lowest number, or else the completion of the current atom, if its law has
-    /// completed.
+    /// Returns the fired interrupt with the lowest number, or else the completion of the current atom's law;
+    /// `None` if neither has happened.
     fn fired(&self, y: &Reports) -> Option<Factor<'p>> {
         for number in self.listed() {
             let (interrupt, at) = (self.matrices.transitions[number].interrupt, At { product: self, number, y });
@@ -116,13 +116,13 @@ impl<'p> MatrixProduct<'p> {
         own.map(|number| Factor { number, by: COMPLETED, operands: Vec::new(), operand: None })
     }
 
-    /// Law of the state; `None` when the plan has ended.
+    /// Returns the law of the state; `None` when the plan has ended.
     fn law(&self) -> Option<&'p Quark> {
         self.matrices.laws.iter().copied().nth(self.e.row).map(|law| self.plan.quark(law))
     }
 
-    /// Frame of the law, if a scope around the state is entered in a frame of its own: the innermost such scope has the
-    /// highest number.
+    /// Returns the frame of the law, if an enclosing scope is entered in a frame of its own. The innermost such
+    /// scope has the highest number.
     fn frame(&self) -> Option<Frame> {
         let turned = self.matrices.frames.get(self.e.row)?;
         let anew = self.listed().rev().find(|number| self.matrices.transitions[*number].here)?;
@@ -150,7 +150,7 @@ impl<'p> MatrixProduct<'p> {
         }
     }
 
-    /// Sets each memory of RISING whose operand does not hold, in the interrupts that list the state's column.
+    /// Sets each memory of RISING whose operand is false, in the interrupts that list the state's column.
     fn settle(&mut self, y: &Reports) {
         let mut set = Vec::new();
         for number in self.listed() {
@@ -164,7 +164,7 @@ impl<'p> MatrixProduct<'p> {
         self.risen.extend(set);
     }
 
-    /// Number of the state, from 1.
+    /// Returns the number of the state, from 1.
     fn state(&self) -> u64 {
         self.e.row as u64 + 1
     }

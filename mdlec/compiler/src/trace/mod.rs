@@ -1,4 +1,4 @@
-//! The machines of `mdlec trace`: they run the same plan in different ways, and share no stepping code
+//! The machines of `mdlec trace`, which run the same plan in different ways and share no stepping code
 //! (docs/src/reference/semantics.md, 9).
 
 mod counted;
@@ -18,7 +18,7 @@ pub use write::{Applied, COMPLETED, Fired, Outcome, TraceLine};
 
 /// An interpreter of a plan.
 pub trait Machine<'p> {
-    /// Runs one turn; not called again after the plan has ended.
+    /// Runs one turn. Must not be called after the plan has ended.
     fn turn(&mut self, reports: &Reports) -> Outcome<'p>;
 }
 

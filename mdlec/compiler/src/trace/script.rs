@@ -1,7 +1,7 @@
 //! Scripts: the reports of interrupts and laws, turn by turn, as JSON lines (docs/src/reference/interfaces.md, 3).
 //!
-//! In a script that is read, times are nanoseconds since the first turn, ways are nanometres, and neither ever
-//! decreases.
+//! Once a script is read, its times are in nanoseconds since the first turn and its path lengths in nanometres;
+//! neither ever decreases.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -54,30 +54,30 @@ impl Moment {
         self.way_since(now) >= Nanometers(nanometers)
     }
 
-    /// Time that has passed since this moment.
+    /// Returns the time that has passed since this moment.
     pub(super) fn since(self, now: &Reports) -> Nanos {
         now.t.since(self.t)
     }
 
-    /// Length of the path driven since this moment.
+    /// Returns the length of the path driven since this moment.
     pub(super) fn way_since(self, now: &Reports) -> Nanometers {
         now.way.since(self.way)
     }
 
-    /// Frame with the heading of this moment, turned counter-clockwise by `turned` radians.
+    /// Returns the frame with the heading of this moment, turned counter-clockwise by `turned` radians.
     pub(super) fn frame(self, turned: f64) -> Frame {
         Frame(self.heading).turned(Radians(turned))
     }
 }
 
 impl Reports {
-    /// Moment of this turn.
+    /// Returns the moment of this turn.
     pub(super) fn moment(&self) -> Moment {
         Moment { t: self.t, way: self.way, heading: self.heading }
     }
 }
 
-/// Error in a script.
+/// An error in a script.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScriptError {
     /// Line number, from 1.
@@ -94,7 +94,7 @@ impl fmt::Display for ScriptError {
 
 impl std::error::Error for ScriptError {}
 
-/// A line as it is written; a list that is missing is empty.
+/// A line as written; a missing list is empty.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ScriptLine {
@@ -115,7 +115,7 @@ impl Script {
     /// Reads a script: one object per line; empty lines are ignored.
     ///
     /// # Errors
-    /// Fails at the first line that is not such an object, or whose time is before that of the previous line.
+    /// Fails at the first line that is not such an object, or that has an earlier time than the previous line.
     pub fn read(text: &str) -> Result<Self, ScriptError> {
         let (mut turns, mut lines): (Vec<Reports>, Vec<usize>) = (Vec::new(), Vec::new());
         let mut start = None;
@@ -147,7 +147,7 @@ impl Script {
     /// Converts the script to the texts of a plan: `r0<60cm` becomes `r0 < 0.6`.
     ///
     /// # Errors
-    /// Fails at the first name that is not an interrupt of the plan, or not a law of the plan that completes.
+    /// Fails at the first name that is neither an interrupt of the plan nor a law of the plan that completes.
     pub fn in_words_of(mut self, plan: &Plan, alphabet: &Alphabet) -> Result<Self, ScriptError> {
         let words = Words::new(plan, alphabet);
         for (reports, line) in self.turns.iter_mut().zip(&self.lines) {
@@ -160,15 +160,15 @@ impl Script {
         Ok(self)
     }
 
-    /// Turns of the script, in order; the first is at time 0.
+    /// Returns the turns of the script, in order; the first is at time 0.
     #[must_use]
     pub fn turns(&self) -> &[Reports] {
         &self.turns
     }
 }
 
-/// Converts seconds or metres to billionths. Uses the shortest decimal, which is the number as written, so that nothing
-/// is rounded twice.
+/// Converts seconds or metres to billionths. Starts from the shortest decimal, which is the number as written,
+/// so that rounding occurs only once.
 fn nanos(seconds: f64) -> Option<u64> {
     Decimal::parse(&seconds.to_string())?.to_nanos()
 }
@@ -189,7 +189,8 @@ fn written(line: &str) -> Result<ScriptLine, String> {
     })
 }
 
-/// Message of the JSON parser, with the column only: the line is always 1, since each line is parsed by itself.
+/// Returns the message of the JSON parser, with the column only: the line is always 1, as each line is parsed
+/// by itself.
 fn reason(error: &serde_json::Error) -> String {
     let message = error.to_string();
     let message = message.split_once(" at line ").map_or(&*message, |(message, _)| message);

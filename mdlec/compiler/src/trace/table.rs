@@ -1,7 +1,7 @@
 //! The machine `table`: the expanded FSM of Algorithm 1, with a row for each interrupt
 //! (docs/src/reference/semantics.md, 8 and 9).
 //!
-//! Everything is computed beforehand: the destination of each interrupt, the scopes that start afresh there, and the
+//! Everything is computed beforehand: the destination of each interrupt, the scopes that restart there, and the
 //! elements that end on the way. A turn only reads the table.
 
 use std::collections::BTreeMap;
@@ -22,17 +22,17 @@ pub struct Table<'p> {
     states: Vec<AtomState<'p>>,
     /// Interrupts, numbered in pre-order: a scope before its elements.
     rows: Vec<Row<'p>>,
-    /// For each row the memory of its scope, valid since the scope was entered.
+    /// For each row, the memory of its scope since the scope was entered.
     memories: Vec<Memory>,
-    /// For each record the facts that hold.
+    /// For each record, the facts that hold.
     records: BTreeMap<RecordId, Vec<bool>>,
     /// Index of the current state in `states`; the length of `states` when the plan has ended.
     state: usize,
-    /// `true` after the first turn.
+    /// `true` from the first turn on.
     has_begun: bool,
 }
 
-/// A state: an atom.
+/// A state, which is an atom.
 #[derive(Debug)]
 struct AtomState<'p> {
     law: &'p Quark,
@@ -40,21 +40,23 @@ struct AtomState<'p> {
     own: usize,
     /// Angle by which the state's frame is turned, in radians.
     turned: f64,
-    /// Row of the innermost scope or atom around the state that is entered in a frame of its own, if there is one.
+    /// Row of the innermost enclosing scope, or the atom itself, that is entered in a frame of its own; `None`
+    /// if there is none.
     here: Option<usize>,
 }
 
-/// An interrupt with its effects.
+/// An interrupt with its destination and its labels.
 #[derive(Debug)]
 struct Row<'p> {
     interrupt: &'p Interrupt,
     level: usize,
     /// Row of the enclosing scope; `None` for the plan itself.
     around: Option<usize>,
-    /// Record that is kept with the scope.
+    /// Record that is kept with the row's scope.
     record: Option<Record>,
     next: Next,
-    /// Labels of the scope. `ends_with` holds the labels of the elements whose last element the scope is.
+    /// Labels of the row's scope. `ends_with` holds the labels of the elements whose last element is this
+    /// scope.
     marks: &'p [Mark],
     ends_with: Vec<&'p Mark>,
 }
@@ -63,7 +65,8 @@ struct Row<'p> {
 #[derive(Debug, Clone)]
 struct Next {
     state: usize,
-    /// Rows of the scopes that start afresh: scopes that open together form a range, since rows are in pre-order.
+    /// Range of the rows whose scopes restart: scopes that open together form a range, since rows are in
+    /// pre-order.
     afresh: Range<usize>,
 }
 
@@ -75,8 +78,8 @@ struct Memory {
     rising: Vec<bool>,
 }
 
-/// A row that has fired, its text, its operands that have fired, and the operand that was the cause; `None` if the law
-/// has completed.
+/// A row that has fired: its text, its fired operands, and the operand that was the cause (`None` if the law
+/// has completed).
 struct FiredRow<'p> {
     row: usize,
     by: &'p str,
@@ -134,7 +137,7 @@ impl<'p> Table<'p> {
         Ok(Self { plan, memories: rows.iter().map(fresh).collect(), records, states, rows, state: 0, has_begun: false })
     }
 
-    /// Rows of the scopes around the current state, outwards.
+    /// Returns the rows of the scopes that enclose the current state, from the inside outwards.
     fn around(&self) -> impl Iterator<Item = usize> {
         let own = self.states.get(self.state).map(|state| state.own);
         std::iter::successors(own, |row| self.rows[*row].around)
@@ -172,7 +175,7 @@ impl<'p> Table<'p> {
         self.state = state;
     }
 
-    /// Replaces the records whose labelled elements end now.
+    /// Replaces the records whose labelled elements end with this row.
     fn record(&mut self, ending: &FiredRow<'p>) {
         let Row { marks, ends_with, .. } = &self.rows[ending.row];
         let own = marks.iter().map(|mark| (mark, ending.operand));
@@ -188,7 +191,7 @@ impl<'p> Table<'p> {
         }
     }
 
-    /// Sets each memory of RISING around the current state whose operand does not hold.
+    /// Sets each memory of RISING, in the scopes that enclose the current state, whose operand is false.
     fn settle(&mut self, reports: &Reports) {
         let mut set = Vec::new();
         for row in self.around() {
@@ -202,7 +205,7 @@ impl<'p> Table<'p> {
         set.into_iter().for_each(|(row, memory)| self.memories[row].rising[memory] = true);
     }
 
-    /// Number of the current state, from 1.
+    /// Returns the number of the current state, from 1.
     fn number(&self) -> u64 {
         self.state as u64 + 1
     }
@@ -242,7 +245,7 @@ struct Filling<'p> {
     plan: &'p Plan,
     states: Vec<AtomState<'p>>,
     rows: Vec<Row<'p>>,
-    /// Rows of the scopes that have just ended: they lead to the next state.
+    /// Rows of the scopes that have just ended; these rows lead to the next state.
     ended: Vec<usize>,
     /// First row of the scopes that have begun since the last atom.
     begun: Option<usize>,
@@ -281,7 +284,8 @@ impl<'p> Filling<'p> {
         }
     }
 
-    /// Adds an endless loop once: the rows that end its pass lead back to its first state.
+    /// Appends the elements of an endless loop once; the rows that end a pass lead back to the loop's first
+    /// state.
     fn without_end(&mut self, body: &'p [Node], around: usize, here: Option<usize>) {
         let (state, from) = (self.states.len(), self.rows.len());
         self.sequence(body, around, here);

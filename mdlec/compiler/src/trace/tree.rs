@@ -1,6 +1,6 @@
 //! The machine `tree`: walks over the plan as written, without expansion or removal of degeneracy
-//! (docs/src/reference/semantics.md, 2 to 6). It is the reference for all other machines, so it shares no stepping code
-//! with them.
+//! (docs/src/reference/semantics.md, 2 to 6). It is the reference for all other machines, and shares no
+//! stepping code with them.
 
 mod steps;
 
@@ -16,13 +16,13 @@ use crate::plan::{Atom, Interrupt, Loop, Mark, Node, Plan, QuarkId, RecordId, Sc
 #[derive(Debug, Clone)]
 pub struct Tree<'p> {
     plan: &'p Plan,
-    /// Scopes, loops and atoms of the plan. Each is before its own elements, the plan itself first: a flat list,
-    /// because a plan may be nested deeper than the stack allows for recursion.
+    /// Scopes, loops and atoms of the plan, the plan itself first and each element before its own elements. The
+    /// list is flat because a plan may be nested more deeply than the stack allows for recursion.
     elements: Arc<[Element<'p>]>,
     /// Open elements, outermost first; the last is the current atom. Empty before the first turn and after the plan has
     /// ended.
     open: Vec<Open>,
-    /// `true` after the first turn.
+    /// `true` from the first turn on.
     has_begun: bool,
 }
 
@@ -30,10 +30,10 @@ pub struct Tree<'p> {
 #[derive(Debug)]
 struct Element<'p> {
     kind: NodeKind<'p>,
-    /// Nodes of the body; the first of them is element number `held`, the others follow it.
+    /// Nodes of the body; the first node is element number `held`, and the others follow it.
     body: &'p [Node],
     held: usize,
-    /// Number of states in the expanded plan; for a loop that of one pass.
+    /// Number of states in the expanded plan; for a loop, the number of states of one pass.
     states: u64,
 }
 
@@ -49,29 +49,29 @@ enum NodeKind<'p> {
 struct Open {
     element: usize,
     entered: Moment,
-    /// Index in the body of the element that is open.
+    /// Index, in the body, of the nested element that is open.
     index: usize,
-    /// For a loop: the number of the pass, from 1.
+    /// For a loop, the number of the current pass, from 1.
     pass: u64,
-    /// Number of the first state of this pass; `here` is the number of the state of the open element.
+    /// Number of the first state of this pass; `here` is the number of the open nested element's first state.
     first: u64,
     here: u64,
     /// Memories of RISING in the element's interrupt.
     memories: Vec<bool>,
-    /// For the outermost scope of a definition: the facts of the record that hold.
+    /// For the outermost scope of a definition, the facts of its record that hold.
     facts: Vec<bool>,
 }
 
 /// A scope that ends.
 struct EndedScope<'p> {
-    /// Index of the scope in the open elements.
+    /// Index of the scope in the list of open elements.
     place: usize,
     level: usize,
     /// Text of the interrupt for the trace.
     by: &'p str,
     /// Operands of the scope's interrupt that have fired.
     operands: Vec<String>,
-    /// Operand of the scope's interrupt that was the cause; `None` if the law has completed.
+    /// Number of the operand of the scope's interrupt that was the cause; `None` if the law has completed.
     operand: Option<u32>,
 }
 
@@ -106,7 +106,7 @@ impl Situation for Read<'_, '_> {
 }
 
 impl<'p> Tree<'p> {
-    /// Creates the walk, before the first turn.
+    /// Returns the walk before its first turn.
     #[must_use]
     pub fn new(plan: &'p Plan) -> Self {
         Self { plan, elements: flat(&plan.root).into(), open: Vec::new(), has_begun: false }
@@ -128,7 +128,8 @@ impl<'p> Tree<'p> {
         }
     }
 
-    /// Returns the outermost scope whose interrupt has fired, or else the completion of the atom's law.
+    /// Returns the outermost scope whose interrupt has fired, or else the completion of the atom's law; `None`
+    /// if neither has happened.
     fn fired(&self, reports: &Reports) -> Option<EndedScope<'p>> {
         let mut level = 0;
         for (place, open) in self.open.iter().enumerate() {
@@ -146,7 +147,7 @@ impl<'p> Tree<'p> {
         done.then(|| EndedScope { place, level, by: COMPLETED, operands: Vec::new(), operand: None })
     }
 
-    /// Sets each memory of RISING around the current atom whose operand does not hold.
+    /// Sets each memory of RISING, in the scopes that enclose the current atom, whose operand is false.
     fn settle(&mut self, reports: &Reports) {
         for place in 0..self.open.len() {
             let open = &self.open[place];
@@ -170,14 +171,15 @@ impl<'p> Tree<'p> {
         }
     }
 
-    /// Frame of the current atom, if the atom or an enclosing scope is entered in a frame of its own.
+    /// Returns the frame of the current atom, if the atom or an enclosing scope is entered in a frame of its
+    /// own.
     fn frame(&self) -> Option<Frame> {
         let NodeKind::Atom(atom) = self.elements[self.open.last()?.element].kind else { return None };
         let anew = self.open.iter().rev().find(|open| self.elements[open.element].kind.is_here())?;
         Some(anew.entered.frame(atom.frame))
     }
 
-    /// Number of the current atom in the expanded plan, or of the termination state.
+    /// Returns the number of the current atom's state in the expanded plan, or of the termination state.
     fn state(&self) -> u64 {
         match self.open.last() {
             Some(atom) => atom.first,
@@ -185,8 +187,8 @@ impl<'p> Tree<'p> {
         }
     }
 
-    /// Ends a scope, continues outwards to the first element that has a successor, and enters that successor. Returns
-    /// the number of open elements that have stayed open.
+    /// Ends a scope, continues outwards to the first element that has a successor, and enters that successor.
+    /// Returns the number of elements that have stayed open.
     fn leave(&mut self, ending: &EndedScope<'p>, now: Moment) -> usize {
         let mut ended = Vec::new();
         let first = self.elements[self.open[ending.place].element].kind;
@@ -220,8 +222,8 @@ impl<'p> Tree<'p> {
         0
     }
 
-    /// Replaces the record of each definition whose labelled elements have ended, each with the operand that was its
-    /// cause.
+    /// Replaces the record of each definition whose labelled elements have ended; each ended element comes with
+    /// the operand that was the cause.
     fn record(&mut self, ended: &[(&[Mark], Option<u32>)]) {
         let marks = || ended.iter().flat_map(|(marks, operand)| marks.iter().map(move |mark| (mark, *operand)));
         for open in &mut self.open {
@@ -258,7 +260,7 @@ impl<'p> Machine<'p> for Tree<'p> {
 }
 
 impl<'p> NodeKind<'p> {
-    /// Interrupt of a scope or an atom; `None` for a loop.
+    /// Returns the interrupt of a scope or an atom; `None` for a loop.
     fn interrupt(self) -> Option<&'p Interrupt> {
         match self {
             Self::Scope(scope) => Some(&scope.interrupt),
@@ -276,7 +278,7 @@ impl<'p> NodeKind<'p> {
         }
     }
 
-    /// Labels of the elements that end with this one.
+    /// Returns the labels of the elements that end with this element.
     fn marks(self) -> &'p [Mark] {
         match self {
             Self::Scope(scope) => &scope.marks,
@@ -287,7 +289,7 @@ impl<'p> NodeKind<'p> {
 }
 
 impl Element<'_> {
-    /// Record that is kept with the element.
+    /// Returns the record that is kept with the element.
     fn record(&self) -> Option<RecordId> {
         match self.kind {
             NodeKind::Scope(scope) => scope.record.map(|record| record.id),
@@ -295,7 +297,7 @@ impl Element<'_> {
         }
     }
 
-    /// Number of states in the expanded plan, all passes of a finite loop included.
+    /// Returns the number of states in the expanded plan, including all passes of a finite loop.
     fn all_states(&self) -> u64 {
         match self.kind {
             NodeKind::Loop(repeated) => self.states.saturating_mul(repeated.times.unwrap_or(1)),
@@ -304,7 +306,7 @@ impl Element<'_> {
     }
 }
 
-/// Elements of a plan, each before its own elements; the elements of a body are neighbours.
+/// Returns the elements of a plan, each before its own elements; the elements of a body are consecutive.
 fn flat(root: &Scope) -> Vec<Element<'_>> {
     let mut elements = vec![Element { kind: NodeKind::Scope(root), body: &root.body, held: 0, states: 0 }];
     let mut next = 0;

@@ -1,4 +1,4 @@
-//! The walk in single steps, and what its open elements keep, for a debugger.
+//! The walk in single steps, and the state of its open elements, for a debugger.
 
 use mdle_runtime::{Nanometers, Nanos, TRANSITIONS_PER_TURN};
 
@@ -9,16 +9,16 @@ use crate::plan::{Condition, Part};
 /// A step of a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step<'p> {
-    /// A scope has ended, and what follows it was entered.
+    /// A scope has ended, and its successor was entered.
     Transition {
-        /// The transition, as a trace has it.
+        /// The transition, as a trace shows it.
         fired: Fired<'p>,
         /// Number of open elements that enclose the scope that has ended.
         ended: usize,
-        /// Number of open elements that have stayed open: the others were entered by this step.
+        /// Number of open elements that have stayed open; this step entered all later ones.
         kept: usize,
     },
-    /// The turn is over, with this input.
+    /// The turn is over, with this input applied.
     End(Applied<'p>),
 }
 
@@ -30,14 +30,15 @@ pub struct OpenPart<'t, 'p> {
 }
 
 impl<'p> Tree<'p> {
-    /// Enters the plan, if this was not done before, at the reports of the first turn.
+    /// Enters the plan at the reports of the first turn, unless this was done before.
     pub fn begin(&mut self, reports: &Reports) {
         if !std::mem::replace(&mut self.has_begun, true) {
             self.enter(0, 1, reports.moment());
         }
     }
 
-    /// Makes the next step of a turn in which `made` transitions have been made; [`begin`](Self::begin) comes first.
+    /// Makes the next step of a turn in which `made` transitions have been made so far; [`begin`](Self::begin)
+    /// must come first.
     pub fn step(&mut self, reports: &Reports, made: usize) -> Step<'p> {
         match self.fired(reports) {
             Some(mut ending) if made < TRANSITIONS_PER_TURN as usize => {
@@ -54,14 +55,14 @@ impl<'p> Tree<'p> {
         }
     }
 
-    /// Returns the elements that are open, the plan first and the current atom last; none before the first turn and
-    /// after the end of the plan.
+    /// Returns the open elements, the plan first and the current atom last; no element before the first turn
+    /// and after the end of the plan.
     pub fn open(&self) -> impl DoubleEndedIterator<Item = OpenPart<'_, 'p>> + ExactSizeIterator {
         self.open.iter().map(|open| OpenPart { tree: self, open })
     }
 
-    /// Returns the places of the operands that hold in the interrupt by which the next step ends a scope; none if it
-    /// ends none, or the law has completed.
+    /// Returns the spans of the operands that are true in the interrupt by which the next step ends a scope; an
+    /// empty list if the step ends no scope, or if the law has completed.
     #[must_use]
     pub fn firing(&self, reports: &Reports) -> Vec<Span> {
         let fired = |part: &OpenPart<'_, 'p>| {
@@ -115,7 +116,8 @@ impl<'t, 'p> OpenPart<'t, 'p> {
         &self.open.facts
     }
 
-    /// Returns `true` if a condition of the part's interrupt, or a part of it, holds.
+    /// Returns `true` if `condition`, a condition of the part's interrupt or a part of such a condition, is
+    /// true.
     #[must_use]
     pub fn holds(self, condition: &Condition, reports: &Reports) -> bool {
         condition.fired(&Read { tree: self.tree, open: self.open, reports })
