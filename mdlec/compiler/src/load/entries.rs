@@ -1,13 +1,13 @@
-//! The entries of scopes of a loaded plan: times alone, unless the plan needs more.
+//! The entries of scopes of a loaded plan: times only, unless the plan needs odometer and heading.
 
 use mdle_runtime::{Entries, Here, Nanometers, Nanos, Output, Radians, Stamp, Stamps};
 
 use crate::fsm::Machine;
 
-/// The entries of scopes.
+/// Storage for the entries of scopes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Entered {
-    /// Times alone.
+    /// Times only.
     Times(Box<[Nanos]>),
     /// Odometer, heading and progress as well, for a plan with `way`, `FRAME here` or `stuck`.
     Stamps(Stamps<Box<[Stamp]>, Box<[Option<Here>]>>),

@@ -1,4 +1,4 @@
-//! A loaded plan, which can be looked at while it makes its turns.
+//! A loaded plan, whose turns can be observed while it runs.
 
 use std::sync::Arc;
 
@@ -11,24 +11,24 @@ use super::table::LoadedRows;
 use super::{Entered, Loaded};
 use crate::fsm::Machine;
 
-/// A loaded plan. It owns all that it needs, so one thread can make it and another one run it.
+/// A loaded plan. It owns all its data, so one thread can load it and another thread can run it.
 pub struct LoadedPlan<A: Alphabet> {
     rows: LoadedRows<A>,
-    /// The moments of its turns, if it is looked at.
+    /// The observed moments; `None` if the plan is not observed.
     looked_at: Option<Box<LookedAt<A>>>,
 }
 
-/// Moments of a plan that is looked at.
+/// The observed moments of a plan.
 struct LookedAt<A: Alphabet> {
     loaded: Arc<Loaded<A>>,
     machine: Arc<Machine>,
-    /// Storage for the entry of each level of scopes, not only of those with timers.
+    /// Storage for the entry of each level of scopes, including levels without timers.
     entered: Entered,
-    /// The current atom.
+    /// Number of the current atom, as written, from 0.
     atom: u32,
-    /// Time of the last turn.
+    /// Time of the last turn; `None` before the first turn.
     t: Option<Nanos>,
-    /// The moments of that turn, in order.
+    /// The moments of the last turn, in order.
     moments: Vec<Moment>,
 }
 
@@ -41,7 +41,7 @@ impl<A: Alphabet> Loaded<A> {
 }
 
 impl<A: Alphabet> LoadedPlan<A> {
-    /// The plan in these rows before it begins; with its machine it is looked at.
+    /// Returns the plan of these rows before it begins; the plan is observed if `machine` is given.
     fn new(rows: LoadedRows<A>, loaded: &Arc<Loaded<A>>, machine: Option<Arc<Machine>>) -> Self {
         let looked_at = machine.map(|machine| {
             let loaded = Arc::clone(loaded);
@@ -52,19 +52,20 @@ impl<A: Alphabet> LoadedPlan<A> {
         Self { rows, looked_at }
     }
 
-    /// Returns the plan, which no longer notes the moments of its turns.
+    /// Returns the plan, which no longer records the moments of its turns.
     #[must_use]
     pub fn unobserved(self) -> Self {
         Self { looked_at: None, ..self }
     }
 
-    /// Returns the machine of the plan and the moments of its last turn, in order; `None` if it is not looked at.
+    /// Returns the machine of the plan and the moments of its last turn, in order; `None` if the plan is not
+    /// observed.
     #[must_use]
     pub fn looked_at(&self) -> Option<(&Arc<Machine>, &[Moment])> {
         self.looked_at.as_ref().map(|looked_at| (&looked_at.machine, &*looked_at.moments))
     }
 
-    /// Returns the plan before it begins once more; `None` if it is not looked at.
+    /// Returns a copy of the plan before it begins; `None` if the plan is not observed.
     #[must_use]
     pub fn again(&self) -> Option<Self> {
         self.looked_at.as_ref().map(|looked_at| looked_at.loaded.plan())

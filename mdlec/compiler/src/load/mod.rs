@@ -1,4 +1,4 @@
-//! A plan at run time: its rows with the quarks that the robot's bound alphabet makes by their names.
+//! A plan at run time: its rows, with quarks that the robot's bound alphabet creates from their names.
 
 mod entries;
 mod loaded_plan;
@@ -25,15 +25,16 @@ pub use table::{Loaded, Shared};
 /// Reason why a plan cannot be loaded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LoadError {
-    /// The target of this name is bound to another alphabet than the plan was compiled for.
+    /// The target is bound to another alphabet than the one for which the plan was compiled: the name of the
+    /// target.
     OtherAlphabet(String),
-    /// The target makes no such quark, though its alphabet declares it: the text of the quark.
+    /// The target does not implement a quark that its alphabet declares: the text of the quark.
     Unbound(String),
-    /// The plans of this process have more than [`MOST_NAMES`] bytes of names.
+    /// The plans of this process have more than [`MOST_NAMES`] bytes of names in all.
     TooManyNames,
-    /// The plan reads more than [`PUBLISHED`] attributes of modules: the number.
+    /// The plan reads more than [`PUBLISHED`] attributes of modules: the number of attributes.
     TooManyReads(usize),
-    /// The plan names more than [`PEERS`] other robots: the number.
+    /// The plan names more than [`PEERS`] other robots: the number of robots.
     TooManyRobots(usize),
 }
 
@@ -61,11 +62,12 @@ impl fmt::Display for LoadError {
 
 impl Error for LoadError {}
 
-/// Loads the plan of a machine for the robot of the bound alphabet `A`; `alphabet` is the one that it was compiled for.
+/// Loads the plan of a machine for the robot of the bound alphabet `A`; `alphabet` is the alphabet for which
+/// the plan was compiled.
 ///
 /// # Errors
-/// The crate of the robot is bound to another alphabet, or lacks a quark, or the plans of this process have too many
-/// names.
+/// Fails if the robot's crate is bound to another alphabet or lacks a quark, or if the plans of this process
+/// have too many names, the plan reads too many attributes or names too many robots.
 pub fn load<A: mdle_runtime::Alphabet>(
     machine: &Machine,
     sources: &Sources,
@@ -80,7 +82,7 @@ pub fn load<A: mdle_runtime::Alphabet>(
 /// Loads the plan of a machine that has these rows and words.
 ///
 /// # Errors
-/// Those of [`load`].
+/// Fails as [`load`] does.
 pub fn with_rows<A: mdle_runtime::Alphabet>(
     rows: Rows,
     words: PlanWords,

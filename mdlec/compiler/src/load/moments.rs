@@ -1,4 +1,5 @@
-//! The moments of a turn: the conditions around the atom before each transition, and at the end of the turn.
+//! The moments of a turn: the conditions of the scopes that enclose the atom, before each transition and at the
+//! end of the turn.
 
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::{Alphabet, Cause, Cursor, Examined, Nanometers, Nanos, Plan as _};
@@ -9,16 +10,16 @@ use super::table::LoadedRows;
 /// Position in a plan that was loaded.
 pub(super) type Position = Cursor<Entered, Box<[u64]>>;
 
-/// The plan before a transition, or at the end of a turn.
+/// State of the plan before a transition, or at the end of a turn.
 #[derive(Debug, Clone)]
 pub struct Moment {
-    /// The current atom, as written, from 0.
+    /// Number of the current atom, as written, from 0.
     pub atom: u32,
     /// Cause of the transition; `None` at the end of a turn.
     pub cause: Option<Cause>,
     /// `true` if the law of the atom is done.
     pub is_completed: bool,
-    /// Time for which the law of the turn before has made no progress; `None` if it has no goal.
+    /// Time for which the law of the turn before has made no progress; `None` if that law has no goal.
     pub stalled: Option<Nanos>,
     /// The scopes that enclose the atom, the plan first and the atom's own last.
     pub scopes: Vec<ScopeMoment>,
@@ -35,21 +36,21 @@ impl Moment {
 /// State of a scope at a moment of a turn.
 #[derive(Debug, Clone)]
 pub struct ScopeMoment {
-    /// The scope, by its bracket.
+    /// Number of the scope's bracket.
     pub bracket: u32,
-    /// Number of scopes that enclose it.
+    /// Number of scopes that enclose this scope.
     pub level: u16,
-    /// Time since it was entered.
+    /// Time since the scope was entered.
     pub since: Nanos,
-    /// Length of the path driven since it was entered.
+    /// Length of the path driven since the scope was entered.
     pub way: Nanometers,
-    /// The condition of the scope and all parts of it, each part before its operands.
+    /// The condition of the scope and all parts of the condition, each part before its operands.
     pub parts: Vec<Examined>,
-    /// The atom that would follow if the scope ended now; `None` if the plan would be over.
+    /// Number of the atom that would follow if the scope ended now; `None` if the plan would then be over.
     pub leads_to: Option<u32>,
 }
 
-/// Returns the moment of an atom before a transition by this cause, or at the end of a turn.
+/// Returns the moment of an atom before a transition with this cause, or at the end of a turn.
 pub(super) fn moment<A: Alphabet>(
     rows: &LoadedRows<A>,
     cursor: &Position,
@@ -71,7 +72,7 @@ pub(super) fn moment<A: Alphabet>(
     Moment { atom, cause, is_completed: rows.is_completed(y, t), stalled: cursor.stalled(), scopes }
 }
 
-/// Returns a scope at a moment.
+/// Returns the state of a scope at a moment.
 fn scope<A: Alphabet>(
     rows: &LoadedRows<A>,
     cursor: &Position,

@@ -1,4 +1,4 @@
-//! The names in loaded plans, which stay as long as the process does.
+//! The names in loaded plans, which are kept as long as the process runs.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -8,26 +8,27 @@ use mdle_runtime::{ModuleRead, PUBLISHED};
 use super::LoadError;
 use crate::fsm::AttributeRead;
 
-/// The most bytes of all names in the plans that a process loads.
+/// Maximum number of bytes of all names in the plans that a process loads.
 ///
-/// A quark keeps its names for ever, so a process that loads plan after plan with new names needs ever more memory.
+/// The names of a quark are never freed, so the memory of a process grows with each loaded plan that has new
+/// names.
 pub const MOST_NAMES: usize = 1_000_000;
 
 /// The names of this process.
 static NAMES: Mutex<Names> = Mutex::new(Names { kept: BTreeSet::new(), bytes: 0 });
 
-/// Returns a name that stays; a text is kept once.
+/// Returns a name that is never freed; equal texts are kept once.
 ///
 /// # Errors
-/// There are too many names.
+/// Fails if there are too many names.
 pub(super) fn interned(name: &str) -> Result<&'static str, LoadError> {
     NAMES.lock().unwrap_or_else(PoisonError::into_inner).keep(name)
 }
 
-/// Returns attributes of modules as a list that stays; equal lists are kept once.
+/// Returns attributes of modules as a list that is never freed; equal lists are kept once.
 ///
 /// # Errors
-/// There are too many names, or too many attributes for one plan.
+/// Fails if there are too many names, or too many attributes for one plan.
 pub(super) fn reads(reads: BTreeSet<AttributeRead<'_>>) -> Result<&'static [ModuleRead], LoadError> {
     static LISTS: Mutex<BTreeSet<&'static [ModuleRead]>> = Mutex::new(BTreeSet::new());
     if reads.len() > PUBLISHED {
@@ -49,7 +50,7 @@ pub(super) fn reads(reads: BTreeSet<AttributeRead<'_>>) -> Result<&'static [Modu
     Ok(list)
 }
 
-/// Names that were kept.
+/// The names kept so far, and the number of their bytes.
 struct Names {
     kept: BTreeSet<&'static str>,
     bytes: usize,
@@ -66,7 +67,7 @@ impl Names {
         Ok(kept)
     }
 
-    /// Counts bytes that stay.
+    /// Includes `more` bytes in the number of bytes kept; fails if there are too many.
     fn count(&mut self, more: usize) -> Result<(), LoadError> {
         let bytes = self.bytes.saturating_add(more);
         if bytes > MOST_NAMES {

@@ -1,4 +1,4 @@
-//! The quarks of a plan, made by their names.
+//! The quarks of a plan, created from their names.
 
 use mdle_runtime::{
     Alphabet, Argument, Comparison, Condition, Meters, MetersPerSecond, Nanos, Operand, Operator, Radians,
@@ -10,7 +10,7 @@ use crate::alphabet::{self, Kind};
 use crate::fsm::Machine;
 use crate::plan::{self, Compared, Quark, QuarkId, Value};
 
-/// Makes the quarks of a machine.
+/// Creates the quarks of a machine.
 #[derive(Clone, Copy)]
 pub(super) struct Quarks<'m> {
     pub(super) machine: &'m Machine,
@@ -18,7 +18,7 @@ pub(super) struct Quarks<'m> {
 }
 
 impl Quarks<'_> {
-    /// Returns a condition whose quark is made.
+    /// Returns a condition with its quark created.
     pub(super) fn condition<A: Alphabet>(
         self,
         condition: Condition<QuarkId>,
@@ -50,7 +50,7 @@ impl Quarks<'_> {
         A::comparison(made).ok_or_else(|| LoadError::Unbound(quark.text.clone()))
     }
 
-    /// Returns the quark that `make` makes of its name and its arguments.
+    /// Returns the quark that `make` creates from the quark's name and arguments.
     pub(super) fn by_name<Q>(self, id: QuarkId, make: fn(&str, &[Argument<'_>]) -> Option<Q>) -> Result<Q, LoadError> {
         let Quark { name, overload, args, text, .. } = self.machine.quark(id);
         let declaration = self.alphabet.declarations_of(name).nth(*overload);

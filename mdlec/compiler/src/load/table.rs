@@ -1,4 +1,4 @@
-//! The tables of a loaded plan, which own what they hold.
+//! The tables of a loaded plan, which owns them.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use mdle_runtime::{
 use super::Entered;
 use crate::fsm::{self, Element, Machine, PlanWords};
 
-/// A plan whose quarks are made, before it begins.
+/// A plan with its quarks created, before it begins.
 pub struct Loaded<A: Alphabet> {
     brackets: Vec<Bracket>,
     atoms: Vec<Atom>,
@@ -21,13 +21,13 @@ pub struct Loaded<A: Alphabet> {
     names: Vec<Box<str>>,
     entered: Entered,
     slots: usize,
-    /// The number of memories of each level of scopes, and the number of these levels.
+    /// Number of memories for each level of scopes, and number of these levels.
     memories: (usize, usize),
-    /// The machine of a plan that is looked at.
+    /// The machine of the plan; `None` if the plan is not observed.
     machine: Option<Arc<Machine>>,
 }
 
-/// The rows of a plan.
+/// The table rows of a plan.
 pub(super) struct Owned<A: Alphabet> {
     pub(super) guards: Vec<Guard<A::Interrupt>>,
     pub(super) operands: Vec<Condition<A::Interrupt>>,
@@ -41,10 +41,10 @@ pub(super) struct Owned<A: Alphabet> {
     pub(super) meetings: Vec<Meeting>,
 }
 
-/// The rows of a loaded plan, with what they remember.
+/// The table rows of a loaded plan, with its memories.
 pub(super) type LoadedRows<A> = InRows<Shared<A>, Entered, Box<[u64]>, Memories<Box<[bool]>>>;
 
-/// Tables that several machines may run, each from its own position.
+/// Tables that several machines may run, each at a position of its own.
 pub struct Shared<A: Alphabet>(Arc<Loaded<A>>);
 
 impl<A: Alphabet> Loaded<A> {
@@ -60,20 +60,21 @@ impl<A: Alphabet> Loaded<A> {
         Self { brackets, atoms, termination, owned, laws, conditions, names, entered, slots, memories, machine: None }
     }
 
-    /// Returns the plan, which is looked at from now on while it makes turns. `machine` is that of the plan.
+    /// Returns the plan, observed from now on. `machine` is the machine of this plan.
     #[must_use]
     pub fn looked_at(self, machine: Arc<Machine>) -> Self {
         Self { machine: Some(machine), ..self }
     }
 
-    /// Returns the number of memories that RISING and `after` need in a run: as many for each level of scopes.
+    /// Returns the number of memories that RISING and `after` need in a run; each level of scopes has the same
+    /// number.
     #[must_use]
     pub fn memories(&self) -> usize {
         let (width, levels) = self.memories;
         width.saturating_mul(levels)
     }
 
-    /// Returns the machine of a plan that is looked at.
+    /// Returns the machine of the plan; `None` if the plan is not observed.
     pub(super) fn machine(&self) -> Option<Arc<Machine>> {
         self.machine.clone()
     }
