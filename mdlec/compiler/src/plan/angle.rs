@@ -2,8 +2,8 @@
 
 use mdle_runtime::Radians;
 
-/// Returns the degrees, to a millionth, that equal this angle except for the rounding of a sum; `None` if there are
-/// none.
+/// Returns the angle in degrees, to a millionth, if this equals the angle except for the rounding of a sum;
+/// `None` otherwise.
 #[must_use]
 pub fn in_degrees(radians: f64) -> Option<f64> {
     let degrees = (radians.to_degrees() * 1e6).round() / 1e6;
@@ -13,7 +13,8 @@ pub fn in_degrees(radians: f64) -> Option<f64> {
 /// Prefix of an element whose frame is the heading at which the element is entered.
 pub const HERE: &str = "FRAME here ";
 
-/// Prefix of an element whose frame is turned by this angle: `FRAME 30deg `, or nothing for zero.
+/// Returns the prefix of an element whose frame is turned by this angle: `FRAME 30deg `, or an empty text for
+/// zero.
 #[must_use]
 pub fn frame_text(radians: f64) -> String {
     match in_degrees(radians) {

@@ -16,7 +16,7 @@ use examples::swapped;
 use numbers::bits;
 use wrong_count::wrong_count;
 
-/// The arguments of a quark, with their text in the quark's text.
+/// The arguments of a quark, with their part of the quark text.
 pub(super) struct Arguments {
     pub(super) values: Vec<Value>,
     pub(super) words: Vec<String>,
@@ -72,7 +72,8 @@ fn fitted(
     }
 }
 
-/// Number of faults of a call for this declaration: arguments that are missing, left over, or of another kind.
+/// Returns the number of faults of a call for this declaration: arguments that are missing, superfluous, or of
+/// the wrong kind.
 pub(super) fn complaints(call: &Call, declaration: &Declaration, parameters: &Parameters<'_>) -> usize {
     let params = &declaration.params;
     let needed = params.iter().filter(|param| param.default.is_none()).count();
@@ -113,8 +114,8 @@ pub fn signature(declaration: &Declaration) -> String {
     text
 }
 
-/// Converts a number to a value of the kind of `unit`, with its text in that unit; errors name `declaration`. A number
-/// without a unit has the unit `bare`.
+/// Converts a number to a value of the kind of `unit`, with its text in that unit; error messages name
+/// `declaration`. A number without a unit has the unit `bare`.
 pub(super) fn value(number: &Number, bare: Unit, unit: Unit, declaration: &Declaration) -> Fitted {
     let param = Param {
         name: String::new(),

@@ -27,7 +27,7 @@ struct Signal<'a> {
 }
 
 impl Signal<'_> {
-    /// The tolerance as an exact value.
+    /// Returns the tolerance as an exact value.
     fn tolerance(&self) -> Value {
         let exact = Decimal::parse(&self.tolerance.to_string()).unwrap_or_else(Decimal::zero);
         let exact = exact.scaled(self.unit.factor, self.unit.exponent);
@@ -152,7 +152,7 @@ fn given(parameter: &Parameter<'_>, at: Span, signal: Signal<'_>) -> Fitted {
     }
 }
 
-/// Returns `inf`, which is allowed only for a time.
+/// Returns `inf`, which is allowed only in a comparison of a time.
 fn without_end(at: Span, Signal { unit, declaration, .. }: Signal<'_>) -> Fitted {
     if unit.kind == Kind::Time {
         return Ok((Value::Infinity(unit.kind), "inf".into()));
@@ -192,13 +192,14 @@ fn same_kind(one: Signal<'_>, other: Signal<'_>, span: Span) -> Resolved<Value> 
 /// A signal that counts from the entry of a scope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum EntrySignal {
-    /// `t`, in nanoseconds.
+    /// The signal `t`, compared in nanoseconds.
     Time,
     /// The signal `way`, compared in nanometres.
     Way,
 }
 
-/// Interval in which a comparison of `t` or `way` holds: its first count, and the count that ends it, exclusive.
+/// Returns the interval in which a comparison of `t` or `way` is true: its first count, and the exclusive count
+/// at its end.
 fn interval(comparison: &Comparison, counted: EntrySignal, span: Span) -> Resolved<(u64, Option<u64>)> {
     let nanos = |value: &Value| match value {
         Value::Quantity { exact, .. } => exact.to_nanos(),

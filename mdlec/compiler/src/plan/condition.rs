@@ -2,7 +2,7 @@
 
 use super::{QuarkId, RecordId};
 
-/// A condition; `true` means that it has fired.
+/// A condition, which is `true` when it has fired.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
     /// Never fires: `null`, `wait inf`, or an interrupt that degeneracy removal has replaced.
@@ -37,22 +37,22 @@ pub enum Condition {
     },
     /// Fires when at least one of two or more operands has fired.
     Or(Vec<Condition>),
-    /// All of these operands; there are two or more.
+    /// Fires when all of two or more operands have fired.
     And(Vec<Condition>),
-    /// The negation of the operand.
+    /// Fires when the operand has not fired.
     Not(Box<Condition>),
-    /// RISING: the operand, if the memory records that it was once false.
+    /// RISING: fires when the operand fires, if the memory records that the operand was false before.
     Rising {
         /// Number of the memory among those of the interrupt.
         memory: u32,
         /// Operand of RISING.
         operand: Box<Condition>,
     },
-    /// The labelled element is among those that ended last.
+    /// Fires if the labelled element is among the elements that ended last.
     After(After),
 }
 
-/// `after L`, or `after L c`.
+/// A condition `after L` or `after L c`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct After {
     /// Use of the definition whose record the condition reads.
@@ -78,7 +78,7 @@ pub trait Situation {
 }
 
 impl Condition {
-    /// Value of the condition in a situation. Reads every operand.
+    /// Returns `true` if the condition has fired in a situation. Reads every operand.
     pub fn fired(&self, at: &impl Situation) -> bool {
         match self {
             Self::Null => false,
@@ -94,13 +94,14 @@ impl Condition {
         }
     }
 
-    /// Operands of the outermost OR, as written; the condition itself if it is not an OR.
+    /// Returns the operands of the outermost OR, as written; the condition itself if it is not an OR.
     #[must_use]
     pub fn operands(&self) -> &[Self] {
         if let Self::Or(operands) = self { operands } else { std::slice::from_ref(self) }
     }
 
-    /// Index of the first operand of the outermost OR that has fired; 0 if the condition is not an OR.
+    /// Returns the index of the first operand of the outermost OR that has fired; 0 if the condition is not an
+    /// OR.
     pub fn cause(&self, at: &impl Situation) -> u32 {
         (0..).zip(self.operands()).find(|(_, operand)| operand.fired(at)).map_or(0, |(number, _)| number)
     }
@@ -141,8 +142,8 @@ impl Condition {
         })
     }
 
-    /// Returns the parts that AND and OR join, from left to right; reports name the parts that have fired. NOT and
-    /// RISING belong to their operands.
+    /// Returns the parts that AND and OR join, from left to right. Reports name the parts that have fired. A
+    /// NOT or RISING is one part together with its operand.
     #[must_use]
     pub fn joined(&self) -> Vec<&Self> {
         if self.lasting().is_none() && matches!(self, Self::Or(_) | Self::And(_)) {
@@ -152,18 +153,19 @@ impl Condition {
         }
     }
 
-    /// The condition of `stuck T`: its quark has fired, and `T` has passed since its scope was entered.
+    /// Returns the condition of `stuck T`: its quark has fired, and `T` has passed since its scope was entered.
     pub(super) fn stuck(quark: QuarkId, nanos: u64) -> Self {
         Self::And(vec![Self::Quark(quark), Self::Wait { nanos, quark }])
     }
 
-    /// The condition of `rendezvous R`: its quark has fired, and its scope was entered in an earlier turn.
+    /// Returns the condition of `rendezvous R`: its quark has fired, and its scope was entered in an earlier
+    /// turn.
     pub(super) fn later(quark: QuarkId) -> Self {
         Self::stuck(quark, 1)
     }
 
-    /// Returns the quark and the nanoseconds of a condition `stuck T` or `rendezvous R`, which is joined of that quark
-    /// and a timer.
+    /// Returns the quark and the nanoseconds of a condition `stuck T` or `rendezvous R`, which consists of that
+    /// quark and a timer; `None` for any other condition.
     #[must_use]
     pub fn lasting(&self) -> Option<(QuarkId, u64)> {
         let Self::And(operands) = self else { return None };
@@ -209,7 +211,7 @@ impl Condition {
         });
     }
 
-    /// Number of parts of the condition: quarks, timers, operators.
+    /// Returns the number of parts of the condition: quarks, timers and operators.
     #[must_use]
     pub fn parts(&self) -> usize {
         self.fold(0, &mut |parts, _| parts + 1)

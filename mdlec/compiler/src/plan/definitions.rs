@@ -12,14 +12,15 @@ use crate::syntax::tree::{self, Call, Element, Primary};
 /// The plans of a file and of the files that it uses.
 #[derive(Debug)]
 pub(super) struct Definitions<'a> {
-    /// Plans, those of the file itself first, in order.
+    /// The plans; the plans of the file itself come first, in order.
     pub(super) plans: Vec<&'a tree::Plan<'a>>,
     /// Names of the plans.
     pub(super) names: Vec<&'a str>,
     by_name: BTreeMap<&'a str, usize>,
-    /// For each plan the plans that it refers to.
+    /// For each plan, the plans to which it refers.
     refers: Vec<BTreeMap<usize, Uses>>,
-    /// Plans that are too large, or refer to one that is: only the first is reported, not the plans that contain it.
+    /// Plans that are too large, or refer to a plan that is too large. Only the first is reported, not the
+    /// plans that contain it.
     too_large: BTreeSet<usize>,
     /// Number of plans of the file itself, without those of used files.
     own: usize,
@@ -27,11 +28,11 @@ pub(super) struct Definitions<'a> {
     pub(super) is_incomplete: bool,
     /// Size of the files as written.
     written: Size,
-    /// Length in bytes of the longest argument given to a plan.
+    /// Length, in bytes, of the longest argument given to a plan.
     longest: u64,
 }
 
-/// The places in one plan that refer to one other plan.
+/// The places in one plan that refer to one and the same other plan.
 #[derive(Debug, Clone, Copy)]
 struct Uses {
     first: Span,
@@ -90,7 +91,7 @@ impl<'a> Definitions<'a> {
         (definitions, found)
     }
 
-    /// Returns the plan of this name.
+    /// Returns the plan of this name; `None` if there is none.
     pub(super) fn get(&self, name: &str) -> Option<&'a tree::Plan<'a>> {
         self.by_name.get(name).and_then(|index| self.plans.get(*index)).copied()
     }
@@ -109,7 +110,7 @@ impl<'a> Definitions<'a> {
         self.refers.get(plan).is_some_and(BTreeMap::is_empty)
     }
 
-    /// Measures the plans, each after all plans that it refers to; the plans left over contain themselves.
+    /// Measures the plans, each after all plans to which it refers. Plans that remain contain themselves.
     fn measure(&mut self, found: &mut Vec<Diagnostic>) {
         let mut waits: Vec<usize> = self.refers.iter().map(BTreeMap::len).collect();
         let mut referred_by = vec![Vec::new(); self.plans.len()];
@@ -221,7 +222,7 @@ impl<'a> Definitions<'a> {
     }
 }
 
-/// Places in a plan that refer to other plans, each with the index of the other plan.
+/// Returns the places in a plan that refer to other plans, each with the index of the other plan.
 fn calls<'a>(plan: &tree::Plan<'a>, by_name: &BTreeMap<&str, usize>) -> Vec<(usize, &'a Call<'a>)> {
     fn visit<'a>(elements: &[Element<'a>], refer: &mut impl FnMut(&'a Call<'a>)) {
         for element in elements {
@@ -240,7 +241,7 @@ fn calls<'a>(plan: &tree::Plan<'a>, by_name: &BTreeMap<&str, usize>) -> Vec<(usi
     calls
 }
 
-/// Groups these places by the plan that they refer to.
+/// Groups these places by the plan to which they refer.
 fn references(calls: &[(usize, &Call<'_>)]) -> BTreeMap<usize, Uses> {
     let mut references = BTreeMap::new();
     for (index, call) in calls {
@@ -249,7 +250,8 @@ fn references(calls: &[(usize, &Call<'_>)]) -> BTreeMap<usize, Uses> {
     references
 }
 
-/// Proposes a plan's name for a word: `Stop` for `stop`, `StopPlan` for a word that begins with a capital already.
+/// Proposes a plan's name for a word: `Stop` for `stop`, and `StopPlan` for a word that already begins with a
+/// capital.
 fn plan_like(name: &str) -> String {
     let mut letters = name.chars();
     match letters.next() {

@@ -1,5 +1,5 @@
-//! Families of interrupts whose values exclude each other: a signal has one value, and an interrupt that its alphabet
-//! declares `exclusive` fires for at most one value of its arguments.
+//! Families of interrupts whose values exclude each other: a signal has only one value, and an interrupt that
+//! its alphabet declares `exclusive` fires for at most one value of its arguments.
 
 use super::{Compared, Comparison, Operator, Quark, QuarkId, Value};
 use crate::alphabet::{Kind, family_to_si};
@@ -7,13 +7,13 @@ use crate::alphabet::{Kind, family_to_si};
 /// A family of interrupt quarks that depend on the same quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Family<'q> {
-    /// Uses of an exclusive interrupt, by its name and the index of its declaration among those of the name.
+    /// Uses of an exclusive interrupt: its name, and the index of its declaration among those of this name.
     Exclusive(&'q str, usize),
     /// Comparisons of this signal with a value.
     Signal(QuarkId),
 }
 
-/// Family of a quark; `None` if its values are independent.
+/// Returns the family of a quark; `None` if the quark's values are independent.
 pub(crate) fn family(quark: &Quark) -> Option<Family<'_>> {
     match &quark.comparison {
         // An angle comes round to where it was.
@@ -22,7 +22,7 @@ pub(crate) fn family(quark: &Quark) -> Option<Family<'_>> {
     }
 }
 
-/// Value that a signal is compared with, and the tolerance, in SI units; `None` for an angle.
+/// Returns the value with which a signal is compared, and the tolerance, both in SI units; `None` for an angle.
 fn threshold(comparison: &Comparison) -> Option<(f64, f64)> {
     let si = |value: &Value| match value {
         Value::Quantity { kind: Kind::Angle, .. } => None,
@@ -38,14 +38,14 @@ fn threshold(comparison: &Comparison) -> Option<(f64, f64)> {
 /// Values that an analysis assumes for a signal in a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Readings {
-    /// A number or no value; without a value every comparison is false.
+    /// A number or no value. Without a value, every comparison is false.
     Any,
-    /// A number, as the user of a signal expects.
+    /// A number, as most users of a signal expect.
     Numbers,
 }
 
-/// Values that the quarks of one family can have in one turn: one list for each possibility, in the order of the
-/// quarks.
+/// Returns the values that the quarks of one family can have in one turn: a list for each possibility, in the
+/// order of the quarks.
 pub(crate) fn at_once<'q>(quarks: impl Iterator<Item = &'q Quark>, readings: Readings) -> Vec<Vec<bool>> {
     let quarks: Vec<&Quark> = quarks.collect();
     let are_numbers = readings == Readings::Numbers && !quarks.iter().any(|quark| quark.exclusive);
@@ -62,7 +62,8 @@ pub(crate) fn at_once<'q>(quarks: impl Iterator<Item = &'q Quark>, readings: Rea
     all
 }
 
-/// Values of a signal that cover every result of its comparisons: all limits, and one value between any two.
+/// Returns values of a signal that cover every result of its comparisons: all limits, and one value between any
+/// two limits.
 fn values(quarks: &[&Quark]) -> Vec<f64> {
     let compared = quarks.iter().filter_map(|quark| threshold(quark.comparison.as_ref()?));
     let ends = compared.flat_map(|(value, tolerance)| [value - tolerance, value, value + tolerance]);

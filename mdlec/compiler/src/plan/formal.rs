@@ -11,8 +11,8 @@ use super::{Atom, Interrupt, Mark, Node, Plan, Scope};
 const WIDTH: usize = 100;
 
 impl Plan {
-    /// Returns the plan in formal notation. A used plan whose labels `after` reads becomes a plan of its own, since
-    /// `after` reads labels of its own plan only.
+    /// Returns the plan in formal notation. A used plan whose labels `after` reads becomes a separate plan,
+    /// since `after` reads only labels of the plan that contains it.
     #[must_use]
     pub fn formal(&self) -> String {
         let quarks = self.quarks.iter().map(|quark| quark.name.clone());
@@ -25,9 +25,9 @@ impl Plan {
 
 struct Writer<'p> {
     plan: &'p Plan,
-    /// Names that no further plan can have.
+    /// Names that no further plan may have.
     taken: BTreeSet<String>,
-    /// Last number used in the names of plans that are named alike.
+    /// Last number used in the names of plans that have the same base name.
     numbers: BTreeMap<String, usize>,
     /// Texts of the plans, the main one first.
     definitions: Vec<String>,
@@ -46,7 +46,7 @@ impl<'p> Writer<'p> {
         self.definitions[number] = format!("{{ {name}{condition}\n{body}}}\n");
     }
 
-    /// Lines of a sequence.
+    /// Returns the lines of a sequence.
     fn sequence(&mut self, body: &'p [Node]) -> Vec<String> {
         body.iter().flat_map(|node| self.node(node)).collect()
     }
@@ -94,7 +94,7 @@ impl<'p> Writer<'p> {
         around(self.sequence(&scope.body), &format!("{here}("), &format!(", {})", interrupt(&scope.interrupt)))
     }
 
-    /// Returns a name like this one that no plan and no quark of the text has.
+    /// Returns a name similar to this one that no plan and no quark of the text has.
     fn distinct(&mut self, name: &str) -> String {
         let number = self.numbers.entry(name.to_owned()).or_insert(1);
         let mut distinct = name.to_owned();
@@ -124,12 +124,13 @@ fn interrupt(interrupt: &Interrupt) -> String {
     }
 }
 
-/// Text of the condition with nested ORs as written, since `after` refers to the operands of the outermost OR.
+/// Returns the text of the condition with nested ORs as written, since `after` refers to the operands of the
+/// outermost OR.
 fn in_parentheses(interrupt: &Interrupt) -> &str {
     interrupt.nested.as_deref().unwrap_or(&interrupt.text)
 }
 
-/// Encloses lines in brackets, on one line if there is room.
+/// Encloses lines in brackets, on a single line if there is room.
 fn around(lines: Vec<String>, open: &str, close: &str) -> Vec<String> {
     let length: usize = lines.iter().map(|line| line.chars().count()).sum();
     if length + open.len() + close.len() <= WIDTH && lines.iter().all(|line| !line.starts_with(' ')) {
@@ -139,7 +140,8 @@ fn around(lines: Vec<String>, open: &str, close: &str) -> Vec<String> {
     [open.to_owned()].into_iter().chain(inside).chain([close.to_owned()]).collect()
 }
 
-/// Joins elements, with a space where two would be read as one: a parenthesis after a name holds its arguments.
+/// Joins elements, with a space where two would otherwise be read as one: a parenthesis directly after a name
+/// holds its arguments.
 fn joined(elements: &[String]) -> String {
     let is_of_a_name = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || !letter.is_ascii();
     let mut joined = String::new();

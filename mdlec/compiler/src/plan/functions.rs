@@ -1,4 +1,4 @@
-//! Decides which interrupts are the same function wherever they are (paper, Definition 4;
+//! Decides which interrupts are the same function in every place (paper, Definition 4;
 //! docs/src/reference/semantics.md, 7.2 and 7.3).
 //!
 //! Whole interrupts are compared, by their normal form: AND and OR flattened, sorted and deduplicated, double NOT
@@ -12,7 +12,7 @@ use super::{Condition, Quark, QuarkId, RecordId};
 #[derive(Debug)]
 pub struct Functions<'q> {
     quarks: &'q [Quark],
-    /// For each quark the first quark that is the same function.
+    /// For each quark, the first quark that is the same function.
     same: Vec<QuarkId>,
 }
 
@@ -32,7 +32,7 @@ enum Normal {
     After(RecordId, u32),
 }
 
-/// Returns for each quark the first quark that is the same function.
+/// Returns, for each quark, the first quark that is the same function.
 fn same_functions(quarks: &[Quark]) -> Vec<QuarkId> {
     let mut first = BTreeMap::new();
     let ids = quarks.iter().zip((0..).map(QuarkId));
@@ -47,7 +47,8 @@ impl<'q> Functions<'q> {
         Self { quarks, same: same_functions(quarks) }
     }
 
-    /// Function of a condition; `None` if the condition never fires or is a different function in each place.
+    /// Returns the function of a condition; `None` if the condition never fires or is a different function in
+    /// each place.
     #[must_use]
     pub fn function(&self, condition: &Condition) -> Option<Function> {
         if !self.can_be_repeated(condition, false) {
@@ -119,7 +120,7 @@ impl<'q> Functions<'q> {
     }
 }
 
-/// Joins operands; a set of one operand is that operand.
+/// Joins operands with `join`; a set with one operand becomes that operand.
 fn single(mut operands: BTreeSet<Normal>, join: impl Fn(BTreeSet<Normal>) -> Normal) -> Normal {
     match operands.pop_first() {
         Some(only) if operands.is_empty() => only,

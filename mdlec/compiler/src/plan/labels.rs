@@ -13,7 +13,7 @@ use crate::syntax::tree::Name;
 pub(super) struct Labels {
     record: RecordId,
     labels: BTreeMap<String, Label>,
-    /// Facts that `after` conditions read, by label and cause, each with its number and its place.
+    /// Facts that `after` conditions read, by label and cause; each has its number and its place.
     asked: BTreeMap<(String, Option<String>), Asked>,
 }
 
@@ -22,18 +22,18 @@ pub(super) struct Labels {
 struct Label {
     span: Span,
     ends: EndCauses,
-    /// `true` if another element has this label too.
+    /// `true` if another element has the same label.
     is_ambiguous: bool,
 }
 
 /// Causes that can end an element.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum EndCauses {
-    /// The element ends by these operands of its interrupt.
+    /// The element ends when one of these operands of its interrupt fires.
     Operands(Vec<String>),
     /// The element ends with its last element, since it has no interrupt of its own.
     WithItsLast,
-    /// Unknown, since the plan there is used by name and not copied yet.
+    /// The causes are unknown, since the element uses a plan by name that is not copied yet.
     Unknown,
 }
 
@@ -45,12 +45,12 @@ struct Asked {
 }
 
 impl Labels {
-    /// Begins a use of a definition, whose record has this number.
+    /// Returns the labels of a new use of a definition; `record` is the record of this use.
     pub(super) fn new(record: RecordId) -> Self {
         Self { record, labels: BTreeMap::new(), asked: BTreeMap::new() }
     }
 
-    /// Adds a label, or reports its earlier use.
+    /// Records a label; reports the label if it was used before.
     pub(super) fn add(&mut self, label: Name<'_>, found: &mut Vec<Diagnostic>) {
         if let Some(first) = self.labels.get_mut(label.node) {
             // Which element `after` means is not known.
@@ -76,12 +76,12 @@ impl Labels {
         }
     }
 
-    /// Returns a mark for the node that the element of a label ends with.
+    /// Returns a mark for the node with which the element of a label ends.
     pub(super) fn mark(&self, label: &str) -> Mark {
         Mark { record: self.record, label: label.to_owned(), facts: Vec::new() }
     }
 
-    /// Returns the number of the fact that an `after` condition reads, and adds it if it is new.
+    /// Returns the number of the fact that an `after` condition reads. A new fact gets the next number.
     pub(super) fn asked(&mut self, label: Name<'_>, cause: Option<(String, Span)>) -> (RecordId, u32) {
         let (words, span) = cause.unzip();
         let number = u32::try_from(self.asked.len()).unwrap_or(u32::MAX);
@@ -90,8 +90,8 @@ impl Labels {
         (self.record, asked.number)
     }
 
-    /// Ends the use whose outermost scope is `scope`: marks get the facts that `after` reads, and are removed if it
-    /// reads none of this use.
+    /// Ends the use whose outermost scope is `scope`: marks receive the facts that `after` reads; if `after`
+    /// reads no label of this use, the marks are removed.
     pub(super) fn finish(self, scope: &mut Scope, found: &mut Vec<Diagnostic>) {
         let mut facts: BTreeMap<&str, Vec<Fact>> = BTreeMap::new();
         for ((label, cause), asked) in &self.asked {
@@ -116,7 +116,7 @@ impl Labels {
         }
     }
 
-    /// Operand that must be the cause; `None` if any cause counts.
+    /// Returns the operand that must be the cause; `None` if any cause counts.
     fn operand(&self, label: &str, cause: Option<&str>, asked: Asked) -> Result<Option<u32>, Box<Diagnostic>> {
         let Some(known) = self.labels.get(label) else { return Err(self.unknown(label, asked.label).into()) };
         let (Some(cause), Some(span)) = (cause, asked.cause) else { return Ok(None) };
@@ -162,7 +162,7 @@ impl Labels {
     }
 }
 
-/// Says where a label belongs if it is the name of a behavior in this use.
+/// Appends to a report where a label belongs, if the label is the name of a behavior in this use.
 fn for_behavior(found: Diagnostic, label: &str, scope: &Scope) -> Diagnostic {
     let is_behavior = |node: &Node| matches!(node, Node::Scope(inner) if inner.name == label);
     if found.code != Code::E0201 || !scope.body.iter().any(is_behavior) {

@@ -54,7 +54,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The quark with this id.
+    /// Returns the quark with this id.
     #[must_use]
     pub fn quark(&self, id: QuarkId) -> &Quark {
         &self.quarks[id.0 as usize]
@@ -74,49 +74,49 @@ pub struct QuarkId(pub u32);
 /// A quark with its arguments.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Quark {
-    /// Name of the quark in the alphabet; for a comparison the operator.
+    /// Name of the quark in the alphabet; for a comparison, the operator.
     pub name: String,
-    /// Index of the quark's declaration among those of this name, in the alphabet's order.
+    /// Index of the quark's declaration among the declarations of this name, in the alphabet's order.
     pub overload: usize,
-    /// Arguments of the quark, defaults filled in.
+    /// Arguments of the quark, including defaults.
     pub args: Vec<Value>,
-    /// `true` for a law that completes by itself.
+    /// `true` for a law that can complete by itself.
     pub completes: bool,
     /// `true` if the quark has memory, so that it is never the same function in two scopes.
     pub remembers: bool,
     /// `true` for an interrupt that fires for at most one value of its arguments in a turn.
     pub exclusive: bool,
-    /// For a comparison of signals: its parts.
+    /// The parts of a comparison of signals; `None` for any other quark.
     pub comparison: Option<Comparison>,
-    /// Quark text of the quark (docs/src/reference/language.md, 7).
+    /// Text of the quark (docs/src/reference/language.md, 7).
     pub text: String,
 }
 
 /// A comparison of a signal: an interrupt quark that fires while the comparison holds.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Comparison {
-    /// The signal.
+    /// Signal on the left-hand side.
     pub signal: QuarkId,
     /// Unit of the signal, in which texts have its values.
     pub unit: Unit,
     /// Operator of the comparison.
     pub operator: Operator,
-    /// Right side of the comparison.
+    /// Right-hand side of the comparison.
     pub with: Compared,
     /// Largest difference between values that count as equal.
     pub tolerance: Value,
 }
 
-/// Right side of a comparison.
+/// Right-hand side of a comparison.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Compared {
-    /// Another signal, of the same kind.
+    /// Another signal of the same kind.
     Signal(QuarkId),
     /// A value of the signal's kind.
     Value(Value),
 }
 
-/// An argument; equal arguments are equal to the last digit.
+/// The value of an argument; two equal values are equal to the last digit.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Value {
     /// A number with a kind.
@@ -125,23 +125,23 @@ pub enum Value {
         kind: Kind,
         /// Exact value in the unit of the family.
         exact: Decimal,
-        /// Unit of the value: degrees and radians are two families. Empty for a number without a unit.
+        /// Unit family of the value: degrees and radians are two families. Empty for a number without a unit.
         family: &'static str,
     },
-    /// `inf`, for a time or a count.
+    /// The value `inf` of a time or a count.
     Infinity(Kind),
-    /// Bits, in the order in which they are written.
+    /// Bits, in the order in which they are written, as in `atIsection 0100`.
     Bits(Vec<bool>),
     /// A whole number.
     Integer(i64),
-    /// A sonar, 0 to 15.
+    /// Number of a sonar, 0 to 15.
     Sonar(u8),
-    /// A robot, a module or a file.
+    /// Name of a robot, a module or a file.
     Name(Kind, String),
 }
 
 impl Value {
-    /// Returns the value of a quantity in SI units, with which signals are compared; 0 for a value that is not a
+    /// Returns the value of a quantity in SI units, in which signals are compared; 0 for a value that is not a
     /// quantity.
     #[must_use]
     pub fn in_si(&self) -> f64 {
@@ -162,9 +162,9 @@ pub struct Scope {
     pub interrupt: Interrupt,
     /// Elements of the scope, in order; never empty.
     pub body: Vec<Node>,
-    /// `true` if the frame is the robot's heading at the moment of entry: `FRAME here`.
+    /// `true` if the scope's frame is the robot's heading at the moment of entry: `FRAME here`.
     pub here: bool,
-    /// Record of the labelled elements that ended last: for the outermost scope of a plan that uses `after`.
+    /// Record of the labelled elements that ended last, for the outermost scope of a plan that uses `after`.
     pub record: Option<Record>,
     /// Labels of the elements that end with the scope.
     pub marks: Vec<Mark>,
@@ -179,7 +179,7 @@ pub enum Node {
     Atom(Atom),
     /// A behavior.
     Scope(Scope),
-    /// A string that runs several times.
+    /// A loop: a string that runs several times.
     Loop(Loop),
 }
 
@@ -193,7 +193,7 @@ pub struct Atom {
     /// Angle by which the atom's frame is turned, in radians, counter-clockwise; relative to the innermost `FRAME
     /// here`, if there is one.
     pub frame: f64,
-    /// `true` if the frame is the robot's heading at the moment of entry: `FRAME here`.
+    /// `true` if the atom's frame is the robot's heading at the moment of entry: `FRAME here`.
     pub here: bool,
     /// Labels of the elements that end with the atom.
     pub marks: Vec<Mark>,
@@ -215,7 +215,7 @@ pub struct Loop {
 }
 
 impl Node {
-    /// Labels of the elements that end with the node.
+    /// Returns the labels of the elements that end with the node.
     pub(crate) fn marks_mut(&mut self) -> &mut Vec<Mark> {
         match self {
             Self::Atom(atom) => &mut atom.marks,
@@ -232,7 +232,7 @@ pub struct RecordId(pub u32);
 /// Record of the labelled elements that ended last, in one use of a definition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Record {
-    /// Identifier of the use.
+    /// Identifier of the use of the definition.
     pub id: RecordId,
     /// Number of different facts that `after` conditions read from the record.
     pub facts: u32,
@@ -259,8 +259,8 @@ pub struct Fact {
 }
 
 impl Fact {
-    /// Returns `true` if the fact holds once the node has ended by `operand` of its interrupt, or for `None` by another
-    /// cause.
+    /// Returns `true` if the fact holds once the node has ended by `operand` of its interrupt; `None` means
+    /// that it ended by another cause.
     #[must_use]
     pub fn holds(&self, operand: Option<u32>) -> bool {
         self.operand.is_none() || self.operand == operand
@@ -272,22 +272,22 @@ impl Fact {
 pub struct Interrupt {
     /// Condition that fires the interrupt.
     pub condition: Condition,
-    /// Text of the condition, kept if the condition was removed.
+    /// Text of the condition, which is kept even if the condition was removed.
     pub text: String,
     /// Text of the condition with parentheses around each OR that is directly in an OR; `None` without such an OR.
     pub nested: Option<Box<str>>,
-    /// Places of the operands: of the [joined](Condition::joined) parts of the condition.
+    /// Places of the operands, which are the [joined](Condition::joined) parts of the condition.
     pub operands: Box<[OperandPlace]>,
     /// Number of memories that RISING needs in each entered scope.
     pub memories: u32,
     /// `true` if an outer scope repeats the interrupt, so that it was replaced by the null interrupt.
     pub removed: bool,
-    /// Span of the interrupt; the span of the scope or atom if that has no interrupt.
+    /// Span of the interrupt; the span of the scope or atom if it has no interrupt.
     pub span: Span,
 }
 
 impl Interrupt {
-    /// The interrupt of a scope at `scope` that has none: it never fires.
+    /// Returns the interrupt of a scope at `scope` without a condition, which never fires.
     #[must_use]
     pub fn none(scope: Span) -> Self {
         let operands = Box::default();
@@ -302,22 +302,23 @@ impl Interrupt {
         }
     }
 
-    /// Returns the condition text of operand `number`, the [joined](Condition::joined) part `part`, by the texts of the
-    /// quarks.
+    /// Returns the condition text of operand `number`, given its [joined](Condition::joined) part `part` and
+    /// the texts of the quarks.
     pub fn operand_text(&self, number: usize, part: &Condition, quark: &impl Fn(QuarkId) -> String) -> String {
         let own = self.operands.get(number).and_then(|operand| operand.text.as_deref());
         own.map_or_else(|| condition_text(part, quark), String::clone)
     }
 }
 
-/// Place of an operand as it is written.
+/// Place of an operand in the text of the plan.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OperandPlace {
     /// Span from the operand's first word to its last.
     pub span: Span,
-    /// Ends of the signals that the operand compares, if it is a comparison, or NOT or RISING of one.
+    /// Offsets at which the compared signals end, if the operand is a comparison, or a NOT or RISING of a
+    /// comparison.
     pub signals: [Option<NonZeroU32>; 2],
-    /// Text of the operand where it differs from that of its condition, as after a `wait inf` has become null. Boxed,
-    /// because most operands have none.
+    /// Text of the operand if it differs from the text of its condition, for example after a `wait inf` has
+    /// become null. It is boxed because most operands have no such text.
     pub text: Option<Box<String>>,
 }

@@ -1,17 +1,18 @@
-//! Movements in the words of other languages: what they are in the laws of the paper and ours.
+//! Movements in the words of other languages, and the laws of the paper or of this project that correspond to
+//! them.
 
 use crate::alphabet::{Kind, Unit};
 use crate::syntax::tree::{Arg, Call, Number};
 
-/// A law that is probably meant.
+/// A law that the user probably meant.
 pub(in crate::plan) struct Proposal {
     pub(in crate::plan) name: &'static str,
     pub(in crate::plan) call: String,
-    /// The help, where `{}` is the call.
+    /// Text of the help message, with `{}` in the place of the call.
     pub(in crate::plan) words: &'static str,
 }
 
-/// The law that a call such as `turnLeft 90`, `backup 50cm` or `forward 20` means.
+/// Returns the law that a call such as `turnLeft 90`, `backup 50cm` or `forward 20` probably means.
 pub(in crate::plan) fn meant(call: &Call) -> Option<Proposal> {
     let word = call.name.to_ascii_lowercase().replace('_', "");
     let number = match call.args {

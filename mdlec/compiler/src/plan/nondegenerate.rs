@@ -1,8 +1,8 @@
-//! Removes degeneracy (paper, Definition 4; docs/src/reference/semantics.md, 7.1): afterwards no interrupt is repeated
-//! inside its scope.
+//! Removes degeneracy (paper, Definition 4; docs/src/reference/semantics.md, 7.1): after this step no interrupt
+//! is repeated inside its scope.
 //!
-//! The outer interrupt is read first and so always wins; replacing the inner ones by the null interrupt changes no
-//! trace.
+//! The outer interrupt is evaluated first and so always wins; replacing the inner interrupts by the null
+//! interrupt changes no trace.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,13 +14,13 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 pub struct Nondegenerate(Plan);
 
 impl Nondegenerate {
-    /// The plan itself.
+    /// Returns the plan itself.
     #[must_use]
     pub fn plan(&self) -> &Plan {
         &self.0
     }
 
-    /// Rewrites the outermost scope in a way that repeats no interrupt, such as expansion.
+    /// Rewrites the outermost scope. The rewrite must repeat no interrupt, as expansion does.
     #[must_use]
     pub(crate) fn map(&self, rewrite: impl FnOnce(&Scope) -> Scope) -> Self {
         Self(Plan { root: rewrite(&self.0.root), quarks: self.0.quarks.clone() })
@@ -42,7 +42,7 @@ pub fn remove_degeneracy(mut plan: Plan) -> (Nondegenerate, Vec<Diagnostic>) {
     (Nondegenerate(plan), warnings)
 }
 
-/// Interrupts of the enclosing scopes during the removal, each with its scope's name and its span.
+/// Interrupts of the enclosing scopes during the removal, each with the name of its scope and its span.
 struct Removal<'a> {
     functions: Functions<'a>,
     quarks: &'a [Quark],
@@ -76,7 +76,8 @@ impl Removal<'_> {
         }
     }
 
-    /// Removes the interrupt if it is repeated; else returns its function, if it can be repeated.
+    /// Replaces the interrupt by null if it is repeated; otherwise returns its function, if the function can be
+    /// repeated.
     fn interrupt(&mut self, interrupt: &mut Interrupt, law: Option<QuarkId>) -> Option<Function> {
         let function = self.functions.function(&interrupt.condition)?;
         let Some((scope, outer)) = self.around.get(&function).cloned() else { return Some(function) };

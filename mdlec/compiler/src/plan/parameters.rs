@@ -1,5 +1,4 @@
-//! Parameters of a plan: their types, and the arguments that they have
-//! (docs/src/reference/language.md, 3.4).
+//! Parameters of a plan: their types, and their arguments (docs/src/reference/language.md, 3.4).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,7 +20,8 @@ pub(super) struct Names<'n, 's> {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Parameters<'s> {
     known: BTreeMap<&'s str, Parameter<'s>>,
-    /// Parameters with an unknown type: the type has been reported, so their uses are not.
+    /// Parameters with an unknown type. The type has been reported, so uses of these parameters are not
+    /// reported.
     untyped: BTreeSet<&'s str>,
 }
 
@@ -35,7 +35,8 @@ pub(super) struct Parameter<'s> {
 }
 
 impl Parameter<'_> {
-    /// Unit of a bare number: the paper's unit for this kind, which the quarks of `mdle-atoms` use too.
+    /// Returns the unit of a number without one: the paper's unit for this kind, which the quarks of
+    /// `mdle-atoms` use too.
     pub(super) fn unit(&self) -> Option<Unit> {
         if self.kind == Kind::Speed {
             return Unit::from_name("cm/s");
@@ -56,7 +57,7 @@ impl Parameter<'_> {
 }
 
 impl<'s> Parameters<'s> {
-    /// Parameters that a plan declares, without arguments.
+    /// Returns the parameters that a plan declares, without arguments.
     pub(super) fn declared(plan: &tree::Plan<'s>, alphabet: &Alphabet, found: &mut Vec<Diagnostic>) -> Self {
         let mut parameters = Self::default();
         for tree::Param { name, type_name } in plan.params {
@@ -75,19 +76,19 @@ impl<'s> Parameters<'s> {
         parameters
     }
 
-    /// Number of the parameters that have a type.
+    /// Returns the number of the parameters that have a type.
     pub(super) fn len(&self) -> usize {
         self.known.len()
     }
 
-    /// Gives the parameter of this name its argument.
+    /// Sets the argument of the parameter of this name.
     pub(super) fn give(&mut self, name: &str, arg: Option<Arg<'s>>) {
         if let Some(parameter) = self.known.get_mut(name) {
             parameter.given = arg;
         }
     }
 
-    /// Returns the parameter of this name.
+    /// Returns the parameter of this name; `None` if there is none.
     pub(super) fn get(&self, name: &str) -> Option<&Parameter<'s>> {
         self.known.get(name)
     }
@@ -97,7 +98,7 @@ impl<'s> Parameters<'s> {
         self.untyped.contains(name)
     }
 
-    /// Returns the parameter that an argument names.
+    /// Returns the parameter that an argument names; `None` if it names none.
     pub(super) fn of(&self, arg: &Arg<'_>) -> Option<&Parameter<'s>> {
         match arg {
             Arg::Name(name) => self.get(name.node),
@@ -106,19 +107,19 @@ impl<'s> Parameters<'s> {
         }
     }
 
-    /// Adds the parameters of a behavior.
+    /// Includes the parameters of a behavior.
     pub(super) fn extend(&mut self, others: Self) {
         self.known.extend(others.known);
         self.untyped.extend(others.untyped);
     }
 
-    /// Names of the parameters.
+    /// Returns the names of the parameters.
     pub(super) fn names(&self) -> impl Iterator<Item = &'s str> {
         self.known.keys().copied()
     }
 }
 
-/// Kind for a type's name, `bits[4]` included.
+/// Returns the kind for the name of a type, such as `bits[4]`; `None` if there is no such type.
 fn kind_of(name: &str) -> Option<Kind> {
     let length = name.strip_prefix("bits[").and_then(|rest| rest.strip_suffix(']'));
     match length {
@@ -127,7 +128,7 @@ fn kind_of(name: &str) -> Option<Kind> {
     }
 }
 
-/// Reports an unknown type; `by_use` is the kind that the uses of the parameter need.
+/// Reports an unknown type; `by_use` is the kind that the uses of the parameter require.
 fn unknown_type(name: Name<'_>, by_use: Option<Kind>) -> Diagnostic {
     let message = format!("there is no type of parameter called `{}`", name.node);
     let found = Diagnostic::new(Code::E0201, message, name.span, "not a type");
@@ -162,7 +163,7 @@ fn unknown_type(name: Name<'_>, by_use: Option<Kind>) -> Diagnostic {
     }
 }
 
-/// Reports a plan with parameters in a place that gives no arguments.
+/// Reports a plan with parameters that is used in a place without arguments.
 pub(super) fn missing(plan: &tree::Plan<'_>, why: &str) -> Diagnostic {
     let name = plan.name.node;
     let first = plan.params.first().map_or(plan.name.span, |param| param.name.span);
@@ -173,7 +174,7 @@ pub(super) fn missing(plan: &tree::Plan<'_>, why: &str) -> Diagnostic {
         .help(format!("write a plan that uses it by name: `{{ Main {name}({}) }}`", params.join(", ")))
 }
 
-/// Reports a name in the place of a count that is not a parameter of that type.
+/// Reports a name in the place of a loop count that is not a count parameter.
 pub(super) fn no_count(name: Name<'_>, parameters: &Parameters<'_>) -> Diagnostic {
     if let Some(parameter) = parameters.get(name.node) {
         return parameter.mismatch(Kind::Count, name.span).help(format!("declare it as `{}: count`", name.node));

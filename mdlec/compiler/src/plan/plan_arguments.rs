@@ -6,10 +6,11 @@ use crate::alphabet::{Alphabet, Declaration, DeclarationKind, Origin, Param};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{self, Call};
 
-/// Parameters of `plan` with the arguments of `call`, in a definition whose own parameters are `around`.
+/// Returns the parameters of `plan` with the arguments of `call`, in a definition whose own parameters are
+/// `around`.
 ///
 /// # Errors
-/// Fails if number, type or unit of the arguments differ from the declaration.
+/// Fails if the number, the type or the unit of the arguments differs from the declaration.
 pub(super) fn with_arguments<'s>(
     plan: &tree::Plan<'s>,
     call: &Call<'s>,
@@ -38,7 +39,8 @@ pub(super) fn with_arguments<'s>(
     Ok(parameters)
 }
 
-/// Declares a plan with parameters like a quark, so that its arguments are checked in the same way.
+/// Returns a declaration for a plan with parameters, as for a quark, so that its arguments are checked in the
+/// same way.
 fn declaration(plan: &tree::Plan<'_>, parameters: &Parameters<'_>) -> Declaration {
     let param = |param: &tree::Param<'_>| {
         let parameter = parameters.get(param.name.node)?;
@@ -60,7 +62,7 @@ fn declaration(plan: &tree::Plan<'_>, parameters: &Parameters<'_>) -> Declaratio
     }
 }
 
-/// Adds help that shows how to use a plan with these parameters.
+/// Appends help that shows how to use a plan with these parameters.
 fn usage(found: Diagnostic, call: &Call<'_>, declaration: &Declaration) -> Diagnostic {
     let name = &declaration.name;
     if declaration.params.is_empty() {

@@ -1,4 +1,5 @@
-//! Prints a resolved plan as MDLe text: plans by name copied in, every argument in its default unit.
+//! Prints a resolved plan as MDLe text: plans used by name are copied in, and every argument is in its default
+//! unit.
 
 use std::fmt;
 
@@ -12,7 +13,8 @@ impl fmt::Display for Plan {
 }
 
 impl Plan {
-    /// Returns the text with each atom's number after it: for a plan with expanded loops, the states of its machine.
+    /// Returns the text with the number of each atom after it. For a plan with expanded loops, these are the
+    /// states of its machine.
     #[must_use]
     pub fn numbered(&self) -> String {
         self.printed(true)
@@ -53,7 +55,7 @@ impl Printer<'_> {
         self.text += &format!("{:indent$}{text}\n", "", indent = 2 * self.depth);
     }
 
-    /// A line that opens a scope or a loop.
+    /// Writes a line that opens a scope or a loop.
     fn open(&mut self, head: &str) {
         self.line(head);
         self.depth += 1;

@@ -19,10 +19,10 @@ use crate::syntax::tree::{self, Arg, Call, ConditionNode, Count, Element, Formal
 /// Largest angle of a FRAME, in its unit: far beyond a full circle, and small enough for exact sums.
 const FRAME: f64 = 100_000.0;
 
-/// Resolves the plans of a file and of the files that it uses: the file's plans that no other plan refers to, or only
-/// `wanted`.
+/// Resolves the plans of a file and of the files that it uses: the file's plans to which no other plan refers,
+/// or only the plan `wanted`.
 ///
-/// Every plan is checked, wanted or not; if one has an error, no plan is returned.
+/// All plans are checked; if any plan has an error, no plan is returned.
 #[must_use]
 pub fn resolve(files: &Files, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Plan>, Vec<Diagnostic>) {
     let (definitions, mut found) = Definitions::collect(files, alphabet);
@@ -65,12 +65,12 @@ pub fn resolve(files: &Files, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec
     if has_errors(&found) { (Vec::new(), found) } else { (plans, found) }
 }
 
-/// Action for a plan that is used by name.
+/// Treatment of a plan that is used by name.
 #[derive(Debug, Clone, Copy)]
 enum Uses {
     /// Check that the plan exists.
     Check,
-    /// Insert a copy: safe once all plans are known to be valid, and none contains itself.
+    /// Insert a copy. This is safe once all plans are known to be valid and no plan contains itself.
     Copy,
 }
 
@@ -84,10 +84,10 @@ struct Framing {
 }
 
 impl Framing {
-    /// Frame of a plan by itself.
+    /// Frame of a plan that no other plan uses.
     const PLAN: Self = Self { turned: 0.0, here: false };
 
-    /// Frame of the nested elements.
+    /// Returns the frame of the nested elements.
     fn inside(self) -> Self {
         Self { here: false, ..self }
     }
@@ -220,7 +220,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         EndCauses::WithItsLast
     }
 
-    /// Resolves `s^n`.
+    /// Resolves `s^n`, a loop.
     fn power(&mut self, power: &Count, element: &Element<'a>, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         let mut body = Vec::new();
         self.primary(element, frame, &mut body);
@@ -229,7 +229,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         EndCauses::WithItsLast
     }
 
-    /// Resolves `ExecPlan n { s }`.
+    /// Resolves `ExecPlan n { s }`, a loop.
     fn exec(&mut self, exec: &tree::Exec<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         let times = self.count(&exec.count);
         let mut body = self.sequence(exec.body, frame);
@@ -241,7 +241,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         EndCauses::WithItsLast
     }
 
-    /// Resolves `(Atom (ξ) u)`.
+    /// Resolves `(Atom (ξ) u)`, an atom.
     fn written(&mut self, atom: &tree::Atom<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         if let Some(swapped) = self.swapped(atom) {
             self.found.push(swapped);
@@ -252,14 +252,14 @@ impl<'r, 'a> Resolver<'r, 'a> {
         ends
     }
 
-    /// Resolves `{ Behavior … }`.
+    /// Resolves `{ Behavior … }`, a scope.
     fn in_place(&mut self, plan: &tree::Plan<'a>, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         let (scope, ends) = self.behavior(plan, frame);
         nodes.push(Node::Scope(scope));
         ends
     }
 
-    /// Resolves a plan by name.
+    /// Resolves the use of a plan by name.
     fn used(&mut self, call: &Call<'a>, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         let Some((plan, parameters)) = self.reference(call) else { return EndCauses::Unknown };
         let (scope, ends) = self.plan(plan, parameters, frame);
@@ -282,7 +282,8 @@ impl<'r, 'a> Resolver<'r, 'a> {
         }
     }
 
-    /// Resolves `(u, ξ, T)` or `(s, ξ, T)`: to an atom if the body is one law, else to a scope without a name.
+    /// Resolves `(u, ξ, T)` or `(s, ξ, T)`: to an atom if the body is a single law, otherwise to a scope
+    /// without a name.
     fn formal(&mut self, formal: &Formal<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         let (interrupt, ends) = self.timed(formal, span);
         match formal.body {
@@ -329,7 +330,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         self.interrupt(Some(&whole(ConditionNode::Or(&operands))), span)
     }
 
-    /// Returns the plan that `call` names, with its arguments, if a copy is to be inserted.
+    /// Returns the plan that `call` names, with its arguments; `None` if no copy is to be inserted.
     fn reference(&mut self, call: &Call<'a>) -> Option<(&'r tree::Plan<'a>, Parameters<'a>)> {
         let Some(plan) = self.definitions.get(call.name) else {
             let unknown = self.unknown_plan(call);
@@ -349,7 +350,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         }
     }
 
-    /// Resolves a loop count: at least one pass, `None` for an endless loop.
+    /// Resolves a loop count, which is at least one pass; `None` for an endless loop.
     fn count(&mut self, count: &Count) -> Option<u64> {
         let number = match count {
             Count::Infinity(_) => return None,

@@ -21,8 +21,9 @@ pub(super) struct Around<'r, 'a, 'n> {
     pub(super) found: &'r mut Vec<Diagnostic>,
 }
 
-/// Resolves the condition of a scope at `scope`, with the text of each operand of its outermost OR; without a condition
-/// the result is the null interrupt. A part that cannot be resolved is reported and counts as null.
+/// Resolves the condition of a scope at `scope`; returns the interrupt, and the text of each operand of its
+/// outermost OR. A scope without a condition gets the null interrupt. A part that cannot be resolved is
+/// reported and counts as null.
 pub(super) fn interrupt(
     condition: Option<&tree::Condition>,
     scope: Span,
@@ -83,15 +84,16 @@ fn signals(operand: &tree::Condition) -> [Option<NonZeroU32>; 2] {
     }
 }
 
-/// Nanoseconds that represent `wait inf`; no other wait may be as long.
+/// Number of nanoseconds that represents `wait inf`; any other wait must be shorter.
 const FOR_EVER: u64 = u64::MAX;
 
-/// Replaces `wait inf` by the null interrupt, after the text has been made.
+/// Replaces `wait inf` by the null interrupt. Called after the text has been written.
 fn without_infinite_waits(condition: Condition) -> Condition {
     condition.map(&|part| if matches!(part, Condition::Wait { nanos: FOR_EVER, .. }) { Condition::Null } else { part })
 }
 
-/// The value that a condition always has, if it asks nothing: all that is in it is the null interrupt.
+/// Returns the constant value of a condition that consists only of null interrupts and operators; `None` for
+/// any other condition.
 fn constant(condition: &Condition) -> Option<bool> {
     let all = |operands: &[Condition]| operands.iter().map(constant).collect::<Option<Vec<_>>>();
     match condition {
@@ -108,7 +110,7 @@ fn constant(condition: &Condition) -> Option<bool> {
 
 struct Resolving<'r, 'a, 'n> {
     around: Around<'r, 'a, 'n>,
-    /// Number of RISINGs so far in this condition.
+    /// Number of RISINGs in this condition so far.
     memories: u32,
 }
 
@@ -198,7 +200,7 @@ impl Resolving<'_, '_, '_> {
     }
 }
 
-/// Reports `after ahead by wait 5`: a cause follows its label without a word.
+/// Reports `after ahead by wait 5`: a cause follows its label directly.
 fn by_word(cause: &tree::Condition, is_unknown: impl Fn(&Call) -> bool) -> Option<Diagnostic> {
     let ConditionNode::Call(call) = cause.node else { return None };
     let [Arg::Name(name), args @ ..] = call.args else { return None };
@@ -210,7 +212,7 @@ fn by_word(cause: &tree::Condition, is_unknown: impl Fn(&Call) -> bool) -> Optio
     is_word.then(|| diagnostic.fix("write {}", call.span, written(&inside)))
 }
 
-/// Precedence of operators, loosest first.
+/// Precedence of operators, from the loosest to the tightest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Precedence {
     Or,
@@ -218,10 +220,10 @@ enum Precedence {
     Test,
 }
 
-/// The layout of an OR that is directly in an OR.
+/// Layout of an OR that is directly in another OR.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Ors {
-    /// The operands of the inner OR are written among those of the outer one.
+    /// The operands of the inner OR are written among the operands of the outer OR.
     Flattened,
     /// The inner OR is written in parentheses, as in the plan.
     Nested,
@@ -231,7 +233,7 @@ fn is_or(condition: &Condition) -> bool {
     matches!(condition, Condition::Or(_))
 }
 
-/// The text of a condition (docs/src/reference/language.md, 7), by the texts of its quarks.
+/// Returns the text of a condition (docs/src/reference/language.md, 7), given the texts of its quarks.
 pub fn condition_text(condition: &Condition, quark: &impl Fn(QuarkId) -> String) -> String {
     text(condition, quark, Precedence::Or, Ors::Flattened)
 }

@@ -1,30 +1,31 @@
-//! Computes the size of a plan after every plan by name is copied in, before anything is copied, and limits it.
+//! Computes and limits the size that a plan will have once every plan used by name is copied in, before any
+//! copy is made.
 //!
-//! Plans within plans multiply, so that a short text may need more memory than any computer has. A file is never too
-//! large because of what it writes out itself.
+//! Sizes multiply where plans use plans, so that a short text may need more memory than any computer has. A
+//! file that writes out all its elements is never too large.
 
 use std::collections::BTreeMap;
 
 use crate::diagnostic::Span;
 use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Element, Frame, Operand, Plan, Primary};
 
-/// Maximum number of atoms, scopes and loops of a plan; loops are not expanded. `check` takes half a second for this
-/// many, and `analyze` a second.
+/// Maximum number of atoms, scopes and loops of a plan, without expansion of loops. At this number, `check`
+/// takes half a second and `analyze` a second.
 const BRACKETS: u64 = 1 << 18;
-/// Maximum number of operands of a plan's conditions; `check` takes half a second for this many.
+/// Maximum number of operands of a plan's conditions. At this number, `check` takes half a second.
 const OPERANDS: u64 = 1 << 19;
-/// Maximum length of a plan's text in bytes, as `--emit plan` prints it.
+/// Maximum length, in bytes, of a plan's text as `--emit plan` prints it.
 const TEXT: u64 = 1 << 26;
 /// Maximum nesting depth.
 pub(super) const DEPTH: u32 = 512;
 
-/// Additional bytes of printed text for each quark, atom or scope: defaults, units, brackets.
+/// Additional bytes of printed text for each quark, atom or scope: defaults, units and brackets.
 const BESIDE: u64 = 16;
 
-/// Size of a plan or of a part of one.
+/// Size of a plan or of a part of a plan.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Size {
-    /// Atoms, scopes and loops.
+    /// Number of atoms, scopes and loops.
     brackets: u64,
     operands: u64,
     text: u64,
@@ -41,7 +42,7 @@ pub(super) struct Excess {
 }
 
 impl Excess {
-    /// The limited count of a size.
+    /// Returns the count of a size to which this limit applies.
     pub(super) fn count(&self, size: &Size) -> u64 {
         (self.of)(size)
     }
@@ -59,7 +60,7 @@ impl Size {
         limits.into_iter().find(|excess| excess.count(self) > excess.limit.max(excess.count(written)))
     }
 
-    /// Size of two parts in sequence.
+    /// Returns the size of two parts in sequence.
     pub(super) fn and(self, other: Self) -> Self {
         Self {
             brackets: self.brackets.saturating_add(other.brackets),
@@ -69,13 +70,13 @@ impl Size {
         }
     }
 
-    /// Size of the part inside a scope or a loop.
+    /// Returns the size of the part inside a scope or a loop.
     fn nested(self) -> Self {
         let inside = self.indented();
         Self { brackets: inside.brackets.saturating_add(1), ..inside }
     }
 
-    /// Size of the part inside brackets, which indent each line.
+    /// Returns the size of the part inside brackets, which indent each line.
     fn indented(self) -> Self {
         let text = self.text.saturating_add(self.brackets.saturating_mul(2)).saturating_add(BESIDE);
         Self { text, depth: self.depth.saturating_add(1), ..self }
@@ -89,14 +90,15 @@ impl Size {
 /// Measures plans; used plans are measured before the plans that use them.
 pub(super) struct Measure<'m> {
     pub(super) by_name: &'m BTreeMap<&'m str, usize>,
-    /// Sizes of the plans measured before.
+    /// Sizes of the plans measured so far.
     pub(super) sizes: &'m [Size],
-    /// Length in bytes of the longest argument given to a plan, as an upper bound for the text of each parameter.
+    /// Length, in bytes, of the longest argument given to a plan, as an upper bound for the text of each
+    /// parameter.
     pub(super) longest: u64,
 }
 
 impl Measure<'_> {
-    /// Size of a plan with everything that it uses.
+    /// Returns the size of a plan, including all plans that it uses.
     pub(super) fn plan(&self, plan: &Plan<'_>) -> Size {
         let own = plan.condition.as_ref().map_or(Size::default(), |condition| self.condition(condition));
         let name = Size::of_text(plan.name.node.len() as u64);
@@ -133,7 +135,7 @@ impl Measure<'_> {
         })
     }
 
-    /// Returns `true` if the body of a scope in formal notation is one law.
+    /// Returns `true` if the body of a scope in formal notation is a single law.
     fn is_law(&self, body: &[Element<'_>]) -> bool {
         matches!(body, [Element { primary: Primary::Ref(call), marks: None, .. }] if !self.by_name.contains_key(call.name))
     }
@@ -163,7 +165,7 @@ impl Measure<'_> {
         }
     }
 
-    /// Size of an operand with this many bytes and arguments.
+    /// Returns the size of an operand with this number of bytes and arguments.
     fn operand(&self, bytes: u64, arguments: usize) -> Size {
         Size { operands: 1, ..Size::of_text(bytes.saturating_add(self.given(arguments))) }
     }
@@ -177,7 +179,7 @@ impl Measure<'_> {
     }
 }
 
-/// Length in bytes of the longest argument of these calls.
+/// Returns the length, in bytes, of the longest argument of these calls.
 pub(super) fn longest<'c>(calls: impl Iterator<Item = &'c Call<'c>>) -> u64 {
     calls.flat_map(|call| call.args).map(|arg: &Arg<'_>| length(arg.span())).max().unwrap_or(0)
 }

@@ -1,4 +1,4 @@
-//! Infers the types of parameters that are written without them, and reports each such list once.
+//! Infers the types of parameters that are written without types, and reports each such list once.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Count, Element, Name, Param, Plan, Primary, Spanned};
 use crate::syntax::{Arena, Files};
 
-/// Adds types to the parameters without one, and reports them.
+/// Infers the types of parameters without a type, and reports these parameters.
 pub(crate) fn complete<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet) -> Vec<Diagnostic> {
     let plans: BTreeSet<&str> = files.plans.iter().map(|plan| plan.name.node).collect();
     let called: BTreeSet<&str> = files.plans.iter().flat_map(|plan| called_with_arguments(plan.elements)).collect();
@@ -47,7 +47,7 @@ pub(crate) fn complete<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &A
 /// The parentheses after the name of a plan, if they may be parameters.
 struct Header<'s> {
     names: Vec<Name<'s>>,
-    /// Type that is written before the only name.
+    /// Type that is written before the name, if there is only one name.
     kind: Option<Kind>,
     span: Span,
     /// Elements of the plan without the header.
@@ -66,7 +66,7 @@ impl<'s> Header<'s> {
         Some(Self { names, kind, span: condition.span, elements: plan.elements })
     }
 
-    /// Reads `(d, v)`, which looks like formal notation.
+    /// Reads `(d, v)`, which resembles formal notation, as a header.
     fn of_formal(plan: &Plan<'s>) -> Option<Self> {
         let [Element { primary: Primary::Formal(formal), marks: None, span }, elements @ ..] = plan.elements else {
             return None;
@@ -88,7 +88,7 @@ fn named<'s>(call: &Call<'s>) -> Name<'s> {
     Spanned { node: call.name, span: call.name_span() }
 }
 
-/// Kind that the first use of a parameter in its plan needs.
+/// Returns the kind that the first use of a parameter in its plan requires.
 pub(super) fn kind_by_use(plan: &Plan<'_>, name: &str, alphabet: &Alphabet) -> Option<Kind> {
     Uses { alphabet, elements: plan.elements }.kind_of(name)
 }
@@ -102,7 +102,7 @@ pub(super) fn type_name(kind: Kind) -> String {
     name.map_or_else(String::new, |name| (*name).to_owned())
 }
 
-/// Names of the plans that these elements call with arguments.
+/// Returns the names of the plans that these elements call with arguments.
 fn called_with_arguments<'s>(elements: &[Element<'s>]) -> Vec<&'s str> {
     let mut called = Vec::new();
     calls(elements, &mut |call| {
@@ -121,7 +121,7 @@ struct Uses<'a, 's> {
 }
 
 impl Uses<'_, '_> {
-    /// Kind of the first parameter to which a name is given.
+    /// Returns the kind of the first parameter to which a name is given.
     fn kind_of(&self, name: &str) -> Option<Kind> {
         let is_name = |arg: &Arg<'_>| matches!(arg, Arg::Name(given) if given.node == name);
         if counts(self.elements, name) {
@@ -138,7 +138,7 @@ impl Uses<'_, '_> {
     }
 }
 
-/// Returns `true` if a loop in these elements has this name as its count.
+/// Returns `true` if a loop in these elements has this name as its loop count.
 fn counts(elements: &[Element<'_>], name: &str) -> bool {
     let is_count = |count: &Count<'_>| matches!(count, Count::Name(given) if given.node == name);
     elements.iter().any(|element| {
@@ -153,7 +153,7 @@ fn counts(elements: &[Element<'_>], name: &str) -> bool {
     })
 }
 
-/// First result of `visit` for a call in these elements.
+/// Returns the first result of `visit` for a call in these elements.
 fn calls<'s, T>(elements: &[Element<'s>], visit: &mut impl FnMut(&Call<'s>) -> Option<T>) -> Option<T> {
     elements.iter().find_map(|element| match element.primary {
         Primary::Atom(atom) => visit(atom.control).or_else(|| calls_of(&atom.condition, visit)),
@@ -169,7 +169,7 @@ fn calls<'s, T>(elements: &[Element<'s>], visit: &mut impl FnMut(&Call<'s>) -> O
     })
 }
 
-/// First result of `visit` for a call in a condition.
+/// Returns the first result of `visit` for a call in a condition.
 fn calls_of<'s, T>(condition: &Condition<'s>, visit: &mut impl FnMut(&Call<'s>) -> Option<T>) -> Option<T> {
     match condition.node {
         ConditionNode::Or(operands) | ConditionNode::And(operands) => {

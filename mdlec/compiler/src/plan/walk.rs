@@ -25,22 +25,22 @@ pub enum Visit<'p> {
     Leave(Part<'p>),
 }
 
-/// A walk over a plan, which visits each part twice.
+/// A walk over a plan, which visits each part twice: at its entry and at its end.
 #[derive(Debug)]
 pub struct Walk<'p> {
     root: Option<&'p Scope>,
-    /// Parts that were entered but not left, each with its remaining nodes.
+    /// Parts that were entered and not left, each with its remaining nodes.
     open: Vec<(Part<'p>, slice::Iter<'p, Node>)>,
 }
 
 impl Plan {
-    /// Walks over all parts: enters each, visits the parts inside, and leaves it.
+    /// Returns a walk over all parts, which enters each part, visits the parts inside it, and leaves it.
     #[must_use]
     pub fn walk(&self) -> Walk<'_> {
         Walk { root: Some(&self.root), open: Vec::new() }
     }
 
-    /// Returns all parts in pre-order: a part comes before those inside it.
+    /// Returns all parts in pre-order: a part comes before its nested parts.
     pub fn parts(&self) -> impl Iterator<Item = Part<'_>> {
         let mut walk = self.walk();
         iter::from_fn(move || walk.by_ref().find_map(Visit::entered))
@@ -48,7 +48,7 @@ impl Plan {
 }
 
 impl<'p> Walk<'p> {
-    /// The number of parts that enclose the next one to be visited.
+    /// Returns the number of parts that enclose the next part to be visited.
     #[must_use]
     pub fn depth(&self) -> usize {
         self.open.len()
@@ -80,7 +80,7 @@ impl<'p> Iterator for Walk<'p> {
 }
 
 impl<'p> Visit<'p> {
-    /// Returns the part, if this step enters it.
+    /// Returns the part, if this step enters the part.
     #[must_use]
     pub fn entered(self) -> Option<Part<'p>> {
         match self {
@@ -91,7 +91,7 @@ impl<'p> Visit<'p> {
 }
 
 impl<'p> Part<'p> {
-    /// The interrupt of a scope or an atom; a loop has none.
+    /// Returns the interrupt of a scope or an atom; `None` for a loop.
     #[must_use]
     pub fn interrupt(self) -> Option<&'p Interrupt> {
         match self {
@@ -101,7 +101,7 @@ impl<'p> Part<'p> {
         }
     }
 
-    /// The string that a scope or a loop runs; empty for an atom.
+    /// Returns the nodes of the string that a scope or a loop runs; empty for an atom.
     #[must_use]
     pub fn body(self) -> &'p [Node] {
         match self {
@@ -129,7 +129,7 @@ impl<'p> Part<'p> {
         }
     }
 
-    /// The place of an atom, a loop, or the definition of a scope.
+    /// Returns the span of an atom, of a loop, or of a scope's definition.
     #[must_use]
     pub fn span(self) -> Span {
         match self {

@@ -1,4 +1,4 @@
-//! Interrupts and laws of a plan, by the names that scripts use.
+//! Interrupts and laws of a plan, by their names in scripts.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ pub(crate) struct Words<'p> {
     plan: &'p Plan,
     alphabet: &'p Alphabet,
     interrupts: BTreeSet<&'p str>,
-    /// Conditions that a script must not list, with the reason.
+    /// Conditions that a script must not list, each with the reason.
     counted: BTreeMap<&'p str, &'static str>,
     laws: BTreeSet<&'p str>,
 }
@@ -41,7 +41,7 @@ impl<'p> Words<'p> {
         });
     }
 
-    /// Returns the text of the interrupt that a script writes as `written`.
+    /// Returns the text of the interrupt that a script names as `written`.
     pub(crate) fn interrupt(&self, written: String) -> Result<String, String> {
         if self.interrupts.contains(written.as_str()) {
             return Ok(written);
@@ -55,7 +55,7 @@ impl<'p> Words<'p> {
         known(&written, text, &self.interrupts, ["interrupt", "interrupts"])
     }
 
-    /// Returns the text of the law that a script writes as `written`.
+    /// Returns the text of the law that a script names as `written`.
     pub(crate) fn law(&self, written: String) -> Result<String, String> {
         if self.laws.contains(written.as_str()) {
             return Ok(written);
@@ -81,7 +81,8 @@ impl<'p> Words<'p> {
     }
 }
 
-/// Returns `text` if the plan has it; else a message that names the nearest text, or all.
+/// Returns `text` if the plan contains this text; otherwise a message with the most similar text, or with all
+/// texts.
 fn known(written: &str, text: String, texts: &BTreeSet<&str>, [one, many]: [&str; 2]) -> Result<String, String> {
     if texts.contains(text.as_str()) {
         return Ok(text);
@@ -100,8 +101,8 @@ fn known(written: &str, text: String, texts: &BTreeSet<&str>, [one, many]: [&str
 }
 
 impl Condition {
-    /// Returns the quark that fires by the time or the way of the turns, if the condition is one, with the reason why
-    /// scripts leave it out.
+    /// Returns the quark that fires by the time or by the path driven, with the reason why scripts omit it;
+    /// `None` if the condition is not such a quark.
     fn counted(&self) -> Option<(QuarkId, &'static str)> {
         match self {
             Self::Wait { quark, .. } | Self::Elapsed { quark, .. } => {

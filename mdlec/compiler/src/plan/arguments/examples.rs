@@ -5,7 +5,7 @@ use crate::alphabet::{Declaration, Kind, Param};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{Arg, Call, Name, Number};
 
-/// Example value for a parameter; `None` if only the user knows a name.
+/// Returns an example value for a parameter; `None` for a name that only the user can know.
 pub(in crate::plan) fn example(param: &Param) -> Option<String> {
     let value = match param.kind {
         Kind::Length => "1m".to_owned(),
@@ -22,7 +22,8 @@ pub(in crate::plan) fn example(param: &Param) -> Option<String> {
     Some(value)
 }
 
-/// The sonar whose range a name is, as the paper's `align r_7 r_9` has it.
+/// Returns the number of the sonar whose range a name denotes, as in the paper's `align r_7 r_9`; `None` for
+/// any other name.
 pub(super) fn sonar<'s>(name: &Name<'s>) -> Option<Number<'s>> {
     let digits = name.node.strip_prefix('r').map(|index| index.strip_prefix('_').unwrap_or(index))?;
     let is_index = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());

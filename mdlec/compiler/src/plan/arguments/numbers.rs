@@ -7,7 +7,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::Decimal;
 use crate::syntax::tree::Number;
 
-/// Largest whole number up to which a 64-bit float holds each.
+/// Largest whole number up to which a 64-bit float represents every whole number.
 const WHOLE: i64 = 1 << 53;
 
 impl Fitting<'_> {
@@ -153,7 +153,7 @@ pub(super) fn bits(number: &Number, length: u32) -> Fitted {
     Ok((Value::Bits(bits), number.digits().to_owned()))
 }
 
-/// Converts an exact value from the unit `from` to the unit `to`, as the nearest `f64` available.
+/// Converts an exact value from the unit `from` to the unit `to`, and returns the nearest `f64`.
 fn converted(exact: &Decimal, from: Unit, to: Unit) -> f64 {
     if from.family != to.family {
         return exact.to_f64() * from.family_to_si() / to.family_to_si() / f64::from(to.factor);

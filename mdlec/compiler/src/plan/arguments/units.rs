@@ -1,4 +1,4 @@
-//! Units that do not touch their numbers, and were read as arguments of their own.
+//! Units that are separated from their numbers, and were read as arguments of their own.
 
 use super::Arguments;
 use crate::alphabet::Unit;
@@ -6,7 +6,8 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::nearest_unit;
 use crate::syntax::tree::{Arg, Call, Number};
 
-/// Reports the units of `call` that are apart from their numbers, or what does not fit once they touch these.
+/// Reports the units of `call` that are separated from their numbers, or the faults that remain once they are
+/// joined.
 pub(super) fn apart(
     call: &Call,
     fitted: impl Fn(&Call) -> Result<Arguments, Vec<Diagnostic>>,
@@ -40,12 +41,12 @@ pub(super) fn apart(
     Some(apart.chain(wrong.iter().cloned()).collect())
 }
 
-/// A number, and a unit after a space.
+/// A number with a unit after a space.
 #[derive(Clone, Copy)]
 struct Apart<'s> {
     number: Number<'s>,
     unit: &'static str,
-    /// Place of the unit.
+    /// Span of the unit.
     span: Span,
 }
 

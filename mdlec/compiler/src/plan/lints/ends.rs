@@ -1,4 +1,5 @@
-//! W0201 and W0202: atoms that nothing ever ends, and elements that are unreachable because an earlier one never ends.
+//! W0201 and W0202: atoms that never end, and elements that are unreachable because an earlier element never
+//! ends.
 
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
@@ -17,7 +18,7 @@ pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
 
 struct EndsLint<'p, 'f> {
     plan: &'p Plan,
-    /// Duration in seconds proposed for an atom, shorter than the timers of all enclosing scopes.
+    /// Duration, in seconds, proposed for an atom; it is shorter than the timers of all enclosing scopes.
     pause: f64,
     found: &'f mut Vec<Diagnostic>,
 }
@@ -25,9 +26,9 @@ struct EndsLint<'p, 'f> {
 /// Reason why an element never ends by itself.
 #[derive(Clone, Copy)]
 struct Endless<'p> {
-    /// Atom that never ends; `None` for an endless loop, which is intended.
+    /// Atom that never ends; `None` for an endless loop, which counts as intended.
     atom: Option<&'p Atom>,
-    /// `true` if a warning has been given already.
+    /// `true` if a warning has been given before.
     is_reported: bool,
 }
 
@@ -43,7 +44,7 @@ impl<'p> EndsLint<'p, '_> {
         }
     }
 
-    /// Reason why a sequence never ends; `None` if it can end.
+    /// Returns the reason why a sequence never ends; `None` if it can end.
     fn sequence(&mut self, body: &'p [Node]) -> Option<Endless<'p>> {
         let mut nodes = body.iter();
         let (place, endless) = nodes.by_ref().find_map(|node| Some((node.part().span(), self.node(node)?)))?;

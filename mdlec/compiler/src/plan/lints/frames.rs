@@ -1,10 +1,10 @@
-//! W0207: a `FRAME here` inside which no law turns to a heading or drives at a bearing.
+//! W0207: a `FRAME here` that contains no law which turns to a heading or drives at a bearing.
 
 use crate::alphabet::Kind;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Atom, Node, Plan, Quark, Value};
 
-/// Warns of every such `FRAME here`.
+/// Warns of every `FRAME here` that no law uses.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     Frames { plan, found }.sequence(&plan.root.body);
 }
@@ -15,7 +15,7 @@ struct Frames<'p, 'f> {
 }
 
 impl<'p> Frames<'p, '_> {
-    /// Returns the first atom of a sequence, and whether a law in the sequence may use its frame.
+    /// Returns the first atom of a sequence, and `true` if a law in the sequence may use its frame.
     fn sequence(&mut self, body: &'p [Node]) -> (Option<&'p Atom>, bool) {
         body.iter().fold((None, false), |(first, is_used), node| {
             let (own, uses) = self.node(node);
@@ -45,8 +45,8 @@ impl<'p> Frames<'p, '_> {
     }
 }
 
-/// Returns `true` if a law may use a direction of its frame: it takes an angle, or a file or a module that may contain
-/// angles.
+/// Returns `true` if a law may use a direction of its frame: the law takes an angle, or a file or a module that
+/// may contain angles.
 fn names_a_direction(law: &Quark) -> bool {
     // The angle of `turn` counts from the heading at which its atom began.
     law.name != "turn"

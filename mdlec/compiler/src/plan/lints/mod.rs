@@ -1,6 +1,6 @@
 //! Lints (docs/src/reference/language.md, 5: W02xx to W04xx): valid plans that are probably not what was meant.
 //!
-//! A lint reports only code that is certainly useless; anything that may be intended is left alone.
+//! A lint reports only code that is certainly useless, and never code that may be intended.
 
 mod ends;
 mod frames;
@@ -18,7 +18,8 @@ pub use numbers::bare_numbers;
 use super::Nondegenerate;
 use crate::diagnostic::{Code, Diagnostic, Span};
 
-/// Warns of suspicious parts of a plan without degeneracy, once for each place, however often its plan is used.
+/// Warns of suspicious parts of a plan without degeneracy. Each place is reported once, however often its plan
+/// is used.
 #[must_use]
 pub fn lints(plan: &Nondegenerate) -> Vec<Diagnostic> {
     let plan = plan.plan();

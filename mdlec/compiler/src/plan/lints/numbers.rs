@@ -1,4 +1,5 @@
-//! W0401: numbers without a unit that were probably meant in another unit, such as a speed of `0.5`, which is in cm/s.
+//! W0401: numbers without a unit that were probably meant in another unit, such as a speed of `0.5`, which
+//! means 0.5 cm/s.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +11,7 @@ use crate::syntax::tree::{
     self, Arg, Call, Compared, Condition, ConditionNode, Element, Frame, Number, Operand, Primary,
 };
 
-/// Warns of such numbers in every plan of files that resolve.
+/// Warns of numbers with a doubtful unit, in every plan of files that resolve.
 #[must_use]
 pub fn bare_numbers(files: &Files, alphabet: &Alphabet) -> Vec<Diagnostic> {
     let with_parameters = files.plans.iter().filter(|plan| !plan.params.is_empty());
@@ -22,11 +23,11 @@ pub fn bare_numbers(files: &Files, alphabet: &Alphabet) -> Vec<Diagnostic> {
     numbers.found
 }
 
-/// Range in metres beyond that of any sonar.
+/// Range, in metres, that no sonar reaches.
 const SONAR: f64 = 20.0;
-/// Length in metres that hardly any plan drives.
+/// Length, in metres, that hardly any plan drives.
 const FAR: f64 = 100.0;
-/// Length in metres that is unusual for one law.
+/// Length, in metres, that is unusual for a single law.
 const UNUSUAL: f64 = 50.0;
 
 struct Numbers<'a> {
@@ -82,7 +83,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// Checks a value that a signal is compared with.
+    /// Checks a value with which a signal is compared.
     fn compared(&mut self, compared: &Compared) {
         let Operand::Number(number) = &compared.right else { return };
         let name = compared.left.name;
@@ -134,7 +135,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// Checks an argument: a length in it is driven, and so shorter than a position may be.
+    /// Checks an argument. A length in an argument is driven, so its limit is lower than that of a position.
     fn argument(&mut self, number: &Number, kind: Kind, unit: &str, what: &str) {
         let size = number.digits().parse::<f64>().map_or(0.0, f64::abs);
         if kind == Kind::Length && unit == "m" && number.unit().is_none() && (UNUSUAL..=FAR).contains(&size) {
@@ -203,7 +204,8 @@ fn doubt(kind: Kind, unit: &str, value: f64) -> Option<(&'static str, &'static s
     })
 }
 
-/// Returns `true` for 1000 and more that people write for milliseconds: times in seconds are whole minutes, as 1800 is.
+/// Returns `true` for a number of 1000 or more that was probably meant in milliseconds. Times in seconds are
+/// usually whole minutes, as 1800 is.
 fn is_like_milliseconds(size: f64) -> bool {
     size >= 1000.0 && (size % 60.0 != 0.0 || size % 1000.0 == 0.0)
 }

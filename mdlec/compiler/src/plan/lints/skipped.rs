@@ -6,7 +6,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::families::{Family, Readings, at_once, family};
 use crate::plan::{Condition, Interrupt, Loop, Node, Plan, Quark, QuarkId, RecordId, Scope, Situation};
 
-/// Maximum number of quarks of a loop for which all combinations are tried; loops that read more are left alone.
+/// Maximum number of quarks of a loop for which all combinations are tried; loops with more quarks are not
+/// checked.
 const QUARKS: usize = 8;
 /// Maximum number of elements of a loop that is checked.
 const ELEMENTS: usize = 64;
@@ -25,7 +26,7 @@ struct Skipped<'p, 'f> {
 }
 
 impl Skipped<'_, '_> {
-    /// Checks the body of a scope, where no operand of its interrupt has fired.
+    /// Checks the body of a scope, given that no operand of its interrupt has fired.
     fn inside(&mut self, scope: &Scope) -> bool {
         let known = self.known.clone();
         for operand in scope.interrupt.condition.operands() {
@@ -72,7 +73,8 @@ impl Skipped<'_, '_> {
         true
     }
 
-    /// Condition under which a pass takes no time; `None` if it always takes time or always takes none.
+    /// Returns the condition under which a pass takes no time; `None` if a pass always takes time or never
+    /// does.
     fn skips(&self, body: &[Node]) -> Option<String> {
         let skip = all(body, &mut ELEMENTS.clone())?;
         // What has ended before depends on the pass.
@@ -136,7 +138,7 @@ impl Skipped<'_, '_> {
     }
 }
 
-/// Situation of a scope that has just been entered; the function gives the value of each quark.
+/// Situation of a scope that has just been entered; the function returns the value of each quark.
 struct AtOnce<F>(F);
 
 impl<F: Fn(QuarkId) -> bool> Situation for AtOnce<F> {
@@ -162,8 +164,8 @@ impl<F: Fn(QuarkId) -> bool> Situation for AtOnce<F> {
     }
 }
 
-/// Condition under which a sequence takes no time; checks at most `left` elements. `None` if there is none. A law may
-/// complete at once, but usually takes time.
+/// Returns the condition under which a sequence takes no time; `None` if there is none. Checks at most `left`
+/// elements. A law may complete at once, but is assumed to take time.
 fn all(body: &[Node], left: &mut usize) -> Option<Condition> {
     let mut conditions = Vec::new();
     for node in body {
@@ -180,7 +182,7 @@ fn all(body: &[Node], left: &mut usize) -> Option<Condition> {
     Some(Condition::And(conditions))
 }
 
-/// Condition of the interrupt, if it can be true at once.
+/// Returns the condition of the interrupt, if it can be true at once.
 fn own(interrupt: &Interrupt) -> Option<Condition> {
     let condition = &interrupt.condition;
     let never = matches!(

@@ -2,7 +2,7 @@
 
 use crate::samples::judged;
 
-/// Records one snapshot: the text, its messages, and the plan.
+/// Records one snapshot: the text of a plan, its messages, and the resolved plan.
 macro_rules! assert_judged {
     ($text:literal) => {
         insta::assert_snapshot!(judged($text, None))

@@ -1,9 +1,10 @@
-//! W0209: an atom that waits for another robot without a limit: if that robot is off, it waits for ever.
+//! W0209: an atom that waits for another robot without a time limit, so that it waits for ever if that robot is
+//! off.
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
 
-/// Warns of every such atom.
+/// Warns of every atom that waits for another robot without a time limit.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     let mut lint = Unanswered { plan, found };
     let is_limited = is_timed(&plan.root.interrupt);
@@ -16,7 +17,7 @@ struct Unanswered<'p, 'f> {
 }
 
 impl<'p> Unanswered<'p, '_> {
-    /// Checks a sequence; `is_limited` if a timer of an enclosing scope ends it.
+    /// Checks a sequence; `is_limited` is `true` if a timer of an enclosing scope ends the sequence.
     fn sequence(&mut self, body: &'p [Node], is_limited: bool) {
         for node in body {
             match node {
@@ -33,7 +34,8 @@ impl<'p> Unanswered<'p, '_> {
         }
     }
 
-    /// Returns the first quark by which a condition waits for another robot. One under NOT ends without that robot.
+    /// Returns the first quark by which a condition waits for another robot. A quark under NOT does not count,
+    /// since it ends without that robot.
     fn waits(&self, condition: &Condition) -> Option<String> {
         match condition {
             Condition::Quark(id) => {
@@ -58,7 +60,7 @@ impl<'p> Unanswered<'p, '_> {
     }
 }
 
-/// Returns `true` if a timer alone ends a scope.
+/// Returns `true` if a timer alone can end a scope.
 fn is_timed(interrupt: &Interrupt) -> bool {
     interrupt.condition.operands().iter().any(|operand| match operand {
         Condition::Wait { .. } | Condition::Elapsed { .. } => true,

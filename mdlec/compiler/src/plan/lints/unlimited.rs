@@ -1,9 +1,10 @@
-//! W0208: a `goAvoid` to a point that only arrival or contact ends, and that never ends where no way leads there.
+//! W0208: a `goAvoid` to a point that only arrival or contact ends; it never ends if no path leads to the
+//! point.
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
 
-/// Warns of every such atom.
+/// Warns of every `goAvoid` that only arrival or contact ends.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     let mut lint = Unlimited { plan, found };
     let is_limited = lint.limits(&plan.root.interrupt);
@@ -16,7 +17,7 @@ struct Unlimited<'p, 'f> {
 }
 
 impl<'p> Unlimited<'p, '_> {
-    /// Checks a sequence; `is_limited` if an enclosing scope ends it.
+    /// Checks a sequence; `is_limited` is `true` if an enclosing scope ends the sequence.
     fn sequence(&mut self, body: &'p [Node], is_limited: bool) {
         for node in body {
             match node {
@@ -37,7 +38,8 @@ impl<'p> Unlimited<'p, '_> {
         }
     }
 
-    /// Returns `true` if an interrupt may end a drive that leads nowhere. Contact does not: obstacles are avoided.
+    /// Returns `true` if an interrupt may end a drive that leads nowhere. Contact does not count, since
+    /// obstacles are avoided.
     fn limits(&self, interrupt: &Interrupt) -> bool {
         interrupt.condition.operands().iter().any(|operand| match operand {
             Condition::Null => false,

@@ -1,4 +1,5 @@
-//! Reports usual mistakes that the parser accepts, and names of no plan, with what was probably meant.
+//! Reports common mistakes that the parser accepts, and names that no plan has, with the element that was
+//! probably meant.
 
 use super::Resolver;
 use crate::alphabet::{self, DeclarationKind, Kind, Unit};
@@ -87,7 +88,7 @@ impl<'a> Resolver<'_, 'a> {
         Some(found.fix("write {}", number.span.to(span), format!("{digits}{unit}")))
     }
 
-    /// Reports `(Atom (u) ξ)`: law and condition exchanged.
+    /// Reports `(Atom (u) ξ)`, in which law and condition are exchanged.
     pub(super) fn swapped(&self, atom: &tree::Atom<'a>) -> Option<Diagnostic> {
         let ConditionNode::Call(law) = atom.condition.node else { return None };
         let kind = |name| self.quarks.alphabet().declarations_of(name).next().map(|declaration| declaration.kind);
@@ -147,7 +148,7 @@ impl<'a> Resolver<'_, 'a> {
     }
 }
 
-/// Returns `true` if a name joins steps in other languages.
+/// Returns `true` if a name joins steps in other languages, such as `then`.
 fn is_joining(name: &str) -> bool {
     ["then", "and", "next", "followed", "do", "begin", "end"].iter().any(|word| name.eq_ignore_ascii_case(word))
 }

@@ -1,5 +1,5 @@
-//! Tests of the result of degeneracy removal (docs/src/reference/semantics.md, 7.4): traces cannot show it, since the
-//! outer interrupt always wins.
+//! Tests of the result of degeneracy removal (docs/src/reference/semantics.md, 7.4): traces cannot show the
+//! result, since the outer interrupt always wins.
 
 use crate::alphabet;
 use crate::diagnostic::SourceId;
@@ -7,7 +7,7 @@ use crate::plan::{Condition, Interrupt, Node};
 use crate::samples::compiled;
 use crate::{Compiled, compile};
 
-/// The interrupt of the plan's first atom.
+/// Returns the interrupt of the plan's first atom.
 fn of_first_atom(compiled: &Compiled) -> &Interrupt {
     match &compiled.nondegenerate.plan().root.body[0] {
         Node::Atom(atom) => &atom.interrupt,

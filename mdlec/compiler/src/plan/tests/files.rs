@@ -1,4 +1,5 @@
-//! Files that use each other: the plans they see, the plan that runs, and messages about files that cannot be used.
+//! Files that use each other: the plans that each can use, the plan that runs, and messages about files that
+//! cannot be used.
 
 use crate::samples::judged_files;
 

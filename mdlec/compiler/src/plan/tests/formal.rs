@@ -2,7 +2,7 @@
 
 use crate::samples::{compiled, judged};
 
-/// Returns the formal text of a plan, and checks that this text has itself as its formal text.
+/// Returns the formal text of a plan, after checking that the formal text of this text is the same.
 fn formal(text: &str) -> String {
     let formal = compiled(text)[0].plan.formal();
     assert_eq!(compiled(&formal)[0].plan.formal(), formal);

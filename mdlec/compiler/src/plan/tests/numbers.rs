@@ -1,4 +1,4 @@
-//! Numbers of arguments are compared as they are written.
+//! Tests that numbers of arguments are compared as written.
 
 use crate::compile;
 use crate::diagnostic::SourceId;
