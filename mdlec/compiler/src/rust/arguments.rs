@@ -22,8 +22,8 @@ pub(super) fn type_of(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     quote!(runtime::Comparison<#signal, #with>)
 }
 
-/// Emits a comparison: `runtime::Comparison::new(…)`. `signal` emits its signals; `none` is the type that stands for
-/// the second signal where the comparison is with a value.
+/// Emits a comparison: `runtime::Comparison::new(…)`. `signal` emits the comparison's signals; `none` is the
+/// type in the place of the second signal in a comparison with a value.
 pub(super) fn compared(
     comparison: &Comparison,
     none: &TokenStream,
@@ -79,13 +79,13 @@ pub(super) fn angle(radians: f64) -> TokenStream {
     quote!(runtime::Radians(#radians))
 }
 
-/// Emits a number: in Rust's syntax the sign is a token of its own.
+/// Emits a number. In Rust's syntax, its sign is a separate token.
 pub(super) fn number(value: f64) -> TokenStream {
     let digits = Literal::f64_unsuffixed(value.abs());
     if value.is_sign_negative() { quote!(-#digits) } else { quote!(#digits) }
 }
 
-/// An argument as its unit type.
+/// Emits an argument as a value of its unit type.
 fn argument(value: &Value) -> TokenStream {
     match value {
         Value::Quantity { kind, exact, .. } => {

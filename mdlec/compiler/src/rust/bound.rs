@@ -1,4 +1,4 @@
-//! A quark of an alphabet with its names in Rust.
+//! A quark of an alphabet and its names in Rust.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use super::names::{Distinct, quark_type};
 use crate::alphabet::{Alphabet, Capability, Declaration, DeclarationKind, Kind, Origin};
 use crate::plan::{is_time, is_way, signature};
 
-/// A quark that the robot can run, with the name of its type and of the function that makes it.
+/// A quark that the robot can run, with the names of its type and of the function that constructs it.
 pub(super) struct Bound<'a> {
     pub(super) declaration: &'a Declaration,
     pub(super) kind: Ident,
@@ -18,8 +18,8 @@ pub(super) struct Bound<'a> {
 }
 
 impl<'a> Bound<'a> {
-    /// Returns the quarks of an alphabet that need code: not `wait`, `t` and `way`, which the machine evaluates, nor
-    /// quarks whose capability the robot lacks, nor shared ones whose capability has no trait yet.
+    /// Returns the quarks of an alphabet that need code. Excluded are `wait`, `t` and `way`, which the machine
+    /// evaluates, quarks whose capability the robot lacks, and shared quarks whose capability has no trait.
     pub(super) fn all(alphabet: &'a Alphabet) -> Vec<Self> {
         let mut overloads = BTreeMap::<&str, usize>::new();
         let mut functions = Distinct::quark_functions();
@@ -47,13 +47,13 @@ impl<'a> Bound<'a> {
         format!(" `{}`: {}", signature(self.declaration), Printable(&self.declaration.docs))
     }
 
-    /// The names and types of its parameters.
+    /// Returns the names and kinds of the quark's parameters.
     pub(super) fn parameters(&self) -> impl Iterator<Item = (Ident, Kind)> {
         let mut names = Distinct::parameters();
         self.declaration.params.iter().map(move |param| (names.parameter(&param.name), param.kind))
     }
 
-    /// The function that makes it, as the target's tables name it.
+    /// Returns the path of the function that constructs the quark, as the target's tables name it.
     pub(super) fn path(&self) -> String {
         match &self.declaration.origin {
             Origin::Target => self.function.to_string(),

@@ -15,7 +15,7 @@ use super::tables::entries;
 use crate::fsm::Machine;
 use crate::plan::{Compared, QuarkId};
 
-/// The plan's type and its implementation, with an arm for each atom.
+/// Emits the plan's type and its implementation, with an arm for each atom.
 pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
     let meaning = Meaning::new(machine);
     let constants = meaning.constants();
@@ -64,7 +64,8 @@ impl Meaning<'_> {
         quote!(#(#constants)*)
     }
 
-    /// The quarks that are no constants by themselves: signals, and comparisons of `t`, which the machine makes.
+    /// Returns the quarks that are not constants by themselves: signals, and comparisons of `t`, which the
+    /// machine evaluates.
     fn signals(&self) -> BTreeSet<QuarkId> {
         let mut signals = BTreeSet::new();
         let mut in_conditions = BTreeSet::new();

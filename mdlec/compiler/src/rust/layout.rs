@@ -1,16 +1,17 @@
-//! Lays Rust out, long lists in pieces: what is read and laid out at one time stays small, however long the plan.
+//! Formats Rust code, long lists in pieces, so that the part that is parsed and formatted at one time stays
+//! small, however long the plan is.
 
 use std::mem;
 
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use quote::quote;
 
-/// Maximum number of elements of a list that are laid out at one time.
+/// Maximum number of elements of a list that are formatted at one time.
 const PIECE: usize = 256;
-/// The columns of a line, as prettyplease fills it.
+/// Number of columns of a line, as prettyplease fills it.
 const WIDTH: usize = 89;
-/// Placeholder for elements that are laid out separately, followed by a number. It is longer than a line, so that it is
-/// alone on one, as the elements are.
+/// Placeholder for elements that are formatted separately, followed by a number. It is longer than a line, so
+/// that it gets a line of its own, as the elements do.
 const STAND_IN: &str =
     "the_elements_of_a_long_list_which_are_laid_out_by_themselves_and_then_written_where_this_very_long_name_stands_";
 
@@ -50,7 +51,7 @@ fn with_gaps(tokens: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStr
     tokens.collect()
 }
 
-/// Returns the content of a list's brackets, or a placeholder for it if it is long.
+/// Returns the content of a list's brackets, or a placeholder if the list is long.
 fn elements(inside: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStream {
     let mut pieces = Vec::new();
     let (mut piece, mut commas) = (Vec::new(), 0);
@@ -75,12 +76,12 @@ fn stand_in(number: usize) -> TokenStream {
     TokenTree::from(Ident::new(&format!("{STAND_IN}{number}"), Span::call_site())).into()
 }
 
-/// Returns the number of the list whose placeholder is on a line.
+/// Returns the number of the list whose placeholder is on a line; `None` for a line without a placeholder.
 fn list(line: &str) -> Option<usize> {
     line.trim_start().strip_prefix(STAND_IN)?.strip_suffix(',')?.parse().ok()
 }
 
-/// Writes the elements of a list in the place of a placeholder with this line.
+/// Writes the elements of a list in the place of the line with its placeholder.
 fn write_list(pieces: Vec<TokenStream>, line: &str, text: &mut String) {
     let indent = &line[..line.len() - line.trim_start().len()];
     match pieces.iter().map(numbers).collect::<Option<Vec<_>>>() {
@@ -89,12 +90,12 @@ fn write_list(pieces: Vec<TokenStream>, line: &str, text: &mut String) {
     }
 }
 
-/// The elements, if all are numbers.
+/// Returns the elements as text if all are numbers; `None` otherwise.
 fn numbers(elements: &TokenStream) -> Option<Vec<String>> {
     literals(elements.clone()).filter(|numbers| !numbers.iter().any(|number| number.starts_with('"')))
 }
 
-/// Writes as many numbers in each line as fit.
+/// Writes numbers, as many in each line as fit.
 fn write_numbers(numbers: &[String], indent: &str, text: &mut String) {
     let mut line = indent.to_owned();
     for number in numbers {
@@ -111,7 +112,7 @@ fn write_numbers(numbers: &[String], indent: &str, text: &mut String) {
     write_line(&line, text);
 }
 
-/// Writes elements as they are laid out in the place of a placeholder with this line.
+/// Writes formatted elements in the place of the line with their placeholder.
 fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
     let indent = line.len() - line.trim_start().len();
     if let Some(plain) = strings(&elements).or_else(|| calls(&elements, WIDTH.saturating_sub(indent))) {
@@ -129,7 +130,8 @@ fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
     behind.take_while(|line| line.trim_start() != "];").for_each(|line| write_line(line, text));
 }
 
-/// The elements, if all are string literals: these are written as they are, and to read them would take the longest.
+/// Returns the elements as text if all are string literals; `None` otherwise. These are written unchanged, as
+/// parsing them would take the longest.
 fn strings(elements: &TokenStream) -> Option<Vec<String>> {
     let tokens = elements.clone().into_iter().filter(|token| !is_comma(token)).map(|token| token.to_string());
     tokens.map(|token| token.starts_with('"').then_some(token)).collect()
@@ -165,7 +167,7 @@ fn plain(elements: TokenStream) -> Option<Vec<String>> {
     Some(texts)
 }
 
-/// The arguments, if all are literals.
+/// Returns the arguments as text if all are literals; `None` otherwise.
 fn literals(arguments: TokenStream) -> Option<Vec<String>> {
     let arguments = arguments.into_iter().filter(|token| !is_comma(token));
     arguments.map(|token| matches!(token, TokenTree::Literal(_)).then(|| token.to_string())).collect()
@@ -192,7 +194,7 @@ mod tests {
 
     use super::{PIECE, file_text};
 
-    /// Returns the text of a file laid out piece by piece, and laid out as a whole.
+    /// Returns the text of a file formatted piece by piece, and the text formatted as a whole.
     fn both(file: &TokenStream) -> [String; 2] {
         let whole = prettyplease::unparse(&syn::parse2(file.clone()).expect("a file"));
         let pieces: Vec<_> =

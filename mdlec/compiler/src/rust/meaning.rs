@@ -1,4 +1,4 @@
-//! A plan's meaning with the names that its constants and functions have.
+//! The meaning of a plan, with the names of its constants and functions.
 
 use proc_macro2::Ident;
 
@@ -6,12 +6,13 @@ use super::names::Distinct;
 use crate::fsm::{Element, Machine};
 use crate::plan::Condition;
 
-/// A plan's meaning with the names that its constants and functions have.
+/// The meaning of a plan, with the names of its constants and functions.
 pub(super) struct Meaning<'a> {
     pub(super) machine: &'a Machine,
-    /// The constant of each quark.
+    /// Name of the constant of each quark.
     pub(super) constants: Vec<Ident>,
-    /// The function of each element that is a scope, but no atom, with an interrupt that can fire.
+    /// Name of the function of each element that is a scope with an interrupt that can fire; `None` for atoms
+    /// and all other elements.
     functions: Vec<Option<Ident>>,
 }
 
@@ -27,7 +28,7 @@ impl<'a> Meaning<'a> {
         Self { machine, constants, functions: functions.collect() }
     }
 
-    /// The function of an element, if it has one.
+    /// Returns the name of the function of an element; `None` if the element has none.
     pub(super) fn function(&self, element: Element<'_>) -> Option<&Ident> {
         self.functions.get(element.index())?.as_ref()
     }

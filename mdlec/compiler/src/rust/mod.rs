@@ -1,8 +1,8 @@
-//! A plan's machine as a Rust file: one construct of the file for each function here and in the files beside this one.
-//! See docs/src/reference/generated_code.md, 4.
+//! A plan's machine as a Rust file: each function in this module emits one construct of the file. See
+//! docs/src/reference/generated_code.md, 4.
 //!
-//! The file is one module: what atoms and scopes mean, as code or as rows, and the machine's tables. It grows with the
-//! text, never with loop counts.
+//! The file is one Rust module: the meaning of atoms and scopes, as inline code or as table rows, and the
+//! machine's tables. Its size grows with the text of the plan, and does not depend on loop counts.
 
 mod arguments;
 mod bind;
@@ -32,35 +32,36 @@ use crate::plan::Nondegenerate;
 pub use bind::bind;
 pub use names::plan_type;
 
-/// Content of the head of an emitted file, and the texts to which the code refers.
+/// Content of the head of an emitted file, and the source texts to which the code refers.
 #[derive(Debug, Clone, Copy)]
 pub struct Header<'a> {
     /// Texts of the plan and of the files that it uses, for reports.
     pub sources: &'a Sources,
-    /// The plan's file, without folders.
+    /// Name of the plan's file, without folders.
     pub file: &'a str,
-    /// The plan's name.
+    /// Name of the plan.
     pub plan: &'a str,
 }
 
-/// Form of an emitted plan; a turn does the same in each.
+/// Form of an emitted plan; all forms behave the same in every turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
-    /// Code for each atom and scope: the fastest turn, and pleasant to read.
+    /// Inline code for each atom and scope, which has the fastest turn and is easy to read.
     Code,
-    /// Rows of tables: rustc compiles them in no time, and a turn looks them up. For long plans and for memories.
+    /// Table rows, which rustc compiles almost at once and which a turn looks up. Used for long plans and for
+    /// plans with memories.
     Rows,
 }
 
 impl Shape {
-    /// Maximum number of scopes, loops and atoms of a plan that is emitted as code and not as tables: about what rustc
-    /// compiles in half a second.
+    /// Maximum number of scopes, loops and atoms of a plan that is emitted as inline code and not as tables:
+    /// about as many as rustc compiles in half a second.
     const CODE: usize = 64;
-    /// Maximum number of parts of all conditions of a plan that becomes code: rustc takes another half a second for
-    /// these.
+    /// Maximum number of parts of all conditions of a plan that is emitted as inline code: rustc takes another
+    /// half a second for this number.
     const PARTS: usize = 512;
 
-    /// The shape that suits a plan.
+    /// Returns the shape that suits the size of a plan.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
         let is_short = machine.elements().len() <= Self::CODE && parts(machine) <= Self::PARTS;
@@ -68,7 +69,7 @@ impl Shape {
     }
 }
 
-/// Maximum number of scopes, loops, atoms and parts of conditions of a plan that is emitted: rustc takes minutes for
+/// Maximum number of scopes, loops, atoms and parts of conditions of an emitted plan: rustc takes minutes for
 /// more.
 const EMITTED: usize = 1 << 18;
 
@@ -91,13 +92,13 @@ pub fn fits(plan: &Nondegenerate) -> Result<(), Diagnostic> {
     Err(Diagnostic::new(Code::E0501, message, plan.root.span, "this plan").help(help))
 }
 
-/// The parts of all conditions.
+/// Returns the number of parts of all conditions.
 fn parts(machine: &Machine) -> usize {
     machine.elements().filter_map(Element::interrupt).map(|interrupt| interrupt.condition.parts()).sum()
 }
 
-/// Writes the file in the shape that suits its size. Its text depends on nothing but the arguments and the version of
-/// the compiler.
+/// Writes the file in the shape that suits its size. The text depends only on the arguments and on the version
+/// of the compiler.
 #[must_use]
 pub fn emit(machine: &Machine, header: Header<'_>, alphabet: &Alphabet) -> String {
     emit_as(Shape::of(machine), machine, header, alphabet)
@@ -142,8 +143,8 @@ pub fn emit_as(shape: Shape, machine: &Machine, header: Header<'_>, alphabet: &A
     format!("{}{}", heading(header, alphabet), layout::file_text(file))
 }
 
-/// Returns an assertion that does not compile if the target is bound to another alphabet than that against which the
-/// plan was checked.
+/// Returns an assertion that fails to compile if the target is bound to another alphabet than the one against
+/// which the plan was checked.
 fn same_alphabet(alphabet: &Alphabet) -> TokenStream {
     let hash = bind::hash(alphabet);
     let message = format!("the crate of target `{}` is bound to another alphabet: run `mdlec bind`", alphabet.name);
@@ -170,7 +171,7 @@ mod tests {
     use crate::diagnostic::Sources;
     use crate::samples::{alphabet, compiled, sources};
 
-    /// Every operator of conditions, one inside the other; frames too.
+    /// A plan with every operator of conditions, nested in each other, and with frames.
     const OPERATORS: &str = "{ P (bumper AND (wait 1 OR NOT wait 2) OR NOT bumper AND t < 3)
   (Atom (atIsection 1000 AND (r3 < r5 OR NOT atIsection 0100)) stop)
   { Q (null) FRAME 90deg (Atom (null) rotate 10) }

@@ -1,16 +1,16 @@
-//! Every identifier of a generated file is made here.
+//! Names in generated files: every identifier is chosen here.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Ident;
 use quote::format_ident;
 
-/// The types that a generated file uses, beside those of the robot, which it writes with their module.
+/// Types that a generated file uses in addition to those of the robot, which it writes with their module.
 const TYPES: &[&str] = &[
     "At", "Atom", "Begin", "Bracket", "Cursor", "Debug", "Default", "FnMut", "Fsm", "Input", "Nanos", "None", "Option",
     "Output", "Plan", "Running", "Self", "Some",
 ];
-/// Names of a bound alphabet besides its quarks, and the names of Rust's own that its text uses.
+/// Names of a bound alphabet in addition to its quarks, and names of Rust that its text uses.
 const BOUND: &[&str] = &[
     "Input",
     "Output",
@@ -26,28 +26,28 @@ const BOUND: &[&str] = &[
     "Self",
     "Some",
 ];
-/// Constants of every emitted plan.
+/// Names of the constants of every emitted plan.
 const CONSTANTS: &[&str] = &["FSM", "LAWS", "CONDITIONS", "NAMES", "OPERANDS", "SOURCE"];
-/// Names of an emitted plan's functions, arguments and variables, which would hide another function, and the keyword
-/// that syn does not know yet.
+/// Names of an emitted plan's functions, arguments and variables, which must not be hidden by other functions,
+/// and a keyword that syn does not know yet.
 const FUNCTIONS: &[&str] = &["gen", "cursor", "y", "t", "tell", "law", "atom", "begin", "scope"];
 
-/// The type of a plan: its name in camel case.
+/// Returns the name of a plan's type: the plan's name in camel case.
 #[must_use]
 pub fn plan_type(plan: &str) -> String {
     let name = camel_case(plan);
     if TYPES.contains(&name.as_str()) { format!("{name}Plan") } else { name }
 }
 
-/// The type of a quark in its target's crate: its name in camel case, and for further declarations of one name their
-/// number: `GoAvoid`, `GoAvoid2`.
+/// Returns the name of a quark's type in its target's crate: the quark's name in camel case, with a number for
+/// further declarations of the same name: `GoAvoid`, `GoAvoid2`.
 pub(super) fn quark_type(name: &str, overload: usize) -> Ident {
     let name = camel_case(name);
     let name = if BOUND.contains(&name.as_str()) { format!("{name}Quark") } else { name };
     if overload == 0 { format_ident!("{name}") } else { format_ident!("{name}{}", overload + 1) }
 }
 
-/// The variant that holds the law of an atom, numbered as written, from 1.
+/// Returns the name of the variant that holds the law of an atom, numbered as written, from 1.
 pub(super) fn atom_variant(atom: usize) -> Ident {
     format_ident!("Atom{}", atom + 1)
 }
@@ -61,12 +61,12 @@ pub(super) struct Distinct {
 }
 
 impl Distinct {
-    /// Names of constants.
+    /// Returns the names in use for constants.
     pub(super) fn constants() -> Self {
         Self::beside(CONSTANTS)
     }
 
-    /// Names of functions.
+    /// Returns the names in use for functions.
     pub(super) fn functions() -> Self {
         Self::beside(FUNCTIONS)
     }
@@ -76,7 +76,7 @@ impl Distinct {
         Self::beside(&["gen", "guard", "law", "follows", "degrees"])
     }
 
-    /// Names of a function's parameters.
+    /// Returns the names in use for a function's parameters.
     pub(super) fn parameters() -> Self {
         Self::beside(&[])
     }
@@ -85,7 +85,8 @@ impl Distinct {
         Self { names: names.iter().map(|name| (*name).to_owned()).collect(), numbers: BTreeMap::new() }
     }
 
-    /// The constant of a quark with its arguments, after its text: `GO_0_0_36`.
+    /// Returns the name of the constant of a quark with its arguments, derived from the quark text:
+    /// `GO_0_0_36`.
     pub(super) fn constant(&mut self, quark_text: &str) -> Ident {
         let words = quark_text
             .replace('-', "minus_")
@@ -93,14 +94,15 @@ impl Distinct {
         self.distinct(&snake_case(&words).to_ascii_uppercase())
     }
 
-    /// The function that asks whether a scope, or one around it, has ended, after the scope's name.
+    /// Returns the name of the function that evaluates if a scope or an enclosing scope has ended, derived from
+    /// the scope's name.
     pub(super) fn scope_function(&mut self, scope: &str) -> Ident {
         let name = if scope.is_empty() { "unnamed".to_owned() } else { snake_case(scope) };
         let name = if syn::parse_str::<Ident>(&name).is_ok() { name } else { format!("{name}_scope") };
         self.distinct(&name)
     }
 
-    /// A parameter of a quark, after its name in the alphabet.
+    /// Returns the name of a quark's parameter, derived from its name in the alphabet.
     pub(super) fn parameter(&mut self, name: &str) -> Ident {
         let name = snake_case(name);
         let name = if syn::parse_str::<Ident>(&name).is_ok() { name } else { format!("{name}_") };
@@ -154,7 +156,7 @@ fn snake_case(name: &str) -> String {
     if snake.starts_with(|letter: char| letter.is_ascii_alphabetic()) { snake } else { format!("scope_{snake}") }
 }
 
-/// The parts of `name` between underscores, joined by single ones.
+/// Returns the non-empty parts of `name` between underscores, joined by single joints.
 fn words(name: &str, joint: char) -> String {
     let parts: Vec<_> = name.split('_').filter(|part| !part.is_empty()).collect();
     parts.join(&joint.to_string())

@@ -1,4 +1,4 @@
-//! A plan as rows of tables, which the runtime looks up: for plans too long to be code of their own.
+//! A plan as table rows, which the runtime looks up, for plans that are too long for inline code.
 
 use mdle_runtime::{Fact, Follows, Guard, LawRow, MarkRow, Radians};
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -91,7 +91,8 @@ pub(super) fn machine(
     }
 }
 
-/// Returns the function by which the law of a plan with `stuck` reports its progress.
+/// Emits the function by which the law of a plan with `stuck` reports its progress; `None` for a plan without
+/// `stuck`.
 fn stalled(machine: &Machine) -> Option<TokenStream> {
     asks_for_progress(machine).then(|| {
         quote! {
@@ -101,7 +102,7 @@ fn stalled(machine: &Machine) -> Option<TokenStream> {
     })
 }
 
-/// Returns the functions by which the machine informs a plan with memories; `None` for a plan without memories.
+/// Emits the functions by which the machine informs a plan with memories; `None` for a plan without memories.
 fn memory_updates(machine: &Machine) -> Option<TokenStream> {
     (machine.sizes().memories > 0).then(|| {
         quote! {
@@ -121,7 +122,7 @@ fn memory_updates(machine: &Machine) -> Option<TokenStream> {
     })
 }
 
-/// Emits the type of the plan's memory, if the plan remembers anything, and the expression that creates the plan.
+/// Emits the type of the plan's memory, if the plan has one, and the expression that creates the plan.
 fn memory(machine: &Machine, begins: &TokenStream) -> (Option<TokenStream>, TokenStream) {
     let slots = Literal::usize_unsuffixed(machine.sizes().slots);
     let slots = quote!(#begins, [0; #slots]);

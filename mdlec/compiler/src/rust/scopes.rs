@@ -1,5 +1,5 @@
-//! The ends of scopes, as code: interrupts as expressions, and a function for each scope that asks the enclosing one
-//! first.
+//! The ends of scopes as inline code: interrupts as expressions, and a function for each scope that first
+//! evaluates the enclosing scope.
 
 use mdle_runtime::Printable;
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -33,20 +33,21 @@ impl Meaning<'_> {
         quote!(#(#functions)*)
     }
 
-    /// The function of the nearest scope that encloses this element and has an interrupt; not the plan's, which is
-    /// asked before all others.
+    /// Returns the function of the nearest scope that encloses this element and has an interrupt; `None` if only the
+    /// plan does, whose own interrupt is evaluated first.
     pub(super) fn around(&self, element: Element<'_>) -> Option<&Ident> {
         let mut enclosing = element.outwards().skip(1).filter(|enclosing| enclosing.parent().is_some());
         enclosing.find_map(|enclosing| self.function(enclosing))
     }
 
-    /// Returns the expression that is true when the interrupt of this element has fired; `None` where it never does.
+    /// Emits the expression that is true when the interrupt of this element has fired; `None` if it never
+    /// fires.
     pub(super) fn condition(&self, element: Element<'_>) -> Option<TokenStream> {
         let condition = element.condition();
         (*condition != Condition::Null).then(|| self.expression(condition, level(element)))
     }
 
-    /// Returns the expression that is true when a condition of a scope of this level has fired.
+    /// Emits the expression that is true when a condition of a scope of this level has fired.
     fn expression(&self, condition: &Condition, level: u16) -> TokenStream {
         let operand = |operand: &Condition| {
             let inner = self.expression(operand, level);
@@ -92,13 +93,13 @@ impl Meaning<'_> {
     }
 }
 
-/// Returns `true` if a condition of the plan asks whether a law makes progress.
+/// Returns `true` if a condition of the plan depends on the progress of a law.
 pub(super) fn asks_for_progress(machine: &Machine) -> bool {
     machine.elements().any(|element| element.condition().lasts())
 }
 
-/// Emits the end of an element: `Cause::Fired(level).then(…)`, without `then` if the next atom depends on a loop's
-/// count.
+/// Emits the end of an element: `Cause::Fired(level).then(…)`, without `then` if the next atom depends on a
+/// loop's counter.
 pub(super) fn ending(element: Element<'_>, cause: &TokenStream) -> TokenStream {
     let level = level(element);
     match element.follows().map(follows) {
@@ -107,13 +108,13 @@ pub(super) fn ending(element: Element<'_>, cause: &TokenStream) -> TokenStream {
     }
 }
 
-/// Emits `Nanos(500)`.
+/// Emits a time: `Nanos(500)`.
 fn nanoseconds(nanos: u64) -> TokenStream {
     let nanos = Literal::u64_unsuffixed(nanos);
     quote!(Nanos(#nanos))
 }
 
-/// Emits `runtime::Nanometers(500)`.
+/// Emits a length: `runtime::Nanometers(500)`.
 pub(super) fn nanometers(length: u64) -> TokenStream {
     let length = Literal::u64_unsuffixed(length);
     quote!(runtime::Nanometers(#length))

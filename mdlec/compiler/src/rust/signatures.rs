@@ -1,4 +1,5 @@
-//! Emits the signatures of an alphabet's quarks, which a target's crate has to implement, with a type for each unit.
+//! Emits the signatures that a target's crate has to implement for an alphabet's quarks, with a type for each
+//! unit.
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -6,8 +7,8 @@ use quote::{format_ident, quote};
 use super::bound::Bound;
 use crate::alphabet::Kind;
 
-/// The function that makes a quark of its arguments, and does not compile where its type is not as the alphabet says:
-/// `const fn go(arguments: &[Argument<'_>]) -> Option<Go>`, after `visibility`.
+/// Emits the function that constructs a quark from its arguments, and that fails to compile if the quark's type
+/// does not match the alphabet: `const fn go(arguments: &[Argument<'_>]) -> Option<Go>`, after `visibility`.
 pub(super) fn from_arguments(quark: &Bound<'_>, visibility: &TokenStream) -> TokenStream {
     let (kind, function, doc) = (&quark.kind, &quark.function, quark.doc());
     let parameters: Vec<_> = quark.parameters().collect();

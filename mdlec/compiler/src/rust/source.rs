@@ -1,4 +1,4 @@
-//! The words of a plan as its writer has them, and their lines, as constants.
+//! The words of a plan as written, and their lines, as constants.
 
 use mdle_runtime::{SourceLine, ValueWords};
 use proc_macro2::{Literal, TokenStream};

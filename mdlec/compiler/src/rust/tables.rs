@@ -64,7 +64,7 @@ fn has_frames(machine: &Machine) -> bool {
     machine.frames().iter().any(Option::is_some)
 }
 
-/// The type that keeps the entries of scopes, and its initial value.
+/// Emits the type that stores the entries of scopes, and its initial value.
 pub(super) fn entries(machine: &Machine) -> (TokenStream, TokenStream) {
     let levels = Literal::usize_unsuffixed(machine.sizes().levels);
     if machine.sizes().stamps {
@@ -89,7 +89,7 @@ fn bracket(element: Element<'_>) -> TokenStream {
     quote!(Bracket::scope(#level, #first, #last, #parent))
 }
 
-/// The number of scopes that enclose a scope; 0 for a loop.
+/// Returns the number of scopes that enclose a scope; 0 for a loop.
 pub(super) fn level(element: Element<'_>) -> u16 {
     element.level().unwrap_or(0)
 }
@@ -102,7 +102,7 @@ pub(super) fn follows(follows: Follows) -> TokenStream {
     quote!(runtime::Follows::new(#atom, #from, #to))
 }
 
-/// Returns the files whose paths laws replay, each once; `None` for a plan that replays no paths.
+/// Emits the names of the path files that the laws replay, each once; `None` for a plan that replays no paths.
 pub(super) fn paths(machine: &Machine, alphabet: &Alphabet) -> Option<TokenStream> {
     let files = fsm::replayed_files(machine, alphabet);
     let files = files.iter();

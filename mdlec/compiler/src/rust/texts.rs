@@ -1,4 +1,4 @@
-//! Many short texts as one text in Rust: rustc takes as long for a long literal as for a short one.
+//! Many short texts as one text in Rust, as rustc takes no longer for a long literal than for a short one.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
