@@ -1,5 +1,5 @@
-//! The board: every attribute of every module with its last value, changed at turn breaks only. Readers are wired to
-//! places on it when a module is loaded or unloaded, so that a turn looks up no names.
+//! The board: every attribute of every module with its last value, changed only at turn breaks. When a module
+//! is loaded or unloaded, readers get their places on the board, so that no turn looks up names.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::module::{About, Declared, Ports, Refusal, Source};
 #[derive(Debug, Default)]
 pub struct Board {
     posts: Vec<Post>,
-    /// Attributes of which a NaN was refused for the first time.
+    /// Attributes whose value was NaN, and so refused, for the first time.
     refused: Vec<AttributeName>,
 }
 
@@ -21,9 +21,9 @@ pub struct Board {
 pub struct Post {
     /// Name of the attribute.
     pub name: AttributeName,
-    /// Kind, unit and description.
+    /// Kind, unit and description of the attribute.
     pub about: About,
-    /// The value that was published last; `None` before the first.
+    /// The value that was published last; `None` before the first publication.
     pub reading: Option<Reading>,
     /// Time from one exchange of its module to the next, as the module declares it.
     pub latency: Nanos,
@@ -31,7 +31,8 @@ pub struct Post {
     pub refused: u64,
 }
 
-/// Places on the board from which a module's copies come; `None` for a setting, or what no module publishes.
+/// Places on the board from which a module's copies come; `None` for a setting, and for an attribute that no
+/// module publishes.
 pub(crate) type Wires = Vec<Option<usize>>;
 
 impl Board {
@@ -46,18 +47,19 @@ impl Board {
         self.posts.iter().filter(move |post| &*post.name.module == module)
     }
 
-    /// Returns an attribute.
+    /// Returns an attribute; `None` if it is not on the board.
     #[must_use]
     pub fn post(&self, module: &str, attribute: &str) -> Option<&Post> {
         self.place(module, attribute).and_then(|place| self.posts.get(place))
     }
 
-    /// Returns the place of an attribute.
+    /// Returns the place of an attribute; `None` if it is not on the board.
     pub(crate) fn place(&self, module: &str, attribute: &str) -> Option<usize> {
         self.posts.iter().position(|post| &*post.name.module == module && &*post.name.attribute == attribute)
     }
 
-    /// Returns the place of an attribute that a plan reads; for `age`, the place of the module's first attribute.
+    /// Returns the place of an attribute that a plan reads; for `age`, the place of the module's first
+    /// attribute.
     pub(crate) fn place_of(&self, read: &ModuleRead) -> Option<usize> {
         if read.attribute == AGE {
             return self.posts.iter().position(|post| &*post.name.module == read.module);
@@ -86,14 +88,14 @@ impl Board {
         self.posts.iter().position(|post| &*post.name.module == module).unwrap_or(self.posts.len())
     }
 
-    /// Adds an attribute of a module that is not loaded, as a run had it that is made again.
+    /// Includes an attribute of a module that is not loaded, as in the recorded run that is repeated.
     pub(crate) fn restore(&mut self, name: AttributeName, kind: AttributeKind) {
         self.forget(&name);
         let about = About { name: Arc::clone(&name.attribute), kind, unit: None, doc: "" };
         self.posts.push(Post { name, about, reading: None, latency: Nanos::ZERO, refused: 0 });
     }
 
-    /// Gives such an attribute the value that it had.
+    /// Sets the value of a restored attribute, as in the recorded run.
     pub(crate) fn restore_reading(&mut self, name: &AttributeName, reading: Reading) {
         if let Some(post) = self.posts.iter_mut().find(|post| post.name == *name) {
             post.reading = Some(reading);
@@ -105,10 +107,10 @@ impl Board {
         self.posts.retain(|post| post.name != *name);
     }
 
-    /// Returns the places of all that a module reads.
+    /// Returns the places of all attributes that a module reads.
     ///
     /// # Errors
-    /// It reads an attribute as another kind than it has.
+    /// Fails if the module reads an attribute as another kind than the attribute has.
     pub(crate) fn wires(&self, reader: &str, declared: &Declared) -> Result<Wires, Refusal> {
         let wire = |source: &Source| {
             let Source::Attribute(name, read) = source else { return Ok(None) };
@@ -123,7 +125,8 @@ impl Board {
         declared.reads.iter().map(wire).collect()
     }
 
-    /// Publishes the values of a module whose attributes begin at `first`; calls `published` with each place.
+    /// Publishes the values of a module whose attributes begin at place `first`; calls `published` with the
+    /// place of each.
     pub(crate) fn publish(
         &mut self,
         first: usize,
@@ -139,7 +142,7 @@ impl Board {
         }
     }
 
-    /// Publishes one value, unless there is a NaN in it.
+    /// Publishes one value, unless it contains NaN.
     pub(crate) fn put(&mut self, place: usize, value: Value, now: Nanos) {
         let Some(post) = self.posts.get_mut(place) else { return };
         if value.has_nan() {
@@ -152,12 +155,13 @@ impl Board {
         }
     }
 
-    /// Returns the attributes of which a NaN was refused for the first time since the last call.
+    /// Returns the attributes whose value was NaN, and so refused, for the first time since the last call.
     pub(crate) fn newly_refused(&mut self) -> impl Iterator<Item = AttributeName> {
         self.refused.drain(..)
     }
 
-    /// Gives a module its copies of what it reads. An attribute that has vanished has no value any more.
+    /// Updates a module's copies of the attributes that it reads. An attribute that has vanished has no value
+    /// any more.
     pub(crate) fn hand(&self, declared: &Declared, wires: &[Option<usize>], ports: &mut Ports) {
         for ((source, wire), copy) in declared.reads.iter().zip(wires).zip(&mut ports.ins) {
             let reading = match source {

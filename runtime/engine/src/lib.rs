@@ -1,7 +1,7 @@
-//! The Modular Engine (section III of the paper): modules and plans that make a robot's turns together.
+//! The Modular Engine (section III of the paper), in which modules and plans make a robot's turns together.
 //!
-//! For people who write a module: [`Module`] or [`Background`], and [`Declare`], with which it says what it publishes
-//! and reads.
+//! To implement a module: [`Module`] or [`Background`], and [`Declare`], which declares the attributes that the
+//! module publishes and reads.
 #![forbid(unsafe_code)]
 
 mod attribute;

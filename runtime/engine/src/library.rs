@@ -1,4 +1,4 @@
-//! The modules of a program: functions that make them, for each run anew.
+//! The modules of a program: functions that create the modules anew for each run.
 
 use std::fmt;
 use std::sync::Arc;
@@ -8,12 +8,12 @@ use mdle_host::StopRequest;
 use crate::attribute::is_name;
 use crate::module::{Background, Candidate, Declare, Module, PLAN, ROBOT, Refusal};
 
-/// The modules that each run of a program loads, in this order.
+/// The modules that each run of a program loads, in order.
 pub struct Library<Y> {
     makers: Vec<(String, Arc<MakeCandidate<Y>>)>,
 }
 
-/// Makes a module.
+/// Function that creates a module.
 type MakeCandidate<Y> = dyn Fn(&StopRequest) -> Result<Candidate<Y>, Refusal> + Send + Sync;
 
 impl<Y> Library<Y> {
@@ -51,10 +51,10 @@ impl<Y> Library<Y> {
         self.makers.iter().map(|(name, _)| name.as_str())
     }
 
-    /// Returns `Ok` if a module can be added under this name.
+    /// Checks that a module can be added under this name.
     ///
     /// # Errors
-    /// No module can have the name, or another one has it.
+    /// Fails if no module may have the name, or if another module has it.
     pub fn admits(&self, name: &str) -> Result<(), Refusal> {
         if !is_name(name) {
             return Err(Refusal::BadName(name.to_owned()));
@@ -63,15 +63,15 @@ impl<Y> Library<Y> {
         if is_taken { Err(Refusal::NameTaken(name.to_owned())) } else { Ok(()) }
     }
 
-    /// Makes the modules, unless `request` is made before.
+    /// Creates the modules, unless `request` is made before.
     pub(crate) fn candidates(&self, request: &StopRequest) -> impl Iterator<Item = Result<Candidate<Y>, Refusal>> {
         self.makers.iter().map(move |(_, make)| make(request))
     }
 
-    /// Makes the module of this name, unless `request` is made before.
+    /// Creates the module of this name, unless `request` is made before.
     ///
     /// # Errors
-    /// There is no such module, or it cannot be made.
+    /// Fails if there is no such module, or if it cannot be created.
     pub(crate) fn candidate(&self, name: &str, request: &StopRequest) -> Result<Candidate<Y>, Refusal> {
         let found = self.makers.iter().find(|(known, _)| known == name);
         found.map_or_else(|| Err(Refusal::Unknown(name.to_owned())), |(_, make)| make(request))

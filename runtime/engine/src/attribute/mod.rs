@@ -10,14 +10,15 @@ use std::sync::Arc;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Volts};
 pub use value::{AttributeKind, Reading, Value};
 
-/// Number that every module has: the time since it published, in seconds. No attribute has this name.
+/// Name of the number that every module has: the time since its last publication, in seconds. No attribute may
+/// have this name.
 pub(crate) const AGE: &str = "age";
 
 /// A Rust type that an attribute can have.
 pub trait Attribute: Sized {
-    /// Kind of the attributes of this type.
+    /// Kind of the attributes that have this type.
     const KIND: AttributeKind;
-    /// Converts this into a value with its kind.
+    /// Converts this into a value of the kind.
     fn into_value(self) -> Value;
     /// Returns the content of a value of this kind; `None` for any other kind.
     fn from_value(value: &Value) -> Option<Self>;
@@ -58,7 +59,7 @@ attributes! {
 /// An attribute that a module publishes, as [`Declare::publishes`](crate::Declare::publishes) returns it.
 pub struct Out<T>(usize, PhantomData<fn(T)>);
 
-/// An attribute that a module reads: one of another module, or a setting of its own.
+/// An attribute that a module reads: an attribute of another module, or a setting of the module itself.
 pub struct In<T>(usize, PhantomData<fn() -> T>);
 
 macro_rules! places {
@@ -68,7 +69,7 @@ macro_rules! places {
                 Self(place, PhantomData)
             }
 
-            /// Place among the module's own attributes.
+            /// Returns the position among the module's own attributes.
             pub(crate) const fn place(self) -> usize {
                 self.0
             }
@@ -92,7 +93,7 @@ macro_rules! places {
 
 places!(Out, In);
 
-/// Name of an attribute: its module, and its own name in it.
+/// Name of an attribute: the name of its module, and its own name in the module.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct AttributeName {
     /// Name of the module.
@@ -116,8 +117,8 @@ impl fmt::Display for AttributeName {
     }
 }
 
-/// Returns `true` if a module or an attribute may have this name: a name of MDLe, which is ASCII letters, digits and
-/// underscores, and no digit first.
+/// Returns `true` if a module or an attribute may have this name. Valid names are those of MDLe: ASCII letters,
+/// digits and underscores, with no digit first.
 pub(crate) fn is_name(text: &str) -> bool {
     let begins = text.starts_with(|letter: char| letter.is_ascii_alphabetic() || letter == '_');
     begins && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')

@@ -8,62 +8,62 @@ use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSeco
 /// Kind of an attribute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AttributeKind {
-    /// True or false.
+    /// Boolean.
     Flag,
-    /// A whole number.
+    /// Whole number.
     Integer,
-    /// A number without a unit.
+    /// Number without a unit.
     Number,
-    /// A length.
+    /// Length, in metres.
     Length,
-    /// A speed.
+    /// Speed, in metres per second.
     Speed,
-    /// An angle.
+    /// Angle, in radians.
     Angle,
-    /// A turn rate.
+    /// Turn rate, in radians per second.
     AngularRate,
-    /// A voltage.
+    /// Voltage, in volts.
     Voltage,
-    /// A time.
+    /// Time, in nanoseconds.
     Time,
-    /// A place and a heading in the plane.
+    /// Position and heading in the plane.
     Pose,
-    /// A text.
+    /// Text.
     Text,
-    /// Numbers without a unit, in order.
+    /// List of numbers without a unit.
     Numbers,
-    /// Bytes, in order.
+    /// List of bytes.
     Bytes,
 }
 
 /// Value of an attribute with its kind, in SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// True or false.
+    /// Boolean value.
     Flag(bool),
-    /// A whole number.
+    /// Whole number.
     Integer(i64),
-    /// A number without a unit.
+    /// Number without a unit.
     Number(f64),
-    /// A length.
+    /// Length, in metres.
     Length(Meters),
-    /// A speed.
+    /// Speed, in metres per second.
     Speed(MetersPerSecond),
-    /// An angle.
+    /// Angle, in radians.
     Angle(Radians),
-    /// A turn rate.
+    /// Turn rate, in radians per second.
     AngularRate(RadiansPerSecond),
-    /// A voltage.
+    /// Voltage, in volts.
     Voltage(Volts),
-    /// A time.
+    /// Time, in nanoseconds.
     Time(Nanos),
-    /// A place and a heading in the plane.
+    /// Position and heading in the plane.
     Pose(Pose),
-    /// A text.
+    /// Text.
     Text(Arc<str>),
-    /// Numbers without a unit, in order.
+    /// List of numbers without a unit.
     Numbers(Arc<[f64]>),
-    /// Bytes, in order.
+    /// List of bytes.
     Bytes(Arc<[u8]>),
 }
 
@@ -104,7 +104,7 @@ impl AttributeKind {
         Self::ALL.get(usize::from(number)).copied()
     }
 
-    /// Name of the kind in words, with its article: "an angle".
+    /// Returns the name of the kind in words, with its article: "an angle".
     #[must_use]
     pub fn words(self) -> String {
         match (self, self.quantity()) {
@@ -173,7 +173,7 @@ impl Value {
         }
     }
 
-    /// Returns the bits of a value that plans read as a number; 0 for any other.
+    /// Returns the bits of a value that plans read as a number; 0 for any other value.
     pub(crate) fn bits(&self) -> u64 {
         match self {
             Self::Integer(number) => number.cast_unsigned(),
@@ -188,8 +188,8 @@ impl Value {
         }
     }
 
-    /// Returns the value of this kind with these bits; for a kind that plans do not read, a value that they do not read
-    /// either.
+    /// Returns the value of this kind with these bits. For a kind that plans do not read, returns a value that
+    /// they do not read either.
     pub(crate) fn of_bits(kind: AttributeKind, bits: u64) -> Self {
         let number = f64::from_bits(bits);
         match kind {

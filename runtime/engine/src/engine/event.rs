@@ -12,15 +12,15 @@ pub enum Event {
     Loaded(Arc<str>),
     /// The module was unloaded.
     Unloaded(Arc<str>),
-    /// The module makes turns from the next one on.
+    /// The module makes turns, from the next turn on.
     Started(Arc<str>),
-    /// The module makes no turns for now.
+    /// The module makes no turns until it is started again.
     Stopped(Arc<str>),
-    /// The module cannot go on: a sentence.
+    /// The module cannot continue: the reason, as a sentence.
     Failed(Arc<str>, String),
-    /// The module had not ended its turn when the turn had to end.
+    /// The module had not finished its turn at the deadline.
     Late(Arc<str>),
-    /// The module has been late for too long.
+    /// The module was late for too long, and makes no further turn.
     GivenUp(Arc<str>),
     /// The thread of the background module has ended.
     Ended(Arc<str>),
@@ -44,29 +44,30 @@ impl fmt::Display for Event {
     }
 }
 
-/// The part of a turn break that no module computes: with the robot's outputs, it repeats a run exactly.
+/// The part of a turn break that depends on more than computation: together with the robot's outputs, it
+/// repeats a run exactly.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Arrivals {
     /// Values from background modules, each with its place on the board, in order.
     pub values: Vec<(usize, Value)>,
-    /// Background modules that have ended.
+    /// Background modules that have ended, each with its end.
     pub ended: Vec<(Arc<str>, End)>,
-    /// Registered modules that had not ended their turn.
+    /// Registered modules that had not finished their turn at the deadline.
     pub late: Vec<Arc<str>>,
-    /// Registered modules that no thread had taken when the turn had to end.
+    /// Registered modules whose turn no thread had begun at the deadline.
     pub skipped: Vec<Arc<str>>,
 }
 
 /// End of a background module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum End {
-    /// The module's code returned.
+    /// The module's code has returned.
     Returned,
-    /// It cannot go on: a sentence.
+    /// The module cannot continue: the reason, as a sentence.
     Failed(String),
-    /// The module's code panicked: the message.
+    /// The module's code panicked: the message of the panic.
     Panicked(String),
-    /// In stepped time it did not exchange values when its latency had passed.
+    /// In stepped time, the module did not exchange values when its latency had passed.
     GivenUp,
 }
 

@@ -1,5 +1,5 @@
-//! A thread of the process that drops what the control thread no longer needs: large plans, and modules, whose code
-//! runs then.
+//! A thread of the process that drops values which the control thread no longer needs: large plans, and
+//! modules, whose destructors may take long.
 
 use std::any::Any;
 use std::io;
@@ -8,18 +8,18 @@ use std::sync::mpsc::{Sender, channel};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// Channel to the thread, for the values that it is to drop.
+/// Channel to the janitor's thread, for the values that it drops.
 #[derive(Debug, Clone)]
 pub(crate) struct Janitor(Sender<Box<dyn Any + Send>>);
 
-/// The janitor, once it is needed.
+/// The janitor; `None` until it is first needed.
 static JANITOR: Mutex<Option<Janitor>> = Mutex::new(None);
 
 impl Janitor {
     /// Returns the janitor; the first call starts the thread.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// Fails if the system cannot create the thread.
     pub(crate) fn get() -> io::Result<Self> {
         let mut janitor = JANITOR.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(janitor) = &*janitor {
@@ -36,7 +36,7 @@ impl Janitor {
         Ok(janitor.insert(Self(sender)).clone())
     }
 
-    /// Drops a value on the janitor's thread, soon.
+    /// Drops a value on the janitor's thread, at some later time.
     pub(crate) fn drop_later(&self, thing: impl Any + Send) {
         // Without its thread the value is dropped here.
         let _ = self.0.send(Box::new(thing));

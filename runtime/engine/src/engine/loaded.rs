@@ -12,27 +12,27 @@ use crate::module::{Candidate, Declared, Form, Ports, Relevance, ThreadGate};
 pub(crate) struct Loaded<Y> {
     pub(crate) name: Arc<str>,
     pub(crate) declared: Declared,
-    /// Place of its first attribute on the board.
+    /// Place of the module's first attribute on the board.
     pub(crate) first: usize,
     pub(crate) wires: Wires,
     pub(crate) runs: Runs<Y>,
     pub(crate) state: ModuleState,
-    /// `true` while people have stopped it.
+    /// `true` while a person has stopped the module.
     pub(crate) is_held: bool,
 }
 
-/// Code of a loaded module, and where it runs.
+/// Code of a loaded module, and the thread that runs it.
 pub(crate) enum Runs<Y> {
-    /// It makes turns.
+    /// A module that makes turns, with its seat among the modules of a turn.
     InTurns(Arc<Seat<Y>>),
-    /// It has a thread.
+    /// A background module, with its own thread.
     InBackground(Visit),
 }
 
-/// Exchange of a background module with the breaks.
+/// Exchanges of values between a background module and the turn breaks.
 pub(crate) struct Visit {
     pub(crate) gate: ThreadGate,
-    /// Time at which its next exchange is due, in stepped time.
+    /// Time at which the module's next exchange is due, in stepped time.
     pub(crate) due: Nanos,
     /// Values of the module during a break that serves it.
     pub(crate) ports: Option<Ports>,
@@ -41,15 +41,15 @@ pub(crate) struct Visit {
 /// State of a loaded module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ModuleState {
-    /// It makes turns, or exchanges values.
+    /// The module makes turns, or exchanges values.
     Active,
-    /// It makes no turns for now: people have stopped it, or nothing reads it.
+    /// The module makes no turns for now: a person has stopped it, or nothing reads it.
     Stopped,
-    /// A thread still runs it since the turn of this number and time.
+    /// A thread is still running the module's turn of this number and time.
     Late(u64, Nanos),
-    /// It was late for too long, and makes no further turn.
+    /// The module was late for too long, and makes no further turn.
     GivenUp,
-    /// It has failed, and makes no further turn.
+    /// The module has failed, and makes no further turn.
     Failed,
     /// The thread of this background module has ended.
     Ended,
@@ -67,7 +67,7 @@ impl ModuleState {
 }
 
 impl<Y> Loaded<Y> {
-    /// Returns a module that begins at `now`; its thread may run if `lives`, and may not in a replay.
+    /// Returns a module that begins at `now`. Its thread may run if `lives` is `true`; in a replay it may not.
     pub(crate) fn new(candidate: Candidate<Y>, now: Nanos, lives: bool) -> Self {
         let Candidate { name, declared, form } = candidate;
         let (runs, state) = match form {
@@ -92,7 +92,7 @@ impl<Y> Loaded<Y> {
         }
     }
 
-    /// Returns the seat if the module is to be queued for the next turn.
+    /// Returns the seat if the module is to be queued for the next turn; `None` otherwise.
     pub(crate) fn queued(&self) -> Option<&Arc<Seat<Y>>> {
         let seat = self.seat()?;
         let is_queued = match self.state {
@@ -103,7 +103,7 @@ impl<Y> Loaded<Y> {
         is_queued.then_some(seat)
     }
 
-    /// Returns `true` if the module makes turns whether it is read or not.
+    /// Returns `true` if the module makes turns even if nothing reads it.
     pub(crate) fn is_always_relevant(&self) -> bool {
         self.declared.relevance == Relevance::Always
     }

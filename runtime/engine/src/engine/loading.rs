@@ -1,7 +1,7 @@
-//! Modules that are made while the robot drives: each on a thread of its own, as its code may take long.
+//! Modules that are created while the robot drives, each on a thread of its own, as its code may take long.
 //!
-//! The thread that starts these threads is started with the engine, before the control thread is scheduled in real
-//! time: a thread has the scheduling of the one that starts it, and so have child processes.
+//! The thread that starts these threads is itself started with the engine, before the control thread is
+//! scheduled in real time: threads and child processes inherit the scheduling of the thread that starts them.
 
 use std::io;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -12,37 +12,37 @@ use mdle_host::StopRequest;
 use crate::library::Library;
 use crate::module::{Candidate, Refusal};
 
-/// Maximum number of modules that are being made.
+/// Maximum number of modules that are created at the same time.
 const AT_ONCE: usize = 4;
 
-/// The modules that are being made, and those that can be loaded at the next break.
+/// The modules that are being created, and those that are ready to be loaded at the next break.
 pub(crate) struct Loading<Y> {
     library: Library<Y>,
     orders: Sender<(u32, NewModule)>,
     done: Receiver<Made<Y>>,
     /// Number of the last request.
     last: u32,
-    /// Number of modules that are being made.
+    /// Number of modules that are being created.
     begun: usize,
 }
 
-/// A module that was made, or the reason why it was not, with the number of the request.
+/// The number of a request, with the created module or the reason why it could not be created.
 type Made<Y> = (u32, Result<Candidate<Y>, Refusal>);
 
-/// A module that is to be made.
+/// A module to create.
 #[derive(Debug, Clone)]
 pub(crate) enum NewModule {
-    /// The module of this name in the library.
+    /// A module of the library: its name.
     OfLibrary(String),
     /// A child process: the name of its module, and its command line.
     Process(String, String),
 }
 
 impl<Y: 'static> Loading<Y> {
-    /// Returns what loads modules of this library.
+    /// Returns a loader for modules of this library.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// Fails if the system cannot create the thread.
     pub(crate) fn new(library: Library<Y>, request: StopRequest) -> io::Result<Self> {
         let ((orders, waiting), (sender, done)) = (channel(), channel());
         let own = library.clone();
@@ -60,10 +60,10 @@ impl<Y: 'static> Loading<Y> {
         &self.library
     }
 
-    /// Begins to make a module; returns the number of the request.
+    /// Begins to create a module; returns the number of the request.
     ///
     /// # Errors
-    /// No module can be made at present: a sentence.
+    /// Fails with a sentence if no module can be created at present.
     pub(crate) fn begin(&mut self, module: NewModule) -> Result<u32, String> {
         if self.begun >= AT_ONCE {
             return Err(format!("{AT_ONCE} modules are being made already: try again later"));
@@ -74,7 +74,7 @@ impl<Y: 'static> Loading<Y> {
         Ok(self.last)
     }
 
-    /// Returns the next module that is made; never waits.
+    /// Returns the next module that has been created; `None` if there is none yet. Never waits.
     pub(crate) fn next(&mut self) -> Option<Made<Y>> {
         let made = self.done.try_recv().ok()?;
         self.begun = self.begun.saturating_sub(1);
@@ -91,7 +91,7 @@ impl NewModule {
     }
 }
 
-/// Starts the thread that makes a module.
+/// Starts the thread that creates a module.
 fn start<Y: 'static>(
     number: u32,
     module: NewModule,

@@ -15,36 +15,36 @@ use crate::board::Board;
 use crate::fork::{Fork, Threads};
 use crate::module::{About, Candidate, ROBOT, Refusal};
 
-/// The clock by which a module that waits is served.
+/// Clock that decides when a background module is served.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Service {
-    /// Real time: at the first break at which it waits.
+    /// Real time: the module is served at the first break at which it waits.
     WhenReady,
-    /// Stepped time: at the first break at which its latency has passed. The break waits for the module, so that every
-    /// run with the same inputs is the same.
+    /// Stepped time: the module is served at the first break after its latency. The break waits for the module,
+    /// so that every run with the same inputs is the same.
     WhenDue,
 }
 
 /// Modules with the board on which they publish.
 ///
-/// A turn is [`Modules::turn`], then [`Modules::settle`], then changes by requests, then [`Modules::prepare`]: the last
-/// three are the turn break.
+/// A turn is [`Modules::turn`], then [`Modules::settle`], then changes by requests, then [`Modules::prepare`]:
+/// the last three steps are the turn break.
 pub struct Modules<Y> {
     pub(super) board: Board,
-    /// In the order in which they were loaded, which is the order of every break.
+    /// The loaded modules in the order in which they were loaded, which is the order at every break.
     pub(super) loaded: Vec<Loaded<Y>>,
-    /// Order in which threads take the modules.
+    /// The order in which threads take the modules.
     pub(super) order: Vec<usize>,
     pub(super) fork: Fork<Y>,
     pub(super) service: Service,
     pub(super) janitor: Janitor,
     /// Attributes that plans read, now or soon.
     pub(super) plan_reads: Vec<ModuleRead>,
-    /// `true` if relevance has to be found anew.
+    /// `true` if the relevance of modules has to be determined again.
     pub(super) has_changed: bool,
     pub(super) events: Vec<Event>,
     pub(super) arrivals: Arrivals,
-    /// Arrivals of the breaks of a run that is replayed; no background module runs then.
+    /// Arrivals at the breaks of the run that is replayed; no background module runs in a replay.
     pub(super) replayed: Option<VecDeque<Arrivals>>,
     /// Number and time of the current turn.
     pub(super) turn: (u64, Nanos),
@@ -54,7 +54,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// Returns an engine's modules before any is loaded.
     ///
     /// # Errors
-    /// The system gives no threads.
+    /// Fails if the system cannot create the threads.
     pub fn new(threads: Threads, service: Service) -> io::Result<Self> {
         Ok(Self {
             board: Board::default(),
@@ -72,10 +72,10 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         })
     }
 
-    /// Returns the modules of a run that repeats another, which had these arrivals at its breaks.
+    /// Returns the modules of a run that repeats another run, which had these arrivals at its breaks.
     ///
     /// # Errors
-    /// The system gives no threads.
+    /// Fails if the system cannot create the threads.
     pub fn replaying(threads: Threads, arrivals: impl IntoIterator<Item = Arrivals>) -> io::Result<Self> {
         let mut modules = Self::new(threads, Service::WhenReady)?;
         modules.replayed = Some(arrivals.into_iter().collect());
@@ -88,7 +88,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         &self.board
     }
 
-    /// Returns the board, to repeat what another run has published.
+    /// Returns the board, so that values which another run published can be repeated on it.
     pub(super) fn board_mut(&mut self) -> &mut Board {
         &mut self.board
     }
@@ -99,13 +99,13 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         &self.events
     }
 
-    /// Returns what arrived at the last break.
+    /// Returns the values and ends that arrived at the last break.
     #[must_use]
     pub fn arrivals(&self) -> &Arrivals {
         &self.arrivals
     }
 
-    /// Returns the loaded modules, with their state.
+    /// Returns the names of the loaded modules, with their states.
     pub fn names(&self) -> impl Iterator<Item = (&str, ModuleState)> {
         self.loaded.iter().map(|module| (&*module.name, module.state))
     }
@@ -114,7 +114,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// [`Modules::prepare`].
     ///
     /// # Errors
-    /// The name is taken, or a kind is wrong; nothing has changed then.
+    /// Fails without any change if the name is taken, or if an attribute has another kind than a reader
+    /// expects.
     pub fn load(&mut self, candidate: Candidate<Y>) -> Result<(), Refusal> {
         let name = Arc::clone(&candidate.name);
         if &*name == ROBOT || self.loaded.iter().any(|module| module.name == name) {
@@ -142,7 +143,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// Unloads a module; its attributes vanish. A thread that still runs it is left to it.
     ///
     /// # Errors
-    /// No module has this name.
+    /// Fails if no module has this name.
     pub fn unload(&mut self, name: &str) -> Result<(), Refusal> {
         let number = self.number(name)?;
         let module = self.loaded.remove(number);
@@ -154,10 +155,10 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         Ok(())
     }
 
-    /// Stops a module for people, or lets it make turns again.
+    /// Stops a module on a person's request, or lets it make turns again.
     ///
     /// # Errors
-    /// No module has this name.
+    /// Fails if no module has this name.
     pub fn hold(&mut self, name: &str, is_held: bool) -> Result<(), Refusal> {
         let number = self.number(name)?;
         if let Some(module) = self.loaded.get_mut(number) {
@@ -170,7 +171,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// Changes a setting of a module; the module has it from its next turn or exchange on.
     ///
     /// # Errors
-    /// There is no such module or setting, or the value has another kind or is NaN.
+    /// Fails if there is no such module or setting, or if the value has another kind or is NaN.
     pub fn set(&mut self, name: &str, setting: &str, value: Value) -> Result<(), Refusal> {
         let number = self.number(name)?;
         let path = AttributeName::new(name, setting);
@@ -216,7 +217,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
 }
 
 impl<Y> Drop for Modules<Y> {
-    /// Asks all threads to end before the first is waited for.
+    /// Asks all threads to end before it waits for the first of them.
     fn drop(&mut self) {
         for module in &self.loaded {
             if let Runs::InBackground(visit) = &module.runs {

@@ -1,4 +1,4 @@
-//! The engine of a run: its plan and its modules, made, loaded and replaced.
+//! The engine of a run: its plans and its modules, which it creates, loads and replaces.
 
 mod turn;
 
@@ -32,9 +32,9 @@ pub struct Engine<A: EngineAlphabet> {
     /// Attributes of modules that safety rules read; `None` without rules.
     rules_read: Option<&'static [ModuleRead]>,
     messages: Vec<String>,
-    /// History of this run, for a record; `None` if it is not recorded.
+    /// History of this run, for a record; `None` if the run is not recorded.
     history: Option<History>,
-    /// The recorded run that is made again.
+    /// State of the recorded run that is repeated; `None` if no run is repeated.
     repeats: Option<Repeats>,
     link: Option<StateLink>,
     recorder: Option<Box<dyn Recorder<A::Output>>>,
@@ -90,10 +90,11 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(engine)
     }
 
-    /// Puts the engine under safety rules that read these attributes of modules: outputs have them from now on.
+    /// Puts the engine under safety rules that read these attributes of modules; from now on, outputs contain
+    /// the attributes.
     ///
     /// # Errors
-    /// A module publishes one with another kind (exit status 2).
+    /// Fails if a module publishes such an attribute with another kind (exit status 2).
     pub fn under_rules(self, reads: &'static [ModuleRead]) -> Result<Self, mdle_host::Refusal> {
         reads::check(reads, self.modules.board()).map_err(mdle_host::Refusal::Usage)?;
         let mut engine = Self { rules_read: Some(reads), ..self };
@@ -102,8 +103,9 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(engine)
     }
 
-    /// Makes a recorded run again under safety rules that read these attributes of modules, if it had rules:
-    /// [`Engine::repeat`] gives it the values of modules. The engine has no modules but that of the plans.
+    /// Repeats a recorded run. `rules_read` are the attributes of modules that safety rules read, if the run
+    /// had rules. [`Engine::repeat`] supplies the values of modules; the engine has no modules except the
+    /// module of the plans.
     #[must_use]
     pub fn repeating(self, rules_read: Option<&'static [ModuleRead]>) -> Self {
         Self { rules_read, repeats: Some(Repeats::default()), ..self }
@@ -135,13 +137,13 @@ impl<A: EngineAlphabet> Engine<A> {
         }
     }
 
-    /// Lets the robot tell others its state, and plans read theirs.
+    /// Attaches a state link, by which the robot sends its state to other robots, and plans read their states.
     #[must_use]
     pub fn linked(self, link: StateLink) -> Self {
         Self { link: Some(link), ..self }
     }
 
-    /// Lets the ways of some laws become a path that plans replay.
+    /// Attaches a recorder, which turns the path driven under some laws into a path that plans replay.
     #[must_use]
     pub fn recording(self, recorder: Box<dyn Recorder<A::Output>>) -> Self {
         Self { recorder: Some(recorder), ..self }
@@ -172,11 +174,11 @@ impl<A: EngineAlphabet> Engine<A> {
         self.loading.library().names()
     }
 
-    /// Begins to load a module of the library, which is made on a thread of its own; returns the number of the request,
-    /// which [`Engine::progress`] answers.
+    /// Begins to load a module of the library, which is created on a thread of its own; returns the number of
+    /// the request, which [`Engine::progress`] answers.
     ///
     /// # Errors
-    /// It cannot be loaded at present: a sentence.
+    /// Fails with a sentence if the module cannot be loaded at present.
     pub fn load(&mut self, name: &str) -> Result<u32, String> {
         self.begin_loading(NewModule::OfLibrary(name.to_owned()))
     }
@@ -185,7 +187,7 @@ impl<A: EngineAlphabet> Engine<A> {
     /// line.
     ///
     /// # Errors
-    /// It cannot be loaded at present: a sentence.
+    /// Fails with a sentence if the module cannot be loaded at present.
     pub fn load_process(&mut self, name: &str, command: &str) -> Result<u32, String> {
         self.begin_loading(NewModule::Process(name.to_owned(), command.to_owned()))
     }
@@ -202,8 +204,9 @@ impl<A: EngineAlphabet> Engine<A> {
         self.messages.push(message);
     }
 
-    /// Carries on with requests at a break: a plan that is compiled is armed, a module that is made is loaded, and
-    /// modules get what has changed. Returns the number of a request to load a module with its result.
+    /// Continues with requests at a break: arms a plan that has been compiled, loads a module that has been
+    /// created, and updates the modules' copies of attributes that have changed. Returns the number and the
+    /// result of a request to load a module, if one is done.
     pub fn progress(&mut self) -> Option<(u32, Result<(), Refusal>)> {
         self.plans.arm();
         let made = self.loading.next();
@@ -228,14 +231,14 @@ impl<A: EngineAlphabet> Engine<A> {
     /// had passed for it.
     ///
     /// # Errors
-    /// No plan is on trial.
+    /// Fails if no plan is on trial.
     pub fn rollback(&mut self, why: &str) -> Result<(), NoTrial> {
         self.go_back(why)?;
         self.plans.note(Change::RolledBack(why.to_owned()));
         Ok(())
     }
 
-    /// Ends the plan on trial, as [`Engine::rollback`] does, for a reason that follows from the turns.
+    /// Ends the plan on trial, as [`Engine::rollback`] does, for a reason that a replay finds again by itself.
     fn go_back(&mut self, why: &str) -> Result<(), NoTrial> {
         let was_late = self.plans.is_late();
         self.plans.rollback(why)?;
@@ -246,7 +249,7 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(())
     }
 
-    /// Loads the module that makes the turns of plans, in place of one that hangs.
+    /// Loads the module that makes the turns of plans, to replace a module that hangs.
     fn load_plan_module(&mut self) {
         let module = self.plans.module();
         let candidate = Candidate::registered(PLAN, |declare: &mut Declare| {

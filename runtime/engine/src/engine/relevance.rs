@@ -1,8 +1,10 @@
-//! Modules that are relevant: those that always are, those that the plan reads, and all that these read.
+//! Relevant modules: modules that always are, modules that the plan reads, and all modules that relevant
+//! modules read.
 
 use super::loaded::Loaded;
 
-/// Returns for each module `true` if it is relevant; the plan reads the places on the board that `plan` yields.
+/// Returns, for each module, `true` if it is relevant. `plan` yields the places on the board that the plan
+/// reads.
 pub(crate) fn relevant<Y>(modules: &[Loaded<Y>], plan: impl Iterator<Item = usize>) -> Vec<bool> {
     let owner = |place: usize| {
         let count = |module: &Loaded<Y>| module.declared.publishes.len();

@@ -14,7 +14,7 @@ use crate::module::{Fault, ThreadEnd};
 
 /// Number of turns after which a late module is given up, if [`PATIENCE`] has passed as well.
 const LATE_TURNS: u64 = 10;
-/// Time after which a late module is given up, and for which a background module is waited for in stepped time.
+/// Time after which a late module is given up, and maximum wait for a background module in stepped time.
 const PATIENCE: Duration = Duration::from_secs(1);
 /// Maximum part of a declared latency for which a background module is waited for in stepped time besides
 /// [`PATIENCE`]: a turn may take ten seconds.
@@ -23,7 +23,7 @@ const LONGEST_LATENCY: Duration = Duration::from_secs(8);
 const REORDERED: u64 = 128;
 
 impl<Y: Send + Sync + 'static> Modules<Y> {
-    /// Has every module that is relevant make turn `number` with output `y`, which was taken at `now`. In real time
+    /// Makes turn `number` of every relevant module, with output `y`, which was taken at `now`. In real time,
     /// modules that are not done at `deadline` are left behind.
     pub fn turn(&mut self, y: Y, number: u64, now: Nanos, deadline: Option<Instant>) {
         let Self { loaded, order, fork, events, replayed, turn, .. } = self;
@@ -36,8 +36,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         fork.turn(y, number, now, seats, deadline);
     }
 
-    /// First part of the turn break: finds the modules that are late or have failed, then publishes the values of
-    /// registered modules, then those of background modules that wait.
+    /// Makes the first part of the turn break: finds the modules that are late or have failed, publishes the
+    /// values of registered modules, and then those of background modules that wait.
     pub fn settle(&mut self) {
         self.arrivals.clear();
         if let Some(replayed) = &mut self.replayed {
@@ -56,8 +56,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         self.events.extend(self.board.newly_refused().map(Event::NotANumber));
     }
 
-    /// Last part of the turn break: finds who is relevant from now on, and gives every module its copies of what it
-    /// reads.
+    /// Makes the last part of the turn break: determines the relevant modules, and updates every module's
+    /// copies of the attributes that it reads.
     pub fn prepare(&mut self) {
         if std::mem::take(&mut self.has_changed) {
             let places = self.plan_reads.iter().filter_map(|read| self.board.place_of(read));
@@ -90,7 +90,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         }
     }
 
-    /// Sets the attributes that plans read: modules that only plans need make turns as long as plans need them.
+    /// Sets the attributes that plans read. A module that only plans need makes turns only while plans need it.
     pub(crate) fn plan_reads(&mut self, reads: impl Iterator<Item = &'static ModuleRead> + Clone) {
         if !self.plan_reads.iter().eq(reads.clone()) {
             self.plan_reads.clear();
@@ -99,12 +99,12 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         }
     }
 
-    /// Drops values on another thread, soon.
+    /// Drops values on another thread, at some later time.
     pub(crate) fn drop_later(&self, things: impl Iterator<Item: Send + 'static>) {
         things.for_each(|thing| self.janitor.drop_later(thing));
     }
 
-    /// Orders the modules by priority, then by cost, the longest first.
+    /// Orders the modules by priority, then by cost, the most expensive first.
     pub(super) fn reorder(&mut self) {
         let Self { loaded, order, .. } = self;
         let key = |number: &usize| {
@@ -188,7 +188,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         arrivals.ended.push((Arc::clone(&module.name), end));
     }
 
-    /// Publishes the values that arrived in the run that is repeated.
+    /// Publishes the values that arrived at this break in the run that is repeated.
     fn settle_replayed(&mut self) {
         let Self { board, loaded, events, arrivals, turn, .. } = self;
         for (place, value) in &arrivals.values {
@@ -213,7 +213,7 @@ impl Arrivals {
 }
 
 impl ModuleState {
-    /// Notes that a module is late at the break of this turn.
+    /// Records that a module is late at the break of this turn.
     fn is_late(&mut self, name: &Arc<str>, (number, now): (u64, Nanos)) -> Option<Event> {
         let Self::Late(since, at) = *self else {
             *self = Self::Late(number, now);
@@ -228,7 +228,7 @@ impl ModuleState {
 }
 
 impl<Y> Loaded<Y> {
-    /// Lets a module make turns, or stops it.
+    /// Lets a module make turns, or stops it; returns the event, if anything has changed.
     fn becomes(&mut self, is_wanted: bool) -> Option<Event> {
         let mut occupant = self.seat().and_then(|seat| seat.occupant());
         let task = occupant.as_mut().map(|occupant| &mut occupant.task);

@@ -1,5 +1,5 @@
-//! A turn on threads: workers take modules from one list, and the control thread only waits for them, until a deadline
-//! (paper, section III-A).
+//! A turn on several threads: workers take modules from a list, and the control thread only waits for them,
+//! until a deadline (paper, section III-A).
 
 mod seat;
 
@@ -15,25 +15,27 @@ use rustix::thread::futex;
 use rustix::time::Timespec;
 pub(crate) use seat::{Progress, Seat, Task};
 
-/// Work of a round up to which one worker makes it: another one would take longer to wake.
+/// Maximum expected work of a round that a single worker makes: it takes longer to wake a second worker.
 const SMALL: Duration = Duration::from_micros(50);
-/// Maximum time for which the control thread looks for the end of a small round before it sleeps, as it would take as
-/// long to wake.
+/// Maximum time for which the control thread polls for the end of a small round before it sleeps; waking up
+/// would take as long.
 const LOOKS: Duration = Duration::from_micros(200);
 
 /// Threads on which modules make their turns.
 #[derive(Debug, Clone, Copy)]
 pub enum Threads {
-    /// The control thread itself, one module after the other: no deadline holds.
+    /// The control thread itself runs the modules, one after the other, without a deadline.
     Sequential,
-    /// This many workers, at least one, each of which calls this function first, as for its priority.
+    /// The number of workers, at least one, and a function that each calls first, for example to set its
+    /// priority.
     Workers(usize, fn()),
 }
 
 /// Threads that make turns.
 pub(crate) struct Fork<Y> {
     crew: Option<Crew<Y>>,
-    /// Rounds in turn. A worker may keep the last one for a moment longer, and a module that hangs keeps one for ever.
+    /// The rounds, which are used in turn. A worker may hold the previous round a moment longer, and a module
+    /// that hangs holds its round for ever.
     rounds: Vec<Arc<Round<Y>>>,
 }
 
@@ -43,19 +45,19 @@ struct Round<Y> {
     number: u64,
     now: Nanos,
     seats: Vec<Arc<Seat<Y>>>,
-    /// Time that the modules took lately.
+    /// Time that the modules took in recent rounds.
     cost: Duration,
-    /// Place of the next module to be taken.
+    /// Position of the next module to be taken.
     next: AtomicUsize,
     /// Number of modules that are not done; the control thread waits for zero.
     left: AtomicU32,
 }
 
-/// Workers with the round that they are to make.
+/// Workers, with the round that they are to make.
 struct Crew<Y> {
     call: Arc<Call<Y>>,
     workers: usize,
-    /// `true` if a worker runs while the control thread does.
+    /// `true` if workers run while the control thread does.
     is_parallel: bool,
     prepare: fn(),
 }
@@ -63,7 +65,7 @@ struct Crew<Y> {
 /// Meeting point of the control thread and the workers.
 struct Call<Y> {
     round: Mutex<Option<Arc<Round<Y>>>>,
-    /// Number of rounds so far; workers wait for it to change.
+    /// Number of rounds so far; workers wait until it changes.
     epoch: AtomicU32,
     quit: AtomicBool,
 }
@@ -72,7 +74,7 @@ impl<Y: Send + Sync + 'static> Fork<Y> {
     /// Starts the threads.
     ///
     /// # Errors
-    /// The system gives no threads.
+    /// Fails if the system cannot create the threads.
     pub(crate) fn new(threads: Threads) -> io::Result<Self> {
         let crew = match threads {
             Threads::Sequential => None,
@@ -81,8 +83,8 @@ impl<Y: Send + Sync + 'static> Fork<Y> {
         Ok(Self { crew, rounds: Vec::new() })
     }
 
-    /// Makes the turn of these modules, which are taken in this order. Modules that are not done at the deadline are
-    /// late or skipped.
+    /// Makes the turn of these modules, which threads take in this order. Modules that are not done at the
+    /// deadline are late or skipped.
     pub(crate) fn turn<'s>(
         &mut self,
         y: Y,
@@ -108,7 +110,7 @@ impl<Y: Send + Sync + 'static> Fork<Y> {
         self.rounds.push(round);
     }
 
-    /// Prepares a round; allocates nothing if a former round is free that is large enough.
+    /// Prepares a round. Does not allocate if a former round is free and large enough.
     fn round<'s>(
         &mut self,
         y: Y,
@@ -154,8 +156,8 @@ impl<Y> Default for Round<Y> {
 }
 
 impl<Y> Round<Y> {
-    /// Takes modules and runs them until no module is left; returns `false` if one of them was late, so that the thread
-    /// has been replaced.
+    /// Takes modules and runs them until none is left; returns `false` if a module was late, so that another
+    /// thread has replaced this one.
     fn work(&self) -> bool {
         let Some(y) = &self.y else { return true };
         while let Some(seat) = self.seats.get(self.next.fetch_add(1, Ordering::AcqRel)) {
@@ -170,7 +172,7 @@ impl<Y> Round<Y> {
         true
     }
 
-    /// Looks for the end until this time; returns `true` if all modules are done.
+    /// Polls for the end of the round until this time; returns `true` if all modules are done.
     fn ends_before(&self, until: Instant) -> bool {
         while self.left.load(Ordering::Acquire) > 0 {
             if Instant::now() >= until {
@@ -181,7 +183,7 @@ impl<Y> Round<Y> {
         true
     }
 
-    /// Waits until all modules are done, or the deadline has come.
+    /// Waits until all modules are done, or until the deadline.
     fn wait(&self, deadline: Option<Instant>) {
         loop {
             let left = self.left.load(Ordering::Acquire);
@@ -212,18 +214,20 @@ impl<Y: Send + Sync + 'static> Crew<Y> {
         thread::Builder::new().name("mdle worker".to_owned()).spawn(worker).map(|_| ())
     }
 
-    /// Hires a worker for each that a late module keeps. If the system gives no thread, the others go on alone.
+    /// Starts a worker for each worker that a late module holds. If the system cannot create a thread, the
+    /// others continue without it.
     fn replace(&self, late: usize) {
         (0..late).for_each(|_| _ = self.hire());
     }
 
-    /// Gives the workers a round, for which they are not woken yet.
+    /// Gives the workers a round, without waking them yet.
     fn call(&self, round: &Arc<Round<Y>>) {
         *self.call.round.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(round));
         self.call.epoch.fetch_add(1, Ordering::AcqRel);
     }
 
-    /// Wakes one worker if the round is small, and looks for its end; returns `true` if it came.
+    /// Wakes a single worker if the round is small, and polls for the end of the round; returns `true` if the
+    /// round has ended.
     fn makes_alone(&self, round: &Round<Y>, deadline: Option<Instant>) -> bool {
         let is_small = self.is_parallel && round.cost <= SMALL;
         is_small && {
@@ -239,7 +243,7 @@ impl<Y: Send + Sync + 'static> Crew<Y> {
 }
 
 impl<Y> Call<Y> {
-    /// On a worker: makes rounds, until it is to quit, or has been replaced.
+    /// Makes rounds on a worker, until it is to quit or has been replaced.
     fn answer(&self, mut seen: u32) {
         loop {
             wait(&self.epoch, seen, None);
@@ -260,7 +264,7 @@ impl<Y> Call<Y> {
 }
 
 impl<Y> Drop for Crew<Y> {
-    /// Lets the workers end; nobody waits for a module that hangs.
+    /// Lets the workers end, without waiting for a module that hangs.
     fn drop(&mut self) {
         self.call.quit.store(true, Ordering::Release);
         self.call.epoch.fetch_add(1, Ordering::AcqRel);
@@ -268,7 +272,7 @@ impl<Y> Drop for Crew<Y> {
     }
 }
 
-/// Waits while `word` has this value, and until the deadline; may return early.
+/// Waits while `word` has this value, at most until the deadline; may return early.
 fn wait(word: &AtomicU32, value: u32, deadline: Option<Instant>) {
     let left = deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
     let left = left.map(|left| Timespec {
@@ -279,7 +283,7 @@ fn wait(word: &AtomicU32, value: u32, deadline: Option<Instant>) {
     let _ = futex::wait(word, futex::Flags::PRIVATE, value, left.as_ref());
 }
 
-/// Wakes up to this many threads that wait for `word` to change.
+/// Wakes at most `count` threads that wait for `word` to change.
 fn wake(word: &AtomicU32, count: u32) {
     let _ = futex::wake(word, futex::Flags::PRIVATE, count);
 }

@@ -17,39 +17,39 @@ pub(crate) struct Seat<Y> {
     occupant: Mutex<Occupant<Y>>,
 }
 
-/// A module with its values; the thread that runs the module locks them, and between turns the engine does.
+/// A module with its values. The thread that runs the module locks them; between turns, the engine does.
 pub(crate) struct Occupant<Y> {
     module: Box<dyn Module<Y>>,
     pub(crate) ports: Ports,
     /// Work of the module in the next round.
     pub(crate) task: Task,
-    /// Why the module cannot go on.
+    /// Reason why the module cannot continue.
     pub(crate) fault: Option<Fault>,
 }
 
 /// Work of a module in a round.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Task {
-    /// [`Module::start`] and a turn.
+    /// Call [`Module::start`], and make a turn.
     Start,
-    /// A turn.
+    /// Make a turn.
     Turn,
-    /// [`Module::stop`].
+    /// Call [`Module::stop`].
     Stop,
 }
 
 /// Progress of a module's turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Progress {
-    /// It has nothing to do, or has done it.
+    /// The module has nothing to do, or has done it.
     Done,
-    /// No thread has taken it yet.
+    /// No thread has taken the module yet.
     Queued,
-    /// A thread runs it.
+    /// A thread is running the module.
     Running,
-    /// A thread still runs it after the deadline.
+    /// A thread is still running the module after the deadline.
     Late,
-    /// No thread had taken it at the deadline.
+    /// No thread had taken the module at the deadline.
     Skipped,
 }
 
@@ -68,7 +68,7 @@ impl<Y> Seat<Y> {
         PROGRESS.get(usize::from(self.progress.load(Ordering::Acquire))).copied().unwrap_or(Progress::Done)
     }
 
-    /// Returns the mean time of a turn; zero before the first.
+    /// Returns the mean time of a turn; zero before the first turn.
     pub(crate) fn cost(&self) -> Duration {
         Duration::from_nanos(self.cost.load(Ordering::Relaxed))
     }
@@ -78,13 +78,13 @@ impl<Y> Seat<Y> {
         self.progress.store(Progress::Queued as u8, Ordering::Release);
     }
 
-    /// At the deadline: lets no thread begin the module any more. Returns `true` if a thread runs it, so that it is
-    /// late.
+    /// Ends the round at the deadline: no thread may begin the module any more. Returns `true` if a thread is
+    /// running it, so that the module is late.
     pub(crate) fn cut(&self) -> bool {
         !self.moved(Progress::Queued, Progress::Skipped) && self.moved(Progress::Running, Progress::Late)
     }
 
-    /// Locks the module between rounds; `None` if a thread still runs it.
+    /// Locks the module between rounds; `None` if a thread is still running it.
     pub(crate) fn occupant(&self) -> Option<MutexGuard<'_, Occupant<Y>>> {
         match self.occupant.try_lock() {
             Ok(occupant) => Some(occupant),
@@ -93,7 +93,7 @@ impl<Y> Seat<Y> {
         }
     }
 
-    /// Runs the module if no other thread has taken it; returns `true` if it was late.
+    /// Runs the module if no other thread has taken it; returns `true` if the module was late.
     pub(crate) fn run(&self, y: &Y, number: u64, now: Nanos) -> bool {
         if !self.moved(Progress::Queued, Progress::Running) {
             return false;

@@ -1,4 +1,5 @@
-//! The link between robots of one process: states that are late, lost or doubled, by a random seed.
+//! The link between robots of one process, by which states arrive late, are lost or are duplicated, depending
+//! on a random seed.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -8,13 +9,13 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::{Link, State};
 
-/// Maximum number of states on their way to one robot: one that makes no more turns reads none.
+/// Maximum number of states on their way to one robot; a robot that makes no more turns reads none.
 const UNREAD: usize = 4096;
 
 /// Faults of the link between two robots.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Faults {
-    /// The least time that a state takes, and the most.
+    /// Minimum and maximum time that a state takes.
     pub latency: (Nanos, Nanos),
     /// Probability that a state is lost.
     pub loss: f64,
@@ -24,8 +25,8 @@ pub struct Faults {
 
 /// The end of one robot of a link between the robots of one process.
 ///
-/// A state arrives in a later turn than that in which it was sent, so that the order in which robots make their turns
-/// changes nothing. The faults between two robots have a stream of random numbers of their own.
+/// A state arrives in a later turn than the one in which it was sent, so that the order in which robots make
+/// their turns has no effect. The faults between each two robots have a separate stream of random numbers.
 pub struct Air {
     own: usize,
     faults: Faults,
@@ -67,7 +68,7 @@ impl Faults {
     }
 }
 
-/// Returns a number from 0 to less than 1.
+/// Returns a random number from 0 up to, but not including, 1.
 fn unit(random: &mut ChaCha8Rng) -> f64 {
     (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64
 }
@@ -128,7 +129,7 @@ mod tests {
         }
     }
 
-    /// The numbers of the states that arrive in each turn, of one that is sent in each.
+    /// Returns the numbers of the states that arrive in each turn, if one state is sent in each turn.
     fn heard(faults: Faults, turns: u64, seed: u64) -> Vec<Vec<u64>> {
         let [mut ada, mut bob] = Air::new(2, faults, seed).try_into().ok().unwrap();
         let turn = |number| {

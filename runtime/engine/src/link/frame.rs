@@ -1,4 +1,4 @@
-//! A state as bytes on a line: a length, then version, checksum, proof of the key, and the state
+//! A state in binary form: a length, then version, checksum, proof of the key, and the state
 //! (docs/src/reference/interfaces.md, 6.5).
 
 use mdle_runtime::{Meters, MetersPerSecond, PEERS, Pose, Radians, RadiansPerSecond, Twist};
@@ -9,14 +9,14 @@ use super::State;
 const MAGIC: [u8; 4] = *b"MDLe";
 /// Version of frames.
 pub(super) const VERSION: u8 = 2;
-/// Maximum length of a frame, in bytes, without the four of the length.
+/// Maximum length of a frame, in bytes, without the four bytes of the length.
 pub(super) const LONGEST: usize = 2048;
 /// Maximum length of a robot's name, in bytes.
 pub(super) const NAME: usize = 64;
-/// Bytes before the state: magic, version, checksum, and proof.
+/// Number of bytes before the state: magic, version, checksum, and proof.
 const HEAD: usize = 4 + 1 + 4 + 16;
 
-/// A key that all robots of a link have.
+/// The key that all robots of a link share.
 #[derive(Clone)]
 pub(super) struct Key([u8; 32]);
 
@@ -25,7 +25,7 @@ impl Key {
         Self(blake3::derive_key("mdle state link 1", text.as_bytes()))
     }
 
-    /// Returns the proof that a robot which has the key has written these bytes.
+    /// Returns the proof that the writer of these bytes has the key.
     fn proof(&self, body: &[u8]) -> [u8; 16] {
         blake3::keyed_hash(&self.0, body).as_bytes().first_chunk().copied().unwrap_or_default()
     }
@@ -38,7 +38,7 @@ pub(super) enum Refused {
     Garbage,
     /// The frame has another version: its number.
     Version(u8),
-    /// The sender has another key.
+    /// The sender has a different key.
     Key,
 }
 
@@ -81,7 +81,7 @@ fn put_name(to: &mut Vec<u8>, name: &str) {
 /// Reads the frame of a state, without its length.
 ///
 /// # Errors
-/// The bytes are no frame of a robot with this key.
+/// Fails if the bytes are no frame of a robot with this key.
 pub(super) fn read(frame: &[u8], key: &Key) -> Result<State, Refused> {
     let mut from = Bytes(frame);
     if from.take() != Some(MAGIC) {
@@ -115,7 +115,7 @@ fn state(from: &mut Bytes<'_>) -> Option<State> {
     from.0.is_empty().then_some(State { name, number, pose, velocity, rounds, atom })
 }
 
-/// Bytes that are read from the front.
+/// Bytes of a frame, which are read from the front.
 struct Bytes<'b>(&'b [u8]);
 
 impl Bytes<'_> {

@@ -1,8 +1,8 @@
 //! The state link: robots tell each other their poses, velocities and rounds (paper, sections III and IV-D).
 //!
 //! A [`Link`] carries states: [`Air`] between robots of one process, [`Tcp`] between processes and machines.
-//! [`StateLink`] is the module of one robot: before a turn it gives the output what has arrived, after the turn it
-//! sends the robot's own state. Neither ever waits.
+//! [`StateLink`] is the module of one robot: before a turn it writes the states that have arrived into the
+//! output, and after the turn it sends the robot's own state. It never waits.
 
 mod air;
 mod frame;
@@ -18,9 +18,9 @@ use rounds::Rounds;
 pub use state::State;
 pub use tcp::{Tcp, TcpSettings};
 
-/// A way on which states go from one robot to others, and arrive from them.
+/// A medium by which a robot sends its states to other robots, and receives theirs.
 pub trait Link: Send {
-    /// Sends the robot's state at time `now`, without waiting for anybody.
+    /// Sends the robot's state at time `now`, without waiting.
     fn send(&mut self, state: &State, now: Nanos);
     /// Calls `take` with each state that has arrived by `now`, in any order.
     fn receive(&mut self, now: Nanos, take: &mut dyn FnMut(State));
@@ -34,7 +34,7 @@ pub struct StateLink {
     name: String,
     /// Pose at which the robot's odometry began, in the axes that all robots share.
     start: Pose,
-    /// Number of the last state that was sent.
+    /// Number of the state that was sent last.
     sent: u64,
     /// The newest state of each other robot, with the time at which it arrived.
     known: Vec<(State, Nanos)>,
@@ -95,7 +95,7 @@ impl StateLink {
         self.link.messages(say);
     }
 
-    /// Returns what is known of the robot of this name.
+    /// Returns the known state of the robot of this name.
     fn peer(&self, robot: &'static str, now: Nanos) -> Peer {
         let known = self.known.iter().find(|(state, _)| state.name == robot);
         let state = known.map(|(state, at)| PeerState {
@@ -109,7 +109,7 @@ impl StateLink {
     }
 }
 
-/// Returns a pose of the robot's own odometry in the axes that all robots share.
+/// Converts a pose of the robot's own odometry to the axes that all robots share.
 fn outward(start: &Pose, own: &Pose) -> Pose {
     let (sin, cos) = (libm::sin(start.theta.0), libm::cos(start.theta.0));
     let (x, y) = (own.x.0, own.y.0);
@@ -120,7 +120,7 @@ fn outward(start: &Pose, own: &Pose) -> Pose {
     }
 }
 
-/// Returns a pose of the shared axes in those of the robot's own odometry.
+/// Converts a pose in the shared axes to those of the robot's own odometry.
 fn inward(start: &Pose, shared: &Pose) -> Pose {
     let (sin, cos) = (libm::sin(start.theta.0), libm::cos(start.theta.0));
     let (x, y) = (shared.x.0 - start.x.0, shared.y.0 - start.y.0);
@@ -151,7 +151,7 @@ mod tests {
         assert!(near(&inward(&start, &shared), &pose(3.0, 0.5, 45.0)));
     }
 
-    /// States that arrive in this order, one at a time.
+    /// A link on which states arrive in this order, one at a time.
     struct Script(Vec<State>);
 
     impl Link for Script {

@@ -1,5 +1,5 @@
-//! Rounds of `rendezvous`: the number of scopes with one that a robot's plan has entered, for each other robot
-//! (docs/src/reference/semantics.md, 2.6).
+//! Rounds of `rendezvous`: for each other robot, the number of scopes with a `rendezvous` with it that a
+//! robot's plan has entered (docs/src/reference/semantics.md, 2.6).
 
 use mdle_host::{Passes, Texts, Transitions, outwards};
 use mdle_runtime::Plan;
@@ -9,17 +9,17 @@ use mdle_runtime::Plan;
 pub(super) struct Rounds {
     counts: Vec<(&'static str, u64)>,
     passes: Passes,
-    /// Number of the plan whose scopes were counted last, from 1; 0 before the first.
+    /// Number of the plan whose scopes were counted last, from 1; 0 before the first plan.
     plan: u64,
 }
 
 impl Rounds {
-    /// Returns the count for each robot.
+    /// Returns the name of each robot with its number of rounds.
     pub(super) fn counts(&self) -> impl Iterator<Item = (&'static str, u64)> {
         self.counts.iter().copied()
     }
 
-    /// Returns the count for the robot of this name.
+    /// Returns the number of rounds with the robot of this name.
     pub(super) fn with(&self, robot: &str) -> u64 {
         self.counts.iter().find(|(name, _)| *name == robot).map_or(0, |(_, count)| *count)
     }
@@ -46,7 +46,7 @@ impl Rounds {
     }
 }
 
-/// Counts a scope that was entered.
+/// Increments the counts for a scope that was entered.
 fn count<P: Plan>(counts: &mut Vec<(&'static str, u64)>, plan: &P, scope: u32) {
     for meeting in plan.meetings().iter().filter(|meeting| meeting.scope == scope) {
         match counts.iter_mut().find(|(robot, _)| *robot == meeting.robot) {

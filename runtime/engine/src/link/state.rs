@@ -20,7 +20,7 @@ pub struct State {
 }
 
 impl State {
-    /// Returns the number of scopes with a `rendezvous` with this robot that were entered.
+    /// Returns the number of entered scopes with a `rendezvous` with this robot.
     #[must_use]
     pub fn rounds_with(&self, robot: &str) -> u64 {
         self.rounds.iter().find(|(name, _)| name == robot).map_or(0, |(_, count)| *count)

@@ -1,8 +1,8 @@
-//! The link over TCP between processes and machines. The robot's turn only puts a state down and takes states up: all
-//! that may wait is done by threads.
+//! The link over TCP between processes and machines. The robot's turn only hands over a state and takes states
+//! that have arrived; threads do all work that may wait.
 //!
-//! A robot connects to each of its peers to send, and listens to receive. Each connection has a sender that writes the
-//! newest state alone, so a peer that reads slowly or never delays nobody.
+//! A robot connects to each of its peers to send, and listens to receive. Each connection has a sender that
+//! writes only the newest state, so a peer that reads slowly or never does not delay the others.
 
 mod receiver;
 mod sender;
@@ -22,7 +22,7 @@ use super::{Link, State};
 use receiver::listen;
 use sender::Slot;
 
-/// Maximum number of messages that wait for the operator.
+/// Maximum number of messages that wait to be shown to the operator.
 const MESSAGES: usize = 32;
 
 /// Addresses and key of a link over TCP.
@@ -48,10 +48,10 @@ pub struct Tcp {
 
 /// Data that the threads share with the turns.
 struct Shared {
-    /// Names of the robots from which states are taken.
+    /// Names of the robots from which states are accepted.
     peers: Vec<String>,
     key: Key,
-    /// The newest state of each robot that has arrived since the last turn.
+    /// For each robot, the newest state that has arrived since the last turn.
     arrived: Mutex<BTreeMap<String, State>>,
     messages: Mutex<Vec<String>>,
     /// `true` once the robot's run has ended.
@@ -63,7 +63,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Shared {
-    /// Reports a message to the operator, unless too many wait.
+    /// Reports a message to the operator, unless too many messages wait.
     fn say(&self, message: String) {
         let mut messages = lock(&self.messages);
         if messages.len() < MESSAGES {
@@ -75,7 +75,7 @@ impl Shared {
         self.is_over.load(Ordering::Relaxed)
     }
 
-    /// Takes a state that has arrived.
+    /// Stores a state that has arrived.
     fn take(&self, state: State) {
         let mut arrived = lock(&self.arrived);
         match arrived.get(&state.name) {
@@ -88,16 +88,16 @@ impl Shared {
 }
 
 impl Tcp {
-    /// Listens, and begins to connect to the peers.
+    /// Begins to listen, and to connect to the peers.
     ///
     /// # Errors
-    /// The address cannot be listened at, or the system gives no threads.
+    /// Fails if the robot cannot listen at the address, or if the system cannot create the threads.
     pub fn open(settings: &TcpSettings) -> io::Result<Self> {
         let listener = TcpListener::bind(settings.listen)?;
         Self::on(listener, settings)
     }
 
-    /// Returns the link of a robot that listens by `listener`.
+    /// Returns the link of a robot that accepts connections from `listener`.
     fn on(listener: TcpListener, settings: &TcpSettings) -> io::Result<Self> {
         let TcpSettings { peers, key, .. } = settings;
         let key = Key::of(key);

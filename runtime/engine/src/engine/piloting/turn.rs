@@ -1,4 +1,4 @@
-//! The turns of an engine that drives a robot: plan, modules, turn break, and what safety rules cause.
+//! The turns of an engine that drives a robot: plan, modules, turn break, and the effects of safety rules.
 
 use std::time::Instant;
 
@@ -124,7 +124,7 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
 }
 
 impl<A: EngineAlphabet> Engine<A> {
-    /// Takes the plan's turn; a plan on trial that panicked or hangs is rolled back.
+    /// Collects the result of the plan's turn. A plan on trial that panicked or hangs is rolled back.
     fn land(&mut self, t: Nanos, is_new: bool, transitions: &mut Transitions) -> Result<Turn<A::Input>, PilotFault> {
         if self.repeats.as_ref().is_some_and(|repeats| !repeats.lands()) {
             return Ok(Turn::Cut);
@@ -152,7 +152,7 @@ impl<A: EngineAlphabet> Engine<A> {
         }
     }
 
-    /// Rolls back for a reason that the operator has to be told.
+    /// Rolls back, and reports the reason to the operator.
     fn ends_trial(&mut self, why: &str) -> Result<(), NoTrial> {
         let name = self.plans.name().to_owned();
         self.go_back(why)?;
@@ -160,7 +160,7 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(())
     }
 
-    /// Makes the turn break, as far as it follows from the turn.
+    /// Makes the part of the turn break that follows from the turn.
     fn turn_break(&mut self) -> Result<(), PilotFault> {
         let mut is_given_up = false;
         for event in self.modules.events() {

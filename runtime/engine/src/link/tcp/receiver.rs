@@ -10,13 +10,15 @@ use std::time::{Duration, Instant};
 use super::Shared;
 use crate::link::frame::{self, LONGEST, Refused, VERSION};
 
-/// Time between two looks for a connection, and longest time that a read waits.
+/// Time between two checks for a connection, and maximum wait of a read.
 const LOOK: Duration = Duration::from_millis(20);
-/// Time within which a connection has to bring a whole frame.
+/// Time within which a whole frame has to arrive on a connection.
 const SILENT: Duration = Duration::from_secs(2);
-/// Maximum number of frames that a connection brings in a second: a robot with turns of a millisecond sends as many.
+/// Maximum number of frames that a connection may send in a second: twice as many as a robot with turns of a
+/// millisecond sends.
 const FRAMES: u32 = 2000;
-/// Maximum number of connections for each peer: the old one may still be open when it connects anew.
+/// Maximum number of connections for each peer: an old connection may still be open when the peer connects
+/// again.
 const CONNECTIONS: usize = 4;
 
 /// Starts the thread that accepts connections.
@@ -58,10 +60,10 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
     }
 }
 
-/// Takes the states of a connection until it ends.
+/// Receives states from a connection until it ends.
 ///
 /// # Errors
-/// The connection brings something else than states of a peer: the end of a sentence.
+/// Fails with the end of a sentence if anything but states of a peer arrives.
 fn receive(mut stream: TcpStream, shared: &Shared) -> Result<(), String> {
     let set = stream.set_nonblocking(false).and_then(|()| stream.set_read_timeout(Some(LOOK)));
     set.map_err(|error| error.to_string())?;
@@ -87,7 +89,7 @@ fn receive(mut stream: TcpStream, shared: &Shared) -> Result<(), String> {
     }
 }
 
-/// Reads a frame; returns `None` if the connection or the run has ended before one began.
+/// Reads a frame; returns `None` if the connection or the run has ended before a frame began.
 fn next(stream: &mut TcpStream, shared: &Shared) -> Result<Option<Vec<u8>>, String> {
     let mut length = [0; 4];
     if !fill(stream, &mut length, shared)? {
@@ -101,7 +103,8 @@ fn next(stream: &mut TcpStream, shared: &Shared) -> Result<Option<Vec<u8>>, Stri
     if fill(stream, &mut frame, shared)? { Ok(Some(frame)) } else { Err("it ended within a state".to_owned()) }
 }
 
-/// Fills `bytes`; returns `false` if the connection ended before, or the run.
+/// Fills `bytes`; returns `false` if the connection breaks or ends before the first byte, or if the run has
+/// ended.
 fn fill(stream: &mut TcpStream, bytes: &mut [u8], shared: &Shared) -> Result<bool, String> {
     let (begun, mut filled) = (Instant::now(), 0);
     while filled < bytes.len() {

@@ -1,4 +1,4 @@
-//! The sender to one peer: it connects, and writes the newest state alone.
+//! The sender to one peer, which connects and writes only the newest state.
 
 use std::io::{self, Write as _};
 use std::net::{SocketAddr, TcpStream};
@@ -8,11 +8,11 @@ use std::time::{Duration, Instant};
 
 use super::{Shared, lock};
 
-/// Time for which a connection is tried.
+/// Maximum time for an attempt to connect.
 const CONNECTS: Duration = Duration::from_millis(500);
-/// Time between two tries.
+/// Time between two attempts to connect.
 const AGAIN: Duration = Duration::from_millis(200);
-/// Time after which a peer that reads nothing is given up, and connected to anew.
+/// Time after which the connection to a peer that reads nothing is closed and made again.
 pub(super) const WRITES: Duration = Duration::from_millis(500);
 /// Time without a new state after which the last one is sent again, so that the connection stays open.
 const HEARTBEAT: Duration = Duration::from_millis(500);
@@ -36,7 +36,7 @@ impl Slot {
         self.is_new.notify_all();
     }
 
-    /// Waits for a state that has not been sent, for a while.
+    /// Waits a while for a state that has not been sent; `None` if there is none.
     fn next(&self) -> Option<Arc<[u8]>> {
         let frame = lock(&self.frame);
         let (mut frame, _) = self
@@ -50,7 +50,7 @@ impl Slot {
 /// Begins to send to the peer of this name.
 ///
 /// # Errors
-/// The system gives no thread.
+/// Fails if the system cannot create the thread.
 pub(super) fn begin(name: String, address: SocketAddr, shared: &Arc<Shared>) -> io::Result<Arc<Slot>> {
     let slot = Arc::<Slot>::default();
     let (own, shared) = (Arc::clone(&slot), Arc::clone(shared));
@@ -58,7 +58,8 @@ pub(super) fn begin(name: String, address: SocketAddr, shared: &Arc<Shared>) -> 
     Ok(slot)
 }
 
-/// Connects and sends until the run is over. A peer that cannot be reached is reported once, until it was reached.
+/// Connects and sends until the run is over. A peer that cannot be reached is reported only once, until it has
+/// been reached again.
 fn keep_sending(name: &str, address: SocketAddr, slot: &Slot, shared: &Shared) {
     let mut is_known_as_down = false;
     // The last state that was taken, which a new connection begins with.
@@ -90,7 +91,7 @@ fn connect(address: SocketAddr) -> io::Result<TcpStream> {
     Ok(stream)
 }
 
-/// Sends states until that fails; returns why. `last` is the state that was taken last.
+/// Sends states until that fails; returns the error. `last` is the state that was taken last.
 fn send(mut stream: TcpStream, slot: &Slot, last: &mut Option<Arc<[u8]>>, shared: &Shared) -> io::Error {
     while !shared.is_over() {
         *last = slot.next().or(last.take());

@@ -1,4 +1,4 @@
-//! Links over TCP on this machine: what arrives, and what is refused.
+//! Tests of links over TCP on this machine: states that arrive, and frames that are refused.
 
 use std::collections::VecDeque;
 use std::io::{Read as _, Write as _};
@@ -40,14 +40,14 @@ fn state(name: &str, number: u64) -> State {
     }
 }
 
-/// The link of `bob`, whose peer is `ada`, and its address; nobody listens at ada's.
+/// Returns the link of `bob`, whose peer is `ada`, and its address; no robot listens at the address of `ada`.
 fn bob() -> (Tcp, SocketAddr) {
     let (own, nobody) = (bound(), address(&bound()));
     let place = address(&own);
     (Tcp::on(own, &settings("bob", &[("ada", nobody)], "key")).unwrap(), place)
 }
 
-/// Calls `happens` until it returns something.
+/// Calls `happens` until it returns a value.
 fn wait<T>(mut happens: impl FnMut() -> Option<T>) -> T {
     let begun = Instant::now();
     loop {
