@@ -1,10 +1,10 @@
-//! The recorder of ways: what a robot drives while some laws run becomes a path that the plan replays.
+//! The recorder of paths: the path that a robot drives under some laws becomes a path that the plan replays.
 
 use mdle_runtime::StoredPath;
 
 /// Records the way of some laws, and replaces a path of the robot by it.
 pub trait Recorder<Y>: Send {
-    /// Gives the output of a turn the recorded path.
+    /// Writes the recorded path into the output of a turn.
     fn complete(&self, y: &mut Y);
 
     /// Returns the path that was replaced since the last call, if one was.

@@ -1,5 +1,5 @@
-//! Runs that are made again from their record: a [`History`] notes what an engine needs for that besides the robot's
-//! outputs, and an engine repeats these changes without modules, threads and people.
+//! Runs that are repeated from their record. A [`History`] collects the data that an engine needs for this in
+//! addition to the robot's outputs; an engine then repeats these changes without modules, threads or people.
 
 mod history;
 mod repeats;

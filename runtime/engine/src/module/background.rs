@@ -1,5 +1,5 @@
-//! Background modules, which the paper calls unregistered: they run on threads of their own, and exchange values at
-//! turn breaks only (paper, section III-E).
+//! Background modules, which the paper calls unregistered: they run on threads of their own, and exchange
+//! values only at turn breaks (paper, section III-E).
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -17,15 +17,15 @@ pub trait Background: Send + 'static {
     /// Runs on a thread of its own until an exchange returns [`Stopped`]. When it returns, the module has ended.
     ///
     /// # Errors
-    /// Why the module cannot go on, for the operator.
+    /// Returns the reason why the module cannot continue, for the operator.
     fn run(self: Box<Self>, exchange: Exchange) -> Result<(), Fault>;
 }
 
-/// The module is to end: the engine ends, or the module is unloaded.
+/// Signal that the module is to end, because the engine ends or the module is unloaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stopped;
 
-/// Place where a background module and the turn breaks meet.
+/// Meeting point of a background module and the turn breaks.
 #[derive(Debug)]
 pub struct Exchange {
     gate: Arc<Gate>,
@@ -37,11 +37,11 @@ impl Exchange {
         Self { gate, ports }
     }
 
-    /// Publishes what `fill` publishes at the next break, and waits for that break. Values that the module reads are
-    /// then as of that break.
+    /// Publishes, at the next break, the values that `fill` publishes, and waits for that break. The values
+    /// that the module reads are then as of that break.
     ///
     /// # Errors
-    /// The module is to end.
+    /// Fails if the module is to end.
     pub fn exchange<R>(&mut self, fill: impl FnOnce(&mut Offer<'_>) -> R) -> Result<R, Stopped> {
         // The gate is not locked meanwhile: code that hangs or panics here hinders nobody.
         let result = fill(&mut Offer(&mut self.ports));
@@ -55,7 +55,7 @@ impl Exchange {
         (self.ports.now, &self.ports.ins)
     }
 
-    /// Returns `true` once the module is to end, for code that waits for something else than a break.
+    /// Returns `true` once the module is to end, for code that waits for something other than a break.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.gate.lock().is_stopped
@@ -67,13 +67,14 @@ impl Exchange {
 pub struct Offer<'o>(&'o mut Ports);
 
 impl Offer<'_> {
-    /// Returns the time of the turn that ended with the last break, on the engine's clock; zero before the first.
+    /// Returns the time, on the engine's clock, of the turn that ended with the last break; zero before the
+    /// first break.
     #[must_use]
     pub fn now(&self) -> Nanos {
         self.0.now
     }
 
-    /// Returns the value of an attribute as of the last exchange, or of a setting.
+    /// Returns the value of an attribute as of the last exchange, or the value of a setting.
     #[must_use]
     pub fn get<T: Attribute>(&self, attribute: In<T>) -> Option<T> {
         self.0.get(attribute)
@@ -85,12 +86,13 @@ impl Offer<'_> {
         self.0.reading(attribute)
     }
 
-    /// Publishes a value at the next break; a value with a NaN is never published.
+    /// Publishes a value at the next break; a value that contains NaN is not published.
     pub fn publish<T: Attribute>(&mut self, attribute: Out<T>, value: T) {
         self.0.publish(attribute, value);
     }
 
-    /// Publishes a value of the attribute at this place in the declaration, whose kind it has.
+    /// Publishes a value of the attribute at this position in the declaration; the value must have the
+    /// attribute's kind.
     pub(crate) fn put(&mut self, place: usize, value: Value) {
         if let Some(out) = self.0.outs.get_mut(place) {
             *out = Some(value);
@@ -98,7 +100,7 @@ impl Offer<'_> {
     }
 }
 
-/// Exchange of values between a thread in the background and the breaks. It is locked for moments only.
+/// Exchange of values between a background thread and the breaks. It is locked only for moments.
 #[derive(Debug, Default)]
 pub(crate) struct Gate {
     meeting: Mutex<Meeting>,
@@ -109,7 +111,7 @@ pub(crate) struct Gate {
 struct Meeting {
     /// `true` once the module may run.
     has_begun: bool,
-    /// Values of a module that waits for a break.
+    /// Values of a module that waits for a break; `None` while none waits.
     offered: Option<Ports>,
     /// Values that a break has returned to the module.
     returned: Option<Ports>,
@@ -121,11 +123,11 @@ struct Meeting {
 /// End of the thread of a background module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum ThreadEnd {
-    /// The module was to end, or has nothing left to do.
+    /// The module's code returned: the module was to end, or has nothing left to do.
     Returned,
-    /// The module cannot go on: a sentence.
+    /// The module cannot continue: the reason, as a sentence.
     Failed(String),
-    /// The module's code panicked: the message.
+    /// The module's code panicked: the message of the panic.
     Panicked(String),
 }
 
@@ -145,7 +147,7 @@ impl Gate {
         self.changed.wait(meeting).unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// On the module's thread: waits until the module may run; `false` if it never may.
+    /// Waits, on the module's thread, until the module may run; returns `false` if it never may.
     pub(crate) fn wait_for_begin(&self) -> bool {
         let mut meeting = self.lock();
         while !meeting.has_begun && !meeting.is_stopped {
@@ -154,7 +156,7 @@ impl Gate {
         !meeting.is_stopped
     }
 
-    /// On the module's thread: offers values, and waits for the break that takes them.
+    /// Offers values, on the module's thread, and waits for the break that takes them.
     fn hand_over(&self, ports: Ports) -> Result<Ports, Stopped> {
         let mut meeting = self.lock();
         meeting.offered = Some(ports);
@@ -170,7 +172,7 @@ impl Gate {
         }
     }
 
-    /// On the module's thread: notes that it has ended.
+    /// Records, on the module's thread, that the thread has ended.
     pub(crate) fn has_ended(&self, end: ThreadEnd) {
         self.lock().ended = Some(end);
         self.changed.notify_all();
@@ -182,21 +184,21 @@ impl Gate {
         self.changed.notify_all();
     }
 
-    /// At a break: takes the values of a module that waits; never waits itself. A module that has the lock at this
-    /// moment is served at the next break.
+    /// Takes, at a break, the values of a module that waits. Never waits itself: a module that holds the lock
+    /// at this moment is served at the next break.
     pub(crate) fn take_offer(&self) -> Option<Ports> {
         self.meeting.try_lock().ok()?.offered.take()
     }
 
-    /// At the end of the break: returns the values to the module, which goes on.
+    /// Returns the values to the module at the end of a break; the module then continues.
     pub(crate) fn give_back(&self, ports: Ports) {
         self.lock().returned = Some(ports);
         self.changed.notify_all();
     }
 
-    /// Waits until the module waits for a break, or has ended; returns `false` if neither is so within this time.
-    /// Each of [`LOOKS`] counts as its part of the time, however late this thread goes on: a process that was
-    /// stopped, or that a busy machine kept waiting, gives up no module for that.
+    /// Waits until the module waits for a break, or has ended; returns `false` if neither happens within this
+    /// time. Each of the [`LOOKS`] checks counts as an equal part of the time, however late this thread
+    /// continues, so that no module is given up because the process was stopped or the machine was busy.
     pub(crate) fn wait_for_offer(&self, patience: Duration) -> bool {
         let mut meeting = self.lock();
         for _ in 0..LOOKS {
@@ -209,7 +211,8 @@ impl Gate {
         false
     }
 
-    /// Returns how the module's thread has ended, once.
+    /// Returns the end of the module's thread once; `None` before it has ended, in later calls, and while the module
+    /// holds the lock.
     pub(crate) fn take_end(&self) -> Option<ThreadEnd> {
         self.meeting.try_lock().ok()?.ended.take()
     }

@@ -1,4 +1,4 @@
-//! Modules that are made and can be loaded at a turn break.
+//! Modules that have been created and can be loaded at a turn break.
 
 use std::any::Any;
 use std::fmt;
@@ -11,12 +11,12 @@ use std::time::Duration;
 use super::{Background, Declare, Declared, Exchange, Fault, Gate, Module, Ports, ThreadEnd};
 use crate::attribute::{AttributeKind, AttributeName, is_name};
 
-/// Name of the module that makes the turns of plans; no other module can have it.
+/// Name of the module that makes the turns of plans; no other module may have it.
 pub const PLAN: &str = "mdle";
-/// Name of the robot among the modules, in the tree of attributes; no module can have it.
+/// Name of the robot in the tree of attributes, in the place of a module's name; no module may have it.
 pub(crate) const ROBOT: &str = "robot";
 
-/// A module that is made, and not loaded yet. The robot's turns do not wait while it is made.
+/// A module that has been created and not yet loaded. The robot's turns do not wait while it is being created.
 pub struct Candidate<Y> {
     pub(crate) name: Arc<str>,
     pub(crate) declared: Declared,
@@ -25,14 +25,13 @@ pub struct Candidate<Y> {
 
 /// The code of a module.
 pub(crate) enum Form<Y> {
-    /// It makes a turn in every turn of the engine.
+    /// A module that makes a turn in every turn of the engine.
     Registered(Box<dyn Module<Y>>, Ports),
-    /// It has a thread of its own.
+    /// A module with a thread of its own.
     Background(ThreadGate),
 }
 
-/// Gate of a module's thread, which is asked to end when nothing needs the gate any more; and the maximum wait for its
-/// end.
+/// Gate of a module's thread, which is asked to end when the gate is dropped, and the maximum wait for its end.
 #[derive(Debug)]
 pub(crate) struct ThreadGate(Arc<Gate>, Duration);
 
@@ -56,46 +55,46 @@ impl Drop for ThreadGate {
 /// Reason why a module cannot be loaded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Refusal {
-    /// A loaded module has this name already.
+    /// Another loaded module has this name.
     NameTaken(String),
     /// No module may have this name.
     BadName(String),
     /// No module of this name is loaded.
     Unknown(String),
-    /// A module has no setting of this name: its name, and the setting's.
+    /// A module has no setting of this name: the names of the module and the setting.
     NoSetting(String, String),
-    /// A setting has another kind than the value: its path, and the kinds of the setting and of the value.
+    /// A setting has another kind than the value: the path of the setting, its kind, and the kind of the value.
     OtherSetting(AttributeName, AttributeKind, AttributeKind),
-    /// The value for a setting is NaN: its path.
+    /// The value for a setting is NaN: the path of the setting.
     NotANumber(AttributeName),
-    /// The declaration of the module is wrong: its name, and a sentence.
+    /// The declaration of the module is invalid: the name of the module, and a sentence.
     Declaration(String, String),
-    /// The function that makes the module panicked: its name, and the message.
+    /// The function that creates the module panicked: the name of the module, and the message.
     Panicked(String, String),
-    /// A module reads an attribute as another kind than it has.
+    /// A module reads an attribute as another kind than the attribute has.
     OtherKind {
-        /// The module that reads it.
+        /// Name of the module that reads the attribute.
         reader: String,
-        /// The attribute.
+        /// Name of the attribute.
         name: AttributeName,
         /// Kind that the reader expects.
         read: AttributeKind,
-        /// Kind of the attribute.
+        /// Kind of the attribute as published.
         published: AttributeKind,
     },
-    /// The system gives no thread for the module: its name, and the system's message.
+    /// The system could not create a thread for the module: the name of the module, and the system's message.
     NoThread(String, String),
-    /// The child process of the module does not do its part: the module's name, and a sentence.
+    /// The child process of the module breaks the protocol: the name of the module, and a sentence.
     Process(String, String),
-    /// The run was asked to end while the module was made.
+    /// The run was asked to end while the module was being created.
     Ended,
 }
 
 impl<Y> Candidate<Y> {
-    /// Makes a registered module of this name.
+    /// Creates a registered module of this name.
     ///
     /// # Errors
-    /// The name or the declaration is wrong, or `make` panicked.
+    /// Fails if the name or the declaration is invalid, or if `make` panicked.
     pub fn registered<M: Module<Y> + 'static>(
         name: &str,
         make: impl FnOnce(&mut Declare) -> M,
@@ -104,10 +103,11 @@ impl<Y> Candidate<Y> {
         Ok(Self { name: name.into(), declared, form: Form::Registered(Box::new(module), ports) })
     }
 
-    /// Makes a background module of this name. Its thread waits until it is loaded.
+    /// Creates a background module of this name. Its thread waits until it is loaded.
     ///
     /// # Errors
-    /// The name or the declaration is wrong, `make` panicked, or the system gives no thread.
+    /// Fails if the name or the declaration is invalid, if `make` panicked, or if the system cannot create the
+    /// thread.
     pub fn background<M: Background>(name: &str, make: impl FnOnce(&mut Declare) -> M) -> Result<Self, Refusal> {
         let (module, Declare { declared, ports, .. }) = made(name, make)?;
         let gate = Arc::new(Gate::default());
@@ -128,14 +128,14 @@ impl<Y> Candidate<Y> {
         Ok(Self { name: name.into(), declared, form: Form::Background(gate) })
     }
 
-    /// Name of the module.
+    /// Returns the name of the module.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 }
 
-/// Calls the function that makes a module.
+/// Calls the function that creates a module.
 fn made<M>(name: &str, make: impl FnOnce(&mut Declare) -> M) -> Result<(M, Declare), Refusal> {
     if !is_name(name) {
         return Err(Refusal::BadName(name.to_owned()));

@@ -9,12 +9,12 @@ use mdle_runtime::Nanos;
 
 use crate::attribute::{AGE, Attribute, AttributeKind, AttributeName, In, Out, Reading, Value, is_name};
 
-/// Registers the attributes of a module while it is made.
+/// Registers the attributes of a module while it is created.
 #[derive(Debug, Default)]
 pub struct Declare {
     pub(crate) declared: Declared,
     pub(crate) ports: Ports,
-    /// First fault of the declaration: a sentence.
+    /// First fault of the declaration, as a sentence.
     pub(crate) fault: Option<String>,
 }
 
@@ -24,7 +24,7 @@ pub(crate) struct Declared {
     pub(crate) doc: &'static str,
     pub(crate) publishes: Vec<About>,
     pub(crate) reads: Vec<Source>,
-    /// Modules of higher priority begin their turns first.
+    /// Priority of the module: modules of higher priority begin their turns first.
     pub(crate) priority: i32,
     pub(crate) relevance: Relevance,
     pub(crate) latency: Nanos,
@@ -37,36 +37,37 @@ pub(crate) struct Declared {
 /// Source of a value that a module reads.
 #[derive(Debug)]
 pub(crate) enum Source {
-    /// An attribute of this kind.
+    /// An attribute of another module: its name, and the kind that the module expects.
     Attribute(AttributeName, AttributeKind),
-    /// A setting of the module itself, and its value.
+    /// A setting of the module itself: its description and its value.
     Setting(About, Reading),
 }
 
 /// Description of an attribute or of a setting, for people.
 #[derive(Debug, Clone, PartialEq)]
 pub struct About {
-    /// Name in its module.
+    /// Name of the attribute or setting in its module.
     pub name: Arc<str>,
-    /// Kind of its values.
+    /// Kind of the attribute's values.
     pub kind: AttributeKind,
     /// Unit in which users read and write the value; `None` for a kind without units.
     pub unit: Option<Unit>,
-    /// A sentence about it.
+    /// Description of the attribute, as a sentence.
     pub doc: &'static str,
 }
 
 /// Condition under which a module makes turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Relevance {
-    /// In every turn.
+    /// The module makes every turn.
     #[default]
     Always,
-    /// While the plan's current atom, an atom that can follow it, or a module that makes turns reads the module.
+    /// The module makes turns while it is read by the plan's current atom, by an atom that can follow, or by a
+    /// module that makes turns.
     WhenRead,
 }
 
-/// The values of a module: those to be published at the next break, and its copies of what it reads.
+/// The values of a module: values to publish at the next break, and its copies of the attributes that it reads.
 #[derive(Debug, Default)]
 pub(crate) struct Ports {
     pub(crate) outs: Vec<Option<Value>>,
@@ -98,7 +99,8 @@ impl Declare {
         Out::new(self.publishes_as(name, T::KIND, None))
     }
 
-    /// Declares an attribute of this kind, and returns its place; people read it in this unit, by default the SI unit.
+    /// Declares an attribute of this kind, and returns its position. People read the attribute in `unit`, by
+    /// default the SI unit.
     pub(crate) fn publishes_as(&mut self, name: &str, kind: AttributeKind, unit: Option<Unit>) -> usize {
         let about = self.about(name, kind);
         self.declared.publishes.push(About { unit: unit.or(about.unit), ..about });
@@ -106,13 +108,13 @@ impl Declare {
         self.ports.outs.len().saturating_sub(1)
     }
 
-    /// Declares an attribute of another module that this one reads. The other module may be loaded later, or never; if
-    /// it publishes the attribute with another kind, whichever of the two is loaded last is refused.
+    /// Declares an attribute of another module that this module reads. The other module may be loaded later, or
+    /// never. If it publishes the attribute with another kind, the module that is loaded last is refused.
     pub fn reads<T: Attribute>(&mut self, module: &str, attribute: &str) -> In<T> {
         In::new(self.reads_as(module, attribute, T::KIND))
     }
 
-    /// Declares an attribute of another module that this one reads as this kind, and returns its place.
+    /// Declares an attribute of another module that this module reads as this kind, and returns its position.
     pub(crate) fn reads_as(&mut self, module: &str, attribute: &str, kind: AttributeKind) -> usize {
         for name in [module, attribute] {
             self.check_name(name);
@@ -120,7 +122,7 @@ impl Declare {
         self.input(Source::Attribute(AttributeName::new(module, attribute), kind), None)
     }
 
-    /// Declares a setting of the module that people can change, with its value at first.
+    /// Declares a setting of the module, which people can change, with its initial value.
     pub fn setting<T: Attribute>(&mut self, name: &str, initial: T) -> In<T> {
         let about = self.about(name, T::KIND);
         let value = initial.into_value();
@@ -157,13 +159,13 @@ impl Declare {
         self.declared.doc = doc;
     }
 
-    /// Sets the priority of the module, 0 by default: modules of higher priority begin their turns first. No result
-    /// depends on it, only who is late if there is too little time.
+    /// Sets the priority of the module, 0 by default: modules of higher priority begin their turns first. The
+    /// priority has no effect on results, except on which modules are late if there is too little time.
     pub fn priority(&mut self, priority: i32) {
         self.declared.priority = priority;
     }
 
-    /// Sets when the module makes turns.
+    /// Sets the condition under which the module makes turns.
     pub fn relevance(&mut self, relevance: Relevance) {
         self.declared.relevance = relevance;
     }
@@ -209,7 +211,7 @@ impl Declare {
         }
     }
 
-    /// Notes the first fault.
+    /// Records the first fault.
     fn refuse(&mut self, sentence: String) {
         self.fault.get_or_insert(sentence);
     }

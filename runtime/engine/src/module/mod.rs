@@ -16,21 +16,23 @@ use mdle_runtime::Nanos;
 
 use crate::attribute::{Attribute, In, Out, Reading};
 
-/// A registered module of an engine whose robot has the output `Y`. A function that declares its attributes makes it;
-/// to unload it is to drop it.
+/// A registered module of an engine whose robot has the output `Y`. A function that declares the module's
+/// attributes creates the module; unloading drops it.
 ///
-/// A module is called on any thread, but by one at a time.
+/// A module may be called on any thread, but only by one thread at a time.
 pub trait Module<Y>: Send {
-    /// Makes a turn: reads the robot's output of this turn, and what modules had published when the last turn ended.
+    /// Makes a turn: reads the robot's output of this turn, and the values that modules had published by the
+    /// end of the last turn.
     ///
     /// # Errors
-    /// Why the module cannot go on, for the operator. It makes no further turn.
+    /// Returns the reason why the module cannot continue, for the operator. The module makes no further turn.
     fn turn(&mut self, turn: &mut Turn<'_, Y>) -> Result<(), Fault>;
 
     /// Called before the first turn, and before the first turn after [`Module::stop`].
     fn start(&mut self) {}
 
-    /// Called after the last turn for now: people stopped the module, or nothing reads it at present.
+    /// Called after the last turn before a stop: a person has stopped the module, or nothing reads it at
+    /// present.
     fn stop(&mut self) {}
 }
 
@@ -48,7 +50,7 @@ impl<Y> Module<Y> for Box<dyn Module<Y>> {
     }
 }
 
-/// Reason why a module cannot go on: a sentence for the operator.
+/// Reason why a module cannot continue, as a sentence for the operator.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault(pub String);
 
@@ -57,7 +59,7 @@ pub struct Fault(pub String);
 pub struct Turn<'t, Y> {
     /// Number of the turn, from 0.
     pub number: u64,
-    /// Time of the turn on the engine's clock: the first turn is at zero.
+    /// Time of the turn on the engine's clock, on which the first turn is at zero.
     pub now: Nanos,
     /// The robot's output of this turn.
     pub y: &'t Y,
@@ -65,21 +67,22 @@ pub struct Turn<'t, Y> {
 }
 
 impl<Y> Turn<'_, Y> {
-    /// Returns the value of an attribute as of the last break, or of a setting. `None` while no module has published
-    /// it, and once its module is unloaded.
+    /// Returns the value of an attribute as of the last break, or the value of a setting; `None` while no
+    /// module has published the attribute, and once its module is unloaded.
     #[must_use]
     pub fn get<T: Attribute>(&self, attribute: In<T>) -> Option<T> {
         self.ports.get(attribute)
     }
 
-    /// Returns the value with the time at which it was published; a setting has the time at which it was set.
+    /// Returns the value with the time at which it was published; a setting has the time at which it was
+    /// changed.
     #[must_use]
     pub fn reading<T>(&self, attribute: In<T>) -> Option<&Reading> {
         self.ports.reading(attribute)
     }
 
-    /// Publishes a value at the break that ends this turn. Of several values in one turn the last counts; a value with
-    /// a NaN is never published.
+    /// Publishes a value at the break that ends this turn. Of several values in one turn, only the last is
+    /// published; a value that contains NaN is not published.
     pub fn publish<T: Attribute>(&mut self, attribute: Out<T>, value: T) {
         self.ports.publish(attribute, value);
     }

@@ -1,4 +1,4 @@
-//! The thread that compiles plans beside the turns, one order after the other.
+//! The thread that compiles plans while turns are made, one order after the other.
 
 use std::collections::VecDeque;
 use std::io;
@@ -12,49 +12,50 @@ use mdle_compiler::load::LoadedPlan;
 use super::{EngineAlphabet, StoredPlan, When};
 use crate::module::panicked;
 
-/// Maximum number of orders that wait.
+/// Maximum number of orders that wait for the compiler.
 const WAITING: usize = 16;
 
-/// The text of plans.
+/// Source of a text that contains plans.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PlanSource {
-    /// A file.
+    /// A file, by its path.
     File(PathBuf),
-    /// A text that was typed.
+    /// A typed text.
     Text(String),
 }
 
-/// The plans of a text.
+/// The result of compiling a text: its plans and warnings.
 pub struct CompiledPlans<A: EngineAlphabet> {
     /// The plans that no other plan of the text uses.
     pub plans: Vec<StoredPlan<A>>,
-    /// Diagnostics, for people; empty if there are none.
+    /// Warnings as text for people; empty if there are none.
     pub warnings: String,
 }
 
 /// Compiles and loads the plans of a text.
 ///
 /// # Errors
-/// The diagnostics, for people.
+/// Fails with the diagnostics as text for people.
 pub type Compile<A> = dyn Fn(&PlanSource) -> Result<CompiledPlans<A>, String> + Send;
 
-/// A request that takes longer than a turn may.
+/// A request that takes longer than a turn allows.
 pub(crate) struct Order<A: EngineAlphabet> {
     pub(crate) ticket: u32,
     pub(crate) task: Task<A>,
 }
 
 pub(crate) enum Task<A: EngineAlphabet> {
-    /// Compiles plans, which are then stored. The only one takes over if there is a moment for it.
+    /// Compile plans, which are then stored. If a moment is given, the plan takes over at that moment, provided
+    /// that the text has only one plan.
     Compile(PlanSource, Option<When>),
-    /// Makes a stored plan ready to take over.
+    /// Prepare a stored plan to take over at this moment.
     Begin(StoredPlan<A>, When),
 }
 
 /// Result of an order.
 pub(crate) struct Outcome<A: EngineAlphabet> {
     pub(crate) ticket: u32,
-    /// The plans, or diagnostics.
+    /// The plans, or the diagnostics.
     pub(crate) product: Result<Product<A>, String>,
 }
 
@@ -62,19 +63,19 @@ pub(crate) struct Outcome<A: EngineAlphabet> {
 pub(crate) struct Product<A: EngineAlphabet> {
     /// Plans to be stored, and their warnings.
     pub(crate) compiled: CompiledPlans<A>,
-    /// The plan that is to take over, before its first turn.
+    /// The plan that is to take over, before its first turn; `None` if none is.
     pub(crate) next: Option<Next<A>>,
 }
 
 /// A plan that is to take over, before its first turn.
 pub(crate) struct Next<A: EngineAlphabet> {
     pub(crate) plan: LoadedPlan<A>,
-    /// Names and texts of its files, its own first.
+    /// Names and texts of the plan's files, its own file first.
     pub(crate) files: Arc<[(String, String)]>,
     pub(crate) when: When,
 }
 
-/// The thread, which ends when this value is dropped.
+/// The compiler's thread, which ends when this value is dropped.
 pub(crate) struct Compiler<A: EngineAlphabet>(Arc<Counter<A>>);
 
 /// Meeting point of the control thread and the compiler.
@@ -93,7 +94,7 @@ impl<A: EngineAlphabet> Compiler<A> {
     /// Starts the thread.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// Fails if the system cannot create the thread.
     pub(crate) fn new(compile: Box<Compile<A>>) -> io::Result<Self> {
         let state = State { waiting: VecDeque::new(), done: VecDeque::new(), quits: false };
         let counter = Arc::new(Counter { state: Mutex::new(state), changed: Condvar::new() });
@@ -102,11 +103,11 @@ impl<A: EngineAlphabet> Compiler<A> {
         Ok(Self(counter))
     }
 
-    /// Gives an order. If a plan is to take over, the order that has waited for the same is never carried out now, and
-    /// is returned.
+    /// Gives an order. If a plan is to take over, an earlier order of this kind that still waits is cancelled
+    /// and returned.
     ///
     /// # Errors
-    /// Too many orders wait: a sentence.
+    /// Fails with a sentence if too many orders wait.
     pub(crate) fn order(&self, order: Order<A>) -> Result<Option<Order<A>>, String> {
         let mut state = self.0.lock();
         let superseded = if order.task.takes_over() { state.take_back() } else { None };
@@ -118,12 +119,12 @@ impl<A: EngineAlphabet> Compiler<A> {
         Ok(superseded)
     }
 
-    /// Takes back the order that waits for a plan to take over.
+    /// Takes back the waiting order for a plan to take over.
     pub(crate) fn take_back(&self) -> Option<Order<A>> {
         self.0.lock().take_back()
     }
 
-    /// Returns the next order that is carried out; never waits.
+    /// Returns the outcome of the next order that was carried out; `None` if there is none. Never waits.
     pub(crate) fn done(&self) -> Option<Outcome<A>> {
         self.0.state.try_lock().ok()?.done.pop_front()
     }
@@ -176,7 +177,7 @@ impl<A: EngineAlphabet> Next<A> {
 }
 
 impl<A: EngineAlphabet> Task<A> {
-    /// Returns `true` if a plan is to take over.
+    /// Returns `true` if the order is for a plan to take over.
     fn takes_over(&self) -> bool {
         match self {
             Self::Compile(_, when) => when.is_some(),

@@ -3,20 +3,20 @@
 use std::fmt;
 use std::sync::Arc;
 
-/// Moment at which a new plan takes over. In each case the robot has exactly one input in that turn, that of the new
-/// plan's first turn.
+/// Moment at which a new plan takes over. In every case, the robot gets exactly one input in that turn: the
+/// input of the new plan's first turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum When {
-    /// In the next turn.
+    /// The next turn.
     Now,
-    /// In the turn in which the current atom ends.
+    /// The turn in which the current atom ends.
     AtomEnds,
-    /// In the turn in which the current plan is over.
+    /// The turn in which the current plan is over.
     PlanEnds,
 }
 
 impl When {
-    /// Every moment, with the word by which people name it.
+    /// Every moment, with its name in commands.
     pub const ALL: [(&'static str, Self); 3] = [("now", Self::Now), ("atom", Self::AtomEnds), ("plan", Self::PlanEnds)];
 
     /// Returns the number of the moment in records: its place in [`When::ALL`].
@@ -42,14 +42,14 @@ impl fmt::Display for When {
     }
 }
 
-/// An event of a request, by the number that the request returned; the first plan has number 1.
+/// An event about a request, with the number that the request returned; the first plan has number 1.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PlanEvent {
-    /// Nothing has changed: the diagnostics of a text, or a sentence.
+    /// The request was refused, and nothing has changed: the diagnostics of a text, or a sentence.
     Refused(u32, String),
-    /// The text has warnings: the diagnostics. Another event follows.
+    /// The text has warnings, given as diagnostics. Another event follows.
     Warned(u32, String),
-    /// The plans of these names are stored.
+    /// The plans of the request are stored: their names.
     Stored(u32, Vec<Arc<str>>),
     /// Another request came before this one was compiled, and replaces it.
     Superseded(u32),
@@ -59,22 +59,22 @@ pub enum PlanEvent {
     Armed(u32),
     /// The plan was cancelled before it took over.
     Cancelled(u32),
-    /// The plan has taken over: this was its first turn.
+    /// The plan has taken over, and made its first turn.
     Began(u32),
-    /// The trial of the plan is over, and the plan before it is gone.
+    /// The trial of the plan is over, and the plan before it is dropped.
     Accepted(u32),
-    /// The plan on trial was ended, and the plan before it goes on.
+    /// The plan on trial was ended, and the plan before it continues.
     RolledBack {
-        /// The plan that was ended.
+        /// Number of the plan that was ended.
         from: u32,
-        /// The plan that goes on.
+        /// Number of the plan that continues.
         to: u32,
-        /// Why: a sentence.
+        /// Reason, as a sentence.
         why: String,
     },
 }
 
-/// Reason why there is nothing to roll back to: no plan is on trial.
+/// Error of a rollback when no plan is on trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoTrial;
 

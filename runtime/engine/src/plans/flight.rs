@@ -1,4 +1,4 @@
-//! The turn of a plan on whatever thread makes it: all that the turn needs goes there, and comes back.
+//! The turn of a plan, with all data that it needs, as it is passed to another thread and back.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -10,10 +10,10 @@ use super::running::Running;
 use super::{EngineAlphabet, When};
 use crate::module::{self, Fault, Module, panicked};
 
-/// The turn of a plan, with the plan that may follow in the same turn.
+/// The turn of a plan, together with the plan that may take over in the same turn.
 pub(crate) struct Flight<A: Alphabet> {
     pub(crate) current: Running<A>,
-    /// The plan that takes over in this turn, if what it waits for happens.
+    /// The plan that takes over in this turn, if its moment comes.
     pub(crate) next: Option<(Running<A>, When)>,
     /// The numbers of modules that the next plan reads.
     pub(crate) published: Published,
@@ -25,8 +25,8 @@ pub(crate) struct Flight<A: Alphabet> {
     pub(crate) at: Nanos,
 }
 
-/// Place where the control thread and the thread of the plan meet. It is never locked while code of a plan runs, so
-/// that a plan that hangs keeps its own turn and nothing else.
+/// Place where the control thread and the plan's thread exchange a turn. It is never locked while code of a
+/// plan runs, so that a plan that hangs keeps only its own turn.
 pub(crate) struct Desk<A: Alphabet>(Mutex<OnDesk<A>>);
 
 struct OnDesk<A: Alphabet> {
@@ -37,7 +37,7 @@ struct OnDesk<A: Alphabet> {
     panic: Option<String>,
 }
 
-/// A turn that is back.
+/// A turn that the plan's thread has returned.
 pub(crate) struct Landed<A: Alphabet> {
     pub(crate) flight: Option<Box<Flight<A>>>,
     pub(crate) replaced: Option<Running<A>>,
@@ -55,12 +55,12 @@ impl<A: Alphabet> Desk<A> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lays a turn down before the threads are called.
+    /// Puts a turn on the desk, before the threads are called.
     pub(crate) fn lay(&self, flight: Box<Flight<A>>) {
         self.lock().flight = Some(flight);
     }
 
-    /// Takes what there is after the turn.
+    /// Takes the turn and the other results from the desk.
     pub(crate) fn take(&self) -> Landed<A> {
         let mut desk = self.lock();
         Landed { flight: desk.flight.take(), replaced: desk.replaced.take(), panic: desk.panic.take() }
@@ -68,13 +68,14 @@ impl<A: Alphabet> Desk<A> {
 }
 
 impl<A: EngineAlphabet> Flight<A> {
-    /// Returns the turns of a plan.
+    /// Returns the turns of a plan, before the first.
     pub(crate) fn new(current: Running<A>) -> Box<Self> {
         let transitions = Transitions::default();
         Box::new(Self { current, next: None, published: Published::NONE, transitions, turn: None, at: Nanos::ZERO })
     }
 
-    /// Makes the turn. A plan that is replaced is laid on the desk before its successor runs, which may hang.
+    /// Makes the turn. A plan that is replaced is put on the desk before its successor, which may hang, makes
+    /// its turn.
     fn fly(&mut self, y: &A::Output, now: Nanos, desk: &Desk<A>) {
         let turn = self.current.turn(y, now, &mut self.transitions);
         let takes_over = match &self.next {
@@ -97,7 +98,7 @@ impl<A: EngineAlphabet> Flight<A> {
     }
 }
 
-/// The module of the plans, which makes the turn that lies on the desk.
+/// The module of the plans, which makes the turn on the desk.
 pub(crate) struct PlanModule<A: Alphabet>(pub(crate) Arc<Desk<A>>);
 
 impl<A: EngineAlphabet> Module<A::Output> for PlanModule<A> {

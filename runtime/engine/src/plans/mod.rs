@@ -1,5 +1,5 @@
-//! Plans at run time: the plan that drives, the plan that is to follow, the suspended plan to which the engine can roll
-//! back, and the plans that are stored (paper, sections III-D and III-H).
+//! Plans at run time: the active plan, the plan that is to take over, the suspended plan to which the engine
+//! can roll back, and the stored plans (paper, sections III-D and III-H).
 //!
 //! A front end makes requests at a turn break, such as [`Plans::swap`], and reads the answers from
 //! [`Plans::take_events`] after each turn.
@@ -36,36 +36,36 @@ pub const TRIAL: Nanos = Nanos(3_000_000_000);
 
 /// The plans of one robot.
 pub struct Plans<A: EngineAlphabet> {
-    /// The plan that drives; `None` before the first, and while its turn is late.
+    /// The active plan; `None` before the first plan, and while the plan's turn is late.
     current: Option<Box<Flight<A>>>,
-    /// The plan that is to follow.
+    /// The plan that is to take over, and its moment.
     armed: Option<(Running<A>, When)>,
-    /// The plan before the one on trial, with the time of the turn in which it was suspended.
+    /// The plan before the plan on trial, with the time of the turn in which it was suspended.
     suspended: Option<(Running<A>, Nanos)>,
-    /// Since when the plan has been suspended that goes on in the next turn.
+    /// Time since which the plan that continues in the next turn has been suspended.
     resumes: Option<Nanos>,
     trial: Nanos,
     trial_ends: Nanos,
     compiler: Option<Compiler<A>>,
     desk: Arc<Desk<A>>,
     stored: Store<A>,
-    /// The paths that the robot can replay: those of the first plan.
+    /// Names of the paths that the robot can replay: those of the first plan.
     paths: Vec<&'static str>,
     /// Number of the last request.
     last: u32,
     /// Number of the last plan that has begun.
     begun: u32,
     driving: Driving,
-    /// Why the plan that drives has replaced another one.
+    /// Reason why the active plan has replaced another plan.
     reason: String,
     events: Vec<PlanEvent>,
-    /// Plans to drop on another thread: to drop a large one takes longer than a turn may.
+    /// Plans to drop on another thread, since dropping a large plan takes longer than a turn allows.
     spent: Vec<Spent>,
-    /// Changes of these plans, for a record; `None` if the run is not recorded.
+    /// Changes of the plans, for a record; `None` if the run is not recorded.
     changes: Option<PlanChanges>,
 }
 
-/// A plan that drives, as it is named.
+/// Names and numbers of the active plan.
 #[derive(Debug, Clone)]
 struct Driving {
     number: u32,
@@ -73,11 +73,11 @@ struct Driving {
     name: Arc<str>,
 }
 
-/// A plan that nothing needs any more, of any type.
+/// A value of any type that is no longer needed.
 type Spent = Box<dyn Any + Send>;
 
 impl<A: EngineAlphabet> Plans<A> {
-    /// Returns the plans of a robot whose first plan is this one.
+    /// Returns the plans of a robot whose first plan is `first`.
     #[must_use]
     pub fn new(first: LoadedPlan<A>) -> Self {
         let paths = first.paths().to_vec();
@@ -104,7 +104,7 @@ impl<A: EngineAlphabet> Plans<A> {
         }
     }
 
-    /// Notes from now on what a record needs.
+    /// Begins to collect the changes that a record needs.
     pub(crate) fn record(&mut self) {
         self.changes = Some(PlanChanges::default());
     }
@@ -114,20 +114,20 @@ impl<A: EngineAlphabet> Plans<A> {
         self.changes.as_mut().map(PlanChanges::take).unwrap_or_default()
     }
 
-    /// Notes a change if the run is recorded.
+    /// Collects a change if the run is recorded.
     pub(crate) fn note(&mut self, change: Change) {
         if let Some(changes) = &mut self.changes {
             changes.note(change);
         }
     }
 
-    /// Sets the time for which a plan that takes over from now on is on trial.
+    /// Sets the duration of the trial of plans that take over from now on.
     pub fn set_trial(&mut self, trial: Nanos) {
         self.trial = trial;
         self.note(Change::Trial(trial));
     }
 
-    /// Returns the time for which a plan that takes over is on trial.
+    /// Returns the duration of the trial of a plan that takes over.
     #[must_use]
     pub fn trial(&self) -> Nanos {
         self.trial
@@ -138,53 +138,56 @@ impl<A: EngineAlphabet> Plans<A> {
         self.events.drain(..)
     }
 
-    /// Returns the number of the plan that drives: the first has 1, and each that begins has the next.
+    /// Returns the number of the active plan: the first plan has number 1, and each plan that begins has the
+    /// next number.
     #[must_use]
     pub fn number(&self) -> u32 {
         self.driving.number
     }
 
-    /// Returns the name of the plan that drives.
+    /// Returns the name of the active plan.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.driving.name
     }
 
-    /// Returns the name of the plan that is armed, and when it takes over.
+    /// Returns the name of the armed plan, and the moment at which it takes over.
     #[must_use]
     pub fn armed(&self) -> Option<(&str, When)> {
         self.armed.as_ref().map(|(plan, when)| (&*plan.name, *when))
     }
 
-    /// Returns the time at which the trial of the plan that drives ends, if it is on trial.
+    /// Returns the time at which the active plan's trial ends; `None` if it is not on trial.
     #[must_use]
     pub fn trial_ends(&self) -> Option<Nanos> {
         self.suspended.as_ref().map(|_| self.trial_ends)
     }
 
-    /// Returns why the plan that drives has replaced another one; empty if a supervisor did that, and for the first.
+    /// Returns the reason why the active plan has replaced another plan; empty for the first plan, and if a
+    /// supervisor has replaced it.
     pub(crate) fn reason(&self) -> &str {
         &self.reason
     }
 
-    /// Returns the plan that drives, once it has begun.
+    /// Returns the machine of the active plan, once the plan has begun.
     #[must_use]
     pub fn machine(&self) -> Option<&Machine<LoadedPlan<A>>> {
         self.current.as_ref().and_then(|flight| flight.current.machine.as_ref())
     }
 
-    /// Returns the engine's time at which the plan that drives began, moved on by the time for which it was suspended.
+    /// Returns the time, on the engine's clock, at which the active plan began, plus the time for which it was
+    /// suspended.
     #[must_use]
     pub fn zero(&self) -> Nanos {
         self.current.as_ref().map_or(Nanos::ZERO, |flight| flight.current.zero)
     }
 
-    /// Takes what nothing needs any more.
+    /// Takes the values that are no longer needed.
     pub(crate) fn take_spent(&mut self) -> impl Iterator<Item = Spent> {
         self.spent.drain(..)
     }
 
-    /// Returns the attributes of modules that the plan which drives reads, once it has begun.
+    /// Returns the attributes of modules that the active plan reads, once it has begun.
     pub(crate) fn driving_reads(&self) -> &'static [ModuleRead] {
         let driving = self.current.as_ref().filter(|flight| flight.current.machine.is_some());
         driving.map_or(&[], |flight| flight.current.reads)

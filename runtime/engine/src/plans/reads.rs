@@ -1,5 +1,5 @@
-//! Attributes of modules that a plan reads: their numbers for a turn, and what is missing before the plan can begin
-//! (docs/src/reference/semantics.md, 2.5).
+//! Attributes of modules that a plan reads: their numbers for a turn, and those that are missing before the
+//! plan can begin (docs/src/reference/semantics.md, 2.5).
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_runtime::{ModuleRead, Nanos, PUBLISHED, Published, PublishedNumber};
@@ -14,16 +14,16 @@ const PATIENCE: Nanos = Nanos(2_000_000_000);
 /// Reason why a plan cannot begin in this turn.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Unready {
-    /// These attributes have not been published yet.
+    /// Attributes that have not been published yet.
     Missing(Vec<&'static ModuleRead>),
-    /// An attribute has another kind than the plan reads: a sentence.
+    /// An attribute has another kind than the one that the plan reads: a sentence.
     OtherKind(String),
 }
 
 /// Returns the numbers that a plan reads at time `now`.
 ///
 /// # Errors
-/// Not all of them have been published, or one is of another kind.
+/// Fails if not all of them have been published, or if an attribute has another kind.
 pub(super) fn published(reads: &'static [ModuleRead], board: &Board, now: Nanos) -> Result<Published, Unready> {
     let mut numbers = Published::new(reads);
     let mut missing = Vec::new();
@@ -65,8 +65,8 @@ pub(super) fn in_vain(missing: &[&ModuleRead], board: &Board) -> String {
     format!("the plan reads {paths}, which no module has published within {seconds} s{there_are}")
 }
 
-/// Returns the end of a sentence about a module or an attribute of it that does not exist: a similar name, and the
-/// modules with what they publish.
+/// Returns the end of a sentence about a module or attribute that does not exist: a similar name, and the
+/// modules with their attributes.
 fn publishers(module: &str, board: &Board) -> String {
     let mut modules: Vec<&str> = board.posts().iter().map(|post| &*post.name.module).collect();
     modules.dedup();
@@ -80,7 +80,7 @@ fn publishers(module: &str, board: &Board) -> String {
     format!("{near}\nhelp: {lists}")
 }
 
-/// Returns the numbers that a plan which runs reads at time `now`. A module may have vanished meanwhile.
+/// Returns the numbers that a running plan reads at time `now`. A module may have vanished meanwhile.
 pub(crate) fn current(reads: &'static [ModuleRead], board: &Board, now: Nanos) -> Published {
     let mut numbers = Published::new(reads);
     for (place, read) in reads.iter().enumerate().take(PUBLISHED) {
@@ -105,7 +105,7 @@ pub(crate) fn check_kinds<'r>(reads: impl IntoIterator<Item = &'r ModuleRead>, b
 /// Checks that modules publish the attributes that safety rules read, and in the kinds in which they are read.
 ///
 /// # Errors
-/// They do not: a sentence.
+/// Fails with a sentence if they do not.
 pub(crate) fn check(reads: &[ModuleRead], board: &Board) -> Result<(), String> {
     let check = |read: &ModuleRead| match board.post(read.module, read.attribute) {
         Some(post) => check_kind(read, post).map_err(|sentence| format!("a safety rule {sentence}")),
@@ -119,8 +119,8 @@ pub(crate) fn check(reads: &[ModuleRead], board: &Board) -> Result<(), String> {
     reads.iter().try_for_each(check)
 }
 
-/// Returns the age at time `now` of the oldest of these attributes; one that no module has published is as old as the
-/// run.
+/// Returns the age, at time `now`, of the oldest of these attributes; an attribute that no module has published
+/// is as old as the run.
 pub(crate) fn oldest<'r>(reads: impl Iterator<Item = &'r ModuleRead>, board: &Board, now: Nanos) -> Nanos {
     let age = |read: &ModuleRead| {
         let at = match read.attribute {
@@ -135,7 +135,7 @@ pub(crate) fn oldest<'r>(reads: impl Iterator<Item = &'r ModuleRead>, board: &Bo
 /// Compares the kind of an attribute with the unit in which a plan reads it.
 ///
 /// # Errors
-/// They differ: a sentence without a subject.
+/// Fails with a sentence without a subject if they differ.
 fn check_kind(read: &ModuleRead, post: &Post) -> Result<(), String> {
     let Post { name, about, .. } = post;
     let quantity = about.kind.quantity();
@@ -147,8 +147,8 @@ fn check_kind(read: &ModuleRead, post: &Post) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the number that `read` asks for at time `now`; `None` if it has not been published. `reads` are all reads of
-/// the plan, `read` among them.
+/// Returns the number for `read` at time `now`; `None` if it has not been published. `reads` are all reads of
+/// the plan, including `read`.
 fn number(read: &ModuleRead, reads: &[ModuleRead], board: &Board, now: Nanos) -> Option<PublishedNumber> {
     if read.attribute == AGE {
         let at = oldest_of(read.module, reads, board)?;
@@ -158,8 +158,8 @@ fn number(read: &ModuleRead, reads: &[ModuleRead], board: &Board, now: Nanos) ->
     value.number().map(|value| PublishedNumber { value, at: *at, age: now.since(*at) })
 }
 
-/// Returns the time at which a module published the oldest value that is read of it; if only its age is read, the
-/// newest value.
+/// Returns the publication time of the module's oldest value that is read; if only the module's age is read, of
+/// its newest value.
 fn oldest_of(module: &str, reads: &[ModuleRead], board: &Board) -> Option<Nanos> {
     let mut attributes = others(module, reads).peekable();
     if attributes.peek().is_none() {
@@ -169,7 +169,7 @@ fn oldest_of(module: &str, reads: &[ModuleRead], board: &Board) -> Option<Nanos>
     attributes.try_fold(Nanos(u64::MAX), |oldest, attribute| Some(oldest.min(published_at(module, attribute, board)?)))
 }
 
-/// Returns the attributes of a module among `reads`, without its age.
+/// Returns those of `reads` that are attributes of this module, without its age.
 fn others<'r, R: std::borrow::Borrow<ModuleRead>>(
     module: &'r str,
     reads: &'r [R],

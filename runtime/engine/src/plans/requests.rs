@@ -1,4 +1,5 @@
-//! Requests of a front end: to compile, store, load, delete and begin plans, and to take back what is to follow.
+//! Requests of a front end: to compile, store, load, delete and begin plans, and to cancel a plan that is to
+//! take over.
 
 use std::io;
 use std::sync::Arc;
@@ -14,20 +15,20 @@ use super::stored::{MOST_STORED, StoredPlan};
 use super::{Plans, Spent};
 
 impl<A: EngineAlphabet> Plans<A> {
-    /// Lets plans be loaded and replaced, by texts of which `compile` makes plans on a thread of its own.
+    /// Enables plans to be loaded and replaced as texts, which `compile` compiles on a thread of its own.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// Fails if the system cannot create the thread.
     pub fn compile_with(&mut self, compile: Box<Compile<A>>) -> io::Result<()> {
         self.compiler = Some(Compiler::new(compile)?);
         Ok(())
     }
 
-    /// Stores a plan under its name; a plan that has the name is replaced, and goes on if it drives. At most
-    /// [`MOST_STORED`] plans are stored.
+    /// Stores a plan under its name; an earlier plan of this name is replaced, and continues if it is active.
+    /// At most [`MOST_STORED`] plans are stored.
     ///
     /// # Errors
-    /// There are too many: a sentence.
+    /// Fails with a sentence if there are too many.
     pub fn store(&mut self, plan: StoredPlan<A>) -> Result<(), String> {
         self.store_all(vec![plan])
     }
@@ -37,39 +38,40 @@ impl<A: EngineAlphabet> Plans<A> {
         self.stored.iter()
     }
 
-    /// Deletes a stored plan; if it drives, it goes on.
+    /// Deletes a stored plan; a plan that is active continues.
     ///
     /// # Errors
-    /// There is no plan of this name: a sentence.
+    /// Fails with a sentence if there is no plan of this name.
     pub fn delete(&mut self, name: &str) -> Result<(), String> {
         let plan = self.stored.remove(name).ok_or_else(|| self.no_plan(name))?;
         self.spent.push(Box::new(plan));
         Ok(())
     }
 
-    /// Asks for the plans of a text to be stored; returns the number of the request. The answer is
+    /// Requests that the plans of a text be stored; returns the number of the request. The answer is
     /// [`PlanEvent::Stored`] or [`PlanEvent::Refused`] at a later break.
     pub fn load(&mut self, source: PlanSource) -> u32 {
         self.order(Task::Compile(source, None))
     }
 
-    /// Asks for the plan of a text to be stored and to take over; returns the number of the request. The answer is
-    /// [`PlanEvent::Refused`] or [`PlanEvent::Armed`] at a later break, and then [`PlanEvent::Began`]. A request that
-    /// is not compiled when the next one comes is superseded; a plan that is armed and has not begun is replaced.
+    /// Requests that the plan of a text be stored and take over; returns the number of the request. The answer
+    /// is [`PlanEvent::Refused`] or [`PlanEvent::Armed`] at a later break, and then [`PlanEvent::Began`]. A
+    /// request that is not compiled when the next one comes is superseded; a plan that is armed and has not
+    /// begun is replaced.
     pub fn swap(&mut self, source: PlanSource, when: When) -> u32 {
         self.order(Task::Compile(source, Some(when)))
     }
 
-    /// Asks for a stored plan to take over, as [`Plans::swap`] does; returns the number of the request.
+    /// Requests that a stored plan take over, as [`Plans::swap`] does; returns the number of the request.
     ///
     /// # Errors
-    /// There is no plan of this name: a sentence.
+    /// Fails with a sentence if there is no plan of this name.
     pub fn run(&mut self, name: &str, when: When) -> Result<u32, String> {
         let plan = self.stored.get(name).cloned().ok_or_else(|| self.no_plan(name))?;
         Ok(self.order(Task::Begin(plan, when)))
     }
 
-    /// Asks for a plan that is loaded already to take over; returns its number. It is armed at once.
+    /// Requests that a loaded plan take over; returns the number of the request. The plan is armed at once.
     pub fn replace(&mut self, plan: LoadedPlan<A>, when: When) -> u32 {
         self.last = self.last.saturating_add(1);
         let number = self.last;
@@ -77,11 +79,11 @@ impl<A: EngineAlphabet> Plans<A> {
         number
     }
 
-    /// Asks for a plan that is compiled already to take over in the next turn; returns its number. It is armed at once,
-    /// and a record of the run has its files.
+    /// Requests that a compiled plan take over in the next turn; returns the number of the request. The plan is
+    /// armed at once, and a record of the run contains its files.
     ///
     /// # Errors
-    /// The plan replays a path that the first plan does not: a sentence.
+    /// Fails with a sentence if the plan replays a path that the first plan does not.
     pub fn follow(&mut self, plan: &StoredPlan<A>) -> Result<u32, String> {
         self.last = self.last.saturating_add(1);
         let number = self.last;
@@ -102,7 +104,7 @@ impl<A: EngineAlphabet> Plans<A> {
         self.take_back();
     }
 
-    /// Takes back what is to follow: see [`Plans::cancel`].
+    /// Cancels the plan that is to take over: see [`Plans::cancel`].
     pub(super) fn take_back(&mut self) {
         let waiting = self.compiler.as_ref().and_then(Compiler::take_back);
         if let Some(order) = waiting {
@@ -122,7 +124,7 @@ impl<A: EngineAlphabet> Plans<A> {
         format!("no plan `{name}` is stored{near}")
     }
 
-    /// Gives an order to the compiler; returns its number.
+    /// Gives an order to the compiler; returns the number of the request.
     fn order(&mut self, task: Task<A>) -> u32 {
         self.last = self.last.saturating_add(1);
         let ticket = self.last;

@@ -8,7 +8,7 @@ use mdle_runtime::{Alphabet, Machine, ModuleRead, Nanos, Plan, Published, Turn, 
 use super::reads::{self, Unready};
 use crate::board::Board;
 
-/// Alphabet of a robot whose plans an engine runs: its quarks move between threads.
+/// Alphabet of a robot whose plans an engine runs; its quarks can move between threads.
 pub trait EngineAlphabet:
     Alphabet<
         Output: Clone + Send + Sync + 'static,
@@ -33,7 +33,7 @@ where
 
 /// A plan of the engine.
 pub(crate) struct Running<A: Alphabet> {
-    /// Number of the request that brought it.
+    /// Number of the request that introduced the plan.
     pub(crate) ticket: u32,
     /// Number of the plan among those that have begun, from 1; 0 before it begins.
     pub(crate) number: u32,
@@ -41,15 +41,15 @@ pub(crate) struct Running<A: Alphabet> {
     /// The plan before its first turn.
     ready: Option<LoadedPlan<A>>,
     pub(crate) machine: Option<Machine<LoadedPlan<A>>>,
-    /// The engine's time at which the plan began, moved on by the time for which it was suspended.
+    /// Time, on the engine's clock, at which the plan began, plus the time for which it was suspended.
     pub(crate) zero: Nanos,
-    /// Attributes of modules that it reads.
+    /// Attributes of modules that the plan reads.
     pub(crate) reads: &'static [ModuleRead],
-    /// Other robots that it names.
+    /// Names of other robots that the plan names.
     pub(crate) robots: Box<[&'static str]>,
-    /// Time since which it waits for what it reads.
+    /// Time since which the plan waits for the attributes that it reads.
     waits_since: Option<Nanos>,
-    /// `true` if it was suspended before this turn.
+    /// `true` if the plan was suspended before this turn.
     is_back: bool,
 }
 
@@ -75,7 +75,7 @@ impl<A: Alphabet> Running<A> {
     /// Returns the numbers of modules that the plan reads in the turn at `now`; `None` if it cannot begin yet.
     ///
     /// # Errors
-    /// Why it never begins: a sentence.
+    /// Fails with a sentence that says why the plan never begins.
     pub(crate) fn published(&mut self, board: &Board, now: Nanos) -> Result<Option<Published>, String> {
         if self.ready.is_none() {
             return Ok(Some(reads::current(self.reads, board, now)));
@@ -103,15 +103,15 @@ impl<A: Alphabet> Running<A> {
         machine.turn(y, t, watch)
     }
 
-    /// Suspends the plan at this output, to which its last input has led.
+    /// Suspends the plan at this output, which followed its last input.
     pub(crate) fn suspend(&mut self, y: &A::Output) {
         if let Some(machine) = &mut self.machine {
             machine.suspend(y);
         }
     }
 
-    /// Lets the plan go on at `now` as if no time had passed since it was suspended. The law of its atom begins anew,
-    /// as the robot is somewhere else.
+    /// Continues the plan at `now` as if no time had passed since it was suspended. The law of its atom begins
+    /// anew, as the robot is somewhere else.
     pub(crate) fn resume(&mut self, suspended: Nanos, now: Nanos) {
         self.zero = Nanos(self.zero.0.saturating_add(now.since(suspended).0));
         self.is_back = true;

@@ -1,4 +1,4 @@
-//! The plans that are compiled and wait by their names.
+//! The stored plans, which are compiled and found by name.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -45,10 +45,10 @@ impl<A: EngineAlphabet> Default for Store<A> {
 }
 
 impl<A: EngineAlphabet> Store<A> {
-    /// Stores plans; returns those that had their names before.
+    /// Stores plans; returns the earlier plans that had their names.
     ///
     /// # Errors
-    /// There would be more than [`MOST_STORED`]: a sentence, and the plans. Nothing has changed then.
+    /// Returns the plans without any change if there would be more than [`MOST_STORED`].
     pub(crate) fn put(&mut self, plans: Vec<StoredPlan<A>>) -> Result<Vec<StoredPlan<A>>, Vec<StoredPlan<A>>> {
         let new = plans.iter().filter(|plan| !self.0.contains_key(&plan.name)).count();
         if self.0.len().saturating_add(new) > MOST_STORED {

@@ -1,4 +1,4 @@
-//! The turns of plans: which plan makes the turn, and what follows from its result.
+//! The turns of plans: the plan that makes the turn, and the consequences of its result.
 
 use std::sync::Arc;
 
@@ -18,16 +18,16 @@ pub(crate) enum PlanTurn<U> {
     Made(Turn<U>),
     /// The plan has not ended its turn yet.
     Late,
-    /// The plan panicked: the message.
+    /// The plan panicked: the message of the panic.
     Panicked(String),
 }
 
 impl<A: EngineAlphabet> Plans<A> {
-    /// Lays the plan's turn with output `y` at time `now` on the desk of its module; returns the numbers of modules
-    /// that the plan reads. A plan that cannot begin yet makes no turn.
+    /// Puts the plan's turn, with output `y` at time `now`, on the desk of its module; returns the numbers of
+    /// modules that the plan reads. A plan that cannot begin yet makes no turn.
     ///
     /// # Errors
-    /// Why the first plan never begins: a sentence.
+    /// Fails with a sentence that says why the first plan never begins.
     pub(crate) fn take_off(&mut self, y: &A::Output, now: Nanos, board: &Board) -> Result<Option<Published>, String> {
         let next = self.ready_to_follow(now, board);
         let Some(mut flight) = self.current.take() else { return Ok(None) };
@@ -55,7 +55,7 @@ impl<A: EngineAlphabet> Plans<A> {
         published
     }
 
-    /// Takes the plan that is armed if it can begin in the turn at `now`, with the numbers of modules that it reads.
+    /// Takes the armed plan, if it can begin in the turn at `now`, and the numbers of modules that it reads.
     fn ready_to_follow(&mut self, now: Nanos, board: &Board) -> Option<(Running<A>, When, Published)> {
         let (mut next, when) = self.armed.take_if(|_| self.current.is_some())?;
         match next.published(board, now) {
@@ -69,7 +69,7 @@ impl<A: EngineAlphabet> Plans<A> {
         None
     }
 
-    /// Takes the plan's turn at time `now` from the desk; `transitions` takes those of the plan that drives now.
+    /// Takes the plan's turn at time `now` from the desk; `transitions` receives those of the active plan.
     pub(crate) fn land(&mut self, now: Nanos, transitions: &mut Transitions) -> PlanTurn<A::Input> {
         let Landed { flight, replaced, panic } = self.desk.take();
         if let Some(message) = panic {
@@ -95,7 +95,7 @@ impl<A: EngineAlphabet> Plans<A> {
         turn.map_or(PlanTurn::Late, PlanTurn::Made)
     }
 
-    /// At a break: takes the result of one order of the compiler.
+    /// Collects, at a break, the outcome of one order of the compiler.
     pub(crate) fn arm(&mut self) {
         let Some(Outcome { ticket, product }) = self.compiler.as_ref().and_then(Compiler::done) else { return };
         let product = product.and_then(|Product { compiled, next }| {
@@ -112,11 +112,11 @@ impl<A: EngineAlphabet> Plans<A> {
         }
     }
 
-    /// Ends the plan on trial for this reason; the plan before it goes on in the next turn at its atom, as if no time
-    /// had passed for it.
+    /// Ends the plan on trial for this reason; the plan before it continues in the next turn at its atom, as if
+    /// no time had passed for it.
     ///
     /// # Errors
-    /// No plan is on trial.
+    /// Fails if no plan is on trial.
     pub(crate) fn rollback(&mut self, why: &str) -> Result<(), NoTrial> {
         let (old, suspended) = self.suspended.take().ok_or(NoTrial)?;
         self.resumes = Some(suspended);
@@ -127,8 +127,7 @@ impl<A: EngineAlphabet> Plans<A> {
         Ok(())
     }
 
-    /// Replaces the plan that drives at once and without a trial, as for a supervisor; a plan that is armed is
-    /// cancelled.
+    /// Replaces the active plan at once and without a trial, for a supervisor; an armed plan is cancelled.
     pub(crate) fn divert(&mut self, plan: LoadedPlan<A>) {
         self.take_back();
         self.last = self.last.saturating_add(1);
@@ -143,12 +142,12 @@ impl<A: EngineAlphabet> Plans<A> {
         self.events.push(PlanEvent::Began(self.last));
     }
 
-    /// Returns `true` while the turn of the plan that drives is late, or after it has panicked.
+    /// Returns `true` while the turn of the active plan is late, or after the plan has panicked.
     pub(crate) fn is_late(&self) -> bool {
         self.current.is_none()
     }
 
-    /// Returns the attributes of modules that plans read: the plan that drives, the next one, and the suspended one.
+    /// Returns the attributes of modules that the active, the next and the suspended plan read.
     pub(crate) fn reads(&self) -> impl Iterator<Item = &'static ModuleRead> + Clone {
         let next = |flight: &Flight<A>| flight.next.as_ref().map(|(next, _)| next.reads);
         let current = self.current.iter().flat_map(move |flight| [Some(flight.current.reads), next(flight)]).flatten();
@@ -157,7 +156,7 @@ impl<A: EngineAlphabet> Plans<A> {
         current.chain(armed).chain(suspended).flatten()
     }
 
-    /// Returns the other robots that plans name: the plan that drives, and the next one.
+    /// Returns the other robots that the active and the next plan name.
     pub(crate) fn robots(&self) -> impl Iterator<Item = &'static str> {
         let current = self.current.iter().map(|flight| &flight.current);
         let plans = current.chain(self.armed.iter().map(|(armed, _)| armed));
@@ -169,7 +168,7 @@ impl<A: EngineAlphabet> Plans<A> {
         PlanModule(Arc::clone(&self.desk))
     }
 
-    /// Notes that a plan has replaced `old` in the turn at `now`, and suspends that one.
+    /// Records that a plan has replaced `old` in the turn at `now`, and suspends `old`.
     fn begins(&mut self, old: Running<A>, new: &mut Running<A>, now: Nanos) {
         new.number = self.next_number();
         if let Some((older, _)) = self.suspended.replace((old, now)) {
@@ -185,14 +184,15 @@ impl<A: EngineAlphabet> Plans<A> {
         self.begun
     }
 
-    /// Notes that a plan drives from now on, for this reason; returns the request of the one before.
+    /// Records that a plan is active from now on, for this reason; returns the number of the request of the
+    /// plan before it.
     fn drives(&mut self, plan: &Running<A>, reason: String) -> u32 {
         let driving = Driving { number: plan.number, ticket: plan.ticket, name: Arc::clone(&plan.name) };
         self.reason = reason;
         std::mem::replace(&mut self.driving, driving).ticket
     }
 
-    /// Puts a plan in the place of the one that drives. If that one panicked or hangs, its thread keeps it.
+    /// Replaces the active plan. If the active plan panicked or hangs, its thread keeps it.
     fn take_over(&mut self, plan: Running<A>) {
         match &mut self.current {
             Some(flight) => {

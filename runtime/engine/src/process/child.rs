@@ -1,6 +1,6 @@
-//! A child process in a process group of its own, and the lines to it and from it.
+//! A child process in a process group of its own, and the exchange of lines with it.
 //!
-//! A shell in the group guards it: when this process is gone, however it ended, the shell kills the group.
+//! A shell in the group guards it: when this process has ended, for whatever reason, the shell kills the group.
 
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::os::unix::process::CommandExt as _;
@@ -16,13 +16,13 @@ use super::shown;
 
 /// Maximum length of a line, in bytes.
 const LONGEST: usize = 65_536;
-/// Time for which a child may go on after the end of its input, and again after SIGTERM.
+/// Time for which a child may continue after the end of its input, and again after SIGTERM.
 const FAREWELL: Duration = Duration::from_millis(300);
-/// Maximum time that the end of a child takes.
+/// Maximum duration of the end of a child.
 pub(super) const LONGEST_FAREWELL: Duration = Duration::from_secs(2);
-/// Time between two looks at what ends a wait.
+/// Time between two checks for the end of a wait.
 const LOOK: Duration = Duration::from_millis(10);
-/// The shell's program: its input ends when this process is gone.
+/// Program of the guarding shell, whose input ends when this process has ended.
 const GUARD: &str = "trap '' HUP INT TERM; read line; kill -KILL 0";
 const SHELL: &str = "/bin/sh";
 
@@ -33,25 +33,25 @@ pub(super) struct Child {
     /// The child's input, until it is closed.
     stdin: Option<ChildStdin>,
     stdout: ChildStdout,
-    /// The shell, until the group is killed.
+    /// The guarding shell, until the group is killed.
     guard: Option<process::Child>,
     /// Bytes that were read after the last line.
     unread: Vec<u8>,
 }
 
-/// Reason why a child has said no line.
+/// Reason why a child has sent no line.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Silence {
-    /// Nobody waits for the line any more.
+    /// The line is no longer needed.
     Over,
-    /// The time is up.
+    /// The maximum wait has passed.
     Late,
-    /// The child cannot go on: a sentence.
+    /// The child cannot continue: the reason, as a sentence.
     Fault(String),
 }
 
 impl Child {
-    /// Starts a child with this command line of the shell; its standard error is that of this process.
+    /// Starts a child with this command line of the shell; the child shares the standard error of this process.
     pub(super) fn start(command: &str) -> io::Result<Self> {
         let shell = || Command::new(SHELL);
         let mut guard = shell();
@@ -76,13 +76,14 @@ impl Child {
         Ok(child)
     }
 
-    /// Returns the next line, without its end, unless `is_over` becomes true before or it takes longer than `patience`.
+    /// Returns the next line, without its line break. Fails if `is_over` becomes true before, or after
+    /// `patience`.
     pub(super) fn line(&mut self, patience: Duration, is_over: impl Fn() -> bool) -> Result<Vec<u8>, Silence> {
         self.exchange(&[], patience, is_over)
     }
 
-    /// Sends a line, and returns the answer as [`Child::line`] does. A child that has printed something before is
-    /// refused: it would answer each line before it comes.
+    /// Sends a line, and returns the answer as [`Child::line`] does. A child that has printed something before
+    /// the line is refused, as it would answer each line before it arrives.
     pub(super) fn ask(
         &mut self,
         line: &[u8],
@@ -130,7 +131,7 @@ impl Child {
         }
     }
 
-    /// Waits a moment until there is something to read, or room to write.
+    /// Waits a moment until there is data to read, or room to write.
     fn wait(&self, writes: bool) {
         let stdin = self.stdin.as_ref().filter(|_| writes);
         let mut fds = vec![PollFd::new(&self.stdout, PollFlags::IN)];
@@ -154,7 +155,7 @@ impl Child {
         }
     }
 
-    /// Reads what is there; `None` at the end of the child's output.
+    /// Reads the available data; `None` at the end of the child's output.
     fn read(&mut self) -> Option<()> {
         let mut bytes = [0; 4096];
         while self.unread.len() <= LONGEST {
@@ -177,7 +178,7 @@ impl Child {
         }
     }
 
-    /// Returns the reason why the child cannot go on, which has closed this stream.
+    /// Returns the reason why the child, which has closed this stream, cannot continue.
     fn ended(&mut self, stream: &str) -> Silence {
         let _ = self.read();
         let half = self.unread.rsplit(|byte| *byte == b'\n').next().filter(|half| !half.is_empty());
@@ -188,7 +189,7 @@ impl Child {
         })
     }
 
-    /// Waits for the end of the child for at most this time.
+    /// Waits for the end of the child, at most for this time; returns its status if it has ended.
     fn status_within(&mut self, time: Duration) -> Option<ExitStatus> {
         let begun = Instant::now();
         loop {
@@ -216,7 +217,7 @@ impl Drop for Child {
     }
 }
 
-/// The process group that a shell guards. It exists until the shell is waited for.
+/// Returns the process group that a shell guards. The group exists until the shell is waited for.
 fn group(guard: &process::Child) -> Pid {
     Pid::from_child(guard)
 }

@@ -25,7 +25,7 @@ impl Declaration {
     /// Reads the first line of a child.
     ///
     /// # Errors
-    /// A sentence.
+    /// Fails with a sentence if the line is no declaration.
     pub(super) fn read(line: &[u8]) -> Result<Self, String> {
         let object = object(line)?;
         let refused = |sentence: String| format!("its declaration {} is wrong: {sentence}", shown(line));
@@ -74,7 +74,7 @@ impl Declaration {
     /// Returns the values in an answer of the child, each with its place in the declaration.
     ///
     /// # Errors
-    /// A sentence.
+    /// Fails with a sentence if the line is no answer.
     pub(super) fn answer(&self, line: &[u8]) -> Result<Vec<(usize, Value)>, String> {
         let values = object(line)?.into_iter().filter(|(_, value)| !value.is_null());
         let read = values.map(|(name, value)| {

@@ -7,7 +7,7 @@ use serde_json::{Map, Value as Json, json};
 use super::shown;
 use crate::attribute::{AttributeKind, Value};
 
-/// The kinds that have a word of their own.
+/// The kinds that have a word of their own, each with its word.
 const WORDS: [(&str, AttributeKind); 6] = [
     ("flag", AttributeKind::Flag),
     ("integer", AttributeKind::Integer),
@@ -17,7 +17,7 @@ const WORDS: [(&str, AttributeKind); 6] = [
     ("numbers", AttributeKind::Numbers),
 ];
 
-/// Kinds of quantities; a unit is the word for each.
+/// Kinds of quantities; a unit is the word for a quantity.
 const QUANTITIES: [AttributeKind; 6] = [
     AttributeKind::Length,
     AttributeKind::Speed,
@@ -55,7 +55,7 @@ impl Form {
     /// Returns a value of this form from a line.
     ///
     /// # Errors
-    /// The expected value, in words.
+    /// Fails with a description of the expected value.
     pub(super) fn read(self, json: &Json) -> Result<Value, String> {
         let Self { kind, unit } = self;
         let numbers = |count: usize| {
@@ -81,7 +81,7 @@ impl Form {
         value.ok_or_else(|| self.expected())
     }
 
-    /// The value that a line must have, in words.
+    /// Returns a description of the value that a line must have.
     fn expected(self) -> String {
         match (self.kind, self.unit) {
             (AttributeKind::Flag, _) => "true or false".to_owned(),
@@ -118,7 +118,7 @@ impl Form {
     }
 }
 
-/// Returns a number of a line. JSON has no number that is not finite, so these are texts.
+/// Returns a number of a line. JSON has no infinite numbers and no NaN, so these are texts.
 fn number(json: &Json) -> Option<f64> {
     match json.as_str() {
         Some("NaN") => Some(f64::NAN),
@@ -140,10 +140,10 @@ fn pose(numbers: &[f64]) -> Option<Pose> {
     Some(Pose { x: Meters(*x), y: Meters(*y), theta: Radians(*theta) })
 }
 
-/// Reads a line, which is an object. Python prints `NaN` and `Infinity`, which JSON does not have.
+/// Reads a line that is a JSON object. Python prints `NaN` and `Infinity`, which JSON does not have.
 ///
 /// # Errors
-/// A sentence.
+/// Fails with a sentence if the line is no JSON object.
 pub(super) fn object(line: &[u8]) -> Result<Map<String, Json>, String> {
     let refused = |reason: String| {
         format!(

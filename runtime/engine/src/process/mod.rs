@@ -1,8 +1,8 @@
-//! `/lib/process`: a child process in any language as a background module. It speaks lines of JSON on its standard
-//! input and output (docs/src/own_module.md).
+//! `/lib/process`: a child process in any language as a background module. It exchanges lines of JSON on its
+//! standard input and output (docs/src/own_module.md).
 //!
-//! The first line of the child declares its attributes. After each turn break at which it waits it gets a line with the
-//! values that it reads, and answers with a line of values that it publishes at the next break.
+//! The first line of the child declares its attributes. After each turn break at which it waits, it gets a line
+//! with the values that it reads, and answers with a line of values that it publishes at the next break.
 
 mod child;
 mod declaration;
@@ -20,9 +20,9 @@ use declaration::Declaration;
 
 /// Maximum time from the start of a child to its declaration.
 const DECLARATION: Duration = Duration::from_secs(10);
-/// Maximum time from a line for the child to its answer.
+/// Maximum time from sending a line to the child until its answer.
 const ANSWER: Duration = Duration::from_secs(10);
-/// Maximum number of characters of a line in a message.
+/// Maximum number of characters of a child's line that a message shows.
 const SHOWN: usize = 60;
 
 /// A module whose turns a child process makes.
@@ -32,12 +32,12 @@ struct Process {
 }
 
 impl<Y> Candidate<Y> {
-    /// Starts a child process with the command line `command`, which `/bin/sh` reads, and makes it a background module
-    /// of this name. The child ends with the module. It has ten seconds to declare itself.
+    /// Starts a child process with the command line `command`, which `/bin/sh` reads, and returns a background
+    /// module of this name for it. The child ends with the module. It has ten seconds to declare itself.
     ///
     /// # Errors
-    /// The name is wrong, the child cannot be started, its first line is no declaration, or `request` is made before
-    /// there is one.
+    /// Fails if the name is invalid, if the child cannot be started, if its first line is no declaration, or if
+    /// `request` is made before the declaration.
     pub fn process(name: &str, command: &str, request: &StopRequest) -> Result<Self, Refusal> {
         if !is_name(name) {
             return Err(Refusal::BadName(name.to_owned()));
@@ -79,7 +79,7 @@ impl Background for Process {
 /// Passes lines between a child and the breaks until the module is to end.
 ///
 /// # Errors
-/// The child breaks the rules.
+/// Fails if the child breaks the protocol.
 fn converse(child: &mut Child, declaration: &Declaration, exchange: &mut Exchange) -> Result<(), Fault> {
     let mut values = Vec::new();
     // The first break has the first values for the child.
@@ -99,7 +99,7 @@ fn converse(child: &mut Child, declaration: &Declaration, exchange: &mut Exchang
     Ok(())
 }
 
-/// A line of a child as messages show it.
+/// Returns a line of a child as messages show it.
 fn shown(line: &[u8]) -> String {
     let text = String::from_utf8_lossy(line);
     let mut start: String = text.chars().take(SHOWN).collect();

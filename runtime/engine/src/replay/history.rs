@@ -10,13 +10,13 @@ use crate::board::{Board, Post};
 /// The changes that a record of the run needs.
 #[derive(Debug, Default)]
 pub(crate) struct History {
-    /// The attributes that are in the record, by their numbers; `None` for those that have vanished.
+    /// The attributes that the record contains, by their numbers; `None` for attributes that have vanished.
     known: Vec<Option<Known>>,
-    /// Changes of the turn that is made.
+    /// Changes of the current turn.
     changes: Vec<Change>,
 }
 
-/// An attribute that is in the record.
+/// An attribute that the record contains.
 #[derive(Debug)]
 struct Known {
     name: AttributeName,
@@ -48,7 +48,7 @@ impl History {
         posts.into_iter().for_each(|post| self.see(post));
     }
 
-    /// Notes a cause of the turn that is made.
+    /// Records a cause of the current turn.
     pub(crate) fn note(&mut self, change: Change) {
         self.changes.push(change);
     }
@@ -73,7 +73,7 @@ impl History {
         std::mem::take(&mut self.changes)
     }
 
-    /// Notes which attributes have vanished.
+    /// Records which attributes have vanished.
     fn forget(&mut self, board: &Board) {
         for (number, known) in (0..).zip(&mut self.known) {
             let has_gone = |known: &mut Known| {
@@ -88,7 +88,7 @@ impl History {
         }
     }
 
-    /// Notes an attribute that is new, and a value that is.
+    /// Records an attribute that is new, or whose value is new.
     fn see(&mut self, post: &Post) {
         let is_same = |known: &Option<Known>| known.as_ref().is_some_and(|known| known.name == post.name);
         let number = self.known.iter().position(is_same).unwrap_or_else(|| {

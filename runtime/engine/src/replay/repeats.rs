@@ -1,4 +1,5 @@
-//! The changes of a recorded run, as an engine repeats them: its board has what modules published, without modules.
+//! The changes of a recorded run, as an engine repeats them: the board has the values that modules published,
+//! without the modules.
 
 use mdle_record::Change;
 use mdle_runtime::{Links, Peer, PeerState};
@@ -6,7 +7,7 @@ use mdle_runtime::{Links, Peer, PeerState};
 use crate::attribute::{AttributeKind, AttributeName, Reading, Value};
 use crate::board::Board;
 
-/// The state of a run that is made again.
+/// The state of a repeated run.
 #[derive(Debug, Default)]
 pub(crate) struct Repeats {
     /// The attributes of the record, by their numbers.
@@ -22,18 +23,18 @@ enum PlanProgress {
     /// The plan made its turn in time.
     #[default]
     Made,
-    /// No thread had taken the turn in time.
+    /// No thread had begun the turn in time.
     Skipped,
-    /// The turn had begun and was not done in time.
+    /// The turn had begun, but was not done in time.
     Late,
-    /// The turn of an earlier time was not done yet.
+    /// The plan's turn of an earlier time was not done yet.
     Away,
-    /// The turn of an earlier time was done.
+    /// The plan's turn of an earlier time was done.
     Back,
 }
 
 impl Repeats {
-    /// Repeats what a module has published, or how far the plan was with its turn; other changes are not of this kind.
+    /// Repeats the publication of a module, or the progress of the plan's turn; ignores other changes.
     pub(crate) fn repeat(&mut self, change: &Change, board: &mut Board) {
         match change {
             Change::Attribute { module, name, kind } => {
@@ -83,7 +84,7 @@ impl Repeats {
         matches!(self.progress, PlanProgress::Made | PlanProgress::Late)
     }
 
-    /// Returns `true` if what lies on the plan's desk is taken in this turn.
+    /// Returns `true` if the turn on the plan's desk is taken in this turn.
     pub(crate) fn lands(&self) -> bool {
         !matches!(self.progress, PlanProgress::Late | PlanProgress::Away)
     }
