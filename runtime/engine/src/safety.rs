@@ -1,7 +1,8 @@
-//! The safety rules of a run: they lie between every input and the robot, whatever the plan (docs/src/safety.md).
+//! The safety rules of a run, which apply to every input before the robot gets it, whatever the plan
+//! (docs/src/safety.md).
 //!
-//! [`read()`] reads the rules of a file, [`Conditions`] compiles the conditions of its guards for a robot, and an
-//! [`Envelope`] of both decides which input the robot is sent.
+//! [`read()`] reads the rules of a file, [`Conditions`] compiles the conditions of its guards for a robot, and
+//! an [`Envelope`] of both decides which input is sent to the robot.
 
 mod conditions;
 mod envelope;

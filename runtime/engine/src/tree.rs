@@ -1,8 +1,9 @@
-//! The tree of attributes (paper, III-H): what people and programs may read, set and call while a plan runs.
+//! The tree of attributes and methods (paper, III-H), which people and programs may read, set and call while a
+//! plan runs.
 //!
-//! A front end, on a thread of its own, turns what is typed into a [`Request`] and asks the [`Hub`]. Readings come from
-//! the snapshot of a break; changes wait in a queue until a break. The thread that drives the robot has the [`Desk`],
-//! and never waits for a front end.
+//! A front end, on a thread of its own, turns typed text into a [`Request`] to the [`Hub`]. Readings come from
+//! the snapshot of a break; changes wait in a queue until a break. The thread that drives the robot has the
+//! [`Desk`], and never waits for a front end.
 
 mod desk;
 mod hub;

@@ -17,7 +17,7 @@ use super::{Condition, Guard};
 /// The conditions of the guards of a safety file.
 pub struct Conditions<A: runtime::Alphabet> {
     loaded: Vec<Arc<Loaded<A>>>,
-    /// Attributes of modules that they read.
+    /// Attributes of modules that the conditions read.
     reads: &'static [ModuleRead],
     warnings: Vec<Diagnostic>,
 }
@@ -25,7 +25,7 @@ pub struct Conditions<A: runtime::Alphabet> {
 /// The conditions in a run.
 pub struct Watched<A: runtime::Alphabet> {
     loaded: Vec<Arc<Loaded<A>>>,
-    /// A plan for each condition that never leaves its first atom, once there is an output.
+    /// For each condition, a plan that never leaves its first atom; empty before the first output.
     machines: Vec<Machine<LoadedPlan<A>>>,
     fired: Vec<bool>,
 }
@@ -33,11 +33,11 @@ pub struct Watched<A: runtime::Alphabet> {
 /// Reason why a guard cannot be watched.
 #[derive(Debug)]
 pub enum GuardError {
-    /// The condition has errors, whose places are in the sources.
+    /// The condition has errors, whose spans are in the sources.
     Faulty(Vec<Diagnostic>),
-    /// The condition depends on more than the output: the line of the safety file, and a sentence.
+    /// The condition depends on more than the output: the line in the safety file, and a sentence.
     Unfit(usize, String),
-    /// The condition cannot be loaded.
+    /// The condition cannot be loaded, for this reason.
     Load(LoadError),
 }
 
@@ -58,7 +58,7 @@ impl<A: runtime::Alphabet> Conditions<A> {
     /// files are among `sources`.
     ///
     /// # Errors
-    /// A condition has errors, or depends on more than the output of one turn.
+    /// Fails if a condition has errors, or depends on more than the output of one turn.
     pub fn compile(
         (name, text): (&str, &str),
         guards: &[Guard],
@@ -90,7 +90,7 @@ impl<A: runtime::Alphabet> Conditions<A> {
         &self.warnings
     }
 
-    /// Returns the conditions before the first output of a run.
+    /// Returns the conditions of a run before its first output.
     #[must_use]
     pub fn watch(&self) -> Watched<A> {
         Watched { loaded: self.loaded.clone(), machines: Vec::new(), fired: Vec::new() }
@@ -104,7 +104,7 @@ impl<A: runtime::Alphabet> Conditions<A> {
 }
 
 impl<A: runtime::Alphabet> Watched<A> {
-    /// Returns for each guard `true` if its condition is true of the output `y`.
+    /// Returns, for each guard, `true` if its condition is true for the output `y`.
     pub fn fired(&mut self, y: &A::Output, t: Nanos) -> &[bool] {
         let Self { loaded, machines, fired } = self;
         if machines.is_empty() {
@@ -194,7 +194,7 @@ impl Placed<'_> {
     }
 }
 
-/// Returns the word of an operand that depends on more than the output.
+/// Returns the word for an operand that depends on more than the output; `None` for any other operand.
 fn memory<I>(operand: &runtime::Condition<I>) -> Option<&'static str> {
     match operand {
         runtime::Condition::Null

@@ -1,5 +1,5 @@
-//! The envelope: decides, by the rules, which input a robot is sent. It reads no clock and no file, so that the same
-//! run has the same decisions again.
+//! The envelope, which decides by the rules which input is sent to a robot. It reads no clock and no file, so
+//! that the same run has the same decisions again.
 
 use std::time::Duration;
 
@@ -11,10 +11,11 @@ use super::{Fence, Measure, Rules, Then};
 
 /// The speed below which a fence counts as a hold, in metres per second: 1 cm/s.
 const CREEP: f64 = 0.01;
-/// The number of turn rates that are tried at a fence, from that of the plan to that of the robot.
+/// The number of turn rates that are tried at a fence, from the plan's turn rate to the robot's current turn
+/// rate.
 const RATES: u32 = 4;
 
-/// The rules that lie between a plan and a robot, and what they remember of a run.
+/// The safety rules between a plan and a robot, with their state in a run.
 #[derive(Debug, Clone)]
 pub struct Envelope {
     rules: Rules,
@@ -22,13 +23,13 @@ pub struct Envelope {
     period: f64,
     /// The input that was sent last.
     last: Twist,
-    /// Time of the last decision.
+    /// Time of the last decision; `None` before the first decision.
     at: Option<Nanos>,
     /// The number of late turns in a row.
     late: u64,
-    /// The rules that have diverted.
+    /// The rules that have diverted the run to another plan, and are off from then on.
     spent: Vec<RuleId>,
-    /// Verdict of the last turn, and its rule.
+    /// Verdict of the last turn, and the rule that decided.
     verdict: Option<(Verdict, RuleId)>,
     /// The quantity that the last turn limited.
     limited: Option<LimitedQuantity>,
@@ -36,26 +37,26 @@ pub struct Envelope {
     counts: Vec<(RuleId, u64)>,
 }
 
-/// A rule.
+/// A safety rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RuleId {
-    /// Every input is a number.
+    /// The rule that every input is a number.
     Finite,
-    /// `output` of `[stale]`.
+    /// The rule `output` of `[stale]`.
     Stale,
-    /// `module` of `[stale]`.
+    /// The rule `module` of `[stale]`.
     StaleModule,
-    /// `[overrun]`.
+    /// The rule `[overrun]`.
     Overrun,
-    /// `[contact]`.
+    /// The rule `[contact]`.
     Contact,
     /// The guard of this number, from 0.
     Guard(usize),
-    /// `speed` of `[limits]`.
+    /// The rule `speed` of `[limits]`.
     Speed,
-    /// `turn_rate` of `[limits]`.
+    /// The rule `turn_rate` of `[limits]`.
     TurnRate,
-    /// `acceleration` of `[limits]`.
+    /// The rule `acceleration` of `[limits]`.
     Acceleration,
     /// The fence of this number, from 0.
     Fence(usize),
@@ -80,8 +81,8 @@ impl Envelope {
         envelope
     }
 
-    /// Returns the input to send instead of `asked`, in the turn with output `y` at time `now`. `fired` holds for each
-    /// guard `true` if its condition is true of `y`.
+    /// Returns the input to send instead of `asked`, in the turn with output `y` at time `now`. For each guard,
+    /// `fired` is `true` if its condition is true for `y`.
     pub fn filter<Y>(&mut self, asked: Twist, y: &Y, now: Nanos, fired: &[bool]) -> Twist
     where
         Y: Odometry + Bumpers + SonarRing + DiffDrive,
@@ -119,7 +120,8 @@ impl Envelope {
         self.at = Some(now);
     }
 
-    /// Returns the strictest demand of the rules that look at the output, and the rule; of equals the first.
+    /// Returns the strictest demand of the rules that depend on the output, with its rule; the first of equally
+    /// strict demands.
     fn demand<Y>(&self, asked: Twist, y: &Y, now: Nanos, fired: &[bool]) -> Option<(Then, RuleId)>
     where
         Y: Bumpers + SonarRing,
@@ -138,7 +140,7 @@ impl Envelope {
         demands.reduce(|strictest, other| if other.0 > strictest.0 { other } else { strictest })
     }
 
-    /// Returns the input within limits and fences, and the rule that had the last word.
+    /// Returns the input within limits and fences, and the rule that changed it last.
     fn within_limits<Y: Odometry + DiffDrive>(&mut self, asked: Twist, y: &Y) -> (Twist, Option<(Verdict, RuleId)>) {
         let limits = self.rules.limits;
         let mut input = Limited { v: asked.v.0, omega: asked.omega.0, by: None };
@@ -164,9 +166,9 @@ impl Envelope {
         (Twist { v: MetersPerSecond(input.v), omega: RadiansPerSecond(input.omega) }, verdict)
     }
 
-    /// Returns a turn rate with which the robot can brake before a fence: the plan's, or else one between it and the
-    /// rate at which the robot turns. A robot that drives along a fence cannot turn into it and then brake, and wheels
-    /// that change the turn rate as fast as they can do not brake.
+    /// Returns a turn rate at which the robot can brake before a fence: the plan's turn rate, or a turn rate
+    /// between the plan's and the robot's. A robot that drives along a fence cannot first turn towards it and
+    /// then brake, and wheels that change the turn rate as fast as they can cannot brake.
     fn turn_rate_at<Y: Odometry + DiffDrive>(&self, fence: &Fence, asked: f64, y: &Y) -> f64 {
         let (sent, Twist { v, omega }) = (self.last.v.0, y.velocity());
         let rolls = if v.0.abs() > sent.abs() { v.0 } else { sent };
@@ -183,7 +185,7 @@ impl Envelope {
         rates.next().unwrap_or(omega.0)
     }
 
-    /// Returns what the last [`Envelope::filter`] did.
+    /// Returns the intervention of the last [`Envelope::filter`]; `None` if it changed nothing.
     #[must_use]
     pub fn intervention(&self) -> Option<Intervention<'_>> {
         let Self { verdict, limited, .. } = self;
@@ -196,7 +198,7 @@ impl Envelope {
         &self.rules
     }
 
-    /// Returns the rules, to be changed from the next turn on. Guards and fences keep their numbers.
+    /// Returns the rules for a change that applies from the next turn on. Guards and fences keep their numbers.
     pub fn rules_mut(&mut self) -> &mut Rules {
         &mut self.rules
     }
@@ -206,7 +208,7 @@ impl Envelope {
         self.counts.iter().copied()
     }
 
-    /// Returns the name of a rule, as reports have it.
+    /// Returns the name of a rule, as reports show it.
     #[must_use]
     pub fn name(&self, id: RuleId) -> &str {
         match id {
@@ -223,7 +225,7 @@ impl Envelope {
         }
     }
 
-    /// The rules that can decide.
+    /// Returns the rules that can decide.
     fn ids(&self) -> impl Iterator<Item = RuleId> + use<> {
         let Rules { fences, contact, stale, stale_module, overrun, guards, .. } = &self.rules;
         let own = [
@@ -268,7 +270,7 @@ impl Limited {
     }
 }
 
-/// Returns this quantity of the input that a plan asked for, and of the input within limits.
+/// Returns this quantity of the input that a plan demanded, and of the input within limits.
 fn of_measure(measure: Measure, asked: Twist, input: &Limited) -> LimitedQuantity {
     let (asked, sent) = match measure {
         Measure::TurnRate => (asked.omega.0, input.omega),
@@ -278,7 +280,7 @@ fn of_measure(measure: Measure, asked: Twist, input: &Limited) -> LimitedQuantit
     LimitedQuantity { name: measure.key(), unit, asked: measure.in_its_unit(asked), sent: measure.in_its_unit(sent) }
 }
 
-/// Returns the value, or the nearest one that is at most `most` away from 0.
+/// Returns the value, or the nearest value that is at most `most` away from 0.
 fn within(value: f64, most: f64) -> f64 {
     if value.abs() > most { most.copysign(value) } else { value }
 }

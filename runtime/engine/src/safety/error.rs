@@ -1,8 +1,8 @@
-//! The reason why a text is no safety file.
+//! The reason why a text is not a valid safety file.
 
 use std::fmt;
 
-/// Reason why a text is no safety file.
+/// Reason why a text is not a valid safety file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RulesError {
     /// Line of the file, from 1.

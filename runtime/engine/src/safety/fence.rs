@@ -1,8 +1,9 @@
-//! A fence: a polygon that the centre of the robot must not leave. It limits the speed, and forbids nothing else.
+//! A fence: a polygon that the centre of the robot must not leave. It limits only the speed.
 //!
-//! The input of a turn acts for a period, and what it does is seen after that period, so two periods at the new speed
-//! and the way to brake have to fit before the fence: `v·2T + v²/2a <= d`. A rule that stopped the robot at a distance
-//! would let it go again as soon as it stands, and so on, turn by turn.
+//! The input of a turn acts for a period, and its effect is measured only after that period, so two periods at
+//! the new speed and the braking distance have to fit before the fence: `v·2T + v²/2a <= d`. A rule that
+//! stopped the robot at a fixed distance would release it as soon as it stands still, and then stop it again,
+//! turn by turn.
 
 use mdle_runtime::Pose;
 
@@ -13,9 +14,9 @@ pub struct Fence {
     pub name: String,
     /// Corners in order, as x and y in metres: at least three, around an area.
     pub corners: Vec<[f64; 2]>,
-    /// Distance from the edges at which the robot has to stand, in metres; at least 0.
+    /// Distance from the edges at which the robot has to stop, in metres; at least 0.
     pub margin: f64,
-    /// Deceleration by which the robot is sure to brake, in metres per second squared; above 0.
+    /// Deceleration that the robot is sure to reach when it brakes, in metres per second squared; above 0.
     pub deceleration: f64,
 }
 
@@ -26,7 +27,8 @@ impl Fence {
     /// Returns the maximum speed, in metres per second, of a robot at this pose that has the speed `v` and the turn
     /// rate `omega`; `period` is in seconds. A negative `v` drives backwards.
     ///
-    /// While the robot brakes it turns on, so every direction counts that it can have until it stands.
+    /// The robot continues to turn while it brakes, so every direction that it can have until it stands still
+    /// counts.
     pub(super) fn fastest(&self, pose: &Pose, v: f64, omega: f64, period: f64) -> f64 {
         let here = [pose.x.0, pose.y.0];
         let backwards = if v < 0.0 { core::f64::consts::PI } else { 0.0 };
@@ -64,12 +66,12 @@ impl Fence {
         self.edges().filter(|edge| crosses(*edge)).count() % 2 == 1
     }
 
-    /// The edges, from corner to corner.
+    /// Returns the edges, from corner to corner.
     fn edges(&self) -> impl Iterator<Item = (Point, Point)> {
         self.corners.iter().copied().zip(self.corners.iter().copied().cycle().skip(1))
     }
 
-    /// Returns why there can be no such fence.
+    /// Returns the reason why the fence is invalid; `None` if it is valid.
     pub(super) fn fault(&self) -> Option<String> {
         let edges: Vec<_> = self.edges().collect();
         if let Some(number) = edges.iter().position(|(from, to)| from == to) {
@@ -110,7 +112,8 @@ fn cross([ax, ay]: Point, [bx, by]: Point) -> f64 {
     ax * by - ay * bx
 }
 
-/// Returns how far it is from `here` along `way`, a unit vector, to the edge.
+/// Returns the distance from `here` along `way`, a unit vector, to the edge; `None` if the edge is not in that
+/// direction.
 fn hit(here: Point, way: Point, (from, to): (Point, Point)) -> Option<f64> {
     let edge = [to[0] - from[0], to[1] - from[1]];
     let between = [from[0] - here[0], from[1] - here[1]];

@@ -17,7 +17,7 @@ pub struct Guardian<A: Alphabet> {
 }
 
 impl<A: Alphabet> Guardian<A> {
-    /// Returns the guardian of a run with this period; the conditions are those of the rules' guards.
+    /// Returns the guardian of a run with this period; the conditions belong to the rules' guards.
     #[must_use]
     pub fn new(rules: Rules, conditions: &Conditions<A>, period: Duration) -> Self {
         Self { envelope: Envelope::new(rules, period), conditions: conditions.watch() }
@@ -29,14 +29,14 @@ impl<A: Alphabet> Guardian<A> {
         &self.envelope
     }
 
-    /// Returns the envelope, to change its rules.
+    /// Returns the envelope, so that its rules can be changed.
     pub fn envelope_mut(&mut self) -> &mut Envelope {
         &mut self.envelope
     }
 }
 
 impl<A: Alphabet> Guardian<A> {
-    /// Returns the limits that differ from `recorded`, which has them from then on.
+    /// Returns the changes of the limits that differ from `recorded`, and updates `recorded`.
     pub(crate) fn changes_since(&self, recorded: &mut Limits) -> Vec<Change> {
         let mut limits = self.envelope.rules().limits;
         let mut changes = Vec::new();
@@ -56,7 +56,7 @@ where
     A: Alphabet<Input = Twist>,
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
 {
-    /// Returns the input that the robot is sent instead of `asked`.
+    /// Returns the input that is sent to the robot instead of `asked`.
     pub fn filtered(&mut self, asked: Twist, y: &A::Output, t: Nanos) -> Twist {
         let fired = self.conditions.fired(y, t);
         self.envelope.filter(asked, y, t, fired)

@@ -14,7 +14,7 @@ const TABLES: [&str; 6] = ["limits", "fence", "contact", "stale", "overrun", "gu
 /// Reads the rules of a file.
 ///
 /// # Errors
-/// The text is no TOML, or has a key, a value or a fence that cannot be.
+/// Fails if the text is no TOML, or has an invalid key, value or fence.
 pub fn read(text: &str) -> Result<Rules, RulesError> {
     let parsed = DeTable::parse(text).map_err(|error| RulesError {
         line: line(text, error.span().map_or(0, |span| span.start)),
@@ -55,9 +55,9 @@ pub fn read(text: &str) -> Result<Rules, RulesError> {
     Ok(reading.rules)
 }
 
-/// Words for what follows from a rule.
+/// Words for the consequences of a rule.
 const ALL: [&str; 4] = ["hold", "hold forward", "end", "retreat.mdle"];
-/// Words for what follows where no other plan may take over.
+/// Words for the consequences of a rule that cannot divert to another plan.
 const HOLD_OR_END: [&str; 2] = ["hold", "end"];
 
 struct Reading<'t, 'i> {
@@ -126,7 +126,7 @@ impl<'t, 'i> Reading<'t, 'i> {
         Ok(())
     }
 
-    /// Reads what follows from a rule.
+    /// Reads the consequence of a rule.
     fn then(&mut self, section: Section<'t, 'i>, words: &[&str]) -> Result<Then, RulesError> {
         let value = section.needed("then", "\"hold\"")?;
         let text = section.text("then", value, "\"hold\"")?;
@@ -153,7 +153,7 @@ impl<'t, 'i> Reading<'t, 'i> {
     }
 }
 
-/// Names that rules have already.
+/// Names of rules, which a guard may not have.
 const RESERVED: [&str; 8] =
     ["stale", "stale_module", "overrun", "contact", "speed", "turn_rate", "acceleration", "fence"];
 

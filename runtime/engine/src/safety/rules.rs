@@ -7,22 +7,22 @@ use mdle_runtime::{Nanos, Radians};
 
 use super::Fence;
 
-/// The rules of a safety file. Without any, every input but one that is no number passes.
+/// The rules of a safety file. Without rules, every input that consists of numbers passes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Rules {
     /// Limits of inputs.
     pub limits: Limits,
     /// Areas that the robot must not leave.
     pub fences: Vec<Fence>,
-    /// Consequence of contact of a bumper.
+    /// Consequence of contact of a bumper; `None` without this rule.
     pub contact: Option<Then>,
-    /// The age of an output from which it is stale, and what follows.
+    /// Age from which an output is stale, and the consequence.
     pub stale: Option<(Nanos, Then)>,
-    /// The age of a value from which a module that the plan or a guard reads is stale, and what follows.
+    /// Age from which the value of a module that the plan or a guard reads is stale, and the consequence.
     pub stale_module: Option<(Nanos, Then)>,
-    /// The number of turns in a row that begin late, and what follows.
+    /// Number of consecutive turns that begin late, and the consequence.
     pub overrun: Option<(u64, Then)>,
-    /// Conditions of the plan language, in the order of the file.
+    /// Guards, whose conditions are in the plan language, in the order of the file.
     pub guards: Vec<Guard>,
     /// Files of the plans to which rules divert, as the safety file names them, each once.
     pub plans: Vec<String>,
@@ -70,29 +70,29 @@ pub struct Condition {
 /// Consequence of a rule, the weakest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Then {
-    /// The robot is sent no forward speed.
+    /// The robot gets no forward speed.
     HoldForward,
-    /// The robot is sent the null input.
+    /// The robot gets the null input.
     Hold,
-    /// Another plan takes over: the number of one of [`Rules::plans`]. The rule is off from then on.
+    /// Another plan takes over: its index in [`Rules::plans`]. The rule is off from then on.
     Divert(usize),
     /// The plan is ended.
     End,
 }
 
-/// The quantities of the rules that are changed by name, as they are while a plan runs.
+/// The quantities of the rules that can be changed by name while a plan runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
-    /// [`Limits::speed`].
+    /// Maximum speed: [`Limits::speed`].
     Speed,
-    /// [`Limits::turn_rate`].
+    /// Maximum turn rate: [`Limits::turn_rate`].
     TurnRate,
-    /// [`Limits::acceleration`].
+    /// Maximum acceleration: [`Limits::acceleration`].
     Acceleration,
 }
 
 impl Measure {
-    /// All of them.
+    /// All quantities.
     pub const ALL: [Self; 3] = [Self::Speed, Self::TurnRate, Self::Acceleration];
 
     /// Returns the key of the quantity in a safety file.
@@ -105,7 +105,7 @@ impl Measure {
         }
     }
 
-    /// Returns the kind of the quantity, and a unit in which it is written.
+    /// Returns the kind of the quantity, and the unit in which it is written.
     #[must_use]
     pub fn quantity(self) -> (Quantity, &'static str) {
         match self {
@@ -115,7 +115,7 @@ impl Measure {
         }
     }
 
-    /// Converts a value in that unit to SI.
+    /// Converts a value from the unit of [`Measure::quantity`] to SI.
     #[must_use]
     pub fn in_si(self, value: f64) -> f64 {
         match self {
@@ -124,7 +124,7 @@ impl Measure {
         }
     }
 
-    /// Converts a value in SI to that unit.
+    /// Converts a value from SI to the unit of [`Measure::quantity`].
     #[must_use]
     pub fn in_its_unit(self, value: f64) -> f64 {
         match self {
@@ -133,7 +133,7 @@ impl Measure {
         }
     }
 
-    /// Returns the limit.
+    /// Returns the limit of this quantity.
     #[must_use]
     pub fn of(self, limits: &mut Limits) -> &mut f64 {
         match self {

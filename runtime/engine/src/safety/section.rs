@@ -34,7 +34,7 @@ impl<'t, 'i> Section<'t, 'i> {
         Self { text, name: "", table, place: 0 }
     }
 
-    /// Returns the entries in the order of their lines; every key has to be among `keys`.
+    /// Returns the section itself, after checking that every key is one of `keys`.
     pub(super) fn only(self, keys: &[&str]) -> Result<Self, RulesError> {
         for (key, _) in self.entries() {
             let name = key.get_ref();
@@ -49,19 +49,19 @@ impl<'t, 'i> Section<'t, 'i> {
         Ok(self)
     }
 
-    /// The entries in the order of their lines.
+    /// Returns the entries in the order of their lines.
     pub(super) fn entries(self) -> impl Iterator<Item = (&'t Key<'i>, &'t Value<'i>)> {
         let mut entries: Vec<_> = self.table.iter().collect();
         entries.sort_by_key(|(key, _)| key.span().start);
         entries.into_iter()
     }
 
-    /// Returns the value of a key.
+    /// Returns the value of a key; `None` if the table does not have the key.
     pub(super) fn get(self, key: &str) -> Option<&'t Value<'i>> {
         self.table.get(key)
     }
 
-    /// Returns the value of a key that must be there; `example` shows one.
+    /// Returns the value of a required key; `example` shows an example.
     pub(super) fn needed(self, key: &str, example: &str) -> Result<&'t Value<'i>, RulesError> {
         let missing = || RulesError {
             line: line(self.text, self.place),
@@ -80,7 +80,7 @@ impl<'t, 'i> Section<'t, 'i> {
         Ok(Section { name, table, place: value.span().start, ..self })
     }
 
-    /// Returns a value that must be text; `example` shows one.
+    /// Returns a value that must be text; `example` shows an example.
     pub(super) fn text(self, key: &str, value: &'t Value<'i>, example: &str) -> Result<&'t str, RulesError> {
         let found = value.get_ref();
         let message = || format!("`{key}` has to be text, as in `{key} = {example}`; found: {}", kind(found));
@@ -128,7 +128,7 @@ impl<'t, 'i> Section<'t, 'i> {
         time.ok_or_else(|| self.error(value, format!("`{key}` has to be a time from 1ns to 100 years")))
     }
 
-    /// Returns a whole number from 1.
+    /// Returns a whole number that is at least 1.
     pub(super) fn count(self, key: &str, value: &'t Value<'i>) -> Result<u64, RulesError> {
         let found = value.get_ref();
         let number = found.as_integer().and_then(|number| u64::from_str_radix(number.as_str(), number.radix()).ok());
@@ -153,12 +153,12 @@ impl<'t, 'i> Section<'t, 'i> {
     }
 }
 
-/// The number of the line of a place, from 1.
+/// Returns the line number of a byte offset, from 1.
 pub(super) fn line(text: &str, place: usize) -> usize {
     text.bytes().take(place).filter(|byte| *byte == b'\n').count() + 1
 }
 
-/// The type of a value, for messages.
+/// Returns the name of a value's type, for messages.
 pub(super) fn kind(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "text",
@@ -170,7 +170,7 @@ pub(super) fn kind(value: &DeValue<'_>) -> &'static str {
     }
 }
 
-/// A number as the file has it, or the type of another value.
+/// Returns a number as written in the file, or the type of another value.
 fn shown(value: &DeValue<'_>) -> String {
     match value {
         DeValue::Integer(number) => number.to_string(),

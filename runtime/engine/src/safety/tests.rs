@@ -1,4 +1,4 @@
-//! Tests of safety files: what they say, and what is wrong with them.
+//! Tests of safety files: their rules, and their errors.
 
 use super::*;
 

@@ -8,21 +8,21 @@ use mdle_runtime::Nanos;
 
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
-/// Seconds in the tree.
+/// Kind of the attributes of the tree that are in seconds.
 const SECONDS: Kind = Kind::Quantity(Quantity::Time, "s");
 
 /// The clock of a session.
 #[derive(Debug)]
 pub(super) struct SessionClock {
     period: Duration,
-    /// The pace as it was asked for; `None` where time is the wall clock's.
+    /// The requested pace; `None` if time is the wall clock's.
     pace: Option<Pace>,
-    /// A pace that the run does not have yet.
+    /// A requested pace that the run has not adopted yet.
     pub(super) ordered: Option<Pace>,
     pub(super) is_paused: bool,
-    /// The number of turns after which the clock stands again, and whom to tell.
+    /// The number of turns until the clock stops again, and the reply to send then.
     steps: Option<(u64, Reply)>,
-    /// Those who wait for a time, or for the end of the plan; `true` if the clock stands again then.
+    /// Requests that wait for a time or for the end of the plan, with `true` if the clock stops then.
     waits: Vec<(Nanos, bool, Reply)>,
 }
 
@@ -36,7 +36,7 @@ impl SessionClock {
         Self { period, pace, ordered: None, is_paused, steps: None, waits: Vec::new() }
     }
 
-    /// Tells those whose turn or whose time has come.
+    /// Replies to requests whose turn or time has come.
     pub(super) fn made<B: Pilot>(&mut self, moment: &Break<'_, B>) {
         let now = said(moment);
         if let Some((_, reply)) = self.steps.take_if(|(turns, _)| moment.turns >= *turns || moment.is_over) {
@@ -108,10 +108,10 @@ impl SessionClock {
     }
 }
 
-/// The refusal where time is the wall clock's.
+/// Refusal of a request to change a clock that is the wall clock.
 const REAL: &str = "the time of a real robot goes on by itself";
 
-/// The time of a break, for an answer.
+/// Returns the time of a break, for an answer.
 fn said<B: Pilot>(moment: &Break<'_, B>) -> String {
     let (turns, t) = (moment.turns, Value::Quantity(moment.t.seconds(), "s"));
     let word = if turns == 1 { "turn" } else { "turns" };

@@ -1,19 +1,19 @@
-//! The commands of the shell: a line becomes a request.
+//! The commands of the shell, each of which becomes a request.
 
 use crate::tree::{Change, Operation};
 
-/// A command that was typed.
+/// A typed command.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Command {
     /// An empty line or a comment.
     Nothing,
-    /// A request for the node or the folder of this path.
+    /// Make a request for the node or the folder of this path.
     Ask(String, Operation),
-    /// Changes the folder that paths begin at.
+    /// Change the folder at which relative paths begin.
     Enter(String),
-    /// Prints that folder.
+    /// Print that folder.
     Here,
-    /// Prints the commands, or what a node is.
+    /// Print the commands, or the description of a node.
     Help(Option<String>),
     /// Prints a command, with its arguments and what it does.
     Explain((&'static str, &'static str, &'static str)),
@@ -23,7 +23,7 @@ pub(super) enum Command {
     Quit,
 }
 
-/// The commands, with their arguments and what they do.
+/// The commands, with their arguments and their descriptions.
 pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
     ("ls", "[PATH]", "list a folder"),
     ("cd", "[PATH]", "change the folder"),
@@ -49,7 +49,7 @@ pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
 /// Reads a line, typed in the folder `here`.
 ///
 /// # Errors
-/// A sentence with what to type instead.
+/// Fails with a sentence that says what to type instead.
 pub(super) fn command(line: &str, here: &str) -> Result<Command, String> {
     let line = line.trim();
     if line.is_empty() || line.starts_with('#') {
@@ -95,7 +95,7 @@ pub(super) fn command(line: &str, here: &str) -> Result<Command, String> {
     }
 }
 
-/// Returns an absolute path for one that was typed in the folder `here`.
+/// Returns the absolute path for a path that was typed in the folder `here`.
 fn path(typed: &str, here: &str) -> String {
     let from = if typed.starts_with('/') { "" } else { here };
     let mut parts: Vec<&str> = Vec::new();

@@ -9,12 +9,12 @@ use super::command::{COMMANDS, Command, command};
 use super::{Lines, Typed};
 use crate::tree::{Access, Answer, Change, Hub, Kind, Node, Operation, Request, Role};
 
-/// The way in which a session talks.
+/// Settings of a session's conversation.
 #[derive(Debug, Clone)]
 pub struct Conversation {
     /// Name of the file of commands, for messages about its lines; `None` at a terminal.
     pub file: Option<String>,
-    /// The role of who asks.
+    /// Role of the user.
     pub role: Role,
     /// `true` if the first error ends the session.
     pub stops_at_errors: bool,
@@ -22,8 +22,9 @@ pub struct Conversation {
     pub echoes: bool,
 }
 
-/// Carries out commands until there are no more, the session ends, or an error ends it; then the run is ended as well.
-/// Returns `true` if every command was carried out. A run that never begins has reported why.
+/// Carries out commands until there are no more, the session ends, or an error ends it; the run is then ended
+/// as well. Returns `true` if every command was carried out. If the run never begins, its reason has been
+/// reported elsewhere.
 pub fn converse(
     hub: &Hub,
     conversation: &Conversation,
@@ -84,7 +85,7 @@ pub fn converse(
     is_well
 }
 
-/// The side of a conversation that asks.
+/// The side of a conversation that makes requests.
 struct Asker<'a> {
     hub: &'a Hub,
     conversation: &'a Conversation,
@@ -92,13 +93,14 @@ struct Asker<'a> {
 }
 
 impl Asker<'_> {
-    /// Asks the hub, and prints reports while its answer is waited for.
+    /// Makes a request to the hub, and prints reports while it waits for the answer.
     fn ask(&mut self, path: &str, operation: Operation) -> Answer {
         let request = Request { path: path.to_owned(), operation, role: self.conversation.role };
         self.hub.wait(request, &mut || self.report())
     }
 
-    /// Prints the reports of what is watched. At a terminal others do it, also while a line is typed.
+    /// Prints the reports of watched attributes. At a terminal, another thread does this, also while a line is
+    /// being typed.
     fn report(&mut self) {
         if self.conversation.file.is_some() {
             while let Some(report) = self.hub.report(Duration::ZERO) {

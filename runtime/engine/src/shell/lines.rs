@@ -16,22 +16,22 @@ const LONGEST: u64 = 1 << 16;
 
 /// Lines of commands.
 pub trait Lines {
-    /// Returns the next line, in the folder `here`.
+    /// Returns the next line, which is typed in the folder `here`.
     fn next(&mut self, here: &str) -> Typed;
 }
 
-/// A line, or why there is none.
+/// A line, or the reason why there is none.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Typed {
     /// A line, and its number from 1.
     Line(usize, String),
-    /// The line of this number is no command: a sentence.
+    /// The line of this number is not usable: a sentence.
     Unusable(usize, String),
     /// There are no more lines.
     End,
 }
 
-/// Lines of a file or a pipe. A line that ends with `\` goes on in the next.
+/// Lines of a file or a pipe. A line that ends with `\` continues on the next line.
 #[derive(Debug)]
 pub struct Input<R> {
     from: R,
@@ -44,7 +44,7 @@ impl<R: BufRead> Input<R> {
         Self { from, number: 0 }
     }
 
-    /// Returns the next line without its end, or `None` at the end.
+    /// Returns the next line without its line break; `None` at the end.
     fn line(&mut self) -> io::Result<Option<Vec<u8>>> {
         let mut line = Vec::new();
         self.number += 1;
@@ -94,7 +94,7 @@ impl<R: BufRead> Lines for Input<R> {
     }
 }
 
-/// Prints whole lines above the line that is being typed.
+/// Function that prints whole lines above the line that is being typed.
 pub type PrintAbove = dyn FnMut(&str) -> io::Result<()> + Send;
 
 /// Lines of a person at a terminal, with completion of paths. Ctrl-C and Ctrl-D end them.
@@ -104,10 +104,11 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// Returns the lines that are typed at this process's terminal, and what prints above the line that is typed.
+    /// Returns the lines that are typed at this process's terminal, and a function that prints above the line
+    /// that is being typed.
     ///
     /// # Errors
-    /// The terminal cannot be used.
+    /// Fails if the terminal cannot be used.
     pub fn open(hub: Hub) -> io::Result<(Self, Box<PrintAbove>)> {
         let history = rustyline::history::MemHistory::new();
         let editor = Editor::with_history(Config::builder().build(), history);

@@ -1,5 +1,5 @@
-//! The modules in the tree: `/usr/NAME` for each that is loaded, `/lib/NAME` for each that can be loaded (paper,
-//! III-H).
+//! The modules in the tree: `/usr/NAME` for each loaded module, `/lib/NAME` for each module that can be loaded
+//! (paper, III-H).
 
 use std::time::Duration;
 
@@ -24,10 +24,10 @@ const OWN: [(&str, Node); 4] = [
     (".unload", Node::method(Role::Admin, "unloads the module; its attributes vanish")),
 ];
 
-/// Name in `/lib` of child processes; a module of the library that has this name comes first.
+/// Name, in `/lib`, for child processes; a module of the library with this name has priority.
 const PROCESS: &str = "process";
 
-/// The modules, and the requests to load some that have not been answered.
+/// The modules, with the unanswered requests to load modules.
 #[derive(Debug, Default)]
 pub(super) struct ModulesPart {
     waiting: Vec<(u32, Reply)>,
@@ -149,7 +149,7 @@ fn state_text(state: ModuleState) -> &'static str {
     }
 }
 
-/// The kind of an attribute as people see it: a quantity has the unit of its description.
+/// Returns the kind of an attribute as people see it; a quantity has the unit of its description.
 fn kind(about: &About) -> Kind {
     let quantity = about.unit.and_then(|unit| Some((Quantity::of_unit(unit.name)?.0, unit.name)));
     match (about.kind, quantity) {

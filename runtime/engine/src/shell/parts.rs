@@ -8,7 +8,7 @@ use mdle_runtime::{Alphabet, Plan, SonarId, Twist};
 use crate::safety::{Guardian, Limits, Measure};
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
-/// `/usr/robot`: what the robot sensed last, and what it is sent next.
+/// `/usr/robot`: the robot's latest output, and the next input.
 #[derive(Debug)]
 pub(super) struct RobotPart;
 
@@ -16,7 +16,7 @@ pub(super) struct RobotPart;
 #[derive(Debug)]
 pub(super) struct SafetyPart<A: Alphabet>(pub(super) Option<Guardian<A>>);
 
-/// `/engine`.
+/// `/engine`, the part for the engine itself.
 #[derive(Debug, Default)]
 pub(super) struct EnginePart {
     /// `true` once the session is to end.

@@ -1,5 +1,5 @@
-//! The plans in the tree: `/usr/mdle`, the module that makes their turns, and `/plans`, where they are stored (paper,
-//! III-D and Fig. 7).
+//! The plans in the tree: `/usr/mdle`, the module that makes their turns, and `/plans`, the stored plans
+//! (paper, III-D and Fig. 7).
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -34,7 +34,7 @@ const OWN: [(&str, Node); 13] = [
     ("rollback", Node::method(Role::Swap, "ends the plan on trial, and lets the plan before it go on")),
 ];
 
-/// The plans, and the requests about them that have not been answered.
+/// The plans, with the unanswered requests about them.
 #[derive(Debug, Default)]
 pub(super) struct PlansPart {
     waiting: Vec<Waiting>,
@@ -58,8 +58,8 @@ impl PlansPart {
         !self.waiting.is_empty()
     }
 
-    /// Answers the requests on which the engine has decided. Returns messages about plans whose requests were answered
-    /// before.
+    /// Answers the requests that the engine has decided. Returns messages about plans whose requests were
+    /// answered before.
     pub(super) fn answer<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>) -> Vec<String> {
         let mut messages = Vec::new();
         let armed = plans.armed().map(|(name, when)| (name.to_owned(), when));
@@ -97,7 +97,7 @@ impl PlansPart {
         messages
     }
 
-    /// Answers the request of this number, if it has not been answered.
+    /// Answers the request of this number, unless it has been answered.
     fn settle(&mut self, ticket: u32, result: Result<String, String>) {
         let Some(place) = self.waiting.iter().position(|waiting| waiting.ticket == ticket) else { return };
         let Waiting { warnings, reply, .. } = self.waiting.remove(place);
@@ -197,7 +197,7 @@ fn call<A: EngineAlphabet>(path: &str, arguments: &[String], engine: &mut Engine
     Ok(None)
 }
 
-/// The moment that arguments name: the next turn if there are none.
+/// Returns the moment that arguments name: the next turn if there are no arguments.
 fn when(arguments: &[String]) -> Result<When, String> {
     let words = || When::ALL.map(|(word, _)| word).join(", ");
     match arguments {
@@ -220,7 +220,7 @@ fn set_trial<A: EngineAlphabet>(plans: &mut Plans<A>, text: &str) -> Result<(), 
     Ok(())
 }
 
-/// The values of the place in a plan.
+/// Returns the values that describe the position in a plan.
 fn standing(place: &PlanPosition<'_>) -> [Value; 6] {
     let conditions: Vec<_> = place.scopes.iter().map(|scope| scope.condition).collect();
     let t = place.scopes.first().map_or(place.t, |plan| plan.since);

@@ -1,7 +1,7 @@
-//! `/recorder`: writes the turns that follow to a record, until it is stopped (docs/src/shell.md).
+//! `/recorder`, which writes all further turns to a record until it is stopped (docs/src/shell.md).
 //!
-//! A thread of its own opens and writes the file, so that no turn of a real robot waits for it; turns for which it has
-//! no room are left out and counted.
+//! A thread of its own opens and writes the file, so that no turn of a real robot waits for it; turns for which
+//! the queue has no room are left out and counted.
 
 use std::any::Any;
 use std::fs::File;
@@ -22,25 +22,25 @@ use crate::engine::Engine;
 use crate::plans::EngineAlphabet;
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value};
 
-/// Maximum number of turns that wait for the file.
+/// Maximum number of turns that wait to be written.
 const WAITING: usize = 256;
-/// Maximum wait for the file at the end of the session.
+/// Maximum wait for the file to be written at the end of the session.
 const AT_THE_END: Duration = Duration::from_secs(2);
 
 /// The recorder of a session.
 #[derive(Debug)]
 pub(super) struct RecorderPart {
-    /// `None` if the system gave no thread.
+    /// Channel for orders; `None` if the system could not create the thread.
     orders: Option<SyncSender<Order>>,
     thread: Option<JoinHandle<()>>,
     opened: Receiver<Result<(), String>>,
     progress: Arc<Progress>,
     begin: Begin,
-    /// `true` if time stands while a turn waits for room.
+    /// `true` if the run waits while there is no room for a turn.
     is_stepped: bool,
-    /// The file that is being opened, and whom to tell.
+    /// Reply to send when the file is open; `None` if no file is being opened.
     opening: Option<Reply>,
-    /// Name of the file that is written, or was written last.
+    /// Name of the file that is being written, or was written last.
     file: Arc<str>,
     tape: Option<Tape>,
     turns: u64,
@@ -54,15 +54,15 @@ struct Tape {
     has_begun: bool,
 }
 
-/// Progress of the thread that writes.
+/// Progress of the thread that writes the record.
 #[derive(Debug, Default)]
 struct Progress {
     bytes: AtomicU64,
-    /// Reason why the record could not be written any further.
+    /// Reason why writing the record has failed; `None` if it has not.
     fault: Mutex<Option<String>>,
 }
 
-/// Something that the thread is to do.
+/// An order for the thread that writes records.
 #[derive(Debug)]
 enum Order {
     Open(PathBuf),
@@ -71,8 +71,8 @@ enum Order {
 }
 
 impl RecorderPart {
-    /// Returns the recorder of a run with these terms on this target. It is made before the thread of the turns is
-    /// scheduled in real time, which its own would be as well.
+    /// Returns the recorder of a run with these terms on this target. It must be created before the thread of
+    /// the turns is scheduled in real time, as its thread would inherit that scheduling.
     pub(super) fn new(terms: &RunTerms, target: &str) -> Self {
         let ((orders, waiting), (sender, opened)) = (sync_channel(WAITING), channel());
         let progress = Arc::<Progress>::default();
@@ -143,7 +143,8 @@ impl RecorderPart {
         }
     }
 
-    /// Answers who waits for the file; returns a message if the record could not be written any further.
+    /// Replies to the request that waits for the file; returns a message if the record could not be written any
+    /// further.
     pub(super) fn proceed(&mut self) -> Option<String> {
         if let Ok(opened) = self.opened.try_recv()
             && let Some(reply) = self.opening.take()
@@ -232,7 +233,7 @@ fn write_all(orders: &Receiver<Order>, opened: &Sender<Result<(), String>>, prog
     }
 }
 
-/// Creates the file of a record, if there is none of this name.
+/// Creates the file of a record; fails if a file of this name exists.
 fn created(path: &Path) -> Result<File, String> {
     File::create_new(path).map_err(|error| {
         if error.kind() == io::ErrorKind::AlreadyExists {

@@ -26,7 +26,7 @@ pub struct Session<A: Alphabet> {
     desk: Desk,
     parts: Parts<A>,
     request: StopRequest,
-    /// The limits of the safety rules that are in the record.
+    /// The limits of the safety rules as recorded.
     recorded: Option<Limits>,
 }
 
@@ -43,7 +43,8 @@ struct Parts<A: Alphabet> {
 }
 
 impl<A: Alphabet> Session<A> {
-    /// Returns the session of a run with these terms. If `is_paused`, stepped time stands before the first turn.
+    /// Returns the session of a run with these terms. If `is_paused` is `true`, stepped time does not begin
+    /// before it is resumed.
     #[must_use]
     pub fn new(desk: Desk, guardian: Option<Guardian<A>>, terms: &RunTerms, is_paused: bool) -> Self {
         let parts = Parts {
@@ -107,7 +108,7 @@ where
     A: EngineAlphabet<Input = Twist>,
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
 {
-    /// Serves requests; waits for one for this long, if it is to wait.
+    /// Serves requests; waits at most `wait` for a request, if it is given.
     fn serve(&mut self, moment: &mut Break<'_, Engine<A>>, wait: Option<Duration>) {
         let Self { desk, parts, .. } = self;
         let has_changed = match wait {
@@ -133,7 +134,7 @@ where
         [robot, plans, modules, clock, engine, safety, recorder]
     }
 
-    /// Carries on with the requests that take longer than a break, and answers those that are decided.
+    /// Continues requests that take longer than a break, and answers those that are decided.
     fn proceed(&mut self, pilot: &mut Engine<A>, has_changed: bool) {
         if has_changed || self.plans.waits() || self.modules.waits() {
             let loaded = pilot.progress();

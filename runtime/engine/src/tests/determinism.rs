@@ -11,7 +11,7 @@ use crate::{Arrivals, Candidate, Fault, Module, ModuleState, Modules, Out, Servi
 /// Number of turns of a run.
 const TURNS: u64 = 10_000;
 
-/// The number of random graphs, times `MDLE_LONG`.
+/// Returns the number of random graphs: `count` times `MDLE_LONG`.
 fn graphs(count: u64) -> u64 {
     count * std::env::var("MDLE_LONG").ok().and_then(|times| times.parse::<u64>().ok()).unwrap_or(1)
 }

@@ -12,14 +12,14 @@ use crate::{
     Turn,
 };
 
-/// A module that counts its turns, and does something else in one of them.
+/// A module that counts its turns, and does something special in one of them.
 struct Counter {
     turns: Out<f64>,
     count: f64,
     other: (u64, Deed),
 }
 
-/// Something that a module does in its turn.
+/// The special action of a module in its turn.
 type Deed = fn(&mut Turn<'_, f64>, Out<f64>) -> Result<(), Fault>;
 
 impl Module<f64> for Counter {
@@ -159,7 +159,7 @@ fn waits(name: &str, door: &Arc<Door>) -> Candidate<f64> {
     Candidate::registered(name, make).unwrap()
 }
 
-/// Makes a turn with a deadline that only a module misses that waits; the engine's time passes fast. Returns `true` if
+/// Makes a turn whose deadline only a waiting module misses; the engine's time passes fast. Returns `true` if
 /// the turn lasted until the deadline.
 fn turn_until(modules: &mut Modules<f64>, number: u64) -> bool {
     let deadline = Instant::now() + Duration::from_secs(1);
@@ -221,7 +221,7 @@ fn a_late_module_publishes_when_it_is_done() {
     assert_eq!(published(&modules), Some((5.0, number)));
 }
 
-/// A background module that does something at its exchange of this number.
+/// A background module that acts specially at its exchange of this number.
 struct Busy {
     out: Out<f64>,
     read: In<f64>,

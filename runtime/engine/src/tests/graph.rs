@@ -1,4 +1,4 @@
-//! Random graphs of modules, whose values depend on all that they read.
+//! Random graphs of modules, whose values depend on everything that they read.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use crate::{
     Background, Candidate, Declare, Exchange, Fault, In, Module, Modules, Out, Reading, Relevance, Turn, Value,
 };
 
-/// A random number generator (`xorshift64*`), whose numbers depend on its seed alone.
+/// A random number generator (`xorshift64*`), whose numbers depend only on its seed.
 #[derive(Debug, Clone)]
 pub(super) struct Chance(u64);
 
@@ -27,18 +27,18 @@ impl Chance {
     }
 }
 
-/// Mixes a number into a state, so that any other number leads to another state.
+/// Mixes a number into a state, so that different numbers lead to different states.
 pub(super) fn mixed(state: u64, number: u64) -> u64 {
     (state ^ number).wrapping_mul(0x0100_0000_01b3).rotate_left(23)
 }
 
-/// A module that mixes all that it reads into its state.
+/// A module that mixes all values that it reads into its state.
 pub(super) struct Mixer {
     reads: Vec<In<f64>>,
     gain: In<f64>,
     outs: Vec<Out<f64>>,
     state: u64,
-    /// It publishes in turns whose state is a multiple of this number.
+    /// The module publishes in turns whose state is a multiple of this number.
     rarity: u64,
 }
 
@@ -85,7 +85,7 @@ impl Module<f64> for Mixer {
     }
 }
 
-/// A background module that mixes what it reads, and takes its time.
+/// A background module that mixes the values that it reads, and is slow.
 pub(super) struct Slow {
     reads: Vec<In<f64>>,
     out: Out<f64>,

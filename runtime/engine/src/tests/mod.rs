@@ -10,15 +10,15 @@ use mdle_runtime::Nanos;
 
 use crate::{Modules, Reading, Service, Threads, Value};
 
-/// Period of a turn.
+/// Period of a turn, in nanoseconds.
 const PERIOD: u64 = 1_000_000;
 
-/// Workers of ordinary priority.
+/// Returns workers of ordinary priority.
 const fn workers(count: usize) -> Threads {
     Threads::Workers(count, || ())
 }
 
-/// Modules that make their turns one after the other, in stepped time.
+/// Returns modules that make their turns one after the other, in stepped time.
 fn sequential() -> Modules<f64> {
     Modules::new(Threads::Sequential, Service::WhenDue).unwrap()
 }

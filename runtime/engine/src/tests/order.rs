@@ -9,7 +9,7 @@ use crate::{
     Candidate, Event, Fault, In, Module, ModuleState, Modules, Out, Refusal, Relevance, Service, Threads, Turn, Value,
 };
 
-/// A module that adds one to what it reads.
+/// A module that publishes its input plus one.
 struct Next {
     read: In<f64>,
     out: Out<f64>,

@@ -1,4 +1,4 @@
-//! The side of the hub that the thread which drives the robot has.
+//! The desk: the hub's counterpart on the thread that drives the robot.
 
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, sync_channel};
@@ -15,43 +15,44 @@ use super::{Answer, Change, Node, Operation, Tree, Value};
 /// Maximum number of changes that one break carries out.
 const EACH_BREAK: usize = 16;
 
-/// The way back to who asked for a change. Dropping it says that the run has ended.
+/// The channel by which a request for a change is answered. Dropping the reply means that the run has ended.
 #[derive(Debug)]
 pub struct Reply(Sender<Answer>);
 
 impl Reply {
-    /// Answers. Nobody may be waiting any longer.
+    /// Sends the answer; the front end may no longer wait for it.
     pub fn answer(self, answer: Answer) {
         let _ = self.0.send(answer);
     }
 }
 
-/// A part of the engine that has nodes in the tree. `M` is what it is shown at a break.
+/// A part of the engine that has nodes in the tree. `M` is the type of the moment that it sees at a break.
 pub trait Served<M: ?Sized> {
-    /// Returns its nodes with their paths, in a fixed order.
+    /// Returns the nodes of the part with their paths, in a fixed order.
     fn nodes(&self, moment: &M) -> Vec<(String, Node)>;
 
-    /// Adds a value for each node, in the order of [`Served::nodes`]: `None` for methods, and while there is none.
+    /// Appends a value for each node, in the order of [`Served::nodes`]: `None` for methods, and while a node
+    /// has no value.
     fn values(&self, moment: &M, to: &mut Vec<Option<Value>>);
 
-    /// Carries out a change of one of its nodes, which its kind, access and role permit. It may keep `reply`, to answer
-    /// in a later break.
+    /// Carries out a change of one of the part's nodes, which the node's kind, access and role permit. The part
+    /// may keep `reply`, to answer at a later break.
     fn change(&mut self, path: &str, change: &Change, moment: &mut M, reply: Reply);
 }
 
-/// The side that serves requests at breaks. It never waits, unless it is asked to.
+/// The desk, which serves requests at breaks. It waits only if it is asked to.
 #[derive(Debug)]
 pub struct Desk {
     shared: Arc<Shared>,
     requests: Receiver<Pending>,
     tree: Arc<Tree>,
-    /// For each node of the tree, the place of its value among those of the parts.
+    /// For each node of the tree, the position of its value among the values of the parts.
     places: Vec<usize>,
     number: u64,
     watches: Watches,
-    /// Replies to requests to watch an attribute; they follow its first report.
+    /// Replies to requests to watch an attribute, which are sent after the attribute's first report.
     watchers: Vec<Reply>,
-    /// The changes that breaks have carried out since they were taken, as commands.
+    /// The changes that breaks have carried out since the last [`Desk::take_carried_out`], as commands.
     carried_out: Vec<String>,
 }
 
@@ -76,7 +77,7 @@ impl Desk {
         (hub, desk)
     }
 
-    /// Carries out the changes that wait; returns `true` if there were any.
+    /// Carries out the waiting changes; returns `true` if there were any.
     pub fn serve<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &mut M) -> bool {
         let mut served = false;
         for _ in 0..EACH_BREAK {
@@ -87,7 +88,7 @@ impl Desk {
         served
     }
 
-    /// Waits for a change, for at most this long, and carries it out; returns `true` if there was one.
+    /// Waits for a change, at most for this long, and carries it out; returns `true` if there was one.
     pub fn wait<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &mut M, time: Duration) -> bool {
         match self.requests.recv_timeout(time) {
             Ok(pending) => {
@@ -101,7 +102,7 @@ impl Desk {
         false
     }
 
-    /// Hands out the last snapshot of the run, which stays.
+    /// Publishes the last snapshot of the run, which remains available.
     pub fn close<M: ?Sized>(&mut self, parts: &[&mut dyn Served<M>], moment: &M, t: Nanos) {
         self.shared.wanted.store(true, Ordering::SeqCst);
         self.publish(parts, moment, t);
@@ -139,7 +140,7 @@ impl Desk {
         }
     }
 
-    /// Hands out a snapshot if somebody wants one, and reports what is watched; the last turn was at `t`.
+    /// Publishes a snapshot if a front end wants one, and reports watched attributes; the last turn was at `t`.
     pub fn publish<M: ?Sized>(&mut self, parts: &[&mut dyn Served<M>], moment: &M, t: Nanos) {
         self.show(parts, moment, t);
         self.watchers.drain(..).for_each(|reply| reply.answer(Answer::Done(String::new())));

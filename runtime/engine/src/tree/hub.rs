@@ -13,12 +13,12 @@ use super::{Access, Answer, Change, Node, Operation, Request, Tree};
 
 /// Maximum number of changes that wait for a break.
 pub const QUEUE: usize = 64;
-/// Time between two calls of what a front end does while it waits.
+/// Time between two calls of the function that a front end runs while it waits.
 const LOOK: Duration = Duration::from_millis(50);
-/// Maximum wait for a snapshot that is not older than the question.
+/// Maximum wait for a snapshot that is newer than the request.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// The front ends' side. Its methods may wait.
+/// The hub, which front ends use. Its methods may wait.
 #[derive(Debug, Clone)]
 pub struct Hub {
     shared: Arc<Shared>,
@@ -27,7 +27,7 @@ pub struct Hub {
 }
 
 impl Hub {
-    /// Returns the front ends' side of what both sides share.
+    /// Returns the hub for the data that it shares with a desk.
     pub(super) fn new(shared: Arc<Shared>, queue: SyncSender<Pending>, reports: Receiver<String>) -> Self {
         Self { shared, queue, reports: Arc::new(Mutex::new(reports)) }
     }
@@ -47,7 +47,8 @@ impl Hub {
         self.shared.ended.load(Ordering::SeqCst)
     }
 
-    /// Returns the next report of a watched attribute: its time, path and value. Waits for it for this long.
+    /// Returns the next report of a watched attribute: its time, path and value. Waits for it at most for this
+    /// long.
     #[must_use]
     pub fn report(&self, wait: Duration) -> Option<String> {
         self.reports.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(wait).ok()
@@ -59,8 +60,8 @@ impl Hub {
         self.wait(request, &mut || ())
     }
 
-    /// Answers a request. A change waits until a break has carried it out, and `meanwhile` is called now and then;
-    /// after the run, only readings are answered.
+    /// Answers a request. A change waits until a break has carried it out; meanwhile, `meanwhile` is called at
+    /// intervals. After the run, only readings are answered.
     #[must_use]
     pub fn wait(&self, request: Request, meanwhile: &mut dyn FnMut()) -> Answer {
         let Some(snapshot) = self.snapshot() else { return Answer::Ended };
@@ -97,7 +98,7 @@ impl Hub {
         }
     }
 
-    /// Returns the paths that begin so, each up to the next `/`.
+    /// Returns the paths that begin with `begun`, each up to the next `/`.
     #[must_use]
     pub fn complete(&self, begun: &str) -> Vec<String> {
         let snapshot = Arc::clone(&self.lock());
@@ -108,13 +109,13 @@ impl Hub {
         paths.collect::<BTreeSet<_>>().into_iter().collect()
     }
 
-    /// Returns the node of this path, as the last snapshot has it.
+    /// Returns the node of this path, from the last snapshot.
     #[must_use]
     pub fn node(&self, path: &str) -> Option<Node> {
         self.lock().tree.get(path).copied()
     }
 
-    /// Hands a change over, and waits for its answer.
+    /// Queues a change, and waits for its answer.
     fn change(&self, request: Request, meanwhile: &mut dyn FnMut()) -> Answer {
         let (reply, answer) = channel();
         match self.queue.try_send(Pending { request, reply }) {
@@ -132,7 +133,7 @@ impl Hub {
         }
     }
 
-    /// Returns a snapshot that was made after the call, or the last one if the robot makes no turn or the run has
+    /// Returns a snapshot that was taken after the call; the last one if the robot makes no turn or the run has
     /// ended; `None` if there is none.
     fn snapshot(&self) -> Option<Arc<Snapshot>> {
         let mut kept = self.lock();
@@ -148,7 +149,7 @@ impl Hub {
     }
 }
 
-/// The answer about a path that leads nowhere.
+/// Returns the answer about a path that does not exist.
 fn nothing(tree: &Tree, path: &str) -> Answer {
     if !names(tree, path).is_empty() {
         return Answer::Refused(format!("`{path}` is a folder: `ls {path}` lists it"));
@@ -161,7 +162,7 @@ fn nothing(tree: &Tree, path: &str) -> Answer {
     Answer::Refused(format!("there is nothing at `{path}`{proposal}"))
 }
 
-/// Returns why a node does not take a change, as far as the node itself decides it.
+/// Returns the reason why a node refuses a change, as far as the node itself decides it; `None` if it does not.
 fn refusal(path: &str, node: &Node, change: &Change, request: &Request) -> Option<String> {
     match (change, node.access) {
         (Change::Set(_), Access::Read) => return Some(format!("`{path}` is read-only")),

@@ -1,13 +1,13 @@
-//! The nodes of the tree: what may be done with each, by whom.
+//! The nodes of the tree: the operations on each, and the roles that may perform them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use mdle_quantity::Quantity;
 
-/// The nodes by their paths. A folder is a path that others begin with.
+/// The nodes by their paths. A folder is a path with which other paths begin.
 pub type Tree = BTreeMap<String, Node>;
 
-/// Returns the names in a folder; those of folders end with `/`.
+/// Returns the names in a folder; names of folders end with `/`.
 pub(super) fn names(tree: &Tree, folder: &str) -> Vec<String> {
     let inside = format!("{folder}/");
     let names = tree.keys().filter_map(|path| path.strip_prefix(&inside));
@@ -15,27 +15,27 @@ pub(super) fn names(tree: &Tree, folder: &str) -> Vec<String> {
     names.collect::<BTreeSet<_>>().into_iter().collect()
 }
 
-/// An attribute or a method.
+/// An attribute or a method of the tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Node {
     /// Operations on the node.
     pub access: Access,
-    /// Kind of its value.
+    /// Kind of the node's value.
     pub kind: Kind,
-    /// The least role that may set or call it.
+    /// The lowest role that may set or call the node.
     pub role: Role,
-    /// A noun phrase about it.
+    /// Description of the node, as a noun phrase.
     pub doc: &'static str,
 }
 
 /// Operations on a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {
-    /// It is read.
+    /// The node can be read.
     Read,
-    /// It is read and set.
+    /// The node can be read and set.
     Write,
-    /// It is called.
+    /// The node can be called.
     Call,
 }
 
@@ -48,7 +48,7 @@ pub enum Kind {
     Integer,
     /// A number without a unit.
     Number,
-    /// A number with this unit, which is one of the quantity.
+    /// A number of this quantity, in this unit.
     Quantity(Quantity, &'static str),
     /// Text.
     Text,
@@ -60,21 +60,21 @@ pub enum Kind {
     Bytes,
 }
 
-/// The roles of those who ask. Each may do what those before it may.
+/// The roles of users. Each role may do everything that the roles before it may.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
-    /// Reads.
+    /// Role that may only read.
     View,
-    /// Changes settings.
+    /// Role that may change settings.
     Tune,
-    /// Replaces plans.
+    /// Role that may replace plans.
     Swap,
-    /// Changes safety rules, and ends the session.
+    /// Role that may change safety rules and end the session.
     Admin,
 }
 
 impl Role {
-    /// All roles, the least first.
+    /// All roles, the lowest first.
     pub const ALL: [Self; 4] = [Self::View, Self::Tune, Self::Swap, Self::Admin];
 
     /// Returns the name of the role.
@@ -90,7 +90,7 @@ impl Role {
 }
 
 impl Node {
-    /// Returns an attribute that is only read.
+    /// Returns an attribute that can only be read.
     #[must_use]
     pub const fn reading(kind: Kind, doc: &'static str) -> Self {
         Self { access: Access::Read, kind, role: Role::View, doc }

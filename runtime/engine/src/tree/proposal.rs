@@ -1,4 +1,4 @@
-//! The path that people may have meant by one that leads nowhere.
+//! Proposals for a path that does not exist: the path that the user may have meant.
 
 use mdle_compiler::alphabet::nearest;
 
@@ -8,8 +8,8 @@ use super::node::names;
 /// Maximum number of names in a sentence.
 const NAMED: usize = 12;
 
-/// Returns the end of a sentence about a path that leads nowhere: a path that ends alike, a similar one, or else the
-/// names in the last folder of the path that exists.
+/// Returns the end of a sentence about a path that does not exist: a path with the same ending, a similar path,
+/// or the names in the last folder of the path that exists.
 pub(super) fn proposal(tree: &Tree, path: &str) -> String {
     let mean = |path: &str| format!("; did you mean `{path}`?");
     let mut alike = tree.keys().filter(|known| path.len() > 1 && known.ends_with(path));

@@ -1,4 +1,4 @@
-//! Requests to the tree, and their answers: the same from wherever they come.
+//! Requests to the tree, and their answers, which are the same for all front ends.
 
 use std::fmt;
 
@@ -9,23 +9,23 @@ use super::Role;
 pub struct Request {
     /// Path of a node or a folder, such as `/clock/pace`.
     pub path: String,
-    /// Operation on that node.
+    /// Operation on the node or folder.
     pub operation: Operation,
-    /// The role of who asks.
+    /// Role of the user.
     pub role: Role,
 }
 
 /// Operation on a node.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Operation {
-    /// Returns the names in a folder.
+    /// List the names in a folder.
     List,
-    /// Returns the value of an attribute.
+    /// Read the value of an attribute.
     Get,
-    /// Sets or calls: waits for a break.
+    /// Set an attribute or call a method; waits for a break.
     Change(Change),
-    /// Reports an attribute when it changes, from the next break on, if this is `true`, or no longer: see
-    /// [`Hub::report`](super::Hub::report).
+    /// Report an attribute whenever it changes, from the next break on, if this is `true`; stop reporting it if
+    /// this is `false`. See [`Hub::report`](super::Hub::report).
     Watch(bool),
 }
 
@@ -50,23 +50,23 @@ impl fmt::Display for Request {
 /// A change, which a break carries out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Change {
-    /// Sets an attribute to the value that this text is.
+    /// Set an attribute to the value that this text represents.
     Set(String),
-    /// Calls a method with these arguments.
+    /// Call a method with these arguments.
     Call(Vec<String>),
 }
 
 /// The answer to a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Answer {
-    /// The names in a folder; those of folders end with `/`.
+    /// The names in a folder; names of folders end with `/`.
     Entries(Vec<String>),
     /// A value.
     Value(String),
     /// The change was carried out: a sentence, which may be empty.
     Done(String),
-    /// The request was refused; the sentence says why.
+    /// The request was refused: a sentence with the reason.
     Refused(String),
-    /// The run has ended, or has not begun: there is nobody to ask.
+    /// The run has ended, or has not begun, so that no desk answers.
     Ended,
 }

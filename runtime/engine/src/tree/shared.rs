@@ -9,11 +9,11 @@ use super::{Answer, Request, Tree, Value};
 /// Text of an attribute that has no value.
 pub(super) const NO_VALUE: &str = "(no value yet)";
 
-/// Everything that can be read, as it was at one break.
+/// All readable values, as of one break.
 #[derive(Debug, Default)]
 pub(super) struct Snapshot {
     pub(super) tree: Arc<Tree>,
-    /// Values in the order of the nodes; `None` for one that has no value yet, and for methods.
+    /// Values in the order of the nodes; `None` for a method, and for an attribute that has no value yet.
     pub(super) values: Vec<Option<Value>>,
     /// Number of the snapshot, from 1.
     pub(super) number: u64,
@@ -29,7 +29,7 @@ pub(super) struct Shared {
     pub(super) ended: AtomicBool,
 }
 
-/// A change that waits, and where its answer goes.
+/// A waiting change, and the reply for its answer.
 #[derive(Debug)]
 pub(super) struct Pending {
     pub(super) request: Request,

@@ -1,4 +1,4 @@
-//! Values of attributes, as they are shown and typed: quantities have the units of plans.
+//! Values of attributes, as they are shown and typed; quantities have the units of plans.
 
 use std::fmt::{self, Write as _};
 use std::sync::Arc;
@@ -10,32 +10,32 @@ use super::Kind;
 /// A value of an attribute.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// Of [`Kind::Flag`].
+    /// A value of [`Kind::Flag`].
     Flag(bool),
-    /// Of [`Kind::Integer`].
+    /// A value of [`Kind::Integer`].
     Integer(i64),
-    /// Of [`Kind::Number`].
+    /// A value of [`Kind::Number`].
     Number(f64),
-    /// Of [`Kind::Quantity`], in the unit of the kind.
+    /// A value of [`Kind::Quantity`], in the unit of the kind.
     Quantity(f64, &'static str),
-    /// Of [`Kind::Text`].
+    /// A value of [`Kind::Text`].
     Text(Arc<str>),
-    /// Of [`Kind::Pose`]: two lengths in metres and an angle in degrees.
+    /// A value of [`Kind::Pose`]: two lengths in metres and an angle in degrees.
     Pose([f64; 3]),
-    /// Of [`Kind::Numbers`].
+    /// A value of [`Kind::Numbers`].
     Numbers(Arc<[f64]>),
-    /// Of [`Kind::Bytes`].
+    /// A value of [`Kind::Bytes`].
     Bytes(Arc<[u8]>),
 }
 
 impl Value {
-    /// Returns a text.
+    /// Returns a text as a value.
     #[must_use]
     pub fn text(text: &str) -> Self {
         Self::Text(text.into())
     }
 
-    /// Returns a number that counts something.
+    /// Returns a count as a value.
     #[must_use]
     pub fn count(count: u64) -> Self {
         Self::Integer(i64::try_from(count).unwrap_or(i64::MAX))
@@ -88,7 +88,7 @@ fn separated<T: fmt::Display>(f: &mut fmt::Formatter<'_>, parts: impl Iterator<I
 /// Reads a value of this kind.
 ///
 /// # Errors
-/// A sentence with what to type instead.
+/// Fails with a sentence that says what to type instead.
 pub fn read(text: &str, kind: Kind) -> Result<Value, String> {
     match kind {
         Kind::Flag => match text {

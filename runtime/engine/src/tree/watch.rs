@@ -1,5 +1,5 @@
-//! Attributes that a front end watches: each is reported when its value has changed, but not more often than people
-//! can read.
+//! Attributes that a front end watches. Each is reported when its value has changed, but not more often than
+//! people can read.
 
 use std::sync::mpsc::SyncSender;
 
@@ -24,7 +24,7 @@ struct Watched {
     path: String,
     /// The value that was reported last.
     reported: Option<String>,
-    /// Time from which it may be reported.
+    /// Time from which the attribute may be reported again.
     next: Nanos,
 }
 
@@ -36,7 +36,7 @@ impl Watches {
     /// Watches an attribute from now on.
     ///
     /// # Errors
-    /// Too many are watched: a sentence.
+    /// Fails with a sentence if too many attributes are watched.
     pub(super) fn add(&mut self, path: &str) -> Result<(), String> {
         if self.watched.iter().any(|watched| watched.path == path) {
             return Ok(());
@@ -48,10 +48,10 @@ impl Watches {
         Ok(())
     }
 
-    /// Watches an attribute no longer.
+    /// Stops watching an attribute.
     ///
     /// # Errors
-    /// It is not watched: a sentence.
+    /// Fails with a sentence if the attribute is not watched.
     pub(super) fn remove(&mut self, path: &str) -> Result<(), String> {
         let place = self.watched.iter().position(|watched| watched.path == path);
         let place = place.ok_or_else(|| format!("`{path}` is not watched"))?;
@@ -59,7 +59,7 @@ impl Watches {
         Ok(())
     }
 
-    /// Returns `true` if an attribute may be reported at time `t`.
+    /// Returns `true` if some attribute may be reported at time `t`.
     pub(super) fn are_due(&self, t: Nanos) -> bool {
         self.watched.iter().any(|watched| t >= watched.next)
     }
