@@ -28,7 +28,7 @@ pub(crate) struct Test {
     pub(crate) junit: Option<PathBuf>,
     /// `true` if the results are printed as JSON.
     pub(crate) json: bool,
-    /// `true` if files of tests are changed to what the runs did.
+    /// `true` if files of tests are updated with the results of the runs.
     pub(crate) update: bool,
     /// `true` if the tests run again whenever a file changes.
     pub(crate) watch: bool,

@@ -14,7 +14,7 @@ use super::subject::Subject;
 pub(super) enum Cause {
     /// The completion of a law.
     Completed,
-    /// Operands of interrupts: element and number of each.
+    /// Operands of interrupts, each with the number of its element and its own number.
     Operands(Vec<(u32, u32)>),
     /// The interrupts of these scopes.
     Scopes(Vec<u32>),
@@ -23,7 +23,7 @@ pub(super) enum Cause {
 /// Reads a cause: `completed`, an operand, or the name of a scope.
 ///
 /// # Errors
-/// The plan has no such cause.
+/// Fails if the plan has no such cause.
 pub(super) fn cause(text: &At<String>, subject: &Subject) -> Result<Cause, TestFileError> {
     let wanted = text.get_ref().trim();
     if wanted == COMPLETED {
@@ -48,10 +48,10 @@ pub(super) fn cause(text: &At<String>, subject: &Subject) -> Result<Cause, TestF
     Err(TestFileError::at(text.span(), message).help(format!("its operands are {listed}; a law ends by `{COMPLETED}`")))
 }
 
-/// Returns the cause as far as the plan can end by it.
+/// Returns the part of the cause by which the plan can end.
 ///
 /// # Errors
-/// The cause ends a part of the plan only.
+/// Fails if the cause ends only a part of the plan.
 pub(super) fn ending(text: &At<String>, cause: Cause, subject: &Subject) -> Result<Cause, TestFileError> {
     let (cause, is_left) = match cause {
         Cause::Completed => {
@@ -82,7 +82,7 @@ pub(super) fn ending(text: &At<String>, cause: Cause, subject: &Subject) -> Resu
     Err(TestFileError::at(text.span(), message).help(help))
 }
 
-/// Returns `true` if nothing follows an element when it ends, at least in the last pass of the loops around it.
+/// Returns `true` if nothing follows an element when it ends, at least in the last pass of the enclosing loops.
 fn ends_plan(subject: &Subject, element: u32) -> bool {
     let last = subject.machine().root().last().number();
     subject

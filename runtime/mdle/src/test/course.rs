@@ -1,4 +1,4 @@
-//! The course of a run: the atoms that began, the transitions, and how it ended.
+//! The course of a run: the atoms that began, the transitions, and the end.
 
 use mdle_compiler::fsm::Machine;
 use mdle_host::{Operand, Transitions};
@@ -16,16 +16,16 @@ pub(super) struct Course {
     /// Time of the last turn.
     pub(super) t: Nanos,
     pub(super) ending: Ending,
-    /// The true pose at the end, where a robot was simulated.
+    /// The true pose at the end, for a simulated robot.
     pub(super) pose: Option<Pose>,
-    /// An `expect.never` that was not met: the number of the expectation, and the time.
+    /// The violations of `expect.never`.
     pub(super) breaches: Vec<Breach>,
 }
 
 /// The beginning of an atom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Began {
-    /// The atom, as written, from 0.
+    /// Number of the atom, as written, from 0.
     pub(super) atom: u32,
     pub(super) turn: u64,
     pub(super) t: Nanos,
@@ -36,16 +36,16 @@ pub(super) struct Began {
 pub(super) struct Step {
     pub(super) turn: u64,
     pub(super) t: Nanos,
-    /// The atom that was left.
+    /// Number of the atom that was left.
     pub(super) from: Option<u32>,
-    /// The atom that was entered; `None` if the plan is over.
+    /// Number of the atom that was entered; `None` if the plan is over.
     pub(super) to: Option<u32>,
-    /// The element that ended.
+    /// Number of the element that ended.
     pub(super) scope: u32,
     pub(super) has_completed: bool,
     /// Numbers of the operands that had fired.
     pub(super) operands: Vec<u32>,
-    /// The cause with values, as a report has it.
+    /// The cause with its values, as a report shows it.
     pub(super) words: String,
 }
 
@@ -60,25 +60,25 @@ pub(super) enum Ending {
     Failed(String),
 }
 
-/// The first turn in which something was that never was to be.
+/// The first turn in which a state occurred that must never occur.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Breach {
     /// Number of the expectation.
     pub(super) number: usize,
     pub(super) turn: u64,
     pub(super) t: Nanos,
-    /// The atom in that turn.
+    /// Number of the atom in that turn.
     pub(super) atom: Option<u32>,
     /// A measured distance, in metres.
     pub(super) gap: Option<f64>,
 }
 
-/// Follows a run.
+/// Recorder of the course of a run.
 #[derive(Debug)]
 pub(super) struct Recorder<'m> {
     machine: &'m Machine,
     pub(super) course: Course,
-    /// The current atom.
+    /// Number of the current atom.
     atom: Option<u32>,
 }
 
@@ -136,7 +136,7 @@ impl<'m> Recorder<'m> {
         self.course.t = t;
     }
 
-    /// Notes that something was in this turn that never was to be.
+    /// Records that a forbidden state has occurred in this turn.
     pub(super) fn breach(&mut self, number: usize, gap: Option<f64>) {
         let turn = self.course.turns.saturating_sub(1);
         let (t, atom) = (self.course.t, self.atom);
@@ -151,7 +151,7 @@ impl Course {
     }
 }
 
-/// Returns the law of an atom with its line, as in `go 20 0 (line 6)`; the end of the plan for `None`.
+/// Returns the law of an atom with its line, as in `go 20 0 (line 6)`; for `None`, the end of the plan.
 pub(super) fn atom_words(machine: &Machine, words: &dyn Words, atom: Option<u32>) -> String {
     let Some(atom) = atom else { return "the end of the plan".to_owned() };
     let atom = machine.atom(atom);

@@ -16,13 +16,14 @@ pub(super) struct Coverage {
     pub(super) fired: Vec<u64>,
     /// For each element, the number of times that it ended by the completion of its law.
     pub(super) completed: Vec<u64>,
-    /// For each element the operands of its interrupt: the numbers of evaluations in which each was false and true.
+    /// For each operand of each element's interrupt, the numbers of evaluations in which it was false and true.
     pub(super) operands: Vec<Vec<[u64; 2]>>,
-    /// For each element, `true` if one operand alone fires its interrupt, so that all are false while it lasts.
+    /// For each element, `true` if a single operand can fire its interrupt, so that all operands are false
+    /// while the element runs.
     is_any: Vec<bool>,
-    /// The current atom.
+    /// Number of the current atom.
     atom: Option<u32>,
-    /// Operands that have fired, for reuse.
+    /// Buffer for the operands that have fired.
     fired_now: Vec<u32>,
 }
 
@@ -51,8 +52,8 @@ impl Coverage {
         self.atom = None;
     }
 
-    /// Takes a turn, after which `atom` is the current one; `evaluate` calls its second argument with the number of
-    /// each operand that has fired of the interrupt of an element around that atom.
+    /// Takes a turn, after which `atom` is current. For an element that encloses that atom, `evaluate` calls
+    /// its second argument with the number of each fired operand.
     pub(super) fn turn(
         &mut self,
         machine: &Machine,
@@ -92,7 +93,7 @@ impl Coverage {
         }
     }
 
-    /// Counts the operands of an element that lasts.
+    /// Counts the operands of an element that does not end.
     fn lasts(&mut self, element: Element<'_>, evaluate: &impl Fn(u32, &mut dyn FnMut(u32))) {
         let scope = element.index();
         if self.operands.get(scope).is_none_or(Vec::is_empty) {
@@ -114,7 +115,7 @@ impl Coverage {
         }
     }
 
-    /// Adds the counts of other runs of the plan.
+    /// Includes the counts of other runs of the plan.
     pub(super) fn add(&mut self, other: &Self) {
         let lists = [
             (&mut self.began, &other.began),

@@ -15,11 +15,11 @@ pub(super) struct CoverageTable {
     /// File and name of the plan.
     file: String,
     plan: String,
-    /// Number of atoms that began, and of all atoms.
+    /// Number of atoms that began, and number of all atoms.
     atoms: [usize; 2],
-    /// Number of ends of elements that were seen, by their interrupts and by completion, and of all ends.
+    /// Number of ends of elements that occurred, by their interrupts and by completion, and number of all ends.
     ends: [usize; 2],
-    /// Number of operands that were both true and false, and of all operands.
+    /// Number of operands that were both true and false, and number of all operands.
     operands: [usize; 2],
     elements: Vec<CoveredElement>,
 }
@@ -30,17 +30,17 @@ struct CoveredElement {
     line: u32,
     /// Number of enclosing elements.
     depth: usize,
-    /// The law of an atom, or the name of a scope.
+    /// Law of an atom, or name of a scope.
     name: String,
-    /// The number of times that the law began, and that the atom was skipped; `None` for a scope.
+    /// Numbers of times that the law began and that the atom was skipped; `None` for a scope.
     #[serde(skip_serializing_if = "Option::is_none")]
     began: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     skipped: Option<u64>,
-    /// The number of times that the law completed; `None` if it cannot.
+    /// Number of times that the law completed; `None` if it cannot complete.
     #[serde(skip_serializing_if = "Option::is_none")]
     completed: Option<u64>,
-    /// The number of times that the interrupt ended the element; `None` if it never fires.
+    /// Number of times that the interrupt ended the element; `None` if it never fires.
     #[serde(skip_serializing_if = "Option::is_none")]
     fired: Option<u64>,
     operands: Vec<CoveredOperand>,
@@ -76,7 +76,7 @@ impl CoverageTable {
         }
     }
 
-    /// Returns the table as text; `!` marks what was not reached.
+    /// Returns the table as text; `!` marks parts that were not reached.
     pub(super) fn text(&self) -> String {
         let Self { file, plan, atoms, ends, operands, elements } = self;
         let of = |[seen, all]: &[usize; 2]| format!("{seen} of {all}");

@@ -1,4 +1,4 @@
-//! The expectations of a test, as its plan understands them.
+//! The expectations of a test, resolved against its plan.
 
 use std::ops::Range;
 use std::time::Duration;
@@ -38,7 +38,7 @@ pub(super) struct Expected {
 pub(super) struct AtomsNamed {
     pub(super) place: Place,
     pub(super) text: String,
-    /// `true` for each atom that is named.
+    /// For each atom, `true` if it is named.
     atoms: Vec<bool>,
 }
 
@@ -46,7 +46,7 @@ pub(super) struct AtomsNamed {
 #[derive(Clone)]
 pub(super) struct ExpectedTransition {
     pub(super) from: Option<AtomsNamed>,
-    /// The atoms of which one is entered; `Some(None)` for the end of the plan.
+    /// The atoms of which one must be entered; `Some(None)` for the end of the plan.
     pub(super) to: Option<Option<AtomsNamed>>,
     pub(super) by: Option<(String, Cause)>,
     pub(super) after: Option<Nanos>,
@@ -55,9 +55,9 @@ pub(super) struct ExpectedTransition {
 
 /// A state that must not occur.
 pub(super) enum Never {
-    /// The robot is nearer to an obstacle than this, in metres.
+    /// The robot is closer to an obstacle than this distance, in metres.
     Closer(f64),
-    /// One of the atoms, if there are any, runs while the condition, if there is one, is true.
+    /// One of the atoms runs while the condition is true; either may be absent.
     While { words: String, atoms: Option<AtomsNamed>, condition: Option<Box<TestCondition>> },
 }
 
@@ -97,7 +97,7 @@ impl ExpectedTransition {
 }
 
 impl AtomsNamed {
-    /// Returns `true` if an atom is among those that are named.
+    /// Returns `true` if an atom is named.
     pub(super) fn holds(&self, atom: u32) -> bool {
         self.atoms.get(atom as usize).copied().unwrap_or(false)
     }
@@ -107,7 +107,7 @@ impl Expected {
     /// Reads the expectations of a test of the plan `subject`; `is_script` for a test without a simulated robot.
     ///
     /// # Errors
-    /// An expectation cannot be met by any run: a sentence with its place.
+    /// Fails with a sentence and a place if no run can meet an expectation.
     pub(super) fn read(text: &ExpectText, subject: &Subject, is_script: bool) -> Result<Self, TestFileError> {
         let list = |list: &Option<At<Vec<At<String>>>>| {
             let list = list.as_ref().map(|list| {

@@ -1,4 +1,4 @@
-//! Faults of the simulated robot at times of a run.
+//! Faults of the simulated robot at given times of a run.
 
 use mdle_host::Quantity;
 use mdle_runtime::{Meters, Nanos, Ping, Pings, SONARS, Sensed, Twist};
@@ -12,7 +12,7 @@ const NAMES: &str = "`bumper`, `sonar`, `battery`, `blocked` and `robot`";
 /// Maximum range of a sonar, in metres.
 const FURTHEST: f64 = 100.0;
 
-/// A fault and the time in which it lasts.
+/// A fault with the time during which it lasts.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TimedFault {
     from: Nanos,
@@ -24,11 +24,11 @@ pub(super) struct TimedFault {
 enum Fault {
     /// All bumper switches are in contact.
     Bumper,
-    /// A sonar returns this range.
+    /// A sonar returns this range: the number of the sonar, and the range.
     Sonar(usize, Meters),
     /// The battery has this charge, from 0 to 1.
     Battery(f64),
-    /// The wheels stand still.
+    /// The wheels do not turn.
     Blocked,
     /// The robot does not answer.
     Robot,
@@ -37,7 +37,7 @@ enum Fault {
 /// Reads a fault.
 ///
 /// # Errors
-/// There is no such fault, or a value of it is missing: a sentence.
+/// Fails with a sentence if there is no such fault, or if one of its values is missing.
 pub(super) fn read(text: &FaultText) -> Result<TimedFault, TestFileError> {
     let FaultText { fault: name, from, until, sonar, range, percent } = text;
     let needs = |key: &str, example: &str| {
@@ -95,15 +95,15 @@ fn range_of(text: &At<String>) -> Result<f64, TestFileError> {
     Err(TestFileError::at(text.span(), format!("a range is from 0 to {FURTHEST} m")))
 }
 
-/// The faults that last at a time.
+/// Returns the faults that are active at a time.
 fn lasting(faults: &[TimedFault], t: Nanos) -> impl Iterator<Item = &Fault> {
     faults.iter().filter(move |fault| fault.from <= t && t < fault.until).map(|fault| &fault.fault)
 }
 
-/// Changes what the robot is sent and what supplies it before the exchange at time `t`.
+/// Applies the faults to the input and the battery before the exchange at time `t`; returns the input to send.
 ///
 /// # Errors
-/// The robot does not answer: a sentence.
+/// Fails with a sentence if the robot does not answer.
 pub(super) fn before(faults: &[TimedFault], robot: &mut Observed, input: Twist, t: Nanos) -> Result<Twist, String> {
     let mut input = input;
     for fault in lasting(faults, t) {
@@ -117,7 +117,7 @@ pub(super) fn before(faults: &[TimedFault], robot: &mut Observed, input: Twist, 
     Ok(input)
 }
 
-/// Changes the output of the exchange at time `t`.
+/// Applies the faults to the output of the exchange at time `t`.
 pub(super) fn after(faults: &[TimedFault], y: &mut Sensed, t: Nanos) {
     for fault in lasting(faults, t) {
         match fault {

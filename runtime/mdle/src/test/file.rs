@@ -8,9 +8,9 @@ use mdle_runtime::Printable;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-/// Ending of the name of a file of tests.
+/// Suffix of the name of a file of tests.
 pub(super) const ENDING: &str = ".test.toml";
-/// Words for a number without a sign, in messages.
+/// Description of a number without a sign, for messages.
 const COUNT: &str = "a whole number from 0 on";
 /// Maximum size of a file of tests, in bytes.
 const LARGEST: u64 = 4_000_000;
@@ -22,7 +22,7 @@ pub(super) type At<T> = Spanned<T>;
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct TestFile {
-    /// File of the plan, relative to the folder of the file of tests; beside it by default.
+    /// File of the plan, relative to the folder of the file of tests; by default the plan beside that file.
     pub(super) plan: Option<At<PathBuf>>,
     /// Name of the plan, for a file with several.
     pub(super) name: Option<At<String>>,
@@ -58,7 +58,7 @@ pub(super) struct TestText {
     pub(super) expect: ExpectText,
 }
 
-/// A turn of a script, as a line of `mdlec trace --script` has it.
+/// A turn of a script, with the same keys as a line of `mdlec trace --script`.
 #[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ScriptTurn {
@@ -121,7 +121,7 @@ pub(super) struct TransitionText {
 }
 
 impl ExpectText {
-    /// Returns `true` if nothing is expected.
+    /// Returns `true` if there are no expectations.
     pub(super) fn is_empty(&self) -> bool {
         let Self { atoms, order, transitions, never, end, pose, most_turns, most_transitions, most_time } = self;
         let order = order.as_ref().is_none_or(|order| order.get_ref().is_empty());
@@ -158,7 +158,7 @@ impl TestText {
 pub(super) struct TestFileError {
     /// Byte range in the file; `None` for the whole file.
     pub(super) place: Option<Range<usize>>,
-    /// A sentence.
+    /// Description of the error, as a sentence.
     pub(super) message: String,
     /// Text to type instead; empty if there is none.
     pub(super) help: String,
@@ -170,7 +170,7 @@ impl TestFileError {
         Self { place: Some(place), message: message.into(), help: String::new() }
     }
 
-    /// Adds a help.
+    /// Appends help to the error.
     pub(super) fn help(self, help: impl Into<String>) -> Self {
         Self { help: help.into(), ..self }
     }
@@ -179,7 +179,7 @@ impl TestFileError {
 /// Reads the text of a file of tests.
 ///
 /// # Errors
-/// A sentence without a place: the file cannot be read.
+/// Fails with a sentence without a place if the file cannot be read.
 pub(super) fn text(path: &Path) -> Result<String, TestFileError> {
     let unread = |error: std::io::Error| TestFileError {
         place: None,
@@ -192,7 +192,7 @@ pub(super) fn text(path: &Path) -> Result<String, TestFileError> {
 /// Reads a file of tests.
 ///
 /// # Errors
-/// The text is no TOML, has unknown keys or values of the wrong type, or two tests of one name.
+/// Fails if the text is no TOML, has unknown keys or values of the wrong type, or two tests of the same name.
 pub(super) fn read(text: &str) -> Result<TestFile, TestFileError> {
     let file: TestFile = toml::from_str(text).map_err(|error| refused(&error))?;
     for (number, test) in file.test.iter().enumerate() {
@@ -213,7 +213,7 @@ pub(super) fn read(text: &str) -> Result<TestFile, TestFileError> {
     Ok(file)
 }
 
-/// Returns the error about what TOML refuses; an unknown key gets the name of a near one.
+/// Returns the error for text that the TOML parser refuses; for an unknown key, with the most similar name.
 fn refused(error: &toml::de::Error) -> TestFileError {
     let place = error.span();
     let words = [("a sequence", "a list"), ("map", "a table"), ("u64", COUNT), ("u8", COUNT)];

@@ -1,8 +1,9 @@
-//! Any text in place of a file of tests is read or refused, and a refusal names a place that the text has.
+//! Tests that any text in place of a file of tests is read or refused, and that a refusal names a place in the
+//! text.
 
 use super::file::read;
 
-/// A file of tests of both kinds.
+/// A file with a scripted test and a simulated test.
 const TEXT: &str = r#"
 plan = "dock.mdle"
 
@@ -24,7 +25,7 @@ expect.order = ["go 20 0", "Shake", "turn 90"]
 expect.never = ["bumper"]
 "#;
 
-/// Texts to type at a place.
+/// Texts that the test inserts at each place.
 const TYPED: [&str; 9] = ["\"", "[", "]", "=", "-", "9", "é", "\n", "\0"];
 
 #[test]

@@ -16,13 +16,13 @@ pub(super) struct Failure {
     pub(super) place: Place,
     /// A sentence about the run.
     pub(super) message: String,
-    /// Words at the place of the expectation.
+    /// Text shown at the place of the expectation.
     pub(super) expected: String,
-    /// The fact that differs.
+    /// The actual value.
     pub(super) got: String,
-    /// The atom at which the difference shows, with words about it.
+    /// Number of the atom at which the difference appears, with a text about it.
     pub(super) atom: Option<(u32, String)>,
-    /// Time of the run at which the difference shows.
+    /// Time of the run at which the difference appears.
     pub(super) t: Nanos,
 }
 
@@ -52,7 +52,7 @@ impl Judge<'_> {
         Failure { place: place.clone(), message, expected, got, atom: self.last_atom(), t: self.course.t }
     }
 
-    /// The last atom of the run, with words about its end.
+    /// Returns the last atom of the run, with a text about its end.
     fn last_atom(&self) -> Option<(u32, String)> {
         let last = self.course.began.last()?;
         let words = match self.course.ending {
@@ -62,7 +62,7 @@ impl Judge<'_> {
         Some((last.atom, format!("{words}, which began at {} s", Seconds(last.t))))
     }
 
-    /// A fault that ended the run, unless the test expects that.
+    /// Returns the failure for a fault that ended the run, unless the test expects the fault.
     fn fault(&self, expected: &Expected) -> Option<Failure> {
         let Ending::Failed(fault) = &self.course.ending else { return None };
         let place = match &expected.end {
@@ -124,7 +124,7 @@ impl Judge<'_> {
         None
     }
 
-    /// Names the atoms that began from this time on.
+    /// Returns the names of the atoms that began from this time on.
     fn began_after(&self, t: Nanos) -> String {
         const MOST: usize = 6;
         let began: Vec<_> = self.course.began.iter().filter(|began| began.t >= t).collect();
@@ -169,7 +169,7 @@ impl Judge<'_> {
         Some(Failure { atom, t: step.t, ..failure })
     }
 
-    /// Returns the first of the transitions that meet the most of these conditions.
+    /// Returns the first of the transitions that meet the largest number of these conditions.
     fn nearest(&self, conditions: &[&dyn Fn(&Step) -> bool]) -> Option<&Step> {
         let met = |step: &Step| conditions.iter().filter(|condition| condition(step)).count();
         let most = self.course.steps.iter().map(met).max()?;
@@ -266,14 +266,15 @@ impl Judge<'_> {
     }
 }
 
-/// Returns a distance in centimetres, with as many decimals as it takes to be below `least`; both are in metres.
+/// Returns a distance in centimetres, with as many decimals as needed to show that it is below `least`; both
+/// are in metres.
 fn centimetres(gap: f64, least: f64) -> String {
     let text = |decimals: usize| format!("{:.decimals$}", gap * 100.0);
     let is_below = |text: &String| text.parse::<f64>().is_ok_and(|shown| shown < least * 100.0);
     (1..9).map(text).find(is_below).unwrap_or_else(|| text(9))
 }
 
-/// The place and the heading of a pose, as `--start` takes them.
+/// Returns the position and the heading of a pose, in the syntax of `--start`.
 pub(super) fn pose_words(pose: &Pose) -> String {
     // No zero has a sign.
     let shown = |value: f64| format!("{:.2}", value + 0.0).replace("-0.00", "0.00");

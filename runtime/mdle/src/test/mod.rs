@@ -45,13 +45,13 @@ use watched::WatchedFiles;
 
 use crate::failure::{self, Failure};
 
-/// Exit status of tests of which one fails.
+/// Exit status if a test fails.
 const FAILED: u8 = 1;
 
 /// Runs tests; returns 0 if all of them pass, 1 if one fails or a plan has errors, and 2 if a file of tests has errors.
 ///
 /// # Errors
-/// There is nothing to test, or a file cannot be written.
+/// Fails if there is nothing to test, or if a file cannot be written.
 pub(crate) fn test(arguments: &Test, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
     let mut watched = WatchedFiles::new(&files(&arguments.files)?);
     loop {
@@ -67,7 +67,7 @@ pub(crate) fn test(arguments: &Test, library: &Library<Sensed>) -> Result<ExitCo
     }
 }
 
-/// Runs tests once, and once more if that has updated files of tests; returns the exit status.
+/// Runs tests, and runs them again if that has updated files of tests; returns the exit status.
 fn once(arguments: &Test, library: &Library<Sensed>) -> Result<u8, Failure> {
     if arguments.update {
         let (all, status) = Suites::read(arguments)?;
@@ -95,12 +95,12 @@ fn once(arguments: &Test, library: &Library<Sensed>) -> Result<u8, Failure> {
 /// The files of tests of a call.
 struct Suites {
     suites: Vec<Suite>,
-    /// The files of each plan.
+    /// The files of each plan, for reports.
     inputs: Vec<Input>,
 }
 
 impl Suites {
-    /// Reads the files of tests; returns them with the exit status that those with errors demand.
+    /// Reads the files of tests; returns them with the exit status that erroneous files require.
     fn read(arguments: &Test) -> Result<(Self, u8), Failure> {
         let (mut suites, mut inputs, mut status) = (Vec::new(), Vec::new(), 0);
         for file in files(&arguments.files)? {
@@ -125,7 +125,7 @@ impl Suites {
         runner::run(&self.suites, &jobs, threads, library)
     }
 
-    /// Reports the tests as the arguments ask.
+    /// Reports the tests in the forms that the arguments request.
     fn tell(&self, arguments: &Test, tests: &[Tested<'_>], coverage: &[Coverage]) -> Result<(), Failure> {
         let covered = || self.suites.iter().zip(coverage);
         let tables = covered().map(|(suite, coverage)| CoverageTable::new(&suite.subject, coverage));
@@ -167,7 +167,8 @@ fn must_have(name: &str, suites: &[Suite], status: u8) -> Result<(), Failure> {
     Err(Failure::Usage(format!("there is no test `{name}`{}", did_you_mean(name, &names))))
 }
 
-/// Returns the files of tests that the arguments name: files of tests, plans with such a file beside them, and folders.
+/// Returns the files of tests that the arguments name: such files themselves, plans with such a file beside
+/// them, and folders.
 fn files(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let here = [PathBuf::from(".")];
     let mut files = Vec::new();
@@ -192,7 +193,7 @@ fn files(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(files)
 }
 
-/// Adds the files of tests in a folder and in the folders inside it, but for hidden ones and `target`.
+/// Collects the files of tests in a folder and its subfolders, except hidden ones and `target`.
 fn collect(folder: &Path, found: &mut BTreeSet<PathBuf>) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {

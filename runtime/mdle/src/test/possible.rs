@@ -1,4 +1,5 @@
-//! The transitions that a plan can make, by its text alone: what no run can do is refused before any run.
+//! The transitions that a plan can make, from its text alone; expectations that no run can meet are refused
+//! before any run.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +15,7 @@ use super::subject::Subject;
 /// Checks that the plan can do what is expected: make the transitions, and begin the atoms in their order.
 ///
 /// # Errors
-/// It cannot: a sentence with its place.
+/// Fails with a sentence and a place if it cannot.
 pub(super) fn possible(expected: &Expected, subject: &Subject) -> Result<(), TestFileError> {
     let Expected { atoms, order, transitions, .. } = expected;
     [atoms, order].into_iter().flatten().try_for_each(|(_, atoms)| in_order(atoms, subject))?;
@@ -67,7 +68,7 @@ fn can_be_made(wanted: &ExpectedTransition, place: Place, subject: &Subject) -> 
     Err(TestFileError::at(place, format!("the plan cannot make {words}")).help(help))
 }
 
-/// Returns the laws of atoms, and the end of the plan for `None`.
+/// Returns the laws of atoms; for `None`, the end of the plan.
 fn laws(subject: &Subject, atoms: &BTreeSet<Option<u32>>) -> String {
     let laws = listed(atoms.iter().flatten().map(|atom| subject.machine().atom(*atom).law().text.clone()));
     match (atoms.contains(&None), laws.is_empty()) {
@@ -89,7 +90,7 @@ fn listed(texts: impl Iterator<Item = String>) -> String {
     known.join(", ")
 }
 
-/// The transitions of a plan between its atoms.
+/// The transitions that a plan can make between its atoms.
 struct PossibleTransitions<'m> {
     machine: &'m Machine,
 }
@@ -99,8 +100,8 @@ impl<'m> PossibleTransitions<'m> {
         Self { machine }
     }
 
-    /// Returns the atoms that can be entered from the atoms of which `is_from` is true, by one transition with this
-    /// cause; `None` is the end of the plan.
+    /// Returns the atoms that can be entered by one transition with this cause from an atom for which `is_from`
+    /// is true; `None` is the end of the plan.
     fn entered(&self, is_from: impl Fn(u32) -> bool, cause: Option<&Cause>) -> BTreeSet<Option<u32>> {
         let mut entered = BTreeSet::new();
         for atom in self.machine.atoms().filter(|atom| is_from(atom.number())) {
@@ -111,15 +112,15 @@ impl<'m> PossibleTransitions<'m> {
         entered
     }
 
-    /// Returns the elements of which the end can end one of these atoms.
+    /// Returns the elements whose end can end an atom for which `is_from` is true.
     fn ending(&self, is_from: impl Fn(u32) -> bool) -> Vec<Element<'m>> {
         let atoms = self.machine.atoms().filter(|atom| is_from(atom.number()));
         let ending: BTreeSet<u32> = atoms.flat_map(|atom| ending(atom).map(Element::number)).collect();
         ending.into_iter().map(|number| self.machine.element(number)).collect()
     }
 
-    /// Returns `true` if one of the atoms of which `is_to` is true can begin at some time after one of those of which
-    /// `is_from` is.
+    /// Returns `true` if an atom for which `is_to` is true can begin at some time after an atom for which
+    /// `is_from` is true.
     fn leads(&self, is_from: impl Fn(u32) -> bool, is_to: impl Fn(u32) -> bool) -> bool {
         let mut reached = vec![false; self.machine.atoms().len()];
         let mut next: Vec<u32> = self.entered(is_from, None).into_iter().flatten().collect();
@@ -139,7 +140,7 @@ impl<'m> PossibleTransitions<'m> {
     }
 }
 
-/// Adds the atoms that can be entered when an element ends.
+/// Collects the atoms that can be entered when an element ends.
 fn follow(element: Element<'_>, entered: &mut BTreeSet<Option<u32>>) {
     let mut element = element;
     loop {
@@ -165,8 +166,8 @@ fn follow(element: Element<'_>, entered: &mut BTreeSet<Option<u32>>) {
     }
 }
 
-/// Returns the elements of which the end ends an atom: itself, and the enclosing scopes that have an interrupt of their
-/// own.
+/// Returns the elements whose end ends an atom: the atom itself, and the enclosing scopes that have an
+/// interrupt.
 fn ending(atom: Atom<'_>) -> impl Iterator<Item = Element<'_>> {
     atom.element().outwards().filter(|element| element.completes() || has_interrupt(*element))
 }

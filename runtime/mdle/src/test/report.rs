@@ -25,7 +25,7 @@ const SEEDS: usize = 10;
 pub(super) struct Tested<'m> {
     pub(super) suite: &'m Suite,
     pub(super) case: &'m Case,
-    /// The files of the plan and of the test.
+    /// The files of the plan and the test, for reports.
     pub(super) sources: &'m Sources,
     /// Runs in the order of their seeds; at least one.
     pub(super) runs: &'m [Made],
@@ -53,7 +53,7 @@ impl Tested<'_> {
         self.failed().next().is_none()
     }
 
-    /// Returns the outcome in a few words: of one run its turns and its end, of several how many have failed.
+    /// Returns the outcome in a few words: the turns and the end of a single run, or the number of failed runs.
     pub(super) fn outcome(&self) -> String {
         match (self.runs, self.failed().count()) {
             ([Made { result: RunResult::Judged(course, _), .. }], _) => course_words(course),
@@ -155,7 +155,8 @@ fn title(test: &Tested<'_>, job: Job) -> String {
     format!("{}{seed}", test.case.name)
 }
 
-/// The report of a failure: the expectation, the place in the plan, and the last transitions if they are to be shown.
+/// Returns the report of a failure: the expectation, the place in the plan, and the last transitions if they
+/// are to be shown.
 fn report(
     test: &Tested<'_>,
     job: Job,
@@ -180,14 +181,14 @@ fn report(
         .with_notes(notes)
 }
 
-/// The commands that repeat a run, and that explain it at its first failure.
+/// Returns the commands that repeat a run, and that explain it at its first failure.
 fn commands(test: &Tested<'_>, job: Job, failures: &[Failure]) -> Vec<String> {
     let first = failures.iter().min_by_key(|failure| failure.t);
     let why = first.and_then(|first| test.why(job, first)).map(|[record, why]| format!("why: {record}\n     {why}"));
     [format!("again: {}", test.again(job))].into_iter().chain(why).collect()
 }
 
-/// The last transitions up to a failure.
+/// Returns the last transitions before a failure.
 fn transitions(test: &Tested<'_>, course: &Course, failure: &Failure) -> String {
     let (machine, words) = (test.suite.subject.machine(), &test.suite.subject.words);
     let until = course.steps.partition_point(|step| step.t <= failure.t);
@@ -199,7 +200,7 @@ fn transitions(test: &Tested<'_>, course: &Course, failure: &Failure) -> String 
     format!("last transitions:{lines}")
 }
 
-/// A run in a few words.
+/// Returns a description of a run in a few words.
 fn course_words(course: &Course) -> String {
     let turns = if course.turns == 1 { "1 turn".to_owned() } else { format!("{} turns", course.turns) };
     match &course.ending {

@@ -44,9 +44,9 @@ struct FailureEntry {
     message: String,
     expected: String,
     got: String,
-    /// Line of the file of tests.
+    /// Line number in the file of tests.
     line: usize,
-    /// Line of the plan.
+    /// Line number in the plan.
     #[serde(skip_serializing_if = "Option::is_none")]
     plan_line: Option<u32>,
     seconds: f64,
@@ -142,7 +142,7 @@ fn case(xml: &mut String, run: &RunEntry) {
     *xml += "    </testcase>\n";
 }
 
-/// A text in XML, without the control characters that XML cannot have.
+/// Returns a text for XML, without the control characters that XML forbids.
 fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for letter in text.chars() {

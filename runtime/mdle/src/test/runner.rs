@@ -1,4 +1,5 @@
-//! Runs tests, many at the same time; the outcome depends neither on their number nor on their order.
+//! Runs tests, many at the same time. The outcome depends neither on the number of threads nor on the order of
+//! runs.
 
 use std::io::{self, IsTerminal as _};
 use std::num::NonZeroUsize;
@@ -36,7 +37,7 @@ pub(super) struct Made {
 /// Result of a run.
 #[derive(Debug)]
 pub(super) enum RunResult {
-    /// The run has a course, and perhaps has not met expectations.
+    /// The run has a course, and a list of the expectations that it has not met.
     Judged(Box<Course>, Vec<Failure>),
     /// The run could not begin, or its code panicked: a sentence.
     Crashed(String),
@@ -113,7 +114,7 @@ fn taken<'j>(next: &AtomicUsize, jobs: &'j [Job]) -> Option<(usize, &'j Job)> {
     jobs.get(number).map(|job| (number, job))
 }
 
-/// Makes a run. A panic in it fails this run alone.
+/// Makes a run. A panic fails only this run.
 fn one(suites: &[Suite], job: Job, library: &Library<Sensed>, coverage: &mut [Coverage]) -> RunResult {
     let (Some(suite), Some(coverage)) = (suites.get(job.suite), coverage.get_mut(job.suite)) else {
         return RunResult::Crashed("there is no such test".to_owned());

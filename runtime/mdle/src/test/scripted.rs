@@ -14,7 +14,7 @@ use super::subject::{Subject, TestCondition};
 /// Reads the script of a test, in the words of its plan.
 ///
 /// # Errors
-/// The script has no turns, or one that cannot be: a sentence.
+/// Fails with a sentence if the script has no turns, or an impossible turn.
 pub(super) fn script(turns: &At<Vec<At<ScriptTurn>>>, subject: &Subject) -> Result<Script, TestFileError> {
     let refused = |message: String| TestFileError::at(turns.span(), message);
     let turn = |line: usize| turns.get_ref().get(line.saturating_sub(1)).map_or(turns.span(), |turn| turn.span());
@@ -65,7 +65,7 @@ pub(super) fn run(subject: &Subject, expected: &Expected, script: &Script, cover
     recorder.course
 }
 
-/// Notes what is in a turn that never was to be.
+/// Records the forbidden states that occur in a turn.
 fn breaches(expected: &Expected, reports: &Reports, atom: Option<u32>, recorder: &mut Recorder<'_>) {
     for (number, (_, never)) in expected.never.iter().enumerate() {
         let Never::While { atoms, condition, .. } = never else { continue };

@@ -22,7 +22,7 @@ use super::faults::{self, TimedFault};
 use super::file::{TestFileError, TestText};
 use super::subject::{Subject, TestCondition};
 
-/// Time after which a run ends that is given no other limit.
+/// Time after which a run ends by default.
 const TIMEOUT: Duration = Duration::from_secs(3600);
 
 /// The robots of a test, and its plan for them.
@@ -30,20 +30,20 @@ pub(super) struct Simulation {
     pub(super) trials: Trials<Observed>,
     loaded: Arc<Loaded<SimAlphabet>>,
     faults: Vec<TimedFault>,
-    /// The options by which `mdle run` makes the same robot.
+    /// The options with which `mdle run` creates the same robot.
     pub(super) options: Vec<String>,
     /// Time at which a run ends.
     pub(super) timeout: Duration,
 }
 
-/// The conditions of a test in a run: a plan for each that never leaves its only atom.
+/// The conditions of a test in a run; each is a plan that never leaves its only atom.
 type Watched = Vec<Option<Machine<LoadedPlan<SimAlphabet>>>>;
 
 impl Simulation {
-    /// Reads the robot of a test of the file `path`.
+    /// Reads the robot of a test in the file `path`.
     ///
     /// # Errors
-    /// The world, the start or another option is no good: a sentence with its place.
+    /// Fails with a sentence and a place if the world, the start or another option is invalid.
     pub(super) fn read(test: &TestText, path: &Path, subject: &Subject) -> Result<Self, TestFileError> {
         let Some(loaded) = &subject.loaded else {
             let name = &subject.target_name;
@@ -83,7 +83,7 @@ impl Simulation {
     /// Runs the plan on the robot of a seed.
     ///
     /// # Errors
-    /// The run cannot begin: a sentence.
+    /// Fails with a sentence if the run cannot begin.
     pub(super) fn run(
         &self,
         subject: &Subject,
@@ -128,7 +128,7 @@ struct Driven<'s> {
 }
 
 impl Driven<'_> {
-    /// Makes turns to the end of the run.
+    /// Makes turns until the end of the run.
     fn turns(
         &mut self,
         subject: &Subject,
@@ -198,7 +198,7 @@ impl Driven<'_> {
         });
     }
 
-    /// Notes what is in a turn that never was to be.
+    /// Records the forbidden states that occur in a turn.
     fn breaches(&mut self, expected: &Expected, (t, y): (Nanos, Sensed), recorder: &mut Recorder<'_>) {
         if expected.never.is_empty() {
             return;
@@ -234,14 +234,14 @@ impl Driven<'_> {
     }
 }
 
-/// Begins the condition of an expectation, if it has one.
+/// Begins the condition of an expectation; `None` if it has no condition.
 fn watched(never: &Never, y: &Sensed, t: Nanos) -> Option<Machine<LoadedPlan<SimAlphabet>>> {
     let Never::While { condition: Some(condition), .. } = never else { return None };
     let TestCondition { loaded, .. } = &**condition;
     loaded.as_ref().map(|loaded| Machine::begin(loaded.plan(), y, t))
 }
 
-/// The option of a test as an argument; a world that is a file is relative to the folder of the test.
+/// Returns an option of a test as an argument. A world that is a file is relative to the folder of the test.
 fn word(name: &str, value: &str, path: &Path) -> String {
     let file = path.with_file_name(value);
     if ["world", "paths"].contains(&name) && !value.is_empty() && file.exists() {
@@ -250,7 +250,7 @@ fn word(name: &str, value: &str, path: &Path) -> String {
     format!("--{name}={value}")
 }
 
-/// Returns the error about an option that was refused: its place is that of the value.
+/// Returns the error for an option that was refused, at the place of its value.
 fn refused(text: &str, test: &TestText) -> TestFileError {
     let is_about_option = |line: &&str| !line.starts_with("Usage:") && !line.starts_with("For more information");
     let lines = text.lines().take_while(is_about_option).filter(|line| !line.trim().is_empty());

@@ -1,4 +1,4 @@
-//! The plan that is tested: compiled, with its words, and loaded for the simulator.
+//! The tested plan: compiled, with its source words, and loaded for the simulator.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ use super::file::{TestFile, TestFileError};
 use crate::elements_named::elements_named;
 use crate::failure::{self, Failure};
 
-/// Target of tests if nothing names another one.
+/// Default target of tests.
 const SIM: &str = "sim";
 
 /// A plan that is tested.
@@ -33,7 +33,7 @@ pub(super) struct Subject {
     pub(super) target_name: String,
     /// The plan for the simulator; `None` for another target.
     pub(super) loaded: Option<Arc<Loaded<SimAlphabet>>>,
-    /// Arguments for the simulator by the `mdle.toml` beside the plan.
+    /// Arguments for the simulator from the `mdle.toml` beside the plan.
     pub(super) options: Vec<String>,
     /// Child processes that the `mdle.toml` beside the plan names as modules.
     processes: Vec<NamedByFile>,
@@ -59,7 +59,7 @@ impl Subject {
     /// standard error; `refused` reports an error of the file of tests.
     ///
     /// # Errors
-    /// The plan cannot be read or has errors.
+    /// Fails if the plan cannot be read or has errors.
     pub(super) fn read(
         path: &Path,
         tests: &TestFile,
@@ -125,11 +125,11 @@ impl Subject {
         &self.compiled.machine
     }
 
-    /// Returns the atoms that a text names, `true` for each: by the law, by the law's name, or by the name of an
+    /// Returns, for each atom, `true` if a text names it: by the law, by the law's name, or by the name of an
     /// enclosing scope.
     ///
     /// # Errors
-    /// The plan has no such atom: a sentence and a help.
+    /// Fails with a sentence and a help text if the plan has no such atom.
     pub(super) fn atoms(&self, text: &str) -> Result<Vec<bool>, (String, String)> {
         let named = elements_named(self.machine(), &self.target, text)?;
         let is_inside = |element: Element<'_>| element.outwards().any(|element| named.contains(&element.number()));
@@ -139,7 +139,7 @@ impl Subject {
     /// Compiles a condition on the output of one turn.
     ///
     /// # Errors
-    /// It is no such condition: a sentence.
+    /// Fails with a sentence if the text is no such condition.
     pub(super) fn condition(&self, text: &str) -> Result<TestCondition, String> {
         let law = self.machine().atom(0).law().text.clone();
         let plan = format!("{{ Condition ({text})\n (Atom (null) ({law})) }}");
@@ -172,10 +172,11 @@ impl Subject {
     }
 }
 
-/// Returns the error at its place in the file of tests, if it has one and its own file has no errors.
+/// Returns the error at its place in the file of tests, if it has a place there and the plan's own file has no
+/// errors.
 ///
 /// # Errors
-/// The error itself.
+/// Fails with the error itself otherwise.
 fn placed(place: Option<Range<usize>>, error: InputError) -> Result<TestFileError, InputError> {
     let Some(place) = place.filter(|_| !matches!(error, InputError::Faulty(_))) else { return Err(error) };
     let message = error.message(Spelling::Entry);
@@ -214,7 +215,7 @@ fn is_error(diagnostic: &Diagnostic) -> bool {
     diagnostic.code.severity() == Severity::Error
 }
 
-/// The plan of a file of tests: the file that it names, or the one beside it.
+/// Returns the plan file of a file of tests: the file that it names, or the file beside it.
 fn plan_file(path: &Path, tests: &TestFile) -> PathBuf {
     match &tests.plan {
         Some(plan) => path.with_file_name("").join(plan.get_ref()),
@@ -225,7 +226,7 @@ fn plan_file(path: &Path, tests: &TestFile) -> PathBuf {
     }
 }
 
-/// The options of the `mdle.toml` beside the plan that a test may have as well.
+/// Returns the options of the `mdle.toml` beside the plan that apply to a test too.
 fn run_options(settings: &Settings, target: Option<&str>) -> Result<Vec<String>, Failure> {
     const OF_TESTS: [&str; 8] =
         ["--world=", "--start=", "--body=", "--without=", "--battery=", "--period=", "--paths=", "--start-noise="];
@@ -234,7 +235,8 @@ fn run_options(settings: &Settings, target: Option<&str>) -> Result<Vec<String>,
     Ok(words.filter(|word| OF_TESTS.iter().any(|name| word.starts_with(name))).collect())
 }
 
-/// The word of an operand that depends on more than the output of one turn.
+/// Returns the word for an operand that depends on more than the output of one turn; `None` for any other
+/// operand.
 fn memory<I>(operand: &Condition<I>) -> Option<&'static str> {
     match operand {
         Condition::Null | Condition::Quark(_) | Condition::Or(..) | Condition::And(..) | Condition::Not(_) => None,

@@ -1,4 +1,4 @@
-//! A file of tests that is ready to run: its plan is compiled, and its tests are understood.
+//! A file of tests that is ready to run: its plan is compiled, and its tests are resolved.
 
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ use crate::messages;
 /// A file of tests.
 pub(super) struct Suite {
     pub(super) path: PathBuf,
-    /// The text of the file, among the files of the plan.
+    /// The text of the file of tests, among the files of the plan.
     pub(super) source: SourceId,
     pub(super) subject: Subject,
     pub(super) cases: Vec<Case>,
@@ -35,18 +35,19 @@ pub(super) struct Case {
     pub(super) runs_on: RunsOn,
 }
 
-/// The robot of a test.
+/// The robot or the script on which a test runs.
 pub(super) enum RunsOn {
     Script(Script),
     Simulation(Box<Simulation>),
 }
 
 impl Suite {
-    /// Reads a file of tests and compiles its plan; returns the tests with the files of the plan, to which the file of
-    /// tests is added. Tests without expectations are taken if `is_recorded`. Messages go to standard error.
+    /// Reads a file of tests and compiles its plan; returns the tests, and the files of the plan together with
+    /// the file of tests. Tests without expectations are accepted if `is_recorded` is `true`. Messages go to
+    /// standard error.
     ///
     /// # Errors
-    /// The file or the plan cannot be read, or has errors.
+    /// Fails if the file or the plan cannot be read, or has errors.
     pub(super) fn read(path: &Path, is_recorded: bool) -> Result<(Self, Input), Failure> {
         let text = file::text(path).map_err(|error| Failure::Usage(error.message))?;
         let tests = file::read(&text).map_err(|error| refused(path, &text, &error))?;
@@ -97,7 +98,7 @@ impl Case {
         Ok(Self { name: text.name.get_ref().clone(), text, expected, runs_on })
     }
 
-    /// Returns the first seed, and the number of runs; without a seed there is one run without random errors.
+    /// Returns the first seed and the number of runs. Without a seed, there is one run without random errors.
     pub(super) fn seeds(&self, first: Option<u64>, count: Option<u64>) -> (Option<u64>, u64) {
         let own = [&self.text.seed, &self.text.seeds].map(|seed| seed.as_ref().map(|seed| *seed.get_ref()));
         match own {
@@ -107,7 +108,7 @@ impl Case {
     }
 }
 
-/// Prints what is wrong with a file of tests.
+/// Prints the error of a file of tests.
 fn refused(path: &Path, text: &str, error: &TestFileError) -> Failure {
     if error.place.is_none() {
         let help = if error.help.is_empty() { String::new() } else { format!("\nhelp: {}", error.help) };
@@ -118,7 +119,7 @@ fn refused(path: &Path, text: &str, error: &TestFileError) -> Failure {
     Failure::TestFile
 }
 
-/// Prints an error with its place in a file of tests.
+/// Prints an error at its place in a file of tests.
 fn report(path: &Path, text: &str, error: &TestFileError) {
     let mut sources = Sources::default();
     let source = sources.add(path.display().to_string(), text);

@@ -1,4 +1,5 @@
-//! `--update`: writes what runs did into files of tests, for people to review as changes of these files.
+//! `--update`: writes the results of runs into files of tests, so that people can review them as changes of
+//! these files.
 
 use std::fs;
 use std::io;
@@ -15,10 +16,10 @@ use super::runner::RunResult;
 use super::subject::Subject;
 use super::suite::{Case, RunsOn};
 
-/// Radius and tolerance of a pose that is recorded first.
+/// Radius and angle tolerance with which a pose is recorded for the first time.
 const POSE: [&str; 2] = ["10cm", "5"];
 
-/// A change of a text.
+/// A replacement of a range of a text.
 type Edit = (Range<usize>, String);
 
 /// Returns the text of a file of tests in which the expectations of atoms, of the end, of the pose and of numbers are
@@ -38,10 +39,10 @@ pub(super) fn updated(text: &str, tests: &[Tested<'_>]) -> Option<String> {
     Some(text)
 }
 
-/// Writes the text of a file of tests, if it is one.
+/// Writes the text of a file of tests, after checking that it is valid.
 ///
 /// # Errors
-/// The text is no file of tests, or cannot be written: a sentence.
+/// Fails with a sentence if the text is no file of tests, or cannot be written.
 pub(super) fn write(path: &Path, text: &str) -> Result<(), String> {
     let name = path.display();
     file::read(text).map_err(|error| {
@@ -52,7 +53,7 @@ pub(super) fn write(path: &Path, text: &str) -> Result<(), String> {
     written.map_err(|error: io::Error| format!("{name} cannot be written: {error}"))
 }
 
-/// The changes of a test.
+/// Returns the changes of a test.
 fn edits(text: &str, test: &Tested<'_>) -> Vec<Edit> {
     let Some(RunResult::Judged(course, _)) = test.runs.first().map(|run| &run.result) else { return Vec::new() };
     let (case, subject) = (test.case, &test.suite.subject);
@@ -96,7 +97,7 @@ fn edits(text: &str, test: &Tested<'_>) -> Vec<Edit> {
     edits
 }
 
-/// The first expectations of a test.
+/// Returns the expectations for a test that has none yet.
 fn recorded(case: &Case, subject: &Subject, course: &Course) -> String {
     let mut lines = format!("expect.atoms = {}\n", atoms_text(subject.machine(), course));
     if let Some(end) = end_text(subject, course) {
@@ -119,7 +120,7 @@ fn atoms_text(machine: &Machine, course: &Course) -> String {
     if line.chars().count() < 100 { line } else { format!("[\n    {},\n]", laws.join(",\n    ")) }
 }
 
-/// The end of a run, as a test names it.
+/// Returns the end of a run, as a test names it.
 fn end_text(subject: &Subject, course: &Course) -> Option<String> {
     use mdle_runtime::Words as _;
 
@@ -135,7 +136,7 @@ fn end_text(subject: &Subject, course: &Course) -> Option<String> {
     }
 }
 
-/// A text in TOML.
+/// Returns a text as a TOML string.
 fn quoted(text: &str) -> String {
     if text.contains(['"', '\\']) && !text.contains('\'') {
         return format!("'{text}'");

@@ -1,4 +1,4 @@
-//! `--watch`: the files on which tests depend, and the wait until one of them changes.
+//! `--watch`: finds the files on which tests depend, and waits until one of them changes.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, SystemTime};
 
-/// Time between two looks at the files.
+/// Time between two checks of the files.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// Endings of the files on which tests depend.
+/// Extensions of the files on which tests depend.
 const ENDINGS: [&str; 6] = ["mdle", "toml", "csv", "yaml", "pgm", "png"];
 
-/// The time and the size of each file.
+/// Modification time and size of each file.
 type Looks = BTreeMap<PathBuf, (Option<SystemTime>, u64)>;
 
-/// The files in the folders of files of tests.
+/// The files in the folders of the watched files of tests.
 #[derive(Debug)]
 pub(super) struct WatchedFiles {
     folders: Vec<PathBuf>,
