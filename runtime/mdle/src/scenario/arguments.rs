@@ -22,11 +22,11 @@ pub(super) struct Options {
     pub(super) trail: Option<PathBuf>,
     /// File of the picture.
     pub(super) plot: Option<PathBuf>,
-    /// File of the picture of the ways of `path` and `Follow`.
+    /// File of the picture of the ways driven under `path` and `Follow`.
     pub(super) trips: Option<PathBuf>,
     /// Folder of the paths that robots record.
     pub(super) recorded_paths: Option<PathBuf>,
-    /// Number of threads of a crowd.
+    /// Number of threads for a crowd.
     pub(super) threads: Option<usize>,
 }
 
@@ -34,7 +34,8 @@ impl Options {
     /// Reads the options of a scenario.
     ///
     /// # Errors
-    /// An option is unknown, has a wrong value, or is one of a plan; or the options ask for help.
+    /// Fails if an option is unknown, has a wrong value, or applies only to a plan, or if the options ask for
+    /// help.
     pub(super) fn read(run: &Run) -> Result<Self, Failure> {
         let of_a_plan = [
             (run.target.is_some(), "--target"),
@@ -73,10 +74,10 @@ impl Options {
         }
     }
 
-    /// Checks that no option is given that a crowd does not have.
+    /// Checks that all given options apply to a crowd.
     ///
     /// # Errors
-    /// One is.
+    /// Fails if an option does not.
     pub(super) fn check_crowd(&self) -> Result<(), Failure> {
         let of_robots = [
             (self.log.as_deref().is_some_and(|log| !is_record(log)), "--log FILE.jsonl"),
@@ -89,10 +90,10 @@ impl Options {
         Err(Failure::Usage(format!("{name} is for robots with names, and this is a crowd\nhelp: {help}")))
     }
 
-    /// Checks that no option is given that only a crowd has.
+    /// Checks that no given option applies only to a crowd.
     ///
     /// # Errors
-    /// One is.
+    /// Fails if an option does.
     pub(super) fn check_robots(&self) -> Result<(), Failure> {
         if self.threads.is_none() {
             return Ok(());

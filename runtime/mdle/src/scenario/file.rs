@@ -37,12 +37,12 @@ pub(super) struct ScenarioText {
 pub(super) struct CrowdText {
     /// Number of robots.
     pub(super) robots: At<u64>,
-    /// File of the plan that each of them runs, relative to the folder of the scenario.
+    /// File of the plan that each robot runs, relative to the folder of the scenario.
     pub(super) file: At<PathBuf>,
-    /// Name of the plan, for a file with several.
+    /// Name of the plan, for a file with several plans.
     pub(super) plan: Option<At<String>>,
     pub(super) body: Option<At<String>>,
-    /// Distance between two robots at the start.
+    /// Distance between two robots at the start, as written.
     pub(super) spacing: Option<At<String>>,
 }
 
@@ -50,7 +50,7 @@ pub(super) struct CrowdText {
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct LinkText {
-    /// Time that a state takes, or the least and the most with `..` between them.
+    /// Time that a state takes, as written, or its minimum and maximum with `..` between them.
     pub(super) latency: Option<At<String>>,
     /// Probability that a state is lost.
     pub(super) loss: Option<At<f64>>,
@@ -65,17 +65,17 @@ pub(super) struct RobotText {
     pub(super) name: At<String>,
     /// File of the plan, relative to the folder of the scenario.
     pub(super) file: At<PathBuf>,
-    /// Name of the plan, for a file with several.
+    /// Name of the plan, for a file with several plans.
     pub(super) plan: Option<At<String>>,
     pub(super) start: At<String>,
     pub(super) start_noise: Option<At<String>>,
     pub(super) body: Option<At<String>>,
     pub(super) seed: Option<At<u64>>,
-    /// Folder of the paths that the plan replays, relative to that of the scenario.
+    /// Folder of the paths that the plan replays, relative to the folder of the scenario.
     pub(super) paths: Option<At<PathBuf>>,
-    /// Name of the path that the way back of each `path` and `Follow` replaces.
+    /// Name of the path that is replaced by the way back from each `path` and `Follow`.
     pub(super) records: Option<At<String>>,
-    /// Time at which the robot's program dies.
+    /// Time at which the robot's program is killed.
     pub(super) killed: Option<At<String>>,
     /// Radius of the head between its two ears, whose module `heading` publishes the bearing of a sound.
     pub(super) ears: Option<At<String>>,
@@ -86,7 +86,7 @@ pub(super) struct RobotText {
 pub(super) struct ScenarioError {
     /// Byte range in the file; `None` for the whole file.
     pub(super) place: Option<Range<usize>>,
-    /// A sentence.
+    /// Description of the error, as a sentence.
     pub(super) message: String,
     /// Text to type instead; empty if there is none.
     pub(super) help: String,
@@ -103,7 +103,7 @@ impl ScenarioError {
         Self { place: None, message: message.into(), help: String::new() }
     }
 
-    /// Adds a help.
+    /// Appends help to the error.
     pub(super) fn help(self, help: impl Into<String>) -> Self {
         Self { help: help.into(), ..self }
     }
@@ -112,7 +112,7 @@ impl ScenarioError {
 /// Returns the text of a file of a scenario.
 ///
 /// # Errors
-/// The file cannot be read: a sentence.
+/// Fails with a sentence if the file cannot be read.
 pub(super) fn text(path: &Path) -> Result<String, String> {
     mdle_host::read_text(path, LARGEST).map_err(|error| format!("{} cannot be read: {error}", path.display()))
 }
@@ -120,7 +120,8 @@ pub(super) fn text(path: &Path) -> Result<String, String> {
 /// Reads a file of a scenario.
 ///
 /// # Errors
-/// The text is no TOML, has unknown keys or values of the wrong type, no robot, or two of one name.
+/// Fails if the text is no TOML, has unknown keys or values of the wrong type, no robot, or two robots of the
+/// same name.
 pub(super) fn read(text: &str) -> Result<ScenarioText, ScenarioError> {
     let file: ScenarioText = toml::from_str(text).map_err(|error| refused(&error))?;
     let is_name = |name: &str| {
@@ -152,7 +153,7 @@ pub(super) fn read(text: &str) -> Result<ScenarioText, ScenarioError> {
     Ok(file)
 }
 
-/// Returns the error about what TOML refuses; an unknown key gets the name of a near one.
+/// Returns the error for text that the TOML parser refuses; for an unknown key, with the most similar name.
 fn refused(error: &toml::de::Error) -> ScenarioError {
     let place = error.span();
     let message = error.message().replace('\n', "; ").replace("expected u64", "expected a whole number");

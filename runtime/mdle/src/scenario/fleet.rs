@@ -1,4 +1,4 @@
-//! The turns of all robots of a scenario, by one clock (docs/src/many_robots.md).
+//! The turns of all robots of a scenario, on a common clock (docs/src/many_robots.md).
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use super::member::{Runner, Standing};
 use super::output::Output;
 use super::setup::Scenario;
 
-/// Exit status of a run in which a plan is not over.
+/// Exit status for a run in which a plan did not end.
 pub(super) const TIMED_OUT: u8 = 4;
 
 /// Distance beyond which the gap between robots is not measured, in metres.
@@ -22,7 +22,7 @@ const FAR: f64 = 100.0;
 pub(super) struct Fleet {
     runners: Vec<Runner>,
     period: Duration,
-    /// The least gap between two robots in any turn, with the numbers of the two.
+    /// The smallest gap between two robots in any turn, in metres, with the numbers of the two.
     nearest: Option<(f64, usize, usize)>,
 }
 
@@ -41,8 +41,9 @@ impl Fleet {
 
     /// Makes turns until all plans are over, at `timeout`, or until a signal asks for the end; returns the exit status.
     ///
-    /// In each turn the robots move, one after the other in the order of the file, each among the others where they
-    /// are; then all sense; then all plans make their turns, with what the link brought from earlier turns.
+    /// In each turn, the robots move, one after the other in the order of the file, each among the current
+    /// poses of the others; then all robots sense; then all plans make their turns, with the states that the
+    /// link delivered from earlier turns.
     pub(super) fn run(mut self, timeout: Duration, interruption: &Interruption, output: &mut Output) -> u8 {
         let nanos = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
         let (period, timeout) = (nanos(self.period), nanos(timeout));
@@ -79,7 +80,7 @@ impl Fleet {
         outputs.collect()
     }
 
-    /// Lets a robot see the others where they are.
+    /// Updates the poses of the other robots that a robot senses.
     fn look(&mut self, number: usize) {
         let others = self.runners.iter().enumerate().filter(|(other, _)| *other != number);
         let others: Vec<Footprint> = others.map(|(_, other)| other.robot.footprint()).collect();
@@ -88,7 +89,7 @@ impl Fleet {
         }
     }
 
-    /// Measures the gaps between robots.
+    /// Updates the smallest gap between robots.
     fn measure(&mut self) {
         let bodies: Vec<Footprint> = self.runners.iter().map(|runner| runner.robot.footprint()).collect();
         for (number, body) in bodies.iter().enumerate() {
@@ -101,7 +102,7 @@ impl Fleet {
         }
     }
 
-    /// Reports the end of a run at time `t`, and stops the robots that are still driven.
+    /// Reports the end of a run at time `t`, and stops the robots that still drive.
     fn ends(&mut self, t: Nanos, output: &mut Output) {
         for runner in &mut self.runners {
             let law = runner.law();
@@ -128,7 +129,7 @@ impl Fleet {
 }
 
 impl Runner {
-    /// Returns the law that runs.
+    /// Returns the current law.
     fn law(&self) -> Option<String> {
         let machine = self.machine()?;
         machine.atom().map(|atom| machine.plan().law(atom).to_owned())

@@ -1,4 +1,4 @@
-//! A robot of a scenario that runs: its turns, and the way back that it records.
+//! A running robot of a scenario: its turns, and the way back that it records.
 
 use std::fmt::Write as _;
 
@@ -18,7 +18,7 @@ use super::setup::{Member, Scenario};
 use crate::modules::{AudioSource, SoundInput};
 use crate::way_recorder::{RecordedTurn, WayRecorder};
 
-/// A robot that runs.
+/// A running robot.
 pub(super) struct Runner {
     pub(super) name: String,
     pub(super) robot: Simulated,
@@ -42,9 +42,9 @@ pub(super) enum Standing {
     Drives,
     /// The robot's plan is over.
     Over,
-    /// Its program was killed.
+    /// The robot's program was killed.
     Killed,
-    /// A fault has stopped it: a sentence.
+    /// A fault has stopped the robot: a sentence.
     Failed(String),
 }
 
@@ -54,7 +54,7 @@ pub(super) struct MemberTurn {
     pub(super) lines: Vec<String>,
     /// Number of the atom's state, and its law; `None` if no law was applied.
     pub(super) law: Option<(u64, String)>,
-    /// Text of the path that was recorded in this turn, by its name.
+    /// Name and text of the path that was recorded in this turn.
     pub(super) path: Option<(&'static str, String)>,
     /// Source of the input; `None` if the robot was not driven.
     pub(super) kind: Option<Turn<()>>,
@@ -66,7 +66,7 @@ impl Runner {
     /// Returns a robot before its first turn.
     ///
     /// # Errors
-    /// A module is refused: a sentence.
+    /// Fails with a sentence if a module is refused.
     pub(super) fn new(
         member: Member,
         air: Air,
@@ -130,20 +130,20 @@ impl Runner {
         let _ = self.robot.stop();
     }
 
-    /// Drives for one period.
+    /// Moves the robot for one period.
     pub(super) fn moves(&mut self) {
         if let Err(fault) = self.robot.moves(&self.input) {
             self.fails(fault.to_string());
         }
     }
 
-    /// Stops the robot for a fault.
+    /// Stops the robot because of a fault.
     fn fails(&mut self, sentence: String) {
         self.standing = Standing::Failed(sentence);
         self.input = Twist::default();
     }
 
-    /// Makes turn `number` at time `t` with this output; a robot that is no longer driven stands.
+    /// Makes turn `number` at time `t` with this output; a robot that is no longer driven does not move.
     pub(super) fn turn(&mut self, y: &Sensed, t: Nanos, number: u64) -> MemberTurn {
         let mut made = MemberTurn { lines: Vec::new(), law: None, path: None, kind: None, changes: Vec::new() };
         if self.standing == Standing::Drives && self.killed.is_some_and(|killed| t >= killed) {
@@ -191,7 +191,7 @@ impl Runner {
         made
     }
 
-    /// Notes the transitions of the turn, and the law that runs.
+    /// Records the transitions of the turn, and the current law.
     fn reports(&mut self, made: &mut MemberTurn) {
         let Self { engine, transitions, passes, .. } = self;
         let Some(machine) = engine.machine() else { return };
@@ -211,7 +211,8 @@ impl Runner {
         made.law = machine.atom().map(|atom| (machine.state(), plan.law(atom).to_owned()));
     }
 
-    /// Records the way of `path` and `Follow`; returns the text of the path that was replaced, by its name.
+    /// Records the way driven under `path` and `Follow`; returns the name and the text of the path that was
+    /// replaced.
     fn records(&mut self, y: &Sensed, law: Option<&str>, lines: &mut Vec<String>) -> Option<(&'static str, String)> {
         let recorder = self.recorder.as_mut()?;
         let has_changed = !self.transitions.is_empty();

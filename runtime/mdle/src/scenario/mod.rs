@@ -28,7 +28,7 @@ use fleet::Fleet;
 use output::Output;
 use setup::{Scenario, SetupError};
 
-/// Exit status of a scenario in which something was not done, such as a file that could not be written.
+/// Exit status for a scenario with a failure, such as a file that could not be written.
 const FAULT: u8 = 3;
 
 /// Returns `true` if this file is a scenario rather than a plan.
@@ -39,7 +39,7 @@ pub(crate) fn is_scenario(file: &Path) -> bool {
 /// Runs a scenario with these modules in each robot; returns the exit status.
 ///
 /// # Errors
-/// The scenario does not run.
+/// Fails if the scenario cannot be run.
 pub(crate) fn run(arguments: &Run, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
     let options = Options::read(arguments)?;
     let path = &arguments.file;
@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &Run, library: &Library<Sensed>) -> Result<ExitCode
     }
 }
 
-/// Prints what is wrong with a file of a scenario.
+/// Prints the error of a scenario file.
 fn refused(path: &Path, text: &str, error: &ScenarioError) -> Failure {
     let mut sources = Sources::default();
     let source = sources.add(path.display().to_string(), text);

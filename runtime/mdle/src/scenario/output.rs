@@ -1,4 +1,4 @@
-//! What a scenario writes: the report on standard output, and the files that options name.
+//! The output of a scenario: the report on standard output, and the files that options name.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -48,7 +48,7 @@ impl Output {
     /// Opens the files that the options name.
     ///
     /// # Errors
-    /// One cannot be written: a sentence.
+    /// Fails with a sentence if a file cannot be written.
     pub(super) fn open(options: &Options, scenario: &Scenario) -> Result<Self, String> {
         let table = |path: &Option<PathBuf>| path.as_deref().map(Table::create).transpose();
         let title = setup(scenario);
@@ -76,7 +76,7 @@ impl Output {
         Ok(output)
     }
 
-    /// Takes a turn of a robot, which gave this output.
+    /// Writes a turn of a robot with this output.
     pub(super) fn turn(&mut self, runner: &Runner, y: &Sensed, t: Nanos, number: u64, made: &MemberTurn) {
         for line in &made.lines {
             self.line(t, &runner.name, line);
@@ -144,7 +144,7 @@ impl Output {
         self.text(&format!("{}  {robot}: {line}", Clocked(t)));
     }
 
-    /// Writes a line of the report. A reader that has gone is no error.
+    /// Writes a line of the report. It is no error if the reader has closed the pipe.
     pub(super) fn text(&mut self, line: &str) {
         if let Err(error) = writeln!(self.out, "{}", Printable(line))
             && error.kind() != io::ErrorKind::BrokenPipe
@@ -164,10 +164,10 @@ impl Output {
         self.failed.is_some()
     }
 
-    /// Writes the pictures, and the rest of all files.
+    /// Writes the pictures, and all buffered lines of the files.
     ///
     /// # Errors
-    /// What could not be written: a sentence.
+    /// Fails with a sentence if a file could not be written.
     pub(super) fn close(mut self) -> Result<(), String> {
         let pictures = [
             self.plot.take().map(|(path, drawing)| (path, drawing.picture())),
@@ -200,7 +200,7 @@ fn setup(scenario: &Scenario) -> String {
     format!("world {}, {}, {seed}", scenario.world_name, robots.collect::<Vec<_>>().join(", "))
 }
 
-/// Replaces the file of a path in this folder: a reader meanwhile gets the old path or the new one.
+/// Replaces the file of a path in this folder. A simultaneous reader gets the old path or the new path.
 fn record(folder: &Path, name: &str, text: &str) -> Result<(), String> {
     let file = folder.join(if Path::new(name).extension().is_some() { name.to_owned() } else { format!("{name}.csv") });
     let unfinished = file.with_extension(format!("{}.tmp", std::process::id()));

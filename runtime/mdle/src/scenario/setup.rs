@@ -1,4 +1,4 @@
-//! A scenario that is ready to run: its plans are compiled, and its robots stand in their world.
+//! A scenario that is ready to run: its plans are compiled, and its robots are in their world.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ use crate::plans::texts;
 
 /// Maximum size of a file of a path or a world, in bytes.
 const LARGEST: u64 = 10_000_000;
-/// Time after which a scenario ends that is given no other limit.
+/// Time after which a scenario ends by default.
 pub(super) const TIMEOUT: Duration = Duration::from_secs(3600);
 /// Name of the target of all robots.
 const SIM: &str = "sim";
@@ -42,25 +42,25 @@ pub(super) struct Scenario {
 /// A robot of a scenario.
 pub(super) struct Member {
     pub(super) name: String,
-    /// Name of its body.
+    /// Body of the robot.
     pub(super) body: Body,
     pub(super) robot: Simulated,
-    /// Pose at which its odometry is said to begin, in the world.
+    /// Nominal pose at which the robot's odometry begins, in the world.
     pub(super) start: Pose,
     pub(super) loaded: Arc<Loaded<SimAlphabet>>,
     /// Names and texts of the files of its plan, its own first.
     pub(super) files: Vec<(String, String)>,
     /// The paths that its plan replays; one that is recorded may come later.
     pub(super) paths: Vec<(&'static str, Vec<Setpoint>)>,
-    /// Name of the path that it records.
+    /// Name of the path that the robot records.
     pub(super) records: Option<&'static str>,
-    /// Time at which its program dies.
+    /// Time at which the robot's program is killed.
     pub(super) killed: Option<Nanos>,
     /// Its ears, and the radius of the head between them, in metres.
     pub(super) ears: Option<(RobotEars, f64)>,
 }
 
-/// Error of a scenario: in its file, or in a plan, which was reported.
+/// Error of a scenario: in its file, or in a plan whose error was reported.
 pub(super) enum SetupError {
     File(ScenarioError),
     Plan(Failure),
@@ -79,10 +79,11 @@ impl<F: Into<Failure>> From<F> for SetupError {
 }
 
 impl Scenario {
-    /// Makes the robots of the scenario of the file at `path`. Messages about plans go to standard error.
+    /// Creates the robots of the scenario in the file at `path`. Messages about plans go to standard error.
     ///
     /// # Errors
-    /// A value of the file makes no sense, a file that it names cannot be read, or a plan has errors.
+    /// Fails if a value of the file is invalid, if a file that it names cannot be read, or if a plan has
+    /// errors.
     pub(super) fn read(text: ScenarioText, path: &Path, seed: Option<u64>) -> Result<Self, SetupError> {
         let seed = seed.or(text.seed.as_ref().map(|seed| *seed.get_ref()));
         let period = text.period.as_ref().map(|period| duration(period, 0.001, 1.0)).transpose()?;
@@ -106,7 +107,7 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// Makes a robot, which may not stand in one of those before it.
+    /// Creates a robot, which must not overlap with the robots before it.
     fn member(&self, text: &RobotText, path: &Path, names: &[&str]) -> Result<Member, SetupError> {
         let name = text.name.get_ref();
         let (loaded, files) = plan(&text.file, text.plan.as_ref(), path, Some((text, names)))?;
@@ -149,7 +150,7 @@ impl Scenario {
         Ok((ears.ok_or_else(|| silent.help(help))?, radius))
     }
 
-    /// Returns the pose at which a robot begins, which is said to begin at `start`.
+    /// Returns the pose at which a robot whose nominal pose is `start` begins.
     fn begins(&self, text: &RobotText, make: &Make, start: Pose, seed: u64) -> Result<Pose, ScenarioError> {
         let Some(noise) = &text.start_noise else { return Ok(start) };
         let read = StartNoise::read(noise.get_ref());
@@ -209,7 +210,7 @@ fn part(text: &RobotText, names: &[&str], group: &Group) -> Result<String, Scena
     }
 }
 
-/// Returns the error about a robot that a plan names and that is not there.
+/// Returns the error for a robot that a plan names and that the scenario lacks.
 fn unknown_peer(text: &RobotText, other: &str, names: &[&str]) -> ScenarioError {
     let name = text.name.get_ref();
     if other == name {
@@ -254,7 +255,7 @@ pub(super) fn world(text: Option<&At<String>>, path: &Path) -> Result<(World, St
     Ok((world, name.clone()))
 }
 
-/// Returns the body of this name; the ideal one without a name.
+/// Returns the body of this name; the ideal body without a name.
 pub(super) fn body(text: Option<&At<String>>) -> Result<Body, ScenarioError> {
     let Some(text) = text else { return Ok(Body::Ideal) };
     let body = [Body::Ideal, Body::Scout, Body::Atrv].into_iter().find(|body| body.to_string() == *text.get_ref());
@@ -273,7 +274,7 @@ fn faults(text: &LinkText) -> Result<Faults, ScenarioError> {
     Ok(Faults { latency, loss: share(&text.loss)?, duplication: share(&text.duplication)? })
 }
 
-/// Reads a time, or the least and the most with `..` between them.
+/// Reads a time, or the minimum and maximum with `..` between them.
 fn latency(text: &At<String>) -> Result<(Nanos, Nanos), ScenarioError> {
     let (least, most) = text.get_ref().split_once("..").unwrap_or((text.get_ref(), text.get_ref()));
     let time = |part: &str| {
@@ -295,7 +296,7 @@ pub(super) fn duration(text: &At<String>, least: f64, most: f64) -> Result<Durat
     read.map_err(|sentence| ScenarioError::at(text.span(), sentence))
 }
 
-/// Returns the path that is recorded, which has to be one that the plan replays.
+/// Returns the path that is recorded, which must be a path that the plan replays.
 fn recorded(text: &At<String>, replayed: &[&'static str]) -> Result<&'static str, ScenarioError> {
     let name = text.get_ref();
     replayed.iter().copied().find(|path| path == name).ok_or_else(|| {
@@ -304,7 +305,7 @@ fn recorded(text: &At<String>, replayed: &[&'static str]) -> Result<&'static str
     })
 }
 
-/// Reads the paths that a plan replays. One that is recorded may be missing.
+/// Reads the paths that a plan replays. A path that is recorded may be missing.
 fn paths(
     text: &RobotText,
     path: &Path,

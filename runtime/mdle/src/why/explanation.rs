@@ -1,4 +1,5 @@
-//! The explanation of a turn: what ended, what was skipped, what ran, and what every scope waited for.
+//! The explanation of a turn: the scopes that ended, the atoms that were skipped, the atom that ran, and the
+//! conditions for which every scope waited.
 
 use std::collections::BTreeMap;
 
@@ -13,9 +14,9 @@ use crate::examined::{ExaminedPlan, ExaminedTurn, Moment};
 /// An atom in a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct AtomWords {
-    /// The quark text of its law.
+    /// Quark text of the atom's law.
     pub(crate) law: String,
-    /// Its line, the names of its enclosing scopes and the passes of loops.
+    /// Line of the atom, with the names of its enclosing scopes and the passes of loops.
     pub(crate) place: String,
 }
 
@@ -24,13 +25,13 @@ pub(crate) struct AtomWords {
 pub(crate) struct Ended {
     /// The atom that was left.
     pub(crate) atom: AtomWords,
-    /// `true` if it was entered in the same turn, so that its law was never applied.
+    /// `true` if the atom was entered in the same turn, so that its law was never applied.
     pub(crate) is_skipped: bool,
     /// The cause, with its values and its place.
     pub(crate) cause: String,
     /// `true` if the law of the atom was done as well, though an interrupt ended its scope.
     pub(crate) was_done: bool,
-    /// The scopes around the atom, the plan first.
+    /// The scopes that enclose the atom, the plan first.
     pub(crate) scopes: Vec<Scope>,
     /// The atom that was entered; `None` if the plan is over.
     pub(crate) to: Option<AtomWords>,
@@ -41,15 +42,15 @@ pub(crate) struct Ended {
 pub(crate) struct Runs {
     /// The atom.
     pub(crate) atom: AtomWords,
-    /// Time since it was entered, without the time in which other plans drove.
+    /// Time since the atom was entered, without the time during which other plans were active.
     pub(crate) since: Nanos,
-    /// Time for which other plans drove since it was entered.
+    /// Time during which other plans were active since the atom was entered.
     pub(crate) paused: Nanos,
-    /// Cause of the transition to it; empty for the first atom of the plan.
+    /// Cause of the transition to the atom; empty for the first atom of the plan.
     pub(crate) began: String,
-    /// `true` if its law completes.
+    /// `true` if the atom's law can complete.
     pub(crate) completes: bool,
-    /// The scopes around it, the plan first.
+    /// The scopes that enclose the atom, the plan first.
     pub(crate) scopes: Vec<Scope>,
 }
 
@@ -58,9 +59,9 @@ pub(crate) struct Runs {
 pub(crate) struct Replaced {
     /// The atom.
     pub(crate) atom: AtomWords,
-    /// Time for which it had run.
+    /// Time for which the atom had run.
     pub(crate) since: Nanos,
-    /// Reason for which the other plan took over.
+    /// Reason why the other plan took over.
     pub(crate) cause: String,
 }
 
@@ -71,19 +72,20 @@ pub(crate) struct Explanation {
     pub(crate) turn: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,
-    /// The atom of the plan that was replaced in this turn.
+    /// The atom of the plan that was replaced in this turn; `None` if no plan was replaced.
     pub(crate) replaced: Option<Replaced>,
     /// The transitions of the turn.
     pub(crate) ended: Vec<Ended>,
     /// The atom whose law was applied; `None` if the plan is over.
     pub(crate) runs: Option<Runs>,
-    /// Reason why the null input was sent in place of that of a law; `None` if a law was applied, or the plan is over.
+    /// Reason why the null input was sent instead of a law's input; `None` if a law was applied, or the plan is
+    /// over.
     pub(crate) cut: Option<&'static str>,
     /// Time since the exchange that brought the output.
     pub(crate) output_age: Nanos,
     /// The input that was sent.
     pub(crate) sent: Twist,
-    /// The input that the plan computed, where that was looked at.
+    /// The input that the plan computed; `None` if that was not examined.
     pub(crate) computed: Option<Twist>,
 }
 
@@ -93,12 +95,12 @@ pub(crate) struct Step {
     pub(crate) cause: String,
 }
 
-/// Explains turns, and follows the loops of plans through all of them.
+/// Explains turns, and follows the loops of plans through all turns.
 #[derive(Debug, Default)]
 pub(crate) struct Explainer {
-    /// The plans that have driven, by their numbers: one that was suspended goes on where it was.
+    /// The plans that have been active, by their numbers; a plan that was suspended continues where it was.
     courses: BTreeMap<u64, Course>,
-    /// Number of the plan that drives; `None` before the first turn.
+    /// Number of the active plan; `None` before the first turn.
     number: Option<u64>,
     /// Number of the plan that was replaced in the last turn.
     replaced: Option<u64>,
@@ -107,13 +109,13 @@ pub(crate) struct Explainer {
 /// The course of a plan so far.
 #[derive(Debug, Default)]
 struct Course {
-    /// The passes of its loops.
+    /// The current passes of the plan's loops.
     passes: Passes,
-    /// Cause of the transition to its atom, or reason for which the plan replaced another one.
+    /// Cause of the transition to the current atom, or reason why the plan replaced another plan.
     began: String,
     /// The atom that ran last.
     latest: Option<Latest>,
-    /// Time for which other plans drove since that atom was entered.
+    /// Time during which other plans were active since that atom was entered.
     paused: Nanos,
 }
 
@@ -121,14 +123,14 @@ struct Course {
 #[derive(Debug, Clone, Copy)]
 struct Latest {
     atom: u32,
-    /// Time for which it had run.
+    /// Time for which the atom had run.
     since: Nanos,
     /// Time of the turn.
     t: Nanos,
 }
 
 impl Explainer {
-    /// Begins a turn. Returns `true` if its plan has replaced another one.
+    /// Begins a turn. Returns `true` if its plan has replaced another plan.
     pub(crate) fn begin(&mut self, turn: &ExaminedTurn) -> bool {
         let before = self.number.replace(turn.recorded.plan);
         let is_other = before.is_some_and(|before| before != turn.recorded.plan);
@@ -145,7 +147,7 @@ impl Explainer {
         self.replaced
     }
 
-    /// Notes the atom in which a turn ended, and the time for which its plan did not drive before.
+    /// Records the atom in which a turn ended, and the time for which its plan was inactive before.
     fn note(&mut self, turn: &ExaminedTurn, is_other: bool) {
         let t = turn.recorded.t;
         let Some(moment) = turn.moments.last().filter(|last| last.cause.is_none()) else { return };
@@ -174,22 +176,22 @@ impl Explainer {
         Some(Replaced { atom: atom?, since: Nanos(latest.since.0 + turn.recorded.t.since(latest.t).0), cause })
     }
 
-    /// Goes back to the course of the plan of this number.
+    /// Continues the course of the plan of this number.
     pub(crate) fn resume(&mut self, number: u64) {
         self.number = Some(number);
     }
 
-    /// Returns the course of the plan that drives.
+    /// Returns the course of the active plan.
     fn course(&mut self) -> &mut Course {
         self.courses.entry(self.number.unwrap_or_default()).or_default()
     }
 
-    /// Returns the cause for which the current atom runs; empty for the first atom of the first plan.
+    /// Returns the cause of the transition to the current atom; empty for the first atom of the first plan.
     pub(crate) fn began(&mut self) -> String {
         self.course().began.clone()
     }
 
-    /// Takes a turn that has begun and is not explained.
+    /// Follows a turn that has begun and is not explained.
     pub(crate) fn pass(&mut self, turn: &ExaminedTurn, plan: &dyn Texts) {
         for (transition, operands) in turn.transitions.iter() {
             let began = CauseText { plan, transition, operands }.to_string();
@@ -213,7 +215,7 @@ impl Explainer {
         turn.transitions.iter().map(step).collect()
     }
 
-    /// Follows the loops through a transition.
+    /// Follows the passes of loops through a transition.
     pub(crate) fn step(&mut self, transition: &Transition, plan: &dyn Texts) {
         self.course().passes.step(plan.fsm(), transition);
     }
@@ -292,7 +294,7 @@ impl Explainer {
 /// Reason why no law was applied: the turn was not ready in time.
 const LATE: &str = "the plan was late";
 
-/// Returns the reason why no law was applied in a turn; `None` if one was, or the plan is over.
+/// Returns the reason why no law was applied in a turn; `None` if a law was applied, or the plan is over.
 fn cut(turn: &ExaminedTurn, plan: Option<&ExaminedPlan>) -> Option<&'static str> {
     let is_settled = turn.moments.last().is_none_or(|last| last.cause.is_none());
     match turn.recorded.applied {
@@ -303,12 +305,13 @@ fn cut(turn: &ExaminedTurn, plan: Option<&ExaminedPlan>) -> Option<&'static str>
     }
 }
 
-/// Returns `true` if the law of the atom was done when an interrupt ended its scope, or an enclosing one.
+/// Returns `true` if the law of the atom was done when the interrupt of its scope, or of an enclosing scope,
+/// ended it.
 fn was_done(moment: &Moment, transition: &Transition) -> bool {
     moment.is_completed && matches!(transition.cause, Cause::Fired(_))
 }
 
-/// Returns the time since each sonar has pinged.
+/// Returns the time since the last ping of each sonar.
 fn ages(y: &Sensed) -> [Option<Nanos>; SONARS] {
     y.pings.map(|pings| pings.newest_first().next().map(|ping| y.at.since(ping.at)))
 }

@@ -4,14 +4,14 @@ use mdle_compiler::plan::Condition;
 use mdle_host::rounded;
 use mdle_runtime::{Examined, Measured, Nanometers, Nanos, Operator, Radians};
 
-/// The facts of a turn that the words need.
+/// The facts of a turn that are needed to describe an operand.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Values<'v> {
     /// Time since the scope was entered.
     pub(crate) since: Nanos,
-    /// Length of the path driven since then.
+    /// Length of the path driven since the scope was entered.
     pub(crate) way: Nanometers,
-    /// Time for which the law of the turn before has made no progress; `None` if it has no goal.
+    /// Time for which the law of the turn before has made no progress; `None` if that law has no goal.
     pub(crate) stalled: Option<Nanos>,
     /// `true` if the atom was entered in this turn.
     pub(crate) is_new: bool,
@@ -21,8 +21,8 @@ pub(crate) struct Values<'v> {
     pub(crate) is_range: bool,
 }
 
-/// Returns what an operand lacks; for a timer that has fired the time that has passed. `inner` is the condition of NOT
-/// or RISING. Empty if nothing can be said.
+/// Returns the time or value that an operand needs to fire; for a timer that has fired, the time that has
+/// passed; an empty text if there is neither. `inner` is the operand of NOT or RISING.
 pub(crate) fn lack(
     condition: &Condition,
     part: Examined,

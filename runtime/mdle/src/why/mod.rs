@@ -1,4 +1,4 @@
-//! `mdle why`: explains a turn of a recorded run, which is made again up to that turn.
+//! `mdle why`: explains a turn of a recorded run, which is repeated up to that turn.
 
 mod explanation;
 mod json;
@@ -29,26 +29,26 @@ use crate::run_time::run_time;
 #[derive(Debug)]
 struct Answer {
     explanation: Explanation,
-    /// The time that was asked about.
+    /// The time in the question.
     asked: Nanos,
     next: Next,
-    /// The rule that changed the input, and how.
+    /// The safety rule that changed the input, and its effect; `None` if none did.
     safety: Option<String>,
 }
 
-/// What came after a turn.
+/// The events after a turn.
 #[derive(Debug)]
 enum Next {
-    /// The next turn with transitions: causes, and the atoms to which they led.
+    /// The next turn with transitions: their causes, and the atoms to which they led.
     Turn { turn: u64, t: Nanos, steps: Vec<(String, Option<AtomWords>)> },
-    /// No transition up to the end of the record.
+    /// No transition until the end of the record; the time and the reason of the end.
     End { t: Nanos, why: String },
 }
 
 /// Explains a turn of a record.
 ///
 /// # Errors
-/// The record or the plan cannot be read, or the record has no such turn.
+/// Fails if the record or the plan cannot be read, or if the record has no such turn.
 pub(crate) fn why(arguments: &Why) -> Result<ExitCode, Failure> {
     let (begin, record) = replay::record(&arguments.log)?;
     let name = arguments.log.display().to_string();
@@ -84,7 +84,7 @@ pub(crate) fn why(arguments: &Why) -> Result<ExitCode, Failure> {
     }
 }
 
-/// A record that is asked about.
+/// A record, with the question about it.
 struct Asked<'a> {
     name: &'a str,
     begin: &'a Begin,
@@ -130,7 +130,7 @@ fn at(asked: &Asked<'_>, time: &str, run: &mut ExaminedRun) -> Result<Result<Ans
     Ok(Ok(Answer { explanation, asked: time, next, safety }))
 }
 
-/// Makes the turns up to the end of the record; returns the reason if the plan is another one.
+/// Repeats the turns up to the end of the record; returns the reason if the plan is not that of the record.
 fn differing(run: &mut ExaminedRun) -> Option<Stop> {
     loop {
         match run.turn()? {
@@ -144,7 +144,7 @@ fn differing(run: &mut ExaminedRun) -> Option<Stop> {
 /// Finds the next turn with a transition, or in which another plan takes over.
 ///
 /// # Errors
-/// The plan is another one.
+/// Fails if the plan is not that of the record.
 fn next(explainer: &mut Explainer, found: ExaminedTurn, run: &mut ExaminedRun) -> Result<Next, Stop> {
     let (mut t, mut end) = (found.recorded.t, found.end);
     let mut had_plan = run.plan().is_some();
@@ -177,7 +177,7 @@ fn next(explainer: &mut Explainer, found: ExaminedTurn, run: &mut ExaminedRun) -
     }
 }
 
-/// The message about a time after the end of the record.
+/// Returns the message about a time after the end of the record.
 fn outside(asked: &Asked<'_>, time: Nanos, last: Option<(u64, Nanos)>, is_whole: bool) -> Failure {
     let (name, time) = (asked.name, Clocked(time));
     let Some((turn, t)) = last else { return Failure::Usage(format!("the record {name} has no turns")) };

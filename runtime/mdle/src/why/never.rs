@@ -1,4 +1,5 @@
-//! `mdle why --not`: the chances of an atom or a scope to begin since it last began, and what kept it from that.
+//! `mdle why --not`: the chances of an atom or a scope to begin since its last beginning, and the reasons why
+//! it did not.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -20,29 +21,29 @@ pub(crate) type Turned = (u64, Nanos);
 /// The answer why an atom or a scope did not begin.
 #[derive(Debug)]
 pub(crate) struct Never {
-    /// The atom or the scope as it was asked for.
+    /// The atom or the scope as named in the question.
     pub(crate) asked: String,
-    /// The turns in which it began; `None` if it never did.
+    /// The turns in which the element began; `None` if it never did.
     pub(crate) began: Option<Beginnings>,
-    /// `true` if it ran in the last turn.
+    /// `true` if the element ran in the last turn.
     pub(crate) runs: bool,
-    /// The turns since it last began in which it was entered and left again.
+    /// The turns, since the element last began, in which it was entered and left at once.
     pub(crate) skipped: Option<Skips>,
-    /// The chances since then to begin; `None` if there was none.
+    /// The element's chances to begin since then; `None` if there was none.
     pub(crate) chance: Option<Chance>,
-    /// The laws of the atoms that it could have followed.
+    /// The laws of the atoms that the element can follow.
     pub(crate) follows: Vec<String>,
-    /// Name of the plan that has it; empty unless several plans drove.
+    /// Name of the plan that contains the element; empty unless several plans were active.
     pub(crate) plan: String,
     /// The last turn of that plan.
     pub(crate) end: Turned,
-    /// `true` if another plan drove at the end of the record.
+    /// `true` if another plan was active at the end of the record.
     pub(crate) is_replaced: bool,
     /// The atom that ran last; `None` if the plan was over.
     pub(crate) last: Option<AtomWords>,
 }
 
-/// The turns in which something began.
+/// The turns in which an element began.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Beginnings {
     pub(crate) times: u64,
@@ -51,7 +52,7 @@ pub(crate) struct Beginnings {
     pub(crate) last: (Turned, String),
 }
 
-/// The turns in which something was entered and left again.
+/// The turns in which an element was entered and left at once.
 #[derive(Debug)]
 pub(crate) struct Skips {
     pub(crate) times: u64,
@@ -60,7 +61,7 @@ pub(crate) struct Skips {
     pub(crate) last: Turned,
 }
 
-/// A turn with an atom and the scopes around it.
+/// A turn with its atom and the enclosing scopes.
 #[derive(Debug)]
 pub(crate) struct Stay {
     pub(crate) turned: Turned,
@@ -73,15 +74,15 @@ pub(crate) struct Stay {
 /// The turns in which the end of a scope would have led to an atom.
 #[derive(Debug)]
 pub(crate) struct Chance {
-    /// Name of the scope that would have begun, if it encloses what was asked for.
+    /// Name of the scope that would have begun, if it encloses the element of the question.
     pub(crate) begins: Option<String>,
-    /// Number of periods of such turns, as many as passes in a loop.
+    /// Number of periods of consecutive such turns; in a loop, one for each pass.
     pub(crate) times: u64,
-    /// The scopes of which one had to end in the first turn, by their numbers among those that are listed.
+    /// Positions, in the list of scopes, of the scopes of which one had to end in the first turn.
     pub(crate) scopes: Vec<usize>,
     /// The first of these turns.
     pub(crate) first: Stay,
-    /// The last of these turns, and what ended instead if anything did.
+    /// The last of these turns, and the scope that ended instead, if any did.
     pub(crate) last: Stay,
 }
 
@@ -90,15 +91,15 @@ struct Door {
     times: u64,
     scopes: Vec<usize>,
     first: Stay,
-    /// The outermost scope of which the end would lead to the atom.
+    /// Level of the outermost scope whose end would lead to the atom.
     level: u16,
-    /// The last turn of a period that is over.
+    /// The last turn of a period that is over; `None` before.
     last: Option<Stay>,
-    /// The last turn in which it was open, and its moment.
+    /// The last turn in which there was a chance, and its moment.
     latest: (FactsOfTurn, Moment),
 }
 
-/// A turn with the facts that operands read.
+/// A turn, with the facts that operands read.
 #[derive(Clone, Copy)]
 struct FactsOfTurn {
     turned: Turned,
@@ -108,7 +109,7 @@ struct FactsOfTurn {
 /// Answers why the atom or the scope of this text did not begin, in the last plan of the record that has it.
 ///
 /// # Errors
-/// No plan of the record has such an atom: a sentence.
+/// Fails with a sentence if no plan of the record has such an atom.
 pub(crate) fn never(target: &Target, text: &str, run: &mut ExaminedRun) -> Result<Result<Never, Stop>, String> {
     let mut searches: BTreeMap<u64, Option<Search>> = BTreeMap::new();
     let (mut explainer, mut unknown, mut number) = (Explainer::default(), Vec::new(), 0);
@@ -141,7 +142,8 @@ pub(crate) fn never(target: &Target, text: &str, run: &mut ExaminedRun) -> Resul
     Ok(Ok(Never { plan, is_replaced: own != number, ..answer }))
 }
 
-/// Returns the message that no plan of the record has such an atom, by the sentence and the help of each.
+/// Returns the message that no plan of the record has such an atom, from the sentence and the help text for
+/// each plan.
 fn no_atom(text: &str, plans: Vec<(String, (String, String))>) -> String {
     match plans.as_slice() {
         [] => "the record has no turn of a plan".to_owned(),
@@ -154,7 +156,7 @@ fn no_atom(text: &str, plans: Vec<(String, (String, String))>) -> String {
 }
 
 impl Never {
-    /// The answer before the first turn.
+    /// Returns the answer before the first turn.
     fn of(text: &str) -> Self {
         Self {
             asked: text.to_owned(),
@@ -171,10 +173,11 @@ impl Never {
     }
 }
 
-/// Returns the elements that are meant: the atoms of a line, or what tests of plans name by this text.
+/// Returns the elements that a text names: the atoms of a line, or the elements that tests of plans name by
+/// this text.
 ///
 /// # Errors
-/// There are none: a sentence and a help.
+/// Fails with a sentence and a help text if there are none.
 fn wanted(machine: &Machine, target: &Target, text: &str, plan: &dyn Texts) -> Result<Vec<u32>, (String, String)> {
     let is_line = |element: &Element<'_>| {
         let at = plan.source().bracket(element.number()).map(|words| words.at);
@@ -191,13 +194,13 @@ fn wanted(machine: &Machine, target: &Target, text: &str, plan: &dyn Texts) -> R
 /// The search in one of the plans of a record.
 struct Search {
     plan: Rc<ExaminedPlan>,
-    /// The elements that are asked for.
+    /// Numbers of the elements in question.
     wanted: Vec<u32>,
-    /// The time at which each of them was entered that began last.
+    /// Time of the last beginning of each element in question.
     entries: BTreeMap<u32, Nanos>,
-    /// The time at which each of them was entered that was skipped last.
+    /// Time of the last skip of each element in question.
     skips: BTreeMap<u32, Nanos>,
-    /// The chances of each atom since what is asked for last began.
+    /// The chances of each atom since an element in question last began.
     doors: BTreeMap<u32, Door>,
     answer: Never,
 }
@@ -230,7 +233,7 @@ impl Search {
         self.chances(place, moment, "", explainer);
     }
 
-    /// Notes that what is asked for was entered, and left in the same turn.
+    /// Records that an element in question was entered, and left in the same turn.
     fn skip(&mut self, place: FactsOfTurn, moment: &Moment, cause: &str, explainer: &mut Explainer) {
         let is_new =
             |bracket: &u32| moment.scopes.iter().any(|scope| scope.bracket == *bracket && scope.since == Nanos::ZERO);
@@ -249,7 +252,7 @@ impl Search {
         }
     }
 
-    /// Notes that what is asked for runs, or begins: then earlier skips and chances are no longer of interest.
+    /// Records that an element in question runs or begins, which makes earlier skips and chances irrelevant.
     fn begin(&mut self, turned: Turned, moment: &Moment, cause: &str) {
         let mut begins = false;
         for scope in moment.scopes.iter().filter(|scope| self.wanted.contains(&scope.bracket)) {
@@ -269,7 +272,8 @@ impl Search {
         self.doors.clear();
     }
 
-    /// Notes the atoms to which the end of a scope would lead at this moment, and those to which it no longer does.
+    /// Records the atoms to which the end of a scope would lead at this moment, and the atoms to which it no
+    /// longer does.
     fn chances(&mut self, place: FactsOfTurn, moment: &Moment, cause: &str, explainer: &mut Explainer) {
         let mut open: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (number, scope) in moment.scopes.iter().enumerate() {
@@ -339,8 +343,8 @@ impl Search {
     }
 }
 
-/// Returns the last atoms of the elements that an element can follow: of the one before it, and of a loop of which it
-/// is the first.
+/// Returns the last atoms of the elements that an element can follow: of the element before it, and of a loop
+/// whose first element it is.
 fn before(element: Element<'_>) -> Vec<u32> {
     let mut before = Vec::new();
     for inner in element.outwards() {

@@ -49,7 +49,7 @@ fn turned((turn, t): &Turned) -> String {
     format!("turn {turn} at {}", Clocked(*t))
 }
 
-/// Returns the text about the turns in which it began.
+/// Returns the text about the turns in which the element began.
 fn beginnings(asked: &str, began: &Beginnings, log: &str) -> String {
     let Beginnings { times, first, last } = began;
     let when = |(turn, cause): &(Turned, String)| {
@@ -64,7 +64,7 @@ fn beginnings(asked: &str, began: &Beginnings, log: &str) -> String {
     format!("{times}help: `mdle why {log} {}` explains that turn\n", rounded(t.0))
 }
 
-/// Writes the first turn in which it was entered and left again.
+/// Writes the first turn in which the element was entered and left at once.
 fn skip(text: &mut String, skips: &Skips) {
     let Skips { times, first: Stay { turned: turn, atom, scopes, cause }, last } = skips;
     let _ = writeln!(text, "\n{} was entered in {} and skipped  <- {cause}", named(atom), turned(turn));
@@ -74,7 +74,7 @@ fn skip(text: &mut String, skips: &Skips) {
     }
 }
 
-/// Writes the first and the last turn in which it could have begun.
+/// Writes the first and the last turn in which the element could have begun.
 fn chances(text: &mut String, chance: &Chance) {
     let Chance { begins, times, scopes, first, last } = chance;
     let begins = begins.as_ref().map_or_else(String::new, |name| match name.as_str() {

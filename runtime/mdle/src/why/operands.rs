@@ -1,4 +1,5 @@
-//! The operands of a condition in a turn: their values, which of them decide, and what each lacks.
+//! The operands of a condition in a turn: their values, the operands that decide, and the values that they
+//! need.
 
 use std::iter::Peekable;
 use std::slice::Iter;
@@ -18,34 +19,34 @@ const STALE: Nanos = Nanos(1_000_000_000);
 /// An operand of a condition in a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Operand {
-    /// The operand as it is written.
+    /// The operand as written.
     pub(crate) written: String,
     /// The operand with its values.
     pub(crate) words: String,
-    /// `true` if it has fired.
+    /// `true` if the operand has fired.
     pub(crate) fired: bool,
-    /// `true` if its condition ended a scope, and would not have fired if this operand alone had not.
+    /// `true` if the condition ended a scope, and would not have fired if only this operand had been false.
     pub(crate) decided: bool,
-    /// `true` if its condition has not fired, and would have if this operand alone had.
+    /// `true` if the condition has not fired, but would have if only this operand had fired.
     pub(crate) suffices: bool,
-    /// The values from which it was evaluated.
+    /// Values from which the operand was evaluated.
     pub(crate) measured: Measured,
-    /// Time or value that is missing until it fires, or reason why it has not; empty if nothing can be said.
+    /// Time or value that the operand needs to fire, or reason why it has not fired; empty if there is neither.
     pub(crate) lack: String,
     /// Remarks about stale data; empty if there are none.
     pub(crate) stale: Vec<String>,
-    /// The parts of an operand that NOT or RISING makes of several conditions.
+    /// The parts of an operand that is a NOT or RISING of several conditions.
     pub(crate) inside: Vec<Operand>,
 }
 
-/// The facts of a turn that operands read beside their own values.
+/// The facts of a turn that operands need in addition to their own values.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Facts {
-    /// Time since each sonar has pinged; `None` before the first ping.
+    /// Time since the last ping of each sonar; `None` before the first ping.
     pub(crate) ages: [Option<Nanos>; SONARS],
     /// Time for which the law of the previous turn has made no progress; `None` if that law has no goal.
     pub(crate) stalled: Option<Nanos>,
-    /// `true` if the atom was entered in this turn, so that the law of the turn before is that of another atom.
+    /// `true` if the atom was entered in this turn, so that the law of the turn before belongs to another atom.
     pub(crate) is_new: bool,
 }
 
@@ -56,7 +57,7 @@ pub(crate) struct Examination {
     pub(crate) fired: bool,
     /// The parts that AND and OR join, in order.
     pub(crate) operands: Vec<Operand>,
-    /// The operands that are missing, joined as the condition joins them; empty if the condition has fired, or has one
+    /// The missing operands, joined as in the condition; empty if the condition has fired, or has only one
     /// operand.
     pub(crate) missing: String,
 }
@@ -93,7 +94,8 @@ pub(crate) fn examination(
 struct Node<'c> {
     condition: &'c Condition,
     part: Examined,
-    /// Number among the parts that AND and OR join, counted apart inside each NOT and RISING; `None` for AND and OR.
+    /// Number among the parts that AND and OR join, counted separately inside each NOT and RISING; `None` for
+    /// AND and OR.
     number: Option<u32>,
     parts: Vec<Node<'c>>,
 }
@@ -107,7 +109,7 @@ enum Join {
 }
 
 impl<'c> Node<'c> {
-    /// Pairs a condition with the parts that were examined, which are in the same order.
+    /// Pairs a condition with its examined parts, which are in the same order.
     fn of(condition: &'c Condition, parts: &mut Peekable<Iter<'_, Examined>>, next: &mut u32) -> Option<Self> {
         let part = *parts.next()?;
         let is_joining = condition.lasting().is_none() && matches!(condition, Condition::Or(_) | Condition::And(_));
@@ -131,7 +133,7 @@ impl<'c> Node<'c> {
         }
     }
 
-    /// Returns the value of the condition if the value of the part of this number were the other one.
+    /// Returns the value that the condition would have if the value of the part of this number were inverted.
     fn value(&self, other: Option<u32>) -> bool {
         match self.condition {
             _ if self.number.is_some() => self.part.fired != (self.number == other),
@@ -148,7 +150,7 @@ impl<'c> Node<'c> {
         }
     }
 
-    /// Returns the texts of the parts that are missing, joined by `and` and `or`.
+    /// Returns the texts of the missing parts, joined by `and` and `or`.
     fn missing<'w>(&self, name: &impl Fn(u32) -> &'w str, around: Join) -> String {
         if let Some(number) = self.number {
             return name(number).to_owned();
@@ -207,7 +209,7 @@ impl Explaining<'_> {
         Operand { written, words: shown, fired, decided, suffices, measured, lack, stale, inside }
     }
 
-    /// Returns remarks about the sonars that a condition reads and that have not pinged for long.
+    /// Returns remarks about the sonars that a condition reads and that have not pinged for a long time.
     fn stale(&self, condition: &Condition) -> Vec<String> {
         let remark = |sonar: usize| match self.facts.ages.get(sonar)? {
             None => Some(format!("sonar {sonar} has not pinged yet")),

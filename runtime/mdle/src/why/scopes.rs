@@ -1,20 +1,20 @@
-//! The scopes around an atom at a moment, with their conditions.
+//! The scopes that enclose an atom at a moment, with their conditions.
 
 use mdle_runtime::{Cause, Nanos};
 
 use super::operands::{Examination, Facts, examination};
 use crate::examined::{ExaminedPlan, Moment, ScopeMoment};
 
-/// Part of a scope in what happened at a moment.
+/// Role of a scope at a moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Part {
-    /// Its interrupt has fired, and ended it.
+    /// The scope's interrupt has fired and ended it.
     Ended,
-    /// Its law is done, which ended it: an atom.
+    /// The law of the scope, which is an atom, is done and ended it.
     Completed,
-    /// Its interrupt has fired as well, and an enclosing scope ended first.
+    /// The scope's interrupt has fired as well, but an enclosing scope ended first.
     Shadowed,
-    /// Its interrupt has not fired.
+    /// The scope's interrupt has not fired.
     Waits,
     /// The element has no interrupt that can fire.
     NoInterrupt,
@@ -27,23 +27,23 @@ pub(crate) enum Part {
 pub(crate) struct Scope {
     /// Name of the scope; `None` for an atom and for a scope without a name.
     pub(crate) name: Option<String>,
-    /// `true` if it is the scope of the atom alone.
+    /// `true` if the scope is an atom's own.
     pub(crate) is_atom: bool,
-    /// File and line.
+    /// File and line of the scope.
     pub(crate) line: String,
-    /// The condition as it is written; empty if there is none.
+    /// The condition as written; empty if there is none.
     pub(crate) condition: String,
     /// Time since the scope was entered.
     pub(crate) since: Nanos,
-    /// Its part in what happened.
+    /// Role of the scope at the moment.
     pub(crate) part: Part,
-    /// Its condition.
+    /// Examination of the scope's condition.
     pub(crate) examination: Examination,
     /// The law of the atom that would follow; `None` if the plan would be over.
     pub(crate) leads_to: Option<String>,
 }
 
-/// Explains the scopes around the atom of a moment.
+/// Explains the scopes that enclose the atom at a moment.
 pub(crate) fn scopes(plan: &ExaminedPlan, moment: &Moment, facts: &Facts) -> Vec<Scope> {
     moment.scopes.iter().map(|around| scope(plan, moment, around, facts)).collect()
 }

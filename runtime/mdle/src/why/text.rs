@@ -42,7 +42,7 @@ pub(super) fn text(answer: &Answer) -> String {
     text
 }
 
-/// Writes a transition and the conditions around the atom that it left.
+/// Writes a transition, and the conditions of the scopes that enclosed the atom it left.
 fn end(text: &mut String, ended: &Ended) {
     let Ended { atom, is_skipped, cause, was_done, scopes, to } = ended;
     let since = scopes.last().map_or(Nanos::ZERO, |own| own.since);
@@ -56,7 +56,7 @@ fn end(text: &mut String, ended: &Ended) {
     let _ = writeln!(text, "  {next}");
 }
 
-/// Writes the atom that ran and the conditions around it.
+/// Writes the atom that ran, and the conditions of the scopes that enclose it.
 fn run(text: &mut String, runs: &Runs, t: Nanos) {
     let Runs { atom, since, paused, began, completes, scopes } = runs;
     let _ = write!(text, "\n{} ran", named(atom));
@@ -107,7 +107,7 @@ pub(super) fn scope(text: &mut String, scope: &Scope) {
     }
 }
 
-/// Writes an operand; `marks` if that which decides is marked.
+/// Writes an operand; marks the deciding operand if `marks` is `true`.
 fn operand(text: &mut String, operand: &Operand, indent: usize, marks: bool) {
     let Operand { words, fired, decided, suffices, lack, stale, inside, .. } = operand;
     let _ = write!(text, "{:indent$}{}  {words}", "", if *fired { "yes" } else { "no " });
@@ -124,7 +124,7 @@ fn operand(text: &mut String, operand: &Operand, indent: usize, marks: bool) {
     inside.iter().for_each(|part| self::operand(text, part, indent + 5, false));
 }
 
-/// Writes the input that was sent, if the plan did not ask for the same.
+/// Writes the input that was sent, if it differs from the input that the plan demanded.
 fn sent(text: &mut String, explanation: &Explanation, safety: Option<&str>) {
     let Explanation { sent, computed, .. } = explanation;
     if let Some(asked) = computed.filter(|asked| asked != sent) {
@@ -144,7 +144,7 @@ fn input(input: Twist) -> String {
     format!("{} m/s, {} rad/s", number(input.v.0), number(input.omega.0))
 }
 
-/// Writes what came next.
+/// Writes the events after the turn.
 fn following(text: &mut String, next: &Next, now: Nanos) {
     match next {
         Next::Turn { turn, t, steps } => {

@@ -12,14 +12,14 @@ use super::recorded::RecordedMember;
 /// A robot of a crowd.
 pub(super) struct Member {
     robot: Simulated,
-    /// The plan, once it has begun.
+    /// The running plan; `None` before it begins.
     machine: Option<Box<Machine<LoadedPlan<SimAlphabet>>>>,
     input: Twist,
     /// `true` once the plan is over.
     pub(super) is_over: bool,
     /// `true` once the robot has touched something.
     pub(super) has_touched: bool,
-    /// Way that it has driven, in metres.
+    /// Length of the path that the robot has driven, in metres.
     pub(super) way: f64,
     record: Option<Box<RecordedMember>>,
 }
@@ -43,7 +43,7 @@ impl Member {
         self.robot.pose()
     }
 
-    /// Drives for one period among these other robots.
+    /// Moves the robot for one period among these other robots.
     pub(super) fn moves(&mut self, others: &mut Others) {
         let before = self.pose();
         self.robot.swap_others(others);
@@ -55,7 +55,7 @@ impl Member {
         self.way += self.pose().distance(&before).0;
     }
 
-    /// Makes the turn of the plan at time `t`, with these other robots near by.
+    /// Makes the turn of the plan at time `t`, with these other robots nearby.
     pub(super) fn turn(&mut self, t: Nanos, plan: &Arc<Loaded<SimAlphabet>>, others: &mut Others) {
         self.robot.swap_others(others);
         let y = self.robot.senses();
@@ -83,7 +83,7 @@ impl Member {
         }
     }
 
-    /// Ends the plan: the robot stands from now on.
+    /// Ends the plan; the robot stays where it is from now on.
     fn ends(&mut self) {
         self.is_over = true;
         self.input = Twist::default();

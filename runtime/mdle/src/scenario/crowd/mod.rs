@@ -1,4 +1,5 @@
-//! A crowd: very many robots in one world, each with the same plan in a state of its own (docs/src/many_robots.md).
+//! A crowd: very many robots in one world, which run the same plan, each in a state of its own
+//! (docs/src/many_robots.md).
 
 mod member;
 mod places;
@@ -22,10 +23,10 @@ pub(super) use setup::CrowdSetup;
 use table::Trail;
 use turns::Turns;
 
-/// Runs a crowd, and reports it; returns the exit status.
+/// Runs a crowd and prints a report; returns the exit status.
 ///
 /// # Errors
-/// Signals cannot be caught, or a file cannot be written.
+/// Fails if signals cannot be caught, or if a file cannot be written.
 pub(super) fn run(setup: CrowdSetup, options: &Options) -> Result<ExitCode, Failure> {
     let mut trail = options.trail.as_deref().map(Trail::create).transpose().map_err(Failure::Usage)?;
     let uncaught = |error| Failure::Usage(format!("signals cannot be caught: {error}"));

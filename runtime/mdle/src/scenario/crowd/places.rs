@@ -1,4 +1,4 @@
-//! The places at which the robots of a crowd begin: the points of a lattice, each in a random heading.
+//! The poses at which the robots of a crowd begin: the points of a lattice, each with a random heading.
 
 use mdle_runtime::{Meters, Pose, Radians};
 use mdle_sim::{Place, World};
@@ -18,7 +18,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// Returns the points between the walls of `world`; `seed` decides about headings.
+    /// Returns the lattice points between the walls of `world`; `seed` is the random seed of the headings.
     pub(super) fn of(world: &World, spacing: f64, seed: u64) -> Self {
         let points = || world.outlines.iter().flat_map(|outline| &outline.points);
         let bound = |of: fn(&Place) -> f64, pick: fn(f64, f64) -> f64| points().map(of).reduce(pick).unwrap_or(0.0);
@@ -53,7 +53,7 @@ impl Iterator for Places {
 /// Returns a square hall with room for this number of robots, at this distance from each other in metres.
 ///
 /// # Errors
-/// None: the text is good.
+/// Never fails, as the text of the hall is valid.
 pub(super) fn hall(robots: u64, spacing: f64) -> Result<World, ScenarioError> {
     let rows = libm::ceil(libm::sqrt(robots as f64));
     // A little more than the lattice, so that rounding loses no row.

@@ -1,4 +1,4 @@
-//! A crowd that is ready to run: its plan is compiled, and its robots stand in their world.
+//! A crowd that is ready to run: its plan is compiled, and its robots are in their world.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -36,11 +36,11 @@ pub(in super::super) struct CrowdSetup {
 }
 
 impl CrowdSetup {
-    /// Makes the robots of the crowd of the file at `path`. Messages about the plan go to standard error.
+    /// Creates the robots of the crowd in the file at `path`. Messages about the plan go to standard error.
     ///
     /// # Errors
-    /// A value of the file makes no sense, a file that it names cannot be read, the plan has errors or needs what a
-    /// crowd has not, or the world has no room.
+    /// Fails if a value of the file is invalid, if a file that it names cannot be read, if the plan has errors
+    /// or needs something that a crowd lacks, or if the world has no room.
     pub(in super::super) fn read(
         crowd: &CrowdText,
         file: &ScenarioText,
@@ -91,7 +91,7 @@ fn nanos(time: Duration) -> Nanos {
     Nanos(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX))
 }
 
-/// Checks that a plan needs nothing that the robots of a crowd have not.
+/// Checks that a plan needs nothing that the robots of a crowd lack.
 fn check(plan: &Arc<Loaded<SimAlphabet>>, crowd: &CrowdText) -> Result<(), ScenarioError> {
     let plan = plan.plan();
     let refused = |message: String| Err(ScenarioError::at(crowd.file.span(), message));
@@ -107,7 +107,7 @@ fn check(plan: &Arc<Loaded<SimAlphabet>>, crowd: &CrowdText) -> Result<(), Scena
     Ok(())
 }
 
-/// Makes the robots at their places.
+/// Creates the robots at their start poses.
 fn robots(
     crowd: &CrowdText,
     file: &ScenarioText,

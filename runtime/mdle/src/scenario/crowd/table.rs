@@ -13,7 +13,7 @@ use super::turns::Turns;
 pub(super) struct Trail {
     path: PathBuf,
     file: BufWriter<File>,
-    /// The first error, after which nothing more is written.
+    /// The first error, after which writing stops.
     written: io::Result<()>,
 }
 
@@ -21,7 +21,7 @@ impl Trail {
     /// Creates the file.
     ///
     /// # Errors
-    /// It cannot be created: a sentence.
+    /// Fails with a sentence if the file cannot be created.
     pub(super) fn create(path: &Path) -> Result<Self, String> {
         let file = File::create(path).map_err(|error| format!("{} cannot be written: {error}", path.display()))?;
         let mut file = BufWriter::new(file);
@@ -45,10 +45,10 @@ impl Trail {
         self.written.is_err()
     }
 
-    /// Writes the rest.
+    /// Writes all buffered lines.
     ///
     /// # Errors
-    /// Not all could be written: a sentence.
+    /// Fails with a sentence if not everything could be written.
     pub(super) fn close(mut self) -> Result<(), String> {
         let written = self.written.and_then(|()| self.file.flush());
         written.map_err(|error| format!("{} cannot be written: {error}", self.path.display()))

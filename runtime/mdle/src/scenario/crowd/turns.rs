@@ -1,9 +1,9 @@
-//! The turns of a crowd, on several threads with the same results.
+//! The turns of a crowd on several threads, with results that do not depend on their number.
 //!
-//! In each turn robots that may touch each other are a group. A group is the work of one thread: its robots move one
-//! after the other in their order, each among those of its group where they are then; then they make the turns of
-//! their plans. Sonars hear all other robots where they were when the turn began. So no result depends on the order of
-//! groups.
+//! In each turn, robots that may touch each other form a group. One thread handles a group: its robots move one
+//! after the other in their order, each among the current poses of the others in the group, and then make the
+//! turns of their plans. Sonars hear all other robots at their poses at the beginning of the turn. No result
+//! therefore depends on the order of groups.
 
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -21,16 +21,16 @@ use super::setup::CrowdSetup;
 
 /// Number of groups that a thread takes at a time.
 const TAKES: usize = 16;
-/// Number of robots for which it pays to begin a thread in each turn.
+/// Number of robots from which an additional thread in each turn saves time.
 const FOR_A_THREAD: usize = 100;
 
 /// The robots of a crowd.
 pub(super) struct Turns {
-    /// The robots. Each is locked by one thread at a time: nobody waits.
+    /// The robots. One thread at a time locks each robot, so no thread waits.
     members: Vec<Mutex<Member>>,
     plan: Arc<Loaded<SimAlphabet>>,
     threads: usize,
-    /// Distance from a robot's centre within which it hears the centres of others, in metres.
+    /// Distance between centres, in metres, within which a robot hears another.
     hears: f64,
     /// Distance between the centres of two robots that may touch in a turn, in metres.
     touches: f64,
@@ -42,7 +42,7 @@ struct Shared<'t> {
     t: Nanos,
     crowd: Crowd,
     groups: Groups,
-    /// Number of the first group that nobody has taken.
+    /// Number of the first group that no thread has taken.
     next: AtomicUsize,
 }
 
@@ -123,7 +123,7 @@ impl Turns {
 }
 
 impl Shared<'_> {
-    /// Takes groups until there are none left.
+    /// Makes the turns of groups until none are left.
     fn work(&self) {
         let mut others = Others::default();
         loop {
