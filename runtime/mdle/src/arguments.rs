@@ -34,7 +34,7 @@ pub(crate) use plot::Plot;
 pub(crate) use replay::Replay;
 pub(crate) use why::{Question, Why};
 
-/// The command that was given.
+/// The parsed command line: a command with its arguments.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Asked {
     /// `mdle run` or `mdle shell`.
@@ -59,7 +59,7 @@ pub(crate) enum Asked {
     Test(Test),
     /// `mdle completions`.
     Completions(Shell),
-    /// `mdle man`: the words of a command.
+    /// `mdle man`, with the words of a command.
     Man(Vec<String>),
 }
 
@@ -68,7 +68,7 @@ pub(crate) enum Asked {
 pub(crate) struct Run {
     /// The plan's file; `-` is standard input.
     pub(crate) file: PathBuf,
-    /// Name or folder of the target; `None` for that of the `mdle.toml` beside the plan.
+    /// Name or folder of the target; `None` for the target of the `mdle.toml` beside the plan.
     pub(crate) target: Option<String>,
     /// Name of the plan, for a file with several.
     pub(crate) plan: Option<String>,
@@ -76,13 +76,13 @@ pub(crate) struct Run {
     pub(crate) safety: Option<PathBuf>,
     /// File of the link to other robots.
     pub(crate) link: Option<PathBuf>,
-    /// Name of the path that the way back of each `path` and `Follow` replaces.
+    /// Name of the path that is replaced by the way back from each `path` and `Follow`.
     pub(crate) records: Option<String>,
     /// Child processes to load as modules: the name of each, and its command line.
     pub(crate) modules: Vec<(String, String)>,
-    /// Point of the module `heading`, in metres, if it is to be loaded.
+    /// Point for the module `heading`, in metres; `None` if the module is not to be loaded.
     pub(crate) point: Option<(f64, f64)>,
-    /// Sound that the module `heading` listens to, if it is to be loaded.
+    /// Sound for the module `heading`; `None` if the module is not to be loaded.
     pub(crate) ears: Option<EarsOption>,
     /// Radius of the head with the ears, in metres.
     pub(crate) head: f64,
@@ -105,9 +105,9 @@ pub(crate) struct SessionOptions {
     pub(crate) stops_at_errors: bool,
     /// `true` if each command is printed before its answer.
     pub(crate) echoes: bool,
-    /// Role of who types.
+    /// Role of the user.
     pub(crate) role: Role,
-    /// `true` if stepped time stands before the first turn.
+    /// `true` if stepped time does not begin before it is resumed.
     pub(crate) is_paused: bool,
 }
 
@@ -135,7 +135,7 @@ const FLAGS: [&str; 4] = ["--deny-warnings", "-e", "-x", "--paused"];
 /// Parses the arguments of the process, the program's own name first.
 ///
 /// # Errors
-/// The arguments are wrong, or ask for help.
+/// Fails if the arguments are wrong, or ask for help.
 pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
     let words = match arguments.get(1).and_then(|command| command.to_str()) {
         Some("run" | "shell") => 1,
@@ -196,11 +196,11 @@ fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: O
     }))
 }
 
-/// Takes the options of the run, which come after the plan, away from the arguments that `mdle` parses itself: the plan
-/// is the last of this number of words.
+/// Separates the options of the run, which come after the plan, from the arguments that `mdle` parses itself.
+/// The plan is the last of `missing` words.
 ///
 /// # Errors
-/// An option of the run comes before the plan.
+/// Fails if an option of the run comes before the plan.
 fn apart(arguments: Vec<OsString>, mut missing: usize) -> Result<(Vec<OsString>, Vec<OsString>), Failure> {
     let (mut own, mut options) = (Vec::new(), Vec::new());
     // The program's own name and that of the command.
@@ -295,7 +295,7 @@ fn shell() -> Command {
         )
 }
 
-/// Exit statuses of `mdle run`.
+/// Help text about the exit statuses of `mdle run`.
 const AFTER: &str = "Exit status: that of the executable; 1 if the plan has errors, 2 for wrong usage or a file that cannot \
                      be read, 6 if a safety rule ended the plan";
 
@@ -314,7 +314,7 @@ fn run_alone() -> Command {
         .after_help(AFTER)
 }
 
-/// Adds the plan to a command, and what it is compiled with.
+/// Defines the arguments for the plan and for its compilation.
 fn with_plan(command: Command) -> Command {
     command
         .arg(

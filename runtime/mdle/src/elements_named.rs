@@ -1,15 +1,15 @@
-//! The elements of a plan that a text names, in `mdle why --not` and in tests of plans.
+//! The elements of a plan that a text names, for `mdle why --not` and for tests of plans.
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::compile;
 use mdle_compiler::fsm::{Element, Machine};
 use mdle_files::Target;
 
-/// Returns the atoms and scopes that a text names: the atoms with this law, in any units, or else with a law of this
-/// name, or else the behaviors of this name.
+/// Returns the atoms and scopes that a text names: the atoms with this law, in any units; without such atoms,
+/// those with a law of this name; without these, the behaviors of this name.
 ///
 /// # Errors
-/// The plan has none of them: a sentence and a help.
+/// Fails with a sentence and a help text if the plan has none of them.
 pub(crate) fn elements_named(machine: &Machine, target: &Target, text: &str) -> Result<Vec<u32>, (String, String)> {
     let text = text.trim();
     let law = law(target, text);
@@ -33,7 +33,7 @@ fn law_of(element: Element<'_>) -> Option<&str> {
     element.atom().map(|atom| atom.law().text.as_str())
 }
 
-/// Returns the sentence and the help about a text that names nothing.
+/// Returns the sentence and the help text about a text that names no element.
 fn unnamed(machine: &Machine, text: &str) -> (String, String) {
     let once = |names: Vec<&'_ str>| {
         let mut known: Vec<String> = Vec::new();
@@ -53,7 +53,7 @@ fn unnamed(machine: &Machine, text: &str) -> (String, String) {
     (format!("the plan has no atom `{text}`{near}"), format!("the laws of its atoms are {}{scopes}", listed(&laws)))
 }
 
-/// Returns the text of a law as a plan has it, whatever units and spaces it is written with.
+/// Returns the text of a law as in a plan, whatever its units and spaces; `None` if it is no law.
 fn law(target: &Target, text: &str) -> Option<String> {
     let plan = format!("{{ Law (Atom (null) ({text})) }}");
     let mut sources = target.sources();

@@ -1,4 +1,4 @@
-//! The turns of a record, made again and looked at: for explanations, plots and scripts.
+//! The turns of a record, repeated and examined, for explanations, plots and scripts.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,27 +19,27 @@ use crate::replay::{self, WantedPlan};
 use crate::replayer::{self, RecordedRun, ReplayedTurn};
 use crate::targets;
 
-/// Exit status of a record that is not that of its plan.
+/// Exit status if a record does not match its plan.
 const DIFFERS: u8 = 1;
 
-/// A recorded run whose turns are made again and looked at.
+/// A recorded run whose turns are repeated and examined.
 pub(crate) struct ExaminedRun {
     run: Box<dyn RecordedRun>,
-    /// `true` if inputs and the texts of transitions have to be those of the record, which does not have the plan.
+    /// `true` if inputs and the texts of transitions have to match the record, which does not contain the plan.
     is_compared: bool,
-    /// The safety rule that acts, and how; empty if none does.
+    /// Text of the safety rule that acts, and of its effect; empty if none acts.
     safety: String,
     /// The guards of the safety rules with their conditions.
     guards: Vec<Guard>,
     /// Name of the safety file.
     safety_file: String,
-    /// The plans that have driven, by their numbers.
+    /// The plans that have been active, by their numbers.
     plans: BTreeMap<u64, Rc<ExaminedPlan>>,
-    /// Number of the plan that drove in the last turn.
+    /// Number of the plan that was active in the last turn.
     number: u64,
 }
 
-/// A plan that has driven.
+/// A plan that has been active.
 pub(crate) struct ExaminedPlan {
     /// The plan as a state machine.
     pub(crate) machine: Arc<Machine>,
@@ -47,43 +47,43 @@ pub(crate) struct ExaminedPlan {
     pub(crate) texts: Box<dyn Texts>,
 }
 
-/// A turn of a record that was made again and looked at.
+/// A turn of a record that was repeated and examined.
 #[derive(Debug)]
 pub(crate) struct ExaminedTurn {
-    /// The turn in the record.
+    /// The turn as recorded.
     pub(crate) recorded: RecordedTurn,
     /// The transitions, with their operands.
     pub(crate) transitions: Transitions,
-    /// The plan before each transition and at the end of the turn.
+    /// The state of the plan before each transition and at the end of the turn.
     pub(crate) moments: Vec<Moment>,
-    /// The input that the plan asked for.
+    /// The input that the plan demanded.
     pub(crate) asked: Twist,
-    /// The reason for which the plan replaced another one; empty for the first plan.
+    /// Reason why the plan replaced another plan; empty for the first plan.
     pub(crate) reason: String,
-    /// The safety rule that acts in the turn, and how; empty if none does.
+    /// Text of the safety rule that acts in the turn, and of its effect; empty if none acts.
     pub(crate) safety: String,
-    /// The cause of the end of the record, if it ends here.
+    /// Cause of the end of the record, if the record ends with this turn.
     pub(crate) end: Option<String>,
     /// Time of the next turn; `None` at the end of the record.
     pub(crate) next: Option<Nanos>,
 }
 
-/// Reason why the turns of a record are not made again.
+/// Reason why the turns of a record cannot be repeated further.
 #[derive(Debug)]
 pub(crate) enum Stop {
     /// The record cannot be read.
     Unread(ReadError),
     /// A plan that took over cannot be compiled.
     Failed(Failure),
-    /// This turn is not that of the record, by a difference in words.
+    /// The turn of this number does not match the record: the difference in words.
     Differs(u64, String),
 }
 
 impl ExaminedRun {
-    /// Compiles the plan that has run, to make the turns of its record again.
+    /// Compiles the plan that has run, so that the turns of its record can be repeated.
     ///
     /// # Errors
-    /// The plan cannot be read, has errors or is not that of the record.
+    /// Fails if the plan cannot be read, has errors, or is not the plan of the record.
     pub(crate) fn of(wanted: &WantedPlan<'_>, record: Record) -> Result<Self, Failure> {
         let begin = wanted.begin;
         let linked = targets::of_record(begin, wanted.log)?;
@@ -127,7 +127,7 @@ impl ExaminedRun {
         Some(Ok(ExaminedTurn { recorded, transitions, moments, asked, reason, safety, end, next }))
     }
 
-    /// Returns the text with the condition of the guard that it ends with, if it ends with one.
+    /// Returns the text; if it ends with the name of a guard, the guard's condition is appended.
     fn with_condition(&self, text: String) -> String {
         let rule = text.rsplit(": ").next().unwrap_or_default();
         match self.guards.iter().find(|guard| guard.name == rule) {
@@ -136,29 +136,31 @@ impl ExaminedRun {
         }
     }
 
-    /// Returns the safety rule for which a plan took over in a turn with these messages; empty if none did.
+    /// Returns the safety rule that caused a plan to take over in a turn with these messages; empty if none
+    /// did.
     fn diversion(&self, messages: &[Message]) -> String {
         let taken = event(messages, "plan").and_then(|text| text.split_once(": ").map(|(_, why)| why.to_owned()));
         taken.map_or_else(String::new, |why| self.with_condition(why))
     }
 
-    /// Returns the plan of this number, if it has driven.
+    /// Returns the plan of this number, if it has been active.
     pub(crate) fn plan_of(&self, number: u64) -> Option<&Rc<ExaminedPlan>> {
         self.plans.get(&number)
     }
 
-    /// Returns the plan that drove in the last turn; `None` before it begins.
+    /// Returns the plan that was active in the last turn; `None` before the first plan begins.
     pub(crate) fn plan(&self) -> Option<&Rc<ExaminedPlan>> {
         self.plans.get(&self.number)
     }
 
-    /// Returns `true` once the end of the record was read; a run that was killed leaves a record without an end.
+    /// Returns `true` once the end of the record has been read. A run that was killed leaves a record without
+    /// an end.
     pub(crate) fn is_whole(&self) -> bool {
         self.run.is_whole()
     }
 
-    /// Returns in words how a turn differs from the record. Inputs may differ if the record has the plan: what runs
-    /// next does not depend on them.
+    /// Returns the difference between a turn and the record, in words; `None` if they match. Inputs may differ
+    /// if the record contains the plan, as the next atom does not depend on them.
     fn difference(&self, turn: &ReplayedTurn) -> Option<String> {
         let is_input = |name: &str| matches!(name, "asked input" | "safety rule" | "input");
         if let Some(part) = turn.parts.iter().find(|part| !is_input(&part.name)) {
@@ -181,7 +183,7 @@ fn event(messages: &[Message], kind: &str) -> Option<String> {
     event.get("text")?.as_str().map(str::to_owned)
 }
 
-/// Returns how the texts of transitions differ from those of the record.
+/// Returns the difference between the texts of transitions and those in the record; `None` if they match.
 fn other_text(plan: &dyn Texts, turn: &ReplayedTurn) -> Option<String> {
     let messages = turn.messages.iter().filter(|message| message.kind == MessageKind::Transition);
     for ((transition, _), message) in turn.transitions.iter().zip(messages) {
@@ -201,7 +203,7 @@ fn other_text(plan: &dyn Texts, turn: &ReplayedTurn) -> Option<String> {
 }
 
 impl Stop {
-    /// Returns the reason as a sentence; empty for a failure, which has its own.
+    /// Returns the reason as a sentence; empty for a failure, which has its own message.
     pub(crate) fn sentence(&self) -> String {
         match self {
             Self::Unread(error) => error.to_string(),
@@ -210,11 +212,11 @@ impl Stop {
         }
     }
 
-    /// Prints why the turns of the record of this name are not made again, with the plan in this file or that of the
-    /// record.
+    /// Prints why the turns of the record of this name cannot be repeated, with the plan in the file `plan` or
+    /// the plan in the record.
     ///
     /// # Errors
-    /// The record cannot be read, or a plan of it cannot be compiled.
+    /// Fails if the record cannot be read, or if one of its plans cannot be compiled.
     pub(crate) fn tell(self, name: &str, plan: Option<&Path>) -> Result<ExitCode, Failure> {
         let sentence = self.sentence();
         match self {

@@ -1,4 +1,4 @@
-//! Reasons why a plan does not run, as messages on standard error with an exit status.
+//! Reasons why a plan cannot be run, as messages on standard error with an exit status.
 
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
@@ -9,25 +9,25 @@ use mdle_compiler::load::LoadError;
 use mdle_files::{FaultyFile, InputError};
 use mdle_runtime::PrintableLines;
 
-/// Exit status of a plan with errors, of a record that was changed, and of a plan that is not that of the record.
+/// Exit status for a plan with errors, for a changed record, and for a plan that is not the plan of the record.
 const PLAN: u8 = 1;
-/// Exit status of wrong usage.
+/// Exit status for wrong usage.
 const USAGE: u8 = 2;
 
-/// Reason why a plan does not run.
+/// Reason why a plan cannot be run.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// The command line is wrong, or asks for help.
     Unparsed(clap::Error),
-    /// Wrong usage: a sentence.
+    /// Wrong usage, described in a sentence.
     Usage(String),
     /// A plan or a target cannot be read.
     Input(InputError),
     /// The plan has errors, whose diagnostics were printed.
     Plan,
-    /// The plan is not that of the record: a sentence.
+    /// The plan is not the plan of the record: a sentence.
     OtherPlan(String),
-    /// The reader of standard output has gone, which is no error.
+    /// The reader of standard output has closed it, which is no error.
     Closed,
     /// A file of tests has errors, which were printed.
     TestFile,
@@ -90,7 +90,7 @@ impl Failure {
     }
 }
 
-/// Returns the failure to write to standard output: a reader that closes the pipe, as `head` does, is no error.
+/// Returns the failure to write to standard output. A reader that closes the pipe, as `head` does, is no error.
 pub(crate) fn unprinted(error: &io::Error) -> Failure {
     if error.kind() == io::ErrorKind::BrokenPipe {
         return Failure::Closed;
@@ -101,7 +101,7 @@ pub(crate) fn unprinted(error: &io::Error) -> Failure {
 /// Prints a line to standard output.
 ///
 /// # Errors
-/// Standard output cannot be written.
+/// Fails if standard output cannot be written.
 pub(crate) fn print_line(line: &str) -> Result<(), Failure> {
     writeln!(io::stdout().lock(), "{line}").map_err(|error| unprinted(&error))
 }

@@ -1,5 +1,5 @@
-//! The program `mdle`: it compiles a plan, loads it, and runs it as an executable of `mdlec` would, with modules beside
-//! it.
+//! The program `mdle`: it compiles a plan, loads it, and runs it as an executable of `mdlec` would, together
+//! with modules.
 //!
 //! A program with modules of its own calls [`main_with`].
 #![forbid(unsafe_code)]
@@ -54,8 +54,8 @@ pub fn main() -> ExitCode {
     main_with(|_| ())
 }
 
-/// Runs the command line of this process, as [`main`] does, with the modules that `add` adds: each run loads them,
-/// after the module `sensors` and before those of options.
+/// Runs the command line of this process, as [`main`] does, with the modules that `add` registers: each run
+/// loads them after the module `sensors` and before the modules of options.
 #[must_use]
 pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
     let mut library = Library::new();

@@ -16,7 +16,7 @@ use crate::failure::Failure;
 /// Maximum size of the file, in bytes.
 const LARGEST: u64 = 1_000_000;
 
-/// A file of a link, as written.
+/// A link file, as written.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LinkText {
@@ -35,7 +35,7 @@ struct PeerText {
     address: String,
 }
 
-/// A file of a link that was read.
+/// A link file that has been read.
 #[derive(Debug)]
 pub(crate) struct LinkFile {
     path: PathBuf,
@@ -48,7 +48,7 @@ impl LinkFile {
     /// Reads the file.
     ///
     /// # Errors
-    /// It cannot be read, or is no file of a link.
+    /// Fails if the file cannot be read, or is no link file.
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
         let name = path.display();
         let unread = |error| Failure::Usage(format!("the file {name} of the link cannot be read: {error}"));
@@ -82,7 +82,7 @@ impl LinkFile {
     /// Checks that the link knows the robots that a plan names.
     ///
     /// # Errors
-    /// It does not know one.
+    /// Fails if the link does not know a robot.
     pub(crate) fn check(&self, robots: &[&str]) -> Result<(), Failure> {
         let names: Vec<&str> = self.settings.peers.iter().map(|(name, _)| name.as_str()).collect();
         let Some(unknown) = robots.iter().find(|robot| !names.contains(*robot)) else { return Ok(()) };
@@ -97,7 +97,7 @@ impl LinkFile {
     /// Opens the link.
     ///
     /// # Errors
-    /// The address cannot be listened at (exit status 2).
+    /// Fails if the robot cannot listen at the address (exit status 2).
     pub(crate) fn open(&self) -> Result<StateLink, Refusal> {
         let TcpSettings { name, listen, .. } = &self.settings;
         let refused =
@@ -118,7 +118,7 @@ pub(crate) fn missing(robot: &str) -> Failure {
 /// Reads the text of a file.
 ///
 /// # Errors
-/// A sentence.
+/// Fails with a sentence if the text is no link file.
 fn read(text: &str) -> Result<(TcpSettings, Pose), String> {
     let file: LinkText = toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())?;
     let LinkText { name, listen, key, start, robot } = file;
@@ -138,7 +138,7 @@ fn read(text: &str) -> Result<(TcpSettings, Pose), String> {
     Ok((TcpSettings { name, listen, peers, key }, start))
 }
 
-/// Reads a literal address: a name would have to be looked up, which may take long.
+/// Reads a literal address. A host name is refused, as its lookup may take long.
 fn address(text: &str) -> Result<SocketAddr, String> {
     text.parse().map_err(|_| format!("`{text}` is no address: write numbers and a port, as in `192.168.1.7:7400`"))
 }

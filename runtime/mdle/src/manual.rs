@@ -27,7 +27,7 @@ pub(crate) fn man(words: &[String]) -> Result<ExitCode, Failure> {
     print(&text)
 }
 
-/// Finds the command of this name below another.
+/// Returns the subcommand of this name.
 fn subcommand<'c>(command: &'c Command, name: &str) -> Result<&'c Command, Failure> {
     command.find_subcommand(name).ok_or_else(|| {
         let names: Vec<_> = command.get_subcommands().map(Command::get_name).collect();

@@ -1,4 +1,4 @@
-//! `mdle new-module`: writes a crate with a module of one's own, and a program `mdle` that has it, from
+//! `mdle new-module`: writes a crate with a new module, and a program `mdle` that contains the module, from
 //! `runtime/template`.
 
 use std::fs;
@@ -12,15 +12,15 @@ use crate::failure::Failure;
 const NAME: &str = "template";
 /// Maximum length of a name, so that every file system accepts files that contain it.
 const LONGEST: usize = 32;
-/// Names that a program's other modules have, and those that its packages have.
+/// Names of a program's other modules and of its packages.
 const TAKEN: [&str; 8] = ["mdle", "sensors", "heading", "test", "libm", "core", "std", "alloc"];
-/// Words of Rust, which are no names of crates.
+/// Keywords of Rust, which cannot be names of crates.
 const WORDS: [&str; 38] = [
     "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn", "else",
     "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop", "macro", "match", "mod",
     "move", "mut", "pub", "ref", "return", "self", "static", "struct", "super", "trait",
 ];
-/// Further words of Rust.
+/// Further keywords of Rust.
 const FURTHER: [&str; 12] =
     ["true", "try", "type", "typeof", "union", "unsafe", "unsized", "use", "virtual", "where", "while", "yield"];
 
@@ -42,7 +42,7 @@ pub(crate) struct NewModule {
     pub(crate) checkout: Option<PathBuf>,
 }
 
-/// Writes the folder, whole or not at all, and prints the next steps.
+/// Writes the folder, completely or not at all, and prints the next steps.
 pub(crate) fn new_module(arguments: &NewModule) -> Result<ExitCode, Failure> {
     let name = arguments.name.as_str();
     must_be_free(name)?;
@@ -82,8 +82,8 @@ fn fill(folder: &Path, name: &str, sources: &Path) -> io::Result<()> {
     FILES.iter().try_for_each(|(file, text)| fs::write(folder.join(file), named(file, text, name, sources)))
 }
 
-/// Text of a template's file with this name in it. The manifest leaves the workspace of mdle and gets one of its own;
-/// the author chooses the licence.
+/// Returns the text of a template's file with this name in it. The manifest leaves the workspace of mdle and
+/// gets a workspace of its own; the author chooses the licence.
 fn named(file: &str, text: &str, name: &str, sources: &Path) -> String {
     let text = text.replace(NAME, name);
     if file != "Cargo.toml" {

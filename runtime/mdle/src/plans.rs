@@ -1,4 +1,4 @@
-//! Plans that a session loads while the robot runs: their texts are compiled as that of the first plan is.
+//! Plans that a session loads while the robot runs; their texts are compiled like the text of the first plan.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,10 +14,10 @@ use mdle_runtime::Alphabet;
 /// Name of a text that was typed, in diagnostics.
 const TYPED: &str = "main";
 
-/// Stores the first plan of a run, and lets others of this target be loaded.
+/// Stores the first plan of a run, and enables further plans of this target to be loaded.
 ///
 /// # Errors
-/// The system gives no thread for the compiler.
+/// Fails if the system cannot create the compiler's thread.
 pub(crate) fn begin<A: EngineAlphabet>(
     plans: &mut Plans<A>,
     first: StoredPlan<A>,
@@ -29,10 +29,10 @@ pub(crate) fn begin<A: EngineAlphabet>(
     plans.store(first).map_err(Refusal::Fault)
 }
 
-/// Compiles and loads the plans of a text that no other of its plans uses.
+/// Compiles and loads the plans of a text that no other plan of the text uses.
 ///
 /// # Errors
-/// The diagnostics, as `mdlec check` prints them, after a sentence.
+/// Fails with a sentence and the diagnostics, as `mdlec check` prints them.
 fn compiled<A: EngineAlphabet>(source: &PlanSource, target: &Target) -> Result<CompiledPlans<A>, String> {
     let input = match source {
         PlanSource::File(path) => read_plan(path, target),
@@ -54,7 +54,7 @@ fn compiled<A: EngineAlphabet>(source: &PlanSource, target: &Target) -> Result<C
     Ok(CompiledPlans { plans: stored.collect::<Result<_, _>>()?, warnings })
 }
 
-/// Returns names and texts of the files of a plan that was compiled, its own first.
+/// Returns the names and texts of the files of a compiled plan, its own file first.
 pub(crate) fn texts(input: &Input) -> Vec<(String, String)> {
     let names = input.files().map(|path| path.display().to_string());
     names.zip(input.texts().map(str::to_owned)).collect()
@@ -71,7 +71,7 @@ fn stored<A: Alphabet + EngineAlphabet>(
     Ok(StoredPlan { name: name.into(), files: Arc::clone(files), loaded: Arc::new(loaded) })
 }
 
-/// The message about a text that cannot be read.
+/// Returns the message about a text that cannot be read.
 fn unread(error: InputError) -> String {
     let message = error.to_string();
     let Some(FaultyFile { sources, diagnostics, .. }) = error.faulty_file() else { return message };
@@ -82,7 +82,7 @@ fn faulty(count: &str, diagnostics: &str) -> String {
     format!("{count} in the plan, and nothing has changed\n{}", diagnostics.trim_end())
 }
 
-/// The diagnostics as a terminal without colours shows them.
+/// Returns the diagnostics as on a terminal without colours.
 fn rendered(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
     let mut text = NoColor::new(Vec::new());
     // A vector takes everything.

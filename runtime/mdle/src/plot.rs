@@ -18,7 +18,7 @@ use crate::replay::{self, WantedPlan};
 /// Draws a record.
 ///
 /// # Errors
-/// The record or the plan cannot be read, or the picture cannot be written.
+/// Fails if the record or the plan cannot be read, or if the picture cannot be written.
 pub(crate) fn plot(arguments: &Plot) -> Result<ExitCode, Failure> {
     let signals = arguments.signals.iter().map(|name| signal(name)).collect::<Result<Vec<_>, _>>()?;
     let (begin, record) = replay::record(&arguments.log)?;
@@ -42,16 +42,16 @@ pub(crate) fn plot(arguments: &Plot) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// A picture while the record is read.
+/// A picture that is drawn while the record is read.
 enum Picture {
-    /// The path, before the first output of the record of this name.
+    /// The path before the first output of the record; the name of the record.
     Unbegun(String),
     Path(Box<Drawing>),
     OverTime(Box<TimeChart>),
 }
 
 impl Picture {
-    /// Adds the atoms of a plan to those of a chart; returns the number of the first.
+    /// Appends the atoms of a plan to those of a chart; returns the number of the first of them.
     fn add_atoms(&mut self, plan: &ExaminedPlan) -> usize {
         let Self::OverTime(chart) = self else { return 0 };
         let first = chart.atoms.len();
@@ -60,16 +60,17 @@ impl Picture {
     }
 }
 
-/// The run up to a turn.
+/// State of the run up to a turn.
 #[derive(Default)]
 struct Pictured {
-    /// The current atom by its number among those of all plans, and the time at which it began.
+    /// Number of the current atom among the atoms of all plans, and the time at which it began.
     atom: Option<(usize, Nanos)>,
-    /// The current atom by its number in its plan.
+    /// Number of the current atom in its plan.
     entered: Option<u32>,
-    /// The plans that have driven, by their numbers, with the number of the first atom of each.
+    /// For each plan that has been active, by its number, the number of its first atom among the atoms of all
+    /// plans.
     plans: BTreeMap<u64, usize>,
-    /// Number of the plan that drives; `None` before the first plan begins.
+    /// Number of the active plan; `None` before the first plan begins.
     number: Option<u64>,
     touches: bool,
     end: Nanos,
@@ -78,7 +79,7 @@ struct Pictured {
 }
 
 impl Pictured {
-    /// Takes a turn; `plan` is `None` before the first plan begins.
+    /// Draws a turn; `plan` is `None` before the first plan begins.
     fn turn(&mut self, turn: &ExaminedTurn, plan: Option<&ExaminedPlan>, picture: &mut Picture, signals: &[Signal]) {
         let (t, y) = (turn.recorded.t, &turn.recorded.y);
         self.output(y, t, picture);
@@ -131,7 +132,7 @@ impl Pictured {
         }
     }
 
-    /// Ends the stay in the current atom.
+    /// Draws the time spent in the current atom, at its end.
     fn leaves(&self, t: Nanos, picture: &mut Picture) {
         if let (Some((atom, since)), Picture::OverTime(chart)) = (self.atom, picture)
             && since < t
@@ -188,7 +189,7 @@ const SIGNALS: [(&str, &str, Signal); 6] = [
 /// Returns the signal of a name.
 ///
 /// # Errors
-/// There is no such signal.
+/// Fails if there is no such signal.
 fn signal(name: &str) -> Result<Signal, Failure> {
     let range = name.strip_prefix('r').and_then(|number| number.parse().ok()).filter(|number| *number < SONARS);
     let named = || SIGNALS.iter().find(|known| known.0 == name).map(|known| known.2);
@@ -201,7 +202,7 @@ fn signal(name: &str) -> Result<Signal, Failure> {
 }
 
 impl Signal {
-    /// Returns the name with its unit.
+    /// Returns the name of the signal with its unit.
     fn title(self) -> String {
         match self {
             Self::Range(sonar) => format!("r{sonar} [m]"),
@@ -212,7 +213,7 @@ impl Signal {
         }
     }
 
-    /// Returns the value in its unit; infinite where a sonar heard nothing.
+    /// Returns the value of the signal in its unit; infinite where a sonar had no echo.
     fn value(self, y: &Sensed) -> f64 {
         match self {
             Self::Speed => y.velocity.v.0 * 100.0,

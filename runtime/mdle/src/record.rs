@@ -4,10 +4,10 @@ use std::io::{BufReader, Read};
 
 use mdle_record::Records;
 
-/// The end of a plan, in place of a law.
+/// Text for the end of a plan, in the place of a law.
 pub(crate) const OVER: &str = "plan over";
 
-/// Bytes of a record.
+/// Source of the bytes of a record.
 pub(crate) type RecordSource = BufReader<Box<dyn Read>>;
 /// A record that is being read.
 pub(crate) type Record = Records<RecordSource>;
@@ -17,14 +17,14 @@ pub(crate) type Record = Records<RecordSource>;
 pub(crate) struct Part {
     /// Name of the part.
     pub(crate) name: String,
-    /// The part in the record.
+    /// The part as recorded.
     pub(crate) recorded: String,
-    /// The part in the replay.
+    /// The part as replayed.
     pub(crate) replayed: String,
 }
 
 impl Part {
-    /// A part of this name; an empty text is shown as `none`.
+    /// Returns a part of this name; an empty text is shown as `none`.
     pub(crate) fn new(name: &str, recorded: &str, replayed: &str) -> Self {
         let [recorded, replayed] = [recorded, replayed].map(|text| if text.is_empty() { "none" } else { text });
         Self { name: name.to_owned(), recorded: recorded.to_owned(), replayed: replayed.to_owned() }

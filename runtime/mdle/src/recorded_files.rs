@@ -1,4 +1,4 @@
-//! Plans compiled from the texts that a record has, in place of files on the disk.
+//! Plans compiled from texts in a record, instead of files on the disk.
 
 use std::path::{Path, PathBuf};
 
@@ -11,10 +11,11 @@ use mdle_files::{InputError, Target};
 
 use crate::failure::{self, Failure};
 
-/// Compiles the plan `wanted` of these files, the plan's own first, or the only plan that no other uses.
+/// Compiles the plan `wanted` of these files, of which the first is the plan's own; without a name, the only
+/// plan that no other plan uses.
 ///
 /// # Errors
-/// The plan has errors, or there is none.
+/// Fails if the plan has errors, or if there is none.
 pub(crate) fn compiled(
     files: &[(String, String)],
     wanted: Option<&str>,
@@ -32,7 +33,7 @@ pub(crate) fn compiled(
 /// Returns the machine of the only plan, unless the diagnostics have errors, which are printed.
 ///
 /// # Errors
-/// The plan has errors, or there is none.
+/// Fails if the plan has errors, or if there is none.
 pub(crate) fn only(
     plans: Vec<Compiled>,
     diagnostics: &[Diagnostic],
@@ -50,7 +51,7 @@ pub(crate) fn only(
     Ok(only.ok_or_else(name)?)
 }
 
-/// The files of a plan as its record has them.
+/// The files of a plan, as its record contains them.
 struct RecordedFiles<'b> {
     sources: Sources,
     own: SourceId,

@@ -26,15 +26,16 @@ use crate::session;
 use crate::step::step;
 use crate::targets;
 
-/// Exit status of a run that is not that of the record.
+/// Exit status for a run that differs from the record.
 const DIFFERS: u8 = 1;
-/// Maximum number of turns that are printed after the first that differs.
+/// Maximum number of turns that are printed after the first difference.
 const ROWS: usize = 20;
 
-/// Re-executes a record; returns 0 if the run is that of the record, and 1 if it differs or the record was changed.
+/// Re-executes a record; returns 0 if the run matches the record, and 1 if it differs or the record was
+/// changed.
 ///
 /// # Errors
-/// The record or the plan cannot be read.
+/// Fails if the record or the plan cannot be read.
 pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
     let (begin, records) = record(&arguments.log)?;
     let linked = targets::of_record(&begin, &arguments.log)?;
@@ -77,10 +78,10 @@ fn stepped(
     Ok(ExitCode::from(if outcome.differs || outcome.is_refused { DIFFERS } else { 0 }))
 }
 
-/// Opens a record and reads its begin.
+/// Opens a record and reads its first entry.
 ///
 /// # Errors
-/// The file cannot be read, or is no record.
+/// Fails if the file cannot be read, or is no record.
 pub(crate) fn record(log: &Path) -> Result<(Begin, Record), Failure> {
     let file = opened(log).map_err(|error| unread(log, &error))?;
     Records::open(BufReader::new(file)).map_err(|error| unread(log, &error))
@@ -103,7 +104,7 @@ fn opened(path: &Path) -> io::Result<Box<dyn Read>> {
     Err(io::Error::other("expected a file or a pipe"))
 }
 
-/// The plan that is wanted for a record.
+/// The plan with which a record is replayed.
 pub(crate) struct WantedPlan<'a> {
     pub(crate) log: &'a Path,
     /// File of the plan; `None` for the text in the record.
@@ -111,14 +112,15 @@ pub(crate) struct WantedPlan<'a> {
     pub(crate) begin: &'a Begin,
     /// The call without `--plan`, for messages.
     pub(crate) call: &'a str,
-    /// `true` if it has to be the plan that ran.
+    /// `true` if the plan must be the one that ran.
     pub(crate) has_run: bool,
 }
 
 /// Compiles the plan of a record, or the plan of the same name in a file.
 ///
 /// # Errors
-/// The plan cannot be read, has errors or is not that of the record, or the record has no text of it.
+/// Fails if the plan cannot be read, has errors, or is not the plan of the record, or if the record does not
+/// contain the plan's text.
 pub(crate) fn plan(wanted: &WantedPlan<'_>, target: &Target) -> Result<(Machine, Sources), Failure> {
     let WantedPlan { log, file, begin, call, has_run } = *wanted;
     if begin.beside == Begin::MIDDLE {
@@ -152,7 +154,8 @@ pub(crate) fn plan(wanted: &WantedPlan<'_>, target: &Target) -> Result<(Machine,
     Ok((machine, input.sources))
 }
 
-/// Returns the first place at which the texts of a plan differ from those in the record, if it has any.
+/// Returns the first place at which the texts of a plan differ from the texts in the record; `None` if there is
+/// none.
 fn difference(input: &Input, begin: &Begin) -> Option<String> {
     if begin.files.is_empty() {
         return None;
@@ -190,8 +193,8 @@ fn tell(outcome: &Outcome, plan: &str) -> io::Result<()> {
     }
 }
 
-/// Returns the transitions from the first turn that differs on, those of the record beside those of the other plan;
-/// empty if there are none.
+/// Returns the transitions from the first different turn on, with those of the record beside those of the other
+/// plan; empty if there are none.
 fn side_by_side(after: &[Parting], plan: &str) -> String {
     if after.is_empty() {
         return String::new();

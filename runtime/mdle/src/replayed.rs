@@ -1,4 +1,4 @@
-//! The comparison of a run that is made again with its record: the first turn that differs, and what differs.
+//! The comparison of a repeated run with its record: the first turn that differs, and its differences.
 
 use mdle_record::{Message, MessageKind, ReadError};
 use mdle_runtime::Nanos;
@@ -10,16 +10,16 @@ use crate::replayer::{RecordedRun, ReplayedTurn, Stop};
 /// Outcome of a replay.
 #[derive(Debug)]
 pub(crate) enum Outcome {
-    /// All turns are those of the record.
+    /// All turns match the record.
     Same {
         /// Number of turns.
         turns: u64,
-        /// `true` if the record has an end, or the replay ended before it as asked.
+        /// `true` if the record has an end, or if the replay ended before it as requested.
         is_whole: bool,
     },
     /// A turn differs from the record.
     Differs(Difference),
-    /// The turns up to this number are those of the record, and the next cannot be read.
+    /// The turns up to this number match the record, and the next turn cannot be read.
     Unread(u64, ReadError),
 }
 
@@ -28,11 +28,11 @@ pub(crate) enum Outcome {
 pub(crate) struct Difference {
     /// Number of the turn, from 0.
     pub(crate) turn: u64,
-    /// Time of the run.
+    /// Time of the turn.
     pub(crate) t: Nanos,
     /// The parts that differ.
     pub(crate) parts: Vec<Part>,
-    /// The turns with transitions from this one on; empty unless they were asked for.
+    /// The later turns with transitions, from this turn on; empty unless they were requested.
     pub(crate) after: Vec<Parting>,
 }
 
@@ -41,25 +41,25 @@ pub(crate) struct Difference {
 pub(crate) struct Parting {
     /// Time of the turn.
     pub(crate) t: Nanos,
-    /// Laws that began in the record; `plan over` at its end.
+    /// Laws that began in the record; `plan over` at the end of the plan.
     pub(crate) recorded: Vec<String>,
     /// Laws that began in the replay.
     pub(crate) replayed: Vec<String>,
 }
 
-/// The part of a record that is replayed, and what is wanted of it.
+/// The part of a record that is replayed, and the extent of the comparison.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ReplayTerms {
     /// Time of the last turn; `None` for all.
     pub(crate) until: Option<Nanos>,
-    /// `true` if the plan goes on after the first turn that differs.
+    /// `true` if the plan continues after the first turn that differs.
     pub(crate) goes_on: bool,
 }
 
-/// Makes the turns of a record again, and compares them with it.
+/// Repeats the turns of a record, and compares them with the record.
 ///
 /// # Errors
-/// A plan that took over in the record cannot be compiled.
+/// Fails if a plan that took over in the record cannot be compiled.
 pub(crate) fn replayed(replay: &mut dyn RecordedRun, terms: ReplayTerms) -> Result<Outcome, Failure> {
     let (mut turns, mut difference) = (0, None::<Difference>);
     while let Some(turn) = replay.turn() {
@@ -94,7 +94,7 @@ pub(crate) fn replayed(replay: &mut dyn RecordedRun, terms: ReplayTerms) -> Resu
     Ok(difference.map_or(Outcome::Same { turns, is_whole: replay.is_whole() }, Outcome::Differs))
 }
 
-/// The law that began with a transition of the record.
+/// Returns the law that began with a transition of the record.
 fn law_of(message: &Message) -> Option<String> {
     let transition: serde_json::Value = serde_json::from_str(&message.json).ok()?;
     (message.kind == MessageKind::Transition)

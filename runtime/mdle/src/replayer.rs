@@ -1,4 +1,4 @@
-//! The turns of a record, made again by the engine on the recorded outputs: plans, safety rules and all.
+//! The turns of a record, repeated by the engine with the recorded outputs, including plans and safety rules.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -21,47 +21,49 @@ use crate::recorded_files;
 use crate::recorded_paths::RecordedPaths;
 use crate::safety::{Guarded, SafetyFile};
 
-/// A run that is made again, on any robot.
+/// A recorded run that is repeated, for any robot.
 pub(crate) trait RecordedRun {
     /// Makes the next turn; returns `None` at the end of the record.
     fn turn(&mut self) -> Option<Result<ReplayedTurn, Stop>>;
 
-    /// Returns the machine of the plan that drove in the last turn, and the moments of that turn; `None` if it has not
-    /// begun, or is not looked at.
+    /// Returns the machine of the plan that was active in the last turn, and the moments of that turn; `None`
+    /// if the plan has not begun, or is not observed.
     fn looked_at(&self) -> Option<(&Arc<fsm::Machine>, &[Moment])>;
 
-    /// Returns the texts of the plan that drove in the last turn; `None` if it has not begun, or is not looked at.
+    /// Returns the texts of the plan that was active in the last turn; `None` if it has not begun, or is not
+    /// observed.
     fn texts(&self) -> Option<Box<dyn Texts>>;
 
     /// Returns the time of the next turn; `None` at the end of the record.
     fn next_time(&self) -> Option<Nanos>;
 
-    /// Returns `true` once the end of the record was read; a run that was killed leaves a record without an end.
+    /// Returns `true` once the end of the record has been read. A run that was killed leaves a record without
+    /// an end.
     fn is_whole(&self) -> bool;
 }
 
-/// A turn that was made again.
+/// A turn that was repeated.
 #[derive(Debug)]
 pub(crate) struct ReplayedTurn {
-    /// The turn in the record.
+    /// The turn as recorded.
     pub(crate) recorded: RecordedTurn,
-    /// The messages about it in the record.
+    /// The messages about the turn in the record.
     pub(crate) messages: Vec<Message>,
     /// The parts that differ from the record.
     pub(crate) parts: Vec<Part>,
     /// The laws that began in the turn, in order; [`OVER`] for the end of the plan.
     pub(crate) laws: Vec<String>,
-    /// The law of the atom in which the turn ended; empty if there is none.
+    /// Law of the atom in which the turn ended; empty if there is none.
     pub(crate) law: String,
     /// The transitions, with their operands.
     pub(crate) transitions: Transitions,
-    /// The input that the plan asked for.
+    /// The input that the plan demanded.
     pub(crate) asked: Twist,
-    /// The reason for which the plan replaced another one; empty for the first plan.
+    /// Reason why the plan replaced another plan; empty for the first plan.
     pub(crate) reason: String,
 }
 
-/// Reason why no further turn is made.
+/// Reason why no further turn is repeated.
 #[derive(Debug)]
 pub(crate) enum Stop {
     /// The record cannot be read.
@@ -70,10 +72,10 @@ pub(crate) enum Stop {
     Failed(Failure),
 }
 
-/// Returns the run of a record whose first plan is that of `machine`; if it `looks`, plans are looked at.
+/// Returns the run of a record whose first plan is that of `machine`; plans are observed if `looks` is `true`.
 ///
 /// # Errors
-/// The plan or a safety rule cannot be loaded.
+/// Fails if the plan or a safety rule cannot be loaded.
 pub(crate) fn replay<A>(
     machine: fsm::Machine,
     sources: &Sources,
@@ -296,7 +298,7 @@ fn words(applied: Applied) -> String {
     .to_owned()
 }
 
-/// The transitions of a turn, in the words of the plan that ran.
+/// Returns the transitions of a turn, in the words of the plan that ran.
 fn recorded_transitions(messages: &[Message]) -> String {
     let transitions = messages.iter().filter(|message| message.kind == MessageKind::Transition).filter_map(|message| {
         let json: serde_json::Value = serde_json::from_str(&message.json).ok()?;
@@ -308,7 +310,7 @@ fn recorded_transitions(messages: &[Message]) -> String {
     transitions.collect::<Vec<_>>().join("; ")
 }
 
-/// The transitions of a turn, as a trace has them.
+/// Returns the transitions of a turn, as a trace shows them.
 fn listed<A: Alphabet>(plan: Option<&LoadedPlan<A>>, steps: &[Step]) -> String {
     steps.iter().map(|step| text(plan, step)).collect::<Vec<_>>().join("; ")
 }

@@ -20,10 +20,11 @@ use crate::scenario;
 use crate::session;
 use crate::targets::{self, LinkedTarget, Ready};
 
-/// Runs a plan with these modules, and those that its settings name; returns the exit status of the run.
+/// Runs a plan with these modules, and with the modules that its settings name; returns the exit status of the
+/// run.
 ///
 /// # Errors
-/// The plan does not run.
+/// Fails if the plan cannot be run.
 pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitCode, Failure> {
     if scenario::is_scenario(&arguments.file) {
         return scenario::run(&arguments, library);
@@ -68,7 +69,7 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
     session::held(session, &arguments.file, |seat| ready.session(&plan, call, library, seat))
 }
 
-/// The call of nothing.
+/// Returns a call without arguments.
 fn no_call() -> Call {
     let recorded = RecordedPlan::default();
     Call { words: Vec::new(), options: Vec::new(), read: Vec::new(), recorded, later_path: None }
@@ -103,7 +104,7 @@ fn beside(arguments: &Run, ready: &dyn Ready) -> String {
     parts.into_iter().filter_map(|(is_there, words)| is_there.then_some(words)).collect::<Vec<_>>().join(" and ")
 }
 
-/// Compiles the only plan to run and loads it; returns it with its name. Messages go to standard error.
+/// Compiles and loads the only plan to run; returns it with its name. Messages go to standard error.
 fn compiled(
     arguments: &Run,
     wanted: Option<&str>,

@@ -1,4 +1,4 @@
-//! Times of a run, as arguments give them.
+//! Times of a run, as arguments.
 
 use mdle_host::Quantity;
 use mdle_runtime::Nanos;
@@ -8,7 +8,7 @@ use crate::failure::Failure;
 /// Reads a time of a run.
 ///
 /// # Errors
-/// The text is no time, or a negative one.
+/// Fails if the text is no time, or a negative time.
 pub(crate) fn run_time(text: &str) -> Result<Nanos, Failure> {
     let seconds = Quantity::Time.read(text, "s").map_err(Failure::Usage)?;
     if seconds < 0.0 {

@@ -17,17 +17,17 @@ use crate::recorded_files;
 /// Maximum size of a safety file, in bytes.
 const LARGEST: u64 = 1_000_000;
 
-/// A safety file that was read.
+/// A safety file that has been read.
 #[derive(Debug)]
 pub(crate) struct SafetyFile {
     path: PathBuf,
     text: String,
     rules: Rules,
-    /// The files of the plans to which rules divert, as a record has them; `None` for those on the disk.
+    /// The files of the plans to which rules divert, from a record; `None` for files on the disk.
     recorded: Option<Vec<Vec<(String, String)>>>,
 }
 
-/// The rules of a safety file, with what they need of a robot.
+/// The rules of a safety file, compiled for a robot.
 pub(crate) struct Guarded<A: Alphabet> {
     rules: Rules,
     conditions: Conditions<A>,
@@ -39,7 +39,7 @@ impl SafetyFile {
     /// Reads the file.
     ///
     /// # Errors
-    /// It cannot be read, or is no safety file.
+    /// Fails if the file cannot be read, or is no safety file.
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
         let name = path.display();
         let unread = |error| Failure::Usage(format!("the safety file {name} cannot be read: {error}"));
@@ -47,10 +47,10 @@ impl SafetyFile {
         Self::of_text(path, text, None)
     }
 
-    /// Reads the rules that a record has.
+    /// Reads the rules of a record.
     ///
     /// # Errors
-    /// They are none of this version.
+    /// Fails if the rules are not valid in this version.
     pub(crate) fn recorded(SafetyTexts { name, text, plans }: &SafetyTexts) -> Result<Self, Failure> {
         Self::of_text(Path::new(name), text.clone(), Some(plans.clone()))
     }
@@ -60,17 +60,18 @@ impl SafetyFile {
         Ok(Self { path: path.to_owned(), text, rules, recorded })
     }
 
-    /// The files that the rules need: their own, and plans.
+    /// Returns the paths of the safety file itself and of the plans to which rules divert.
     pub(crate) fn files(&self) -> impl Iterator<Item = PathBuf> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let plans = self.rules.plans.iter().map(|plan| folder.join(plan));
         [self.path.clone()].into_iter().chain(plans)
     }
 
-    /// Compiles the conditions and the plans for the robot of a target; if it `looks`, plans are looked at.
+    /// Compiles the conditions and the plans for the robot of a target; plans are observed if `looks` is
+    /// `true`.
     ///
     /// # Errors
-    /// A condition or a plan has errors.
+    /// Fails if a condition or a plan has errors.
     pub(crate) fn compile<A: Alphabet>(&self, target: &Target, looks: bool) -> Result<Guarded<A>, Failure> {
         let mut sources = target.sources();
         let name = self.path.display().to_string();
@@ -91,7 +92,7 @@ impl SafetyFile {
     }
 }
 
-/// Prints what is wrong with a condition.
+/// Prints the errors of a condition.
 fn refused(error: GuardError, name: &str, sources: &Sources) -> Failure {
     match error {
         GuardError::Faulty(diagnostics) => {
@@ -103,7 +104,7 @@ fn refused(error: GuardError, name: &str, sources: &Sources) -> Failure {
     }
 }
 
-/// A plan to which a rule diverts, with names and texts of its files.
+/// A plan to which a rule diverts, with the names and texts of its files.
 type Diversion<A> = (Arc<Loaded<A>>, Vec<(String, String)>);
 
 /// Compiles and loads a plan to which a rule diverts, from a file or from the texts of a record.

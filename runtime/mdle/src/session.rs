@@ -1,4 +1,4 @@
-//! `mdle shell`: a run with a front end beside it.
+//! `mdle shell`: a run together with a front end.
 
 use std::fs::File;
 use std::io::{self, BufReader, IsTerminal as _};
@@ -19,23 +19,23 @@ use crate::terminal::{HeldTerminal, Printing};
 
 /// Maximum wait after a run for the last answer of the front end.
 const LAST_ANSWER: Duration = Duration::from_secs(1);
-/// Exit status of a session in which a command was refused.
+/// Exit status for a session in which a command was refused.
 const REFUSED: u8 = 1;
 
-/// What a run needs for its session.
+/// Data that a run needs for its session.
 pub(crate) struct Seat {
     pub(crate) desk: Desk,
-    /// `true` if stepped time stands before the first turn.
+    /// `true` if stepped time does not begin before it is resumed.
     pub(crate) is_paused: bool,
     /// The stream to which the run reports.
     pub(crate) stream: OwnedFd,
 }
 
-/// Holds a session around `run`; `plan` is the file of the plan. Returns the exit status of the run, or 1 if that is 0
-/// and a command of a file or a pipe was refused.
+/// Runs a session together with `run`; `plan` is the file of the plan. Returns the exit status of the run, or 1
+/// if that is 0 and a command of a file or a pipe was refused.
 ///
 /// # Errors
-/// The commands cannot be read.
+/// Fails if the commands cannot be read.
 pub(crate) fn held(
     options: &SessionOptions,
     plan: &Path,

@@ -1,4 +1,4 @@
-//! `mdle replay --step`: the turns of a record one by one, forth and back.
+//! `mdle replay --step`: steps through the turns of a record, forwards and backwards.
 
 use std::fmt::Write as _;
 use std::io::{self, BufRead, Write};
@@ -13,7 +13,7 @@ use crate::record::OVER;
 use crate::replayer::{RecordedRun, ReplayedTurn, Stop};
 use crate::run_time::run_time;
 
-/// The commands, with what they do.
+/// The commands, with their descriptions.
 const COMMANDS: [(&str, &str); 6] = [
     ("step [N]", "make the next turn, or N turns; an empty line does the same"),
     ("back [N]", "go back by a turn, or by N turns"),
@@ -32,7 +32,7 @@ pub(crate) struct Steps {
     pub(crate) is_refused: bool,
 }
 
-/// A turn that was made.
+/// A turn that has been repeated.
 #[derive(Debug)]
 struct MadeTurn {
     t: Nanos,
@@ -40,24 +40,24 @@ struct MadeTurn {
     text: String,
 }
 
-/// The turns of a record up to the last one that was made.
+/// The turns of a record up to the last repeated turn.
 struct Turns<'r> {
     replay: &'r mut dyn RecordedRun,
     until: Option<Nanos>,
     made: Vec<MadeTurn>,
-    /// Number of turns up to the one that is shown.
+    /// Number of turns up to the turn that is shown.
     place: usize,
-    /// Why there are no more turns, once there are none.
+    /// Reason why there are no more turns, once the end is reached.
     end: Option<String>,
     differs: bool,
-    /// Number of the plan that made the last turn; `None` before the first.
+    /// Number of the plan that made the last turn; `None` before the first turn.
     plan: Option<u64>,
 }
 
 /// Steps through a record by these commands, which a person types if `is_typed`; prints the turns on standard output.
 ///
 /// # Errors
-/// A plan that took over cannot be compiled, or standard output cannot be written.
+/// Fails if a plan that took over cannot be compiled, or if standard output cannot be written.
 pub(crate) fn step(
     replay: &mut dyn RecordedRun,
     until: Option<Nanos>,
@@ -88,7 +88,7 @@ pub(crate) fn step(
 
 /// Reason why a command is not carried out.
 enum Refused {
-    /// The command is wrong.
+    /// The command is wrong: a sentence.
     Sentence(String),
     /// A plan cannot be compiled.
     Failure(Failure),
@@ -101,7 +101,7 @@ impl From<Failure> for Refused {
 }
 
 impl Turns<'_> {
-    /// Carries out a command; returns its answer, or `None` for the end.
+    /// Carries out a command; returns its answer, or `None` for the end of the session.
     fn command(&mut self, line: &str) -> Result<Option<String>, Refused> {
         let (word, argument) = line.split_once(' ').map_or((line, ""), |(word, argument)| (word, argument.trim()));
         if ["next", "help", "quit"].contains(&word) && !argument.is_empty() {
@@ -174,7 +174,7 @@ impl Turns<'_> {
         self.show(place.max(1))
     }
 
-    /// Shows the turn at this place, or the last one.
+    /// Shows the turn at this position, or the last turn.
     fn show(&mut self, place: usize) -> Result<String, Failure> {
         self.place = place.min(self.made.len());
         let end = self.end.as_ref().filter(|_| place > self.made.len());
@@ -186,7 +186,7 @@ impl Turns<'_> {
         shown.map_or_else(String::new, |turn| turn.text.clone())
     }
 
-    /// Makes the turn after the last one; returns `false` if there is none.
+    /// Repeats the turn after the last one; returns `false` if there is none.
     fn make(&mut self) -> Result<bool, Failure> {
         if self.end.is_some() {
             return Ok(false);
@@ -226,7 +226,7 @@ fn count(word: &str, argument: &str) -> Result<usize, Refused> {
     })
 }
 
-/// The text of a turn: what led to it, its transitions, its input, and what differs from the record.
+/// Returns the text of a turn: its cause, its transitions, its input, and its differences from the record.
 fn text(ReplayedTurn { recorded, messages, parts, laws, law, .. }: &ReplayedTurn) -> String {
     let mut text = format!("turn {} at {}  {}\n", recorded.number, Clocked(recorded.t), Printable(law));
     if law.is_empty() {
@@ -249,7 +249,7 @@ fn text(ReplayedTurn { recorded, messages, parts, laws, law, .. }: &ReplayedTurn
     text
 }
 
-/// The words of a message of the record.
+/// Returns the words of a message of the record.
 fn words(message: &Message) -> Option<(String, String)> {
     let json: serde_json::Value = serde_json::from_str(&message.json).ok()?;
     let field = |name: &str| json.get(name).and_then(serde_json::Value::as_str);

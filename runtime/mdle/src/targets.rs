@@ -1,4 +1,4 @@
-//! The robots that this program can run plans on.
+//! The robots on which this program can run plans.
 
 use std::os::fd::AsFd as _;
 use std::path::Path;
@@ -39,14 +39,15 @@ pub(crate) struct LinkedTarget {
     pub(crate) replay: ReplayRecord,
     /// Drives a route.
     pub(crate) navigate: DriveRoute,
-    /// Returns the message if a run has no such options.
+    /// Returns the message if a run does not accept these options.
     pub(crate) check: fn(Program<'_>, &Call) -> Result<(), String>,
 }
 
-/// Loads a plan of a file for a target, with the safety rules of its runs.
+/// Function that loads a plan of a file for a target, with the safety rules of its runs.
 type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Box<dyn Ready>, Failure>;
 
-/// Runs the plan of a machine on the outputs of a record; the last argument tells whether plans are looked at.
+/// Function that runs the plan of a machine on the outputs of a record; plans are observed if the last argument
+/// is `true`.
 type ReplayRecord = fn(Machine, &Sources, &Arc<Target>, &Begin, Record, bool) -> Result<Box<dyn RecordedRun>, Failure>;
 
 /// Drives a route, with these modules.
@@ -60,19 +61,19 @@ pub(crate) trait Ready {
     /// Returns the texts of the safety rules.
     fn safety(&self) -> Option<&SafetyTexts>;
 
-    /// Lets runs of the plan be linked with other robots.
+    /// Links runs of the plan with other robots.
     ///
     /// # Errors
-    /// The plan names a robot that the link does not know.
+    /// Fails if the plan names a robot that the link does not know.
     fn link(&mut self, link: Option<LinkFile>) -> Result<(), Failure>;
 
-    /// Lets the way back of each `path` and `Follow` replace the path of this name in runs of the plan.
+    /// Makes runs of the plan replace the path of this name by the way back from each `path` and `Follow`.
     ///
     /// # Errors
-    /// The plan replays no such path.
+    /// Fails if the plan replays no such path.
     fn records(&mut self, path: Option<&str>) -> Result<(), Failure>;
 
-    /// Lets the module `heading` of runs of the plan listen to this sound.
+    /// Sets the sound for the module `heading` in runs of the plan.
     fn hears(&mut self, hearing: Option<SoundInput>);
 
     /// Runs the plan of this name, with these modules.
@@ -82,7 +83,7 @@ pub(crate) trait Ready {
     fn session(&self, name: &str, call: Call, library: &Library<Sensed>, seat: Seat) -> ExitCode;
 }
 
-/// The robots.
+/// The robots whose drivers are part of this program.
 const LINKED: [LinkedTarget; 3] = [
     LinkedTarget::new::<mdle_atrv::Target, mdle_atrv::alphabet::Alphabet>(),
     LinkedTarget::new::<mdle_scout::Target, mdle_scout::alphabet::Alphabet>(),
@@ -92,7 +93,7 @@ const LINKED: [LinkedTarget; 3] = [
 /// Returns the robot of this name.
 ///
 /// # Errors
-/// A sentence with the names that there are.
+/// Fails with a sentence that lists the known names.
 pub(crate) fn linked(name: &str) -> Result<LinkedTarget, String> {
     if let Some(linked) = LINKED.iter().find(|linked| linked.name == name) {
         return Ok(*linked);
@@ -106,10 +107,10 @@ pub(crate) fn linked(name: &str) -> Result<LinkedTarget, String> {
     ))
 }
 
-/// Returns the robot of a record, which is in this file.
+/// Returns the robot of a record in the file `log`.
 ///
 /// # Errors
-/// This program has no such robot.
+/// Fails if this program has no such robot.
 pub(crate) fn of_record(begin: &Begin, log: &Path) -> Result<LinkedTarget, Failure> {
     LINKED.iter().find(|linked| linked.name == begin.target).copied().ok_or_else(|| {
         let (log, target, known) = (log.display(), &begin.target, LINKED.map(|linked| linked.name).join(", "));
@@ -139,21 +140,22 @@ impl LinkedTarget {
 /// A plan for the target `T`.
 struct PlanFor<T, A: Alphabet> {
     loaded: Arc<Loaded<A>>,
-    /// Names and texts of its files, its own first.
+    /// Names and texts of the plan's files, its own file first.
     files: Arc<[(String, String)]>,
-    /// The target, for other plans.
+    /// The target, for compiling further plans.
     known: Arc<Target>,
     safety: Option<Guarded<A>>,
     link: Option<LinkFile>,
-    /// Sound that the module `heading` listens to.
+    /// Sound for the module `heading`.
     hearing: Option<SoundInput>,
-    /// Name of the path that the way back of `path` and `Follow` replaces, with the greatest speeds of a path.
+    /// Name of the path that is replaced by the way back from `path` and `Follow`, with the maximum speeds of a
+    /// path.
     records: Option<(&'static str, Twist)>,
     target: std::marker::PhantomData<fn() -> T>,
 }
 
 impl<T, A: EngineAlphabet<Output = Sensed>> PlanFor<T, A> {
-    /// Makes the engine of a run.
+    /// Creates the engine of a run.
     fn engine(&self, library: &Library<Sensed>, terms: &RunTerms) -> Result<Engine<A>, Refusal> {
         let engine = match &self.hearing {
             Some(hearing) => Engine::new(self.loaded.plan(), &hearing.added(library, &terms.microphones), terms)?,

@@ -1,4 +1,4 @@
-//! The terminal of a session: what the run reports is printed above the line that is being typed.
+//! The terminal of a session: reports of the run are printed above the line that is being typed.
 
 use std::io::{self, BufRead as _, BufReader, PipeReader, PipeWriter, Write as _};
 use std::sync::mpsc::{Sender, channel};
@@ -10,21 +10,21 @@ use mdle_engine::shell::{PrintAbove, Terminal};
 use mdle_engine::tree::Hub;
 use rustix::termios::{OptionalActions, Termios, tcgetattr, tcsetattr};
 
-/// The line that ends what a run reports.
+/// Line that marks the end of a run's reports.
 const END: &[u8] = b"\0\n";
-/// A line that changes nothing on the screen: when it has been taken, those before it have been printed.
+/// Line that changes nothing on the screen; once it has been taken, all lines before it have been printed.
 const NOTHING: &str = "\x1b[A\n";
 /// Maximum wait for the last report to be printed.
 const LAST: Duration = Duration::from_millis(500);
-/// Maximum wait for a report of what is watched, between two checks of the end of the run.
+/// Maximum wait for a report of a watched attribute, between two checks for the end of the run.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// A terminal while a session has it.
+/// A terminal that a session uses.
 #[derive(Debug)]
 pub(crate) struct HeldTerminal {
-    /// The way in which the terminal was read before.
+    /// Settings of the terminal before the session.
     before: Option<Termios>,
-    /// The stream to which the run reports.
+    /// Stream to which the run reports.
     reports: PipeWriter,
     printed: std::sync::mpsc::Receiver<()>,
 }
@@ -40,7 +40,7 @@ impl HeldTerminal {
     /// Takes the terminal of this process.
     ///
     /// # Errors
-    /// The system gives no pipe.
+    /// Fails if the system cannot create a pipe.
     pub(crate) fn take() -> io::Result<(Self, Printing)> {
         let (reader, reports) = io::pipe()?;
         let (sender, printed) = channel();
@@ -48,12 +48,12 @@ impl HeldTerminal {
         Ok((Self { before, reports, printed }, Printing { reports: reader, printed: sender }))
     }
 
-    /// Returns where the run reports.
+    /// Returns the stream to which the run reports.
     pub(crate) fn reports(&self) -> &PipeWriter {
         &self.reports
     }
 
-    /// Gives the terminal back, when all that the run has reported is printed.
+    /// Restores the terminal, once all reports of the run are printed.
     pub(crate) fn give_back(mut self) {
         let _ = self.reports.write_all(END);
         let _ = self.printed.recv_timeout(LAST);
@@ -66,10 +66,11 @@ impl HeldTerminal {
 }
 
 impl Printing {
-    /// Opens the terminal for typing, and lets threads print what the run and the hub report.
+    /// Opens the terminal for typing, and starts threads that print the reports of the run and the hub.
     ///
     /// # Errors
-    /// The terminal cannot be used, or the system gives no threads; all that the run reports is printed anyway.
+    /// Fails if the terminal cannot be used, or if the system cannot create the threads; reports of the run are
+    /// printed in any case.
     pub(crate) fn begin(self, hub: &Hub) -> io::Result<Terminal> {
         let (terminal, print): (_, Box<PrintAbove>) = match Terminal::open(hub.clone()) {
             Ok((terminal, print)) => (Ok(terminal), print),
@@ -90,7 +91,7 @@ impl Printing {
         terminal
     }
 
-    /// Prints what the run reports, up to its end.
+    /// Prints the reports of the run, up to their end.
     fn print(self, print: &Mutex<Box<PrintAbove>>) {
         let (mut reports, mut line) = (BufReader::new(self.reports), Vec::new());
         while reports.read_until(b'\n', &mut line).is_ok_and(|read| read > 0) && line != END {

@@ -1,35 +1,36 @@
-//! The way back along a way that was driven, as a path that the law `path` replays (paper, section IV-D).
+//! The way back along a driven path, as a path that the law `path` replays (paper, section IV-D).
 
 use std::fmt::Write as _;
 
 use mdle_runtime::{Pose, Radians};
 
-/// Distance between two places that are kept, in metres: nearer ones are those of a robot that stands.
+/// Minimum distance between two recorded places, in metres; closer places mean that the robot stands still.
 const APART: f64 = 0.01;
-/// Number of places on either side of one over which it is smoothed.
+/// Number of places on either side of a place over which the place is averaged.
 const SMOOTHED: usize = 2;
 /// Speed of the way back, in m/s.
 const SPEED: f64 = 0.5;
-/// Acceleration at its begin, in m/s²: a path that began at full speed would lead beyond its end.
+/// Acceleration at the start of the way back, in m/s²: a path that began at full speed would lead beyond its
+/// end.
 const RAMP: f64 = 1.0;
 /// Time between two rows, in seconds.
 const ROW: f64 = 0.1;
-/// Distance of the two places whose connecting line is the heading between them, in metres, to either side.
+/// Distance on either side of a place, in metres, of the two places that determine the heading.
 const AHEAD: f64 = 0.05;
-/// Length of a way that is too short to be one, in metres.
+/// Length, in metres, below which a way is too short to be recorded.
 const SHORTEST: f64 = 0.2;
 
-/// A place, in metres.
+/// Coordinates of a place, in metres.
 type Place = [f64; 2];
 
-/// A way that is being driven.
+/// The path that is being driven.
 #[derive(Debug, Default)]
 pub(crate) struct Way {
     places: Vec<Place>,
 }
 
 impl Way {
-    /// Notes that the robot is here, by odometry.
+    /// Records the pose of the robot, by odometry.
     pub(crate) fn went(&mut self, here: &Pose) {
         let place = [here.x.0, here.y.0];
         if self.places.last().is_none_or(|last| distance(last, &place) >= APART) {
@@ -50,7 +51,8 @@ fn distance(one: &Place, other: &Place) -> f64 {
     libm::hypot(one[0] - other[0], one[1] - other[1])
 }
 
-/// Returns each place as the mean of those around it, as many on either side; so the ends stay.
+/// Returns each place as the mean of the places around it, the same number on either side, so that the ends do
+/// not move.
 fn smoothed(places: &[Place]) -> Vec<Place> {
     let mean = |number: usize| {
         let beside = SMOOTHED.min(number).min(places.len() - 1 - number);
@@ -60,10 +62,10 @@ fn smoothed(places: &[Place]) -> Vec<Place> {
     (0..places.len()).map(mean).collect()
 }
 
-/// A line through places, by the length along it.
+/// A line through places, parameterized by the length along it.
 struct Line {
     places: Vec<Place>,
-    /// Length from the begin to each place.
+    /// Length from the start of the line to each place, in metres.
     lengths: Vec<f64>,
 }
 
@@ -83,7 +85,7 @@ impl Line {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
-    /// Returns the place at this length; that of an end beyond it.
+    /// Returns the place at this length; beyond an end, the end itself.
     fn at(&self, length: f64) -> Place {
         let next = self.lengths.partition_point(|other| *other <= length).clamp(1, self.places.len().max(2) - 1);
         let place = |number: usize| self.places.get(number).copied().unwrap_or_default();
@@ -100,7 +102,7 @@ impl Line {
     }
 }
 
-/// Writes the rows of a path along a line: from rest to full speed, which it has at its end.
+/// Writes the rows of a path along a line, from rest to full speed, which the path has at its end.
 fn rows(line: &Line, frame: Radians) -> String {
     let (ramp, length) = (SPEED / RAMP, line.length());
     let on_ramp = RAMP * ramp * ramp / 2.0;
@@ -125,7 +127,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns a way along these places, with a rest at each place.
+    /// Returns a way along these places, on which the robot rests at each place.
     fn way(places: impl Iterator<Item = Place>) -> Way {
         let mut way = Way::default();
         for [x, y] in places {
@@ -136,7 +138,7 @@ mod tests {
         way
     }
 
-    /// The place to which an ideal robot drives by a path, in a frame of this heading.
+    /// Returns the place and the heading to which an ideal robot drives by a path, in a frame of this heading.
     fn driven(text: &str, frame: f64) -> (Place, f64) {
         let fastest = Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) };
         let path = setpoints("back.csv", text.as_bytes(), fastest).unwrap();

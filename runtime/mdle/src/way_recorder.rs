@@ -1,4 +1,5 @@
-//! The recorder of a robot: the way back along what `path` and `Follow` drove replaces a path of the plan.
+//! The recorder of a robot: replaces a path of the plan by the way back along the path driven under `path` and
+//! `Follow`.
 
 use mdle_engine::Recorder;
 use mdle_host::setpoints;
@@ -6,20 +7,20 @@ use mdle_runtime::{Frame, PathStore, Pose, Sensed, StoredPath, Twist};
 
 use crate::way_back::Way;
 
-/// Maximum number of setpoints that the recorded paths of a robot have: they stay until the program ends.
+/// Maximum number of setpoints of all paths that a robot records; they are kept until the program ends.
 const SETPOINTS: usize = 2_000_000;
 
 /// The recorder of a robot.
 pub(crate) struct WayRecorder {
     /// Name of the path that the recorder replaces.
     path: &'static str,
-    /// Greatest speeds of a path.
+    /// Maximum speeds of a path.
     fastest: Twist,
-    /// The way of the law that runs, if that is recorded.
+    /// The way driven under the current law; `None` if this law is not recorded.
     way: Option<Way>,
     /// Frame of the plan.
     frame: Option<Frame>,
-    /// The robot's paths since a way was recorded.
+    /// The robot's paths after the first recording; `None` before.
     store: Option<PathStore>,
     /// The path that was replaced last, until it is taken.
     replaced: Option<StoredPath>,
@@ -27,7 +28,7 @@ pub(crate) struct WayRecorder {
     recorded: usize,
 }
 
-/// A turn, for the recorder.
+/// Data of a turn that the recorder needs.
 pub(crate) struct RecordedTurn<'t> {
     /// Pose by odometry.
     pub(crate) here: &'t Pose,
@@ -40,17 +41,17 @@ pub(crate) struct RecordedTurn<'t> {
 }
 
 impl WayRecorder {
-    /// Returns a recorder that replaces the path of this name, on a robot with these greatest speeds.
+    /// Returns a recorder that replaces the path of this name, on a robot with these maximum speeds.
     pub(crate) fn new(path: &'static str, fastest: Twist) -> Self {
         Self { path, fastest, way: None, frame: None, store: None, replaced: None, recorded: 0 }
     }
 
-    /// Returns the name of the path that is replaced.
+    /// Returns the name of the path that the recorder replaces.
     pub(crate) fn path(&self) -> &'static str {
         self.path
     }
 
-    /// Returns the robot's paths; `None` before a way was recorded.
+    /// Returns the robot's paths; `None` before the first recording.
     pub(crate) fn store(&self) -> Option<PathStore> {
         self.store
     }
@@ -58,7 +59,7 @@ impl WayRecorder {
     /// Takes a turn. If a recorded law has ended, replaces the path by the way back and returns its text.
     ///
     /// # Errors
-    /// The way back is no path: a sentence.
+    /// Fails with a sentence if the way back is not a valid path.
     pub(crate) fn take(&mut self, turn: &RecordedTurn<'_>) -> Result<Option<String>, String> {
         let RecordedTurn { here, paths, law, has_changed } = turn;
         let frame = *self.frame.get_or_insert(Frame(here.theta));
@@ -75,7 +76,7 @@ impl WayRecorder {
         Ok(Some(text))
     }
 
-    /// Replaces the path by the one of this text.
+    /// Replaces the path by the path of this text.
     fn replace(&mut self, paths: PathStore, text: &str) -> Result<(), String> {
         let setpoints = setpoints(self.path, text.as_bytes(), self.fastest)?;
         self.recorded = self.recorded.saturating_add(setpoints.len());

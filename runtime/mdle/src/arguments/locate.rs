@@ -11,12 +11,12 @@ pub(crate) struct Locate {
     pub(crate) log: PathBuf,
     /// The YAML files of the maps.
     pub(crate) maps: Vec<PathBuf>,
-    /// Pose near which the record began, in the axes of each map.
+    /// Pose near which the record began, in the axes of each map, as typed.
     pub(crate) at: String,
 }
 
 impl Locate {
-    /// Takes the arguments that were parsed.
+    /// Returns the arguments from the parsed command line.
     pub(super) fn of(matches: &ArgMatches) -> Self {
         Self {
             log: matches.get_one("log").cloned().unwrap_or_default(),

@@ -9,13 +9,13 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 pub(crate) enum Log {
     /// `mdle log info`: the record.
     Info(PathBuf),
-    /// `mdle log cut`: the record, the time of the last turn, and the new record.
+    /// `mdle log cut`: the record, the time of the last turn, and the file of the new record.
     Cut(PathBuf, String, PathBuf),
     /// `mdle log export`.
     Export {
         /// The record.
         log: PathBuf,
-        /// For a script in place of a table: the file of its plan, unless the record has it.
+        /// For a script instead of a table: the file of the plan, unless the record contains the plan.
         script: Option<Option<PathBuf>>,
         /// File to write; `None` for standard output.
         file: Option<PathBuf>,
@@ -23,7 +23,7 @@ pub(crate) enum Log {
 }
 
 impl Log {
-    /// Takes the arguments that were parsed.
+    /// Returns the arguments from the parsed command line.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let path = |matches: &ArgMatches, name: &str| matches.get_one::<PathBuf>(name).cloned().unwrap_or_default();
         match matches.subcommand() {

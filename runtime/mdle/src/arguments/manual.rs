@@ -20,7 +20,7 @@ pub(crate) fn completions() -> Command {
         )
 }
 
-/// Returns the shell whose completions are asked for.
+/// Returns the shell for which completions are requested.
 pub(crate) fn shell(matches: &ArgMatches) -> Shell {
     matches.get_one("shell").copied().unwrap_or(Shell::Bash)
 }
@@ -42,7 +42,7 @@ pub(crate) fn man() -> Command {
         )
 }
 
-/// Returns the words of the command whose manual page is asked for.
+/// Returns the words of the command whose manual page is requested.
 pub(crate) fn words(matches: &ArgMatches) -> Vec<String> {
     matches.get_many("command").into_iter().flatten().cloned().collect()
 }

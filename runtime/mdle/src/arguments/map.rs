@@ -9,14 +9,14 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 pub(crate) struct MakeMap {
     /// The record; `-` is standard input.
     pub(crate) log: PathBuf,
-    /// The YAML file to write; the image goes beside it.
+    /// The YAML file to write; the image is written beside it.
     pub(crate) file: PathBuf,
     /// Pose of the robot at the start of the record, in the axes of the map.
     pub(crate) at: String,
 }
 
 impl MakeMap {
-    /// Takes the arguments that were parsed.
+    /// Returns the arguments from the parsed command line.
     pub(super) fn of(matches: &ArgMatches) -> Self {
         let path = |name: &str| matches.get_one::<PathBuf>(name).cloned().unwrap_or_default();
         let at = matches.get_one::<String>("at").cloned().unwrap_or_default();

@@ -10,11 +10,11 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 pub(crate) struct Navigate {
     /// The file whose plans are the edges of the graph.
     pub(crate) graph: PathBuf,
-    /// Landmark at which the robot is.
+    /// Landmark at which the robot begins.
     pub(crate) from: String,
     /// Landmark to which the robot is to go, after others with commas between them.
     pub(crate) to: String,
-    /// Name or folder of the target; `None` for that of the `mdle.toml` beside the graph.
+    /// Name or folder of the target; `None` for the target of the `mdle.toml` beside the graph.
     pub(crate) target: Option<String>,
     /// File of the landmarks; `None` for the `landmarks.toml` beside the graph.
     pub(crate) landmarks: Option<PathBuf>,
@@ -25,7 +25,7 @@ pub(crate) struct Navigate {
 }
 
 impl Navigate {
-    /// Takes the arguments that were parsed.
+    /// Returns the arguments from the parsed command line.
     pub(super) fn of(matches: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>) -> Self {
         let text = |name: &str| matches.get_one::<String>(name).cloned();
         let path = |name: &str| matches.get_one::<PathBuf>(name).cloned();

@@ -12,7 +12,7 @@ pub(crate) struct Plot {
     pub(crate) log: PathBuf,
     /// The SVG file to write.
     pub(crate) file: PathBuf,
-    /// File of the plan; `None` for that of the record.
+    /// File of the plan; `None` for the plan in the record.
     pub(crate) plan: Option<PathBuf>,
     /// `true` for a chart over time.
     pub(crate) is_over_time: bool,
@@ -21,7 +21,7 @@ pub(crate) struct Plot {
 }
 
 impl Plot {
-    /// Takes the arguments that were parsed.
+    /// Returns the arguments from the parsed command line.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let path = |name: &str| matches.get_one::<PathBuf>(name).cloned();
         let signals: Vec<String> = matches.get_many("signal").into_iter().flatten().cloned().collect();

@@ -9,18 +9,18 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 pub(crate) struct Replay {
     /// The record; `-` is standard input.
     pub(crate) log: PathBuf,
-    /// File of the plan; `None` for that of the record.
+    /// File of the plan; `None` for the plan in the record.
     pub(crate) plan: Option<PathBuf>,
-    /// Time of the last turn, as it was typed; `None` for all turns.
+    /// Time of the last turn, as typed; `None` for all turns.
     pub(crate) until: Option<String>,
-    /// `true` if the turns are made one by one, as commands ask for them.
+    /// `true` if commands step through the turns.
     pub(crate) steps: bool,
-    /// File of these commands; `None` for standard input.
+    /// File of the step commands; `None` for standard input.
     pub(crate) commands: Option<PathBuf>,
 }
 
 impl Replay {
-    /// Takes the arguments that were parsed.
+    /// Returns the arguments from the parsed command line.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         Self {
             log: matches.get_one("log").cloned().unwrap_or_default(),

@@ -9,9 +9,9 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 pub(crate) struct Why {
     /// The record; `-` is standard input.
     pub(crate) log: PathBuf,
-    /// File of the plan; `None` for that of the record.
+    /// File of the plan; `None` for the plan in the record.
     pub(crate) plan: Option<PathBuf>,
-    /// The question.
+    /// The question about the record.
     pub(crate) question: Question,
     /// `true` if the answer is JSON.
     pub(crate) is_json: bool,
@@ -20,14 +20,14 @@ pub(crate) struct Why {
 /// A question about a record.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Question {
-    /// Why this ran at a time, as it was typed.
+    /// The reason why the current atom ran at this time, as typed.
     At(String),
-    /// Why this atom or behavior did not begin.
+    /// The reason why this atom or behavior did not begin.
     Not(String),
 }
 
 impl Why {
-    /// Takes the arguments that were parsed.
+    /// Returns the arguments from the parsed command line.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let text = |name: &str| matches.get_one::<String>(name).cloned();
         Self {

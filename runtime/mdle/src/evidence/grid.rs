@@ -13,11 +13,12 @@ const MOST: f64 = 5.0;
 const CONE: f64 = 12.5 * std::f64::consts::PI / 180.0;
 /// Half the depth of an echo's arc, in metres.
 const DEPTH: f64 = 0.05;
-/// Range beyond which an echo marks nothing as occupied, in metres.
+/// Range, in metres, beyond which an echo marks no cell as occupied.
 const FARTHEST: f64 = 3.0;
-/// Distance up to which a ping without an echo marks cells as free, in metres: further off a smooth wall may be silent.
+/// Distance, in metres, up to which a ping without an echo marks cells as free. Beyond it, a smooth wall may
+/// return no echo.
 const SILENT: f64 = 0.5;
-/// Distance at which nothing is marked as free any more, in metres.
+/// Distance, in metres, from which no cell is marked as free.
 const FADES: f64 = 2.5;
 
 /// A ping, in the axes of the grid.
@@ -58,13 +59,13 @@ impl EvidenceGrid {
         }
     }
 
-    /// Returns the grid of these probabilities, by rows along the second axis.
+    /// Returns a grid with these probabilities, by rows along the second axis.
     pub(super) fn of(probabilities: impl Iterator<Item = f64>) -> Self {
         let odds = |p: f64| libm::log(p / (1.0 - p)).clamp(-MOST, MOST);
         Self { odds: probabilities.map(odds).collect() }
     }
 
-    /// Returns the log-odds at a place; 0 outside the grid.
+    /// Returns the log-odds at a position; 0 outside the grid.
     pub(super) fn odds_at(&self, x: f64, y: f64) -> f64 {
         let cell = |at: f64| libm::floor((at + HALF) / CELL);
         let (column, row) = (cell(x), cell(y));
@@ -83,7 +84,7 @@ impl EvidenceGrid {
     }
 }
 
-/// Returns the position of the middle of a cell along an axis.
+/// Returns the position of the middle of a cell along an axis, in metres.
 pub(super) fn middle(cell: usize) -> f64 {
     (cell as f64 + 0.5) * CELL - HALF
 }
@@ -118,7 +119,7 @@ fn evidence(x: f64, y: f64, ping: &GridPing) -> f64 {
 mod tests {
     use super::*;
 
-    /// The probability at a place, after these pings along the first axis from the origin.
+    /// Returns the probability at a position, after pings of these ranges along the first axis from the origin.
     fn after(ranges: &[Option<f64>], x: f64, y: f64) -> f64 {
         let mut grid = EvidenceGrid::new();
         for range in ranges {

@@ -1,13 +1,13 @@
-//! Finds the pose of a robot in an evidence grid from which the echoes of one turn fit it best
+//! Finds the pose of a robot in an evidence grid at which the echoes of one turn fit the grid best
 //! (docs/src/navigation.md).
 
 use mdle_runtime::{Meters, Pose, Radians};
 
 use super::grid::{EvidenceGrid, GridPing};
 
-/// Part of a range at which nothing should be.
+/// Fraction of a range at which there should be free space.
 const BEFORE: f64 = 0.6;
-/// Weight of the evidence there.
+/// Weight of the evidence at that fraction of a range.
 const BEFORE_WEIGHT: f64 = 0.3;
 /// Steps of the first search, in metres and radians, and its number of angles to either side.
 const COARSE: (f64, f64) = (0.10, 3.0 * DEGREE);
@@ -17,7 +17,7 @@ const FINE: [(f64, f64); 3] = [(0.05, 1.5 * DEGREE), (0.025, 0.75 * DEGREE), (0.
 /// A degree, in radians.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// A pose in a grid, and how well echoes fit there.
+/// A pose in a grid, and the quality of the fit of echoes at it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fit {
     /// Pose at which the robot's odometry was zero, in the axes of the grid.
@@ -56,7 +56,7 @@ pub(crate) fn fit(grid: &EvidenceGrid, pings: &[GridPing], origin: Pose, ways: i
     Some(best)
 }
 
-/// Returns the best fit on a lattice around a pose, or `best` if none is better.
+/// Returns the best fit on a lattice around a pose, or `best` if no fit is better.
 fn better(
     mut best: Fit,
     around: Pose,
@@ -93,8 +93,8 @@ fn score(grid: &EvidenceGrid, echoes: &[Echo], origin: &Pose) -> f64 {
 mod tests {
     use super::*;
 
-    /// Pings of a robot that turns on the spot at a pose in a room of 3 m by 2 m around the origin; its odometry counts
-    /// from there.
+    /// Returns the pings of a robot that turns on the spot at a pose in a room of 3 m by 2 m around the origin;
+    /// its odometry begins there.
     fn turn(at: Pose) -> Vec<GridPing> {
         let theta = |number: i32| f64::from(number) * 5.0 * DEGREE;
         let pings = (0..72).map(|number| {

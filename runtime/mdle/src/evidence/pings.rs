@@ -4,12 +4,12 @@ use mdle_runtime::{Nanos, Pings, Pose, SONARS, Sensed, SonarId};
 
 use super::grid::GridPing;
 
-/// The pings that were taken.
+/// The pings of a run that were taken so far.
 #[derive(Debug)]
 pub(crate) struct PingOrder {
     /// Pose of the robot in the axes of the grid where its odometry was zero.
     origin: Pose,
-    /// Time of the last ping of each sonar that was taken.
+    /// Time of the last ping taken from each sonar.
     last: [Option<Nanos>; SONARS],
 }
 
@@ -35,7 +35,7 @@ impl PingOrder {
         new.into_iter().map(|(.., from, range)| self.placed(&from, range.map(|range| range.0))).collect()
     }
 
-    /// Returns a ping of a transducer at this pose by odometry, in the axes of the grid.
+    /// Returns a ping of a transducer at this pose by odometry, converted to the axes of the grid.
     fn placed(&self, from: &Pose, range: Option<f64>) -> GridPing {
         let (sin, cos) = libm::sincos(self.origin.theta.0);
         let (x, y) = (from.x.0, from.y.0);

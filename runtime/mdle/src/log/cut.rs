@@ -1,4 +1,4 @@
-//! `mdle log cut`: the first part of a record as a record of its own.
+//! `mdle log cut`: writes the first part of a record as a separate record.
 
 use std::io::{self, BufWriter, Write as _};
 use std::path::Path;
@@ -13,10 +13,10 @@ use crate::failure::{self, Failure};
 use crate::messages::counted;
 use crate::replay;
 
-/// Writes the turns up to `until` as a record of its own.
+/// Writes the turns up to `until` as a separate record.
 ///
 /// # Errors
-/// The record cannot be read, or the new one cannot be written.
+/// Fails if the record cannot be read, or if the new record cannot be written.
 pub(super) fn cut(log: &Path, until: Nanos, file: &Path) -> Result<ExitCode, Failure> {
     let (begin, records) = replay::record(log)?;
     let mut part = Part { frames: Frames::default(), to: RecordFile::new(BufWriter::new(created(file)?)), turns: 0 };

@@ -16,7 +16,7 @@ use crate::replay;
 /// Writes the turns of a record as CSV to a file, or to standard output.
 ///
 /// # Errors
-/// The record cannot be read, or the table cannot be written.
+/// Fails if the record cannot be read, or if the table cannot be written.
 pub(super) fn export(log: &Path, file: Option<&Path>) -> Result<ExitCode, Failure> {
     let (_, records) = replay::record(log)?;
     let mut table = Table::created(file)?;
@@ -46,7 +46,7 @@ impl Table {
     /// Begins a file, which must not exist; `None` is standard output.
     ///
     /// # Errors
-    /// The file cannot be created.
+    /// Fails if the file cannot be created.
     pub(super) fn created(file: Option<&Path>) -> Result<Self, Failure> {
         let out: Box<dyn Write> = match file {
             Some(file) => Box::new(BufWriter::new(created(file)?)),
@@ -55,18 +55,18 @@ impl Table {
         Ok(Self { out, file: file.map(Path::to_owned) })
     }
 
-    /// Writes a line with its end.
+    /// Writes a line and a line break.
     ///
     /// # Errors
-    /// That of the system.
+    /// Fails if the system cannot write the line.
     pub(super) fn write(&mut self, line: &str) -> Result<(), Failure> {
         self.out.write_all(line.as_bytes()).map_err(|error| self.failed(&error))
     }
 
-    /// Writes what is still held back.
+    /// Writes all buffered lines.
     ///
     /// # Errors
-    /// That of the system.
+    /// Fails if the system cannot write the lines.
     pub(super) fn close(mut self) -> Result<(), Failure> {
         self.out.flush().map_err(|error| self.failed(&error))
     }
@@ -79,7 +79,7 @@ impl Table {
     }
 }
 
-/// The names of the columns, in SI units.
+/// Returns the line of the column names; columns are in SI units.
 fn head() -> String {
     let mut line = "turn,t,plan,state,x,y,theta,v,omega,bumpers,battery".to_owned();
     for sonar in 0..SONARS {
@@ -88,7 +88,7 @@ fn head() -> String {
     line + ",sent_v,sent_omega,transitions\n"
 }
 
-/// The line of a turn: the range of a sonar that has not pinged is empty, and `inf` without an echo.
+/// Returns the line of a turn. The range of a sonar is empty before its first ping, and `inf` without an echo.
 fn line(turn: &RecordedTurn, messages: &[Message]) -> String {
     let RecordedTurn { number, t, y, sent, plan, state, .. } = turn;
     let pose = y.odometry;

@@ -1,4 +1,4 @@
-//! `mdle log info`: what a record contains.
+//! `mdle log info`: prints the contents of a record.
 
 use std::io::{self, Write as _};
 use std::path::Path;
@@ -13,10 +13,10 @@ use crate::failure::{self, Failure};
 use crate::messages::counted;
 use crate::replay;
 
-/// Prints what a record contains.
+/// Prints the contents of a record.
 ///
 /// # Errors
-/// The record cannot be read.
+/// Fails if the record cannot be read.
 pub(super) fn info(log: &Path) -> Result<ExitCode, Failure> {
     let (begin, mut records) = replay::record(log)?;
     let (mut turns, mut transitions, mut end, mut plans, mut error) = (0_u64, 0, Nanos::ZERO, 1, None);

@@ -1,4 +1,4 @@
-//! `mdle log`: what a record contains, its first part as a record, and its turns as a table or as a script.
+//! `mdle log`: the contents of a record, its first part as a record, and its turns as a table or as a script.
 
 mod cut;
 mod export;
@@ -16,13 +16,13 @@ use crate::arguments::Log;
 use crate::failure::{self, Failure};
 use crate::run_time::run_time;
 
-/// Exit status of a record that was changed or is damaged.
+/// Exit status for a record that was changed or is damaged.
 const DAMAGED: u8 = 1;
 
 /// Carries out a command about a record.
 ///
 /// # Errors
-/// A file cannot be read or written, or the usage is wrong.
+/// Fails if a file cannot be read or written, or if the usage is wrong.
 pub(crate) fn log(arguments: &Log) -> Result<ExitCode, Failure> {
     match arguments {
         Log::Info(log) => info::info(log),
@@ -35,7 +35,7 @@ pub(crate) fn log(arguments: &Log) -> Result<ExitCode, Failure> {
 /// Creates a file that does not exist yet.
 ///
 /// # Errors
-/// It exists, or the system's error.
+/// Fails if the file exists, or with the system's error.
 pub(crate) fn created(path: &Path) -> Result<File, Failure> {
     File::create_new(path).map_err(|error| {
         if error.kind() == io::ErrorKind::AlreadyExists {
@@ -45,7 +45,7 @@ pub(crate) fn created(path: &Path) -> Result<File, Failure> {
     })
 }
 
-/// Returns the failure to create a file that exists.
+/// Returns the failure for a file that exists.
 pub(crate) fn exists(path: &Path) -> Failure {
     Failure::Usage(format!("{} exists already", path.display()))
 }
@@ -54,7 +54,7 @@ pub(crate) fn unwritten(name: &dyn std::fmt::Display, error: &io::Error) -> Fail
     Failure::Usage(format!("{name} cannot be written: {error}"))
 }
 
-/// The outcome of a record whose rest cannot be read.
+/// Reports that the rest of a record cannot be read; returns the exit status.
 pub(crate) fn damaged(log: &Path, error: &ReadError) -> Result<ExitCode, Failure> {
     let sentence = format!("the record {} cannot be read: {error}", log.display());
     if matches!(error, ReadError::System(_)) {

@@ -15,11 +15,12 @@ use crate::examined::{ExaminedRun, ExaminedTurn, Moment};
 use crate::failure::Failure;
 use crate::replay::{self, WantedPlan};
 
-/// Writes a line for each turn of a record: the interrupts that have fired among those that its plan asked for, and the
-/// laws that have completed. `plan` names the file of a plan that the record does not have.
+/// Writes a line for each turn of a record: the interrupts that its plan evaluated and that have fired, and the
+/// laws that have completed. `plan` is the file of the plan, if the record does not contain it.
 ///
 /// # Errors
-/// The record or the plan cannot be read, a turn cannot be told by a script, or the file cannot be written.
+/// Fails if the record or the plan cannot be read, if a script cannot express a turn, or if the file cannot be
+/// written.
 pub(super) fn script(log: &Path, plan: Option<&Path>, file: Option<&Path>) -> Result<ExitCode, Failure> {
     let (begin, record) = replay::record(log)?;
     let call = format!("mdle log export --script {}", log.display());
@@ -49,7 +50,7 @@ pub(super) fn script(log: &Path, plan: Option<&Path>, file: Option<&Path>) -> Re
     Ok(ExitCode::SUCCESS)
 }
 
-/// The line of a turn, or a text that is both true and false in it.
+/// Returns the line of a turn; fails with a text that is both true and false in the turn.
 fn line(machine: &Machine, turn: &ExaminedTurn, way: Nanometers) -> Result<String, String> {
     let (mut fired, mut completed) = (BTreeMap::new(), BTreeMap::new());
     for moment in &turn.moments {
@@ -72,7 +73,7 @@ fn line(machine: &Machine, turn: &ExaminedTurn, way: Nanometers) -> Result<Strin
     Ok(line + "}\n")
 }
 
-/// Notes the interrupts that a moment has asked for.
+/// Records the values of the interrupts that are evaluated at a moment.
 fn interrupts<'m>(machine: &'m Machine, moment: &Moment, fired: &mut BTreeMap<&'m str, bool>) -> Result<(), String> {
     for scope in &moment.scopes {
         parts(machine, machine.element(scope.bracket).condition(), &mut scope.parts.iter(), fired)?;
@@ -80,7 +81,8 @@ fn interrupts<'m>(machine: &'m Machine, moment: &Moment, fired: &mut BTreeMap<&'
     Ok(())
 }
 
-/// Notes the quarks of a condition, whose parts come in the order in which they were examined; `stuck` is one part.
+/// Records the values of the quarks of a condition, whose parts come in the order in which they were examined;
+/// `stuck` is one part.
 fn parts<'m>(
     machine: &'m Machine,
     condition: &'m Condition,
@@ -97,7 +99,7 @@ fn parts<'m>(
     condition.children().iter().try_for_each(|operand| parts(machine, operand, examined, fired))
 }
 
-/// Notes that a text is true or false in the turn; refuses what has been the other before.
+/// Records that a text is true or false in the turn; fails if it had the other value before.
 fn note<'m>(known: &mut BTreeMap<&'m str, bool>, text: &'m str, is_so: bool) -> Result<(), String> {
     match known.insert(text, is_so) {
         Some(before) if before != is_so => Err(text.to_owned()),

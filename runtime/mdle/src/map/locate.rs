@@ -15,7 +15,7 @@ const WAYS: i16 = 4;
 /// Prints how well a record fits each map, the best first.
 ///
 /// # Errors
-/// The record or a map cannot be read, or the record has no echo.
+/// Fails if the record or a map cannot be read, or if the record has no echo.
 pub(crate) fn locate(arguments: &Locate) -> Result<ExitCode, Failure> {
     let near = pose(&arguments.at)?;
     let mut heard = Vec::new();

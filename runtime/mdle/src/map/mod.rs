@@ -1,5 +1,5 @@
-//! `mdle map`: the evidence grid of a recorded run, as a map of ROS (docs/src/navigation.md). `mdle locate` finds in
-//! which of several maps a robot was.
+//! `mdle map`: the evidence grid of a recorded run, as a map of ROS (docs/src/navigation.md). `mdle locate`
+//! determines in which of several maps a robot was.
 
 mod locate;
 mod ros_map;
@@ -20,7 +20,7 @@ pub(crate) use locate::locate;
 /// Makes the map of a record.
 ///
 /// # Errors
-/// The record cannot be read, or the map cannot be written.
+/// Fails if the record cannot be read, or if the map cannot be written.
 pub(crate) fn map(arguments: &MakeMap) -> Result<ExitCode, Failure> {
     let origin = pose(&arguments.at)?;
     let mut grid = EvidenceGrid::new();
@@ -38,7 +38,7 @@ fn pose(text: &str) -> Result<Pose, Failure> {
 /// Calls `take` with each ping of a record, of a robot whose odometry was zero at this pose. Returns the exit status.
 ///
 /// # Errors
-/// The record cannot be read.
+/// Fails if the record cannot be read.
 fn pings(log: &Path, origin: Pose, take: &mut dyn FnMut(&GridPing)) -> Result<ExitCode, Failure> {
     let (_, records) = replay::record(log)?;
     let mut order = PingOrder::new(origin);

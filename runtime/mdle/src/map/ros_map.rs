@@ -10,7 +10,7 @@ use crate::log::{created, exists, unwritten};
 /// Saves a grid as the YAML file at a path, with its image beside it.
 ///
 /// # Errors
-/// The name does not end in `.yaml` or `.yml`, or a file exists already or cannot be written.
+/// Fails if the name does not end in `.yaml` or `.yml`, or if a file exists already or cannot be written.
 pub(super) fn save(grid: &EvidenceGrid, file: &Path) -> Result<(), Failure> {
     let image = image(file)?;
     // Neither is written if the other is in the way.

@@ -1,4 +1,4 @@
-//! Sound of two ears: from the robot's own microphones, a WAV file, or a recorder.
+//! Sound at two ears: from the robot's own microphones, a WAV file, or a recorder.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -16,7 +16,7 @@ use crate::arguments::EarsOption;
 /// Greatest length of a WAV file, in seconds.
 const LONGEST: u32 = 1800;
 
-/// Sound that can be heard in a run, and again in another one.
+/// Source of sound that can be opened for several runs.
 #[derive(Debug, Clone)]
 pub(crate) enum AudioSource {
     Robot,
@@ -24,22 +24,22 @@ pub(crate) enum AudioSource {
     Raw(RawAudio),
 }
 
-/// Sound as it is heard in a run.
+/// Sound in a single run.
 pub(super) enum Audio {
     Robot(Microphones),
-    /// A file, and the number of its samples that were taken.
+    /// Samples of a file, and the number of samples that were taken.
     Wav(Arc<[[f32; 2]]>, usize),
     Raw(RawAudio),
 }
 
-/// Samples that a recorder has written and nobody has taken yet.
+/// Samples that a recorder has written and that have not been taken yet.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RawAudio(Arc<Mutex<RawSamples>>);
 
 #[derive(Debug, Default)]
 struct RawSamples {
     samples: Vec<[f32; 2]>,
-    /// Reason why nothing more will come.
+    /// Reason why no more samples will come; `None` until then.
     end: Option<String>,
 }
 
@@ -47,7 +47,7 @@ impl AudioSource {
     /// Opens the source of an option.
     ///
     /// # Errors
-    /// The file cannot be used: a sentence.
+    /// Fails with a sentence if the file cannot be used.
     pub(crate) fn open(option: &EarsOption) -> Result<Self, String> {
         match option {
             EarsOption::Robot => Ok(Self::Robot),
@@ -67,10 +67,10 @@ impl AudioSource {
 }
 
 impl Audio {
-    /// Takes what was heard until this time; `None` after the end of a file.
+    /// Takes the samples up to this time; `None` after the end of a file.
     ///
     /// # Errors
-    /// The recorder has ended: a sentence.
+    /// Fails with a sentence if the recorder has ended.
     pub(super) fn take(&mut self, until: Nanos) -> Result<Option<Vec<[f32; 2]>>, String> {
         match self {
             Self::Robot(microphones) => Ok(Some(microphones.take(until))),
@@ -124,7 +124,7 @@ fn wav(path: &Path) -> Result<Vec<[f32; 2]>, String> {
     Ok(samples)
 }
 
-/// Returns the samples of two channels that take turns.
+/// Returns the pairs of samples of two interleaved channels.
 fn pairs(values: &[f32]) -> Vec<[f32; 2]> {
     values.as_chunks::<2>().0.to_vec()
 }
@@ -152,7 +152,8 @@ impl RawAudio {
         thread.map(|_| recorder).map_err(|error| format!("--ears: the system gives no thread: {error}"))
     }
 
-    /// Reads 16-bit samples of two ears, in the byte order of `arecord -f cd`, until the end; returns why it ended.
+    /// Reads 16-bit samples of two ears, in the byte order of `arecord -f cd`, until the end; returns the
+    /// reason for the end.
     fn read(&self, mut from: impl Read) -> String {
         let (mut buffer, mut filled) = ([0; 4096], 0);
         loop {

@@ -1,5 +1,5 @@
-//! The module `heading` of a robot that listens: the bearing of a sound by the delay between two ears (paper, section
-//! III-G).
+//! The module `heading` of a robot with microphones: the bearing of a sound, from the delay between two ears
+//! (paper, section III-G).
 
 use std::collections::VecDeque;
 
@@ -9,11 +9,11 @@ use mdle_sound::{Localizer, RATE, WINDOW};
 
 use super::audio::Audio;
 
-/// Range that is published: two ears cannot measure it.
+/// Published range; two ears cannot measure a range.
 const RANGE: Meters = Meters(2.0);
-/// Seconds for which a bearing is published that nothing confirms.
+/// Time, in seconds, for which a bearing is published without confirmation.
 const REMEMBERED: f64 = 5.0;
-/// Headings of this many turns are kept, to find that in the middle of a window.
+/// Number of turns whose headings are kept, so that the heading in the middle of a window can be found.
 const TURNS: usize = 200;
 
 /// Time from the middle of a window to its end, in nanoseconds.
@@ -50,7 +50,8 @@ impl EarsModule {
         module
     }
 
-    /// Listens to the turn that ended with the last break; returns `false` once there is nothing more to be heard.
+    /// Processes the sound of the turn that ended with the last break; returns `false` after the end of the
+    /// sound.
     fn turn(&mut self, offer: &mut Offer<'_>) -> Result<bool, Fault> {
         let (Some(Radians(theta)), now) = (offer.get(self.theta), offer.now()) else { return Ok(true) };
         let before = self.headings.back().map_or(now, |(before, _)| *before);
@@ -75,7 +76,7 @@ impl EarsModule {
         Ok(true)
     }
 
-    /// Returns the heading at a time, between those of two turns.
+    /// Returns the heading at a time, interpolated between two turns.
     fn heading_at(&self, time: Nanos) -> f64 {
         let mut after = None;
         for (at, theta) in self.headings.iter().rev() {

@@ -20,12 +20,13 @@ use sensors::Sensors;
 /// Name of the module that `--point` loads.
 const HEADING: &str = "heading";
 
-/// Adds the modules of every run.
+/// Registers the modules of every run.
 pub(crate) fn shipped(library: &mut Library<Sensed>) {
     library.registered("sensors", Sensors::declare);
 }
 
-/// Adds the modules that the `mdle.toml` and the options name; an option replaces a module of the same name.
+/// Registers the modules that the `mdle.toml` and the options name; an option replaces a module of the same
+/// name.
 ///
 /// # Errors
 /// A name in the `mdle.toml` is none of a module, or another module has it.

@@ -38,10 +38,11 @@ struct Landmark {
 }
 
 impl Landmarks {
-    /// Reads the file; a file that nobody has named may be missing.
+    /// Reads the file. The default file may be missing.
     ///
     /// # Errors
-    /// It cannot be read or has errors, or names a landmark that the graph does not know: a sentence.
+    /// Fails with a sentence if the file cannot be read, has errors, or names a landmark that the graph does
+    /// not contain.
     pub(super) fn read(file: &Path, is_named: bool, known: &[&str]) -> Result<Self, String> {
         let shown = file.display();
         let bytes = match mdle_host::read_file(file, LARGEST) {

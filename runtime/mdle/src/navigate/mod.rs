@@ -25,7 +25,7 @@ const LANDMARKS: &str = "landmarks.toml";
 /// Drives from one landmark to another with these modules; returns the exit status of the run.
 ///
 /// # Errors
-/// There is no route, or a plan on it cannot be run.
+/// Fails if there is no route, or if a plan on it cannot be run.
 pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Result<ExitCode, Failure> {
     let settings = Settings::beside(&arguments.graph)?;
     let name = settings.name_of_target(arguments.target.as_deref()).ok_or(InputError::NoTarget)?;

@@ -1,4 +1,4 @@
-//! A graph of landmarks: plans whose labels name the landmarks that they lead from and to (paper, section IV-B).
+//! A graph of landmarks: plans whose labels name the landmarks between which they lead (paper, section IV-B).
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -16,8 +16,8 @@ pub(crate) struct Edge {
 pub(crate) struct LandmarkGraph(Vec<Edge>);
 
 impl LandmarkGraph {
-    /// Returns the graph of labelled plans: pairs of a label, as `Γ_from^to`, and the name of its plan. A label without
-    /// two landmarks is no edge.
+    /// Returns the graph of labelled plans, given as pairs of a label, such as `Γ_from^to`, and the name of its
+    /// plan. A plan whose label does not name two landmarks is no edge.
     pub(crate) fn of(labels: Vec<(String, String)>) -> Self {
         let edge = |(label, plan): (String, String)| {
             let (from, to) = label.strip_prefix("Γ_")?.split_once('^')?;
@@ -37,7 +37,7 @@ impl LandmarkGraph {
         names
     }
 
-    /// Returns a route with as few edges as possible; of several, the one whose edges come first in the file. `None` if
+    /// Returns a route with the fewest edges; of several, the one whose edges come first in the file. `None` if
     /// there is no route.
     pub(crate) fn route(&self, from: &str, to: &str) -> Option<Vec<&Edge>> {
         let mut came_by: BTreeMap<&str, Option<&Edge>> = BTreeMap::from([(from, None)]);

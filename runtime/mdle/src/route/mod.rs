@@ -28,7 +28,7 @@ pub(crate) struct Route {
 /// A leg of a route: the plan of an edge in the frame of the landmark where it begins, compiled.
 pub(crate) struct Leg {
     pub(crate) edge: Edge,
-    /// Direction of the frame from the heading with which the run begins, in degrees.
+    /// Direction of the frame relative to the heading at the start of the run, in degrees.
     pub(crate) turned: f64,
     /// File of the graph.
     pub(crate) graph: PathBuf,
@@ -44,7 +44,7 @@ fn leg_text(name: &str, plan: &str, turned: f64, graph: &Path) -> String {
     format!("use \"{file}\"\n\n{{ {name}\n  FRAME {turned}deg {plan}\n}}\n")
 }
 
-/// Compiles the plan of an edge in a frame that is turned by this angle, in degrees. Messages go to standard error.
+/// Compiles the plan of an edge in a frame that is turned by `turned` degrees. Messages go to standard error.
 pub(crate) fn leg(edge: &Edge, number: usize, turned: f64, graph: &Path, target: &Target) -> Result<Leg, Failure> {
     let name = format!("Leg{}", number + 1);
     let text = leg_text(&name, &edge.plan, turned, graph);

@@ -21,7 +21,7 @@ use crate::recorded_files;
 /// A leg that is ready to run.
 struct ReadyLeg<A: EngineAlphabet> {
     edge: Edge,
-    /// Direction of the frame from the heading with which the run begins, in degrees.
+    /// Direction of the frame relative to the heading at the start of the run, in degrees.
     turned: f64,
     graph: PathBuf,
     target: Arc<Target>,
@@ -37,7 +37,7 @@ struct ReadyLook<'l, A: EngineAlphabet> {
 /// The pilot of a route.
 struct Navigator<'l, A: EngineAlphabet> {
     engine: Engine<A>,
-    /// The leg that is driven, and those after it.
+    /// The current leg, and the legs after it.
     legs: VecDeque<&'l ReadyLeg<A>>,
     look: Option<&'l ReadyLook<'l, A>>,
     /// The echoes of the robot that looks around.
@@ -50,7 +50,7 @@ struct Navigator<'l, A: EngineAlphabet> {
 /// Drives a route of at least one leg, with these modules.
 ///
 /// # Errors
-/// A plan cannot be loaded.
+/// Fails if a plan cannot be loaded.
 pub(crate) fn drive<T, A>(
     route: &Route,
     target: &Arc<Target>,
@@ -178,7 +178,8 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Ok(())
     }
 
-    /// Returns the cause by which the plan of an edge ended, if that is its own condition rather than its last element.
+    /// Returns the cause by which the plan of an edge ended, if that is the plan's own condition and not its
+    /// last element.
     fn cut_short(&self, edge: &str, transitions: &Transitions) -> Option<String> {
         let (last, _) = transitions.iter().last()?;
         let plan = self.engine.machine()?.plan();
