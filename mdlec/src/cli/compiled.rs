@@ -1,4 +1,4 @@
-//! The plan to run of a file, compiled, and its Rust; messages go to standard error.
+//! The plan to run in a file, compiled, and its Rust code; messages go to standard error.
 
 use std::path::Path;
 
@@ -18,7 +18,8 @@ pub(super) fn compile_one(
     compile_judged(input, target, name, deny_warnings, limit, |compiled| compiled)
 }
 
-/// Compiles the only plan to run, and passes it to `judge` by value, which can drop the parts that it does not need.
+/// Compiles the only plan to run, and passes it by value to `judge`, which can drop the parts that it does not
+/// need.
 pub(super) fn compile_judged<T>(
     input: &mut Input,
     target: &Target,
@@ -39,12 +40,12 @@ pub(super) fn compile_judged<T>(
     Ok(input.only(judged)?)
 }
 
-/// Fails if no target is named: Rust is written for a robot.
+/// Fails if no target is named, since Rust code is written for a particular robot.
 pub(super) fn needs_target(is_named: bool) -> Result<(), Failure> {
     if is_named { Ok(()) } else { Err(InputError::NoTarget.into()) }
 }
 
-/// A plan as Rust, with its sources.
+/// A plan as Rust code, with its sources.
 pub(super) struct Emitted {
     pub(super) target: Target,
     pub(super) input: Input,

@@ -53,7 +53,8 @@ fn refused(message: String) -> Failure {
     Failure::of(1, message)
 }
 
-/// Prints a plan in the canonical layout. Laws and conditions of the file that are not MDLe are reported.
+/// Prints a plan in the canonical layout. Reports laws and conditions of the machine's file that are not valid
+/// MDLe.
 fn print(file: &Path, plan: &str) -> Result<(), Failure> {
     let mut sources = Sources::default();
     let source = mdle_files::add(&mut sources, Path::new(&format!("the plan of {}", file.display())), plan.to_owned())?;
@@ -66,7 +67,8 @@ fn print(file: &Path, plan: &str) -> Result<(), Failure> {
     }
 }
 
-/// Describes the results of the printed conditions for a machine, and where they differ from the exact ones.
+/// Returns a text about the results of the printed conditions for a machine, and their differences from the
+/// exact conditions.
 fn printed(machine: &Machine, exactly: &Answer) -> String {
     let mut text = String::new();
     if machine.states().len() <= SHOWN {

@@ -1,4 +1,4 @@
-//! Commands that take several files go on after one that fails.
+//! Iteration over several files, which continues after a file that fails.
 
 use std::path::{Path, PathBuf};
 

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 #[derive(Debug, Clone)]
 pub(super) struct Emit {
     pub(super) kind: EmitKind,
-    /// `None` for standard output.
+    /// File to write; `None` for standard output.
     pub(super) file: Option<PathBuf>,
 }
 
@@ -44,7 +44,7 @@ pub(super) enum EmitKind {
 }
 
 impl EmitKind {
-    /// Returns `true` if people rather than programs read this kind.
+    /// Returns `true` if this form is read by people rather than by programs.
     pub(super) fn is_for_people(self) -> bool {
         match self {
             Self::Tree

@@ -1,4 +1,4 @@
-//! `mdlec emulator`: builds the emulator of a robot in the cache, and runs it in the place of this process.
+//! `mdlec emulator`: builds the emulator of a robot in the cache, and runs it in place of this process.
 
 use std::os::unix::process::CommandExt;
 use std::process::Command;

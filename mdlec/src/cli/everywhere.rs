@@ -1,4 +1,4 @@
-//! `mdlec check --target all`: shows which robots can run a plan, and why the others cannot.
+//! `mdlec check --target all`: shows which robots can run a plan, and why other robots cannot.
 
 use std::path::Path;
 
@@ -42,7 +42,7 @@ pub(super) fn everywhere(options: &Check) -> Result<(), Failure> {
     checked
 }
 
-/// Errors of a plan file for a robot: places and messages.
+/// Returns the errors of a plan file for a robot, with their places and messages.
 fn refusals(path: &Path, text: &str, robot: &Target) -> Result<Vec<String>, Failure> {
     let mut plan = mdle_files::plan(path, text.to_owned(), robot)?;
     let found = plan.check(&robot.alphabet);
@@ -55,7 +55,7 @@ fn refusals(path: &Path, text: &str, robot: &Target) -> Result<Vec<String>, Fail
     Ok(refusals.collect())
 }
 
-/// Table with a line for each plan and a column for each robot.
+/// Returns a table with a line for each plan and a column for each robot.
 fn table(robots: &[&str], rows: &[Row]) -> String {
     let width = rows.iter().map(|row| row.name.chars().count()).chain(["plan".len()]).max().unwrap_or(0);
     let line = |name: &str, cells: Vec<&str>| {
@@ -68,7 +68,7 @@ fn table(robots: &[&str], rows: &[Row]) -> String {
     line("plan", robots.to_vec()) + &lines.collect::<String>()
 }
 
-/// Lists the errors of all plans and robots, one per line.
+/// Returns the errors of all plans and robots, one per line.
 fn reasons(rows: &[Row]) -> String {
     let refusals = rows.iter().flat_map(|row| row.refusals.iter().flatten());
     let lines: Vec<_> = refusals.map(|refusal| format!("{refusal}\n")).collect();

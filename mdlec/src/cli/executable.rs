@@ -1,4 +1,5 @@
-//! `mdlec run`: builds the executable of a plan, shows the progress, and runs it in the place of this process.
+//! `mdlec run`: builds the executable of a plan, shows the progress, and runs the executable in place of this
+//! process.
 
 use std::io::{self, IsTerminal, Write};
 use std::os::unix::process::CommandExt;
@@ -99,7 +100,8 @@ pub(super) fn build(
     Ok(Runnable { path: output, settings })
 }
 
-/// Notes a configuration file near the target or the plan that mdlec ignores although cargo would read it.
+/// Prints a note about a configuration file near the target or the plan that mdlec ignores although cargo would
+/// read it.
 fn note_ignored(plan: &Path, target: &Target) {
     let beside = plan.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let folders: Vec<&Path> = target.folder.as_deref().into_iter().chain([beside]).collect();
@@ -112,7 +114,8 @@ fn note_ignored(plan: &Path, target: &Target) {
 }
 
 impl Runnable {
-    /// Becomes the executable, with the options of `mdle.toml` before `args`; `target` is the one of the command line.
+    /// Becomes the executable, with the options of `mdle.toml` before `args`; `target` is the target on the
+    /// command line.
     pub(super) fn become_it(&self, target: Option<&str>, args: &[String]) -> Result<(), Failure> {
         let program = if self.path.is_absolute() { self.path.clone() } else { Path::new(".").join(&self.path) };
         let options = self.settings.run_options(target, args, link::known)?;
@@ -122,9 +125,9 @@ impl Runnable {
     }
 }
 
-/// Fails if the executable `program` does not have the option, or not with this value.
+/// Fails if the executable `program` does not accept the option with this value.
 ///
-/// An executable judges its arguments one by one, and does nothing else before it answers `--version`.
+/// An executable checks its arguments one by one, and does nothing else before it answers `--version`.
 fn must_fit(option: &RunOption, program: &Path) -> Result<(), Failure> {
     let answer = Command::new(program).args(&option.arguments).arg("--version").stdin(Stdio::null()).output();
     // A program that cannot be run cannot become this process either, which says why.
@@ -140,7 +143,7 @@ pub(super) fn become_program(command: &mut Command) -> Result<(), Failure> {
     Err(Failure::usage(format!("cannot run `{}`: {error}", Path::new(command.get_program()).display())))
 }
 
-/// Progress output: a line that is overwritten on a terminal, else one line for each new step.
+/// Progress output: a line that is overwritten on a terminal, and otherwise a line for each new step.
 #[derive(Default)]
 pub(super) struct ProgressOutput {
     open: bool,

@@ -75,8 +75,8 @@ fn write(files: &MatrixFiles<'_, '_>, folder: &Path, inputs: &[PathBuf]) -> Resu
     Ok(count)
 }
 
-/// Returns the files in this folder whose names are those of matrices: files of another plan could be mistaken for this
-/// plan's.
+/// Returns the files in this folder whose names are those of matrices, since files of another plan could be
+/// mistaken for files of this plan.
 fn matrix_files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {

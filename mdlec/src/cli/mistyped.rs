@@ -1,4 +1,4 @@
-//! Recognizes misspelled commands, and options of other commands, which clap reports in another way.
+//! Recognizes misspelled commands and options of other commands, for which clap reports a less helpful error.
 
 use std::env;
 use std::path::Path;
@@ -41,7 +41,8 @@ pub(super) fn command() -> Option<Failure> {
     )))
 }
 
-/// Returns the error for an option of other commands than the given one; `answer` is the error of clap.
+/// Returns the error for an option that belongs to other commands than the given one; `answer` is the error of
+/// clap.
 pub(super) fn option(answer: &clap::Error) -> Option<Failure> {
     let Some(ContextValue::String(given)) = answer.get(ContextKind::InvalidArg) else { return None };
     if answer.kind() != ErrorKind::UnknownArgument {
@@ -96,7 +97,7 @@ pub(super) fn emulator(answer: &clap::Error) -> Option<Failure> {
     })
 }
 
-/// Text that clap did not expect.
+/// Returns the text that clap did not expect.
 fn unexpected(answer: &clap::Error) -> Option<&str> {
     match answer.get(ContextKind::InvalidArg) {
         Some(ContextValue::String(given)) if answer.kind() == ErrorKind::UnknownArgument => Some(given),

@@ -48,12 +48,12 @@ struct Failure {
     status: u8,
     /// Diagnostics of a file that was read, which are printed before the message.
     found: Option<Box<(Sources, Vec<Diagnostic>)>>,
-    /// `None` if the message was printed already.
+    /// Message to print; `None` if it was printed already.
     message: Option<String>,
 }
 
 impl From<InputError> for Failure {
-    /// A plan with errors ends with exit status 1, everything else with 2.
+    /// Converts an input error: exit status 1 for a plan with errors, and 2 for everything else.
     fn from(error: InputError) -> Self {
         let message = Some(error.to_string()).filter(|message| !message.is_empty());
         let (status, found) = match error.faulty_file() {
@@ -73,22 +73,22 @@ impl From<LinkError> for Failure {
 }
 
 impl Failure {
-    /// Wrong usage, or a file that cannot be read or written: exit status 2.
+    /// Returns the failure for wrong usage, or for a file that cannot be read or written: exit status 2.
     fn usage(message: impl Into<String>) -> Self {
         Self::of(2, message)
     }
 
-    /// A message with an exit status.
+    /// Returns a failure with this message and exit status.
     fn of(status: u8, message: impl Into<String>) -> Self {
         Self { status, found: None, message: Some(message.into()) }
     }
 
-    /// An exit status alone, where everything was printed.
+    /// Returns a failure with this exit status and no message, for a command that has printed its errors.
     const fn silent(status: u8) -> Self {
         Self { status, found: None, message: None }
     }
 
-    /// Failure for a plan with errors, which were printed: exit status 1.
+    /// Failure for a plan with errors, which have been printed: exit status 1.
     const PLAN: Self = Self::silent(1);
 
     /// Prints the message, if there is one, and returns the exit status.
@@ -134,7 +134,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Returns the argument of `--color` for help and for usage errors, where clap parses no arguments.
+/// Returns the argument of `--color`, for help and usage errors, after which clap returns no parsed arguments.
 fn color_of_help() -> Color {
     let mut words = std::env::args().take_while(|word| word != "--").skip_while(|word| !word.starts_with("--color"));
     let value = words.next().and_then(|word| match word.split_once('=') {

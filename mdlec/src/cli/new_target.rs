@@ -1,4 +1,4 @@
-//! `mdlec new-target`: creates a folder with a robot of one's own from `targets/template`.
+//! `mdlec new-target`: creates a folder with a new robot from `targets/template`.
 
 use std::fs;
 use std::io;
@@ -23,7 +23,7 @@ const FILES: [(&str, &str); 6] = [
     ("tests/conformance.rs", include_str!("../../template/conformance.rs")),
 ];
 
-/// Writes the folder, whole or not at all, and prints the next steps.
+/// Writes the folder, completely or not at all, and prints the next steps.
 pub(super) fn new_target(options: &NewTarget) -> Result<(), Failure> {
     let name = options.name.as_str();
     must_be_free(name)?;
@@ -58,8 +58,8 @@ fn fill(folder: &Path, name: &str) -> Result<(), Failure> {
     bind::bind(&Bind { alphabet: folder.join("alphabet.mdle"), check: false })
 }
 
-/// Text of a template's file with this name in it. The manifest leaves mdlec's workspace and gets one of its own, in
-/// any folder; the author of the robot chooses the licence.
+/// Returns the text of a template's file with this name in it. The manifest leaves mdlec's workspace and gets a
+/// workspace of its own, so that it works in any folder; the author of the robot chooses the licence.
 fn named(file: &str, text: &str, name: &str) -> String {
     let text = text.replace(NAME, name);
     if file != "Cargo.toml" {
@@ -72,7 +72,7 @@ fn named(file: &str, text: &str, name: &str) -> String {
     text.replace("{ workspace = true", &format!("{{ version{VERSION}"))
 }
 
-/// Fails if the name conflicts with a package, a file or a word of `--target`.
+/// Fails if the name conflicts with a package, a file or a reserved word of `--target`.
 fn must_be_free(name: &str) -> Result<(), Failure> {
     if is_taken(name) {
         return Err(Failure::usage(format!(

@@ -12,8 +12,7 @@ use mdle_runtime::{PrintableLines, is_printable};
 use super::{Color, Failure, MessageFormat};
 use mdle_compiler::diagnostic::{Diagnostic, Message, Sources, has_errors, judged};
 
-/// Format of all messages of this process. It is set once, when the command line is read: every message goes through
-/// this file.
+/// Format of all messages of this process. It is set once, when the command line is read.
 static FORMAT: OnceLock<MessageFormat> = OnceLock::new();
 
 /// Choice of colours for messages, set together with the format.

@@ -1,9 +1,9 @@
-//! Texts that an executable depends on, for its answer to `--version`: neither place nor time is among them.
+//! Texts on which an executable depends, for its answer to `--version`; they contain neither places nor times.
 
 use mdle_files::{Input, Target};
 
-/// Returns the hash of the plan's text and the files it uses, the target, the hash of its alphabet and the shared ones,
-/// and the version of the compiler.
+/// Returns the version text: the hash of the plan's text and of the files that it uses, the target, the hash of
+/// its alphabet and of the shared alphabets, and the version of the compiler.
 pub(super) fn version(input: &Input, target: &Target) -> String {
     format!(
         "text {}, target {}, alphabet {}, mdlec {}",

@@ -1,12 +1,13 @@
-//! The words of the command line, in an order that clap takes.
+//! The words of the command line, in an order that clap accepts.
 
 use std::env;
 use std::ffi::OsString;
 
 use clap::{Arg, Command};
 
-/// Returns the words of this process's command line. Options of all commands that come before the command are moved
-/// after it: without a command the same place belongs to a plan, so that clap refuses a command there.
+/// Returns the words of this process's command line. Options of all commands that come before the command are
+/// moved after it: in a call without a command, a plan can be at the same place, so clap would refuse the
+/// command there.
 pub(super) fn words(cli: &Command) -> Vec<OsString> {
     ordered(env::args_os().collect(), cli)
 }

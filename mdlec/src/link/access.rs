@@ -1,4 +1,5 @@
-//! Restricts the cache to its user: mdlec runs the files in it, and builds them into executables.
+//! Access rights of the cache, which are restricted to its user, since mdlec runs the files in the cache and
+//! builds them into executables.
 
 use std::fs::{self, DirBuilder, Metadata, Permissions};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, PermissionsExt};
@@ -8,7 +9,7 @@ use rustix::process::geteuid;
 
 use super::LinkError;
 
-/// Mode of the cache: its user has all permissions, other users none.
+/// Mode of the cache: its user has all permissions, other users have none.
 const OWN: u32 = 0o700;
 
 /// Bit of folders, such as shared temporary ones, in which users cannot remove or rename the files of other users.
@@ -17,17 +18,17 @@ const STICKY: u32 = 0o1000;
 /// A folder that only its user can access.
 #[derive(Debug)]
 pub(super) struct Private {
-    /// The folder, without symbolic links.
+    /// Path of the folder, without symbolic links.
     pub(super) folder: PathBuf,
-    /// `true` if other users could write to the cache until now.
+    /// `true` if other users could write to the cache before.
     pub(super) was_open: bool,
 }
 
 /// Creates `folder`, or removes the permissions of other users if it exists.
 ///
 /// # Errors
-/// Fails if the folder, or one above it, belongs to another user who is not the superuser, or if others can write to
-/// one above it.
+/// Fails if the folder, or one above it, belongs to another user who is not the superuser, or if others can
+/// write to a folder above it.
 pub(super) fn private(folder: &Path) -> Result<Private, LinkError> {
     let failed = |error| LinkError::cache(folder, error);
     DirBuilder::new().recursive(true).mode(OWN).create(folder).map_err(failed)?;
@@ -51,7 +52,7 @@ pub(super) fn private(folder: &Path) -> Result<Private, LinkError> {
     Ok(Private { folder: place, was_open: others_write(&found) })
 }
 
-/// Refuses a folder above the cache in which another user could replace the cache.
+/// Fails if another user could replace the cache through this folder above it.
 fn judge(path: &Path, found: &Metadata) -> Result<(), LinkError> {
     if !is_trusted(found.uid()) {
         return Err(LinkError::CacheOfOther { path: path.to_owned(), owner: found.uid() });
@@ -62,28 +63,29 @@ fn judge(path: &Path, found: &Metadata) -> Result<(), LinkError> {
     Ok(())
 }
 
-/// Returns `true` for this process's user, the superuser, and the owner of the root folder, which in a container with
-/// its own users is the superuser outside.
+/// Returns `true` for this process's user, the superuser, and the owner of the root folder, who is the
+/// superuser outside a container with users of its own.
 fn is_trusted(user: u32) -> bool {
     let owns_all = || fs::metadata("/").is_ok_and(|root| root.uid() == user);
     user == geteuid().as_raw() || user == 0 || owns_all()
 }
 
-/// Returns `true` if anybody except the owner and the superuser can write to the file or folder.
+/// Returns `true` if anyone except the owner and the superuser can write to the file or folder.
 fn others_write(found: &Metadata) -> bool {
     let mode = found.mode();
     mode & 0o002 != 0 || mode & 0o020 != 0 && !is_private(found.gid(), found.uid())
 }
 
-/// Returns `true` if only `owner` and the superuser are in this group, as where each user has a group of their own.
+/// Returns `true` if only `owner` and the superuser are in this group, as on systems where each user has a
+/// private group.
 fn is_private(group: u32, owner: u32) -> bool {
     let users = fs::read_to_string("/etc/passwd");
     let groups = fs::read_to_string("/etc/group");
     group == 0 || matches!((users, groups), (Ok(users), Ok(groups)) if has_only(group, owner, &users, &groups))
 }
 
-/// Returns `true` if `owner` is the only member of `group`, by the texts of `/etc/passwd` and `/etc/group`. A group
-/// that they do not list may have any members.
+/// Returns `true` if `owner` is the only member of `group`, according to the texts of `/etc/passwd` and
+/// `/etc/group`. A group that is not listed there may have any members.
 fn has_only(group: u32, owner: u32, users: &str, groups: &str) -> bool {
     let fields = |line: &str| line.split(':').map(str::to_owned).collect::<Vec<_>>();
     let users: Vec<_> = users.lines().map(fields).filter(|user| user.len() > 3).collect();

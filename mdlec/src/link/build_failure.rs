@@ -14,7 +14,7 @@ const NETWORK: &str = "spurious network error";
 /// Messages of rustc when there is no linker, or when the linker fails.
 const LINKER: [&str; 2] = ["error: linker `", "error: linking with `"];
 
-/// Returns the fault that made a run end without an executable.
+/// Returns the fault for which a run of cargo ended without an executable.
 pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependencies: &Dependencies) -> LinkError {
     let text = run.text();
     if run.lacks_room() {
@@ -51,7 +51,7 @@ pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependen
     }
 }
 
-/// Fault for emitted text that does not compile.
+/// Returns the fault for emitted text that does not compile.
 fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
     match target {
         TargetCrate::Builtin { .. } => LinkError::Emitted { log },
@@ -60,7 +60,8 @@ fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
     }
 }
 
-/// Fault for a crate of others that does not compile, or for a run in which cargo did not begin to compile.
+/// Returns the fault for a crate that mdlec did not emit and that does not compile, or for a run in which cargo
+/// did not begin to compile.
 fn others(
     job: &Job<'_>,
     run: &Run,

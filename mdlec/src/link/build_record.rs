@@ -1,7 +1,7 @@
 //! Record of a plan's package and its executable at the last build.
 //!
-//! Cargo compares the times of files. They do not show that a file was truncated or overwritten, and they are wrong
-//! after a clock was set back.
+//! Cargo compares the times of files. Times do not show that a file was truncated or overwritten, and they are
+//! wrong after the clock was set back.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,8 @@ pub(super) fn write(plan: &PlanPackage, executable: &Path) -> Result<(), LinkErr
     Ok(())
 }
 
-/// Returns `true` if `executable` is, to the last byte, the one that was built from `plan` in its present state.
+/// Returns `true` if `executable` is identical, byte for byte, to the executable that was built from `plan` in
+/// its present state.
 pub(super) fn fits(plan: &PlanPackage, executable: &Path) -> bool {
     let executable = fs::read(executable).map(|bytes| hash(&bytes));
     let noted = read(&plan.folder);
@@ -35,7 +36,7 @@ pub(super) fn has_lock(folder: &Path) -> bool {
     read(folder).is_some_and(|[_, noted, _]| lock(folder).is_some_and(|lock| lock == noted))
 }
 
-/// Recorded hashes of the package, of its lock file, and of the executable.
+/// Returns the recorded hashes of the package, of its lock file, and of the executable.
 fn read(folder: &Path) -> Option<[String; 3]> {
     let text = fs::read_to_string(file(folder)).ok()?;
     let lines: Vec<_> = text.lines().map(str::to_owned).collect();

@@ -60,7 +60,7 @@ impl Cache {
         Ok(cache)
     }
 
-    /// Folder of the cache.
+    /// Returns the folder of the cache.
     #[must_use]
     pub fn folder(&self) -> &Path {
         &self.folder
@@ -76,7 +76,8 @@ impl Cache {
         self.folder.join("plans")
     }
 
-    /// Returns an empty folder for the temporary files of a build, so that those of a killed compiler can be removed.
+    /// Returns an empty folder for the temporary files of a build, so that the files of a killed compiler can
+    /// be removed.
     pub(super) fn scratch(&self) -> Result<PathBuf, LinkError> {
         let folder = self.folder.join("tmp");
         remove(&folder)?;
@@ -106,7 +107,8 @@ impl Cache {
     }
 }
 
-/// Writes `contents` to `file` if they differ, and returns whether it wrote; readers see the old file or the new one.
+/// Writes `contents` to `file` if they differ; returns `true` if it wrote. Readers see the old file or the new
+/// file.
 pub(super) fn write_if_changed(file: &Path, contents: &[u8]) -> Result<bool, LinkError> {
     if fs::read(file).is_ok_and(|found| found == contents) {
         return Ok(false);

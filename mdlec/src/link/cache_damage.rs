@@ -1,5 +1,5 @@
-//! Finds damage in the cache that cargo does not notice, since cargo compares the times of files and not their
-//! contents.
+//! Detection of damage in the cache that cargo does not notice, since cargo compares the times of files and not
+//! their contents.
 
 use std::os::unix::process::ExitStatusExt;
 
@@ -30,7 +30,7 @@ const LACKING: [&str; 4] = ["unable to find library", "cannot find -l", "undefin
 /// Part of the cache that must be built again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Damage {
-    /// Executable of the plan.
+    /// The executable of the plan.
     Executable,
     /// All build results of cargo.
     Libraries,
@@ -58,7 +58,7 @@ pub(super) fn found(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>) -> Optio
     (refused || spoilt).then_some(Damage::Libraries)
 }
 
-/// Returns `true` if a damaged library can be the cause of an error.
+/// Returns `true` if a damaged library can be the cause of the error.
 fn is_of_damage(complaint: &Complaint, plan: &PlanPackage, target: &TargetCrate<'_>) -> bool {
     let says = |signs: &[&str]| signs.iter().any(|sign| complaint.text.contains(sign));
     // What came with mdlec does not fail by itself, but what mdlec makes of a plan can be wrong.
@@ -66,7 +66,7 @@ fn is_of_damage(complaint: &Complaint, plan: &PlanPackage, target: &TargetCrate<
     complaint.is_error && !says(&LACKING) && (is_tested || says(&UNREADABLE) && !is_forgotten(complaint, target))
 }
 
-/// Returns `true` if a third party's crate uses a crate that it does not depend on.
+/// Returns `true` if a third-party crate uses a crate on which it does not depend.
 fn is_forgotten(complaint: &Complaint, target: &TargetCrate<'_>) -> bool {
     let TargetCrate::Path { folder, .. } = target else { return false };
     let is_own = folder.canonicalize().is_ok_and(|folder| complaint.manifest.starts_with(folder));

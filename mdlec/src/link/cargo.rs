@@ -1,4 +1,5 @@
-//! Runs cargo as a child process: with the same flags in every environment, and without its output on the terminal.
+//! Runs cargo as a child process, with the same flags in every environment and without its output on the
+//! terminal.
 
 use std::env;
 use std::ffi::OsString;
@@ -11,8 +12,8 @@ use super::seal::Seal;
 use super::toolchain::{self, cargo_home, output, unusable};
 use super::{Cache, LinkError, Progress, cleanup, orphan};
 
-/// Settings of the profile for cargo's `--config`, which neither a configuration file nor the environment overrides.
-/// Executables rely on these settings.
+/// Settings of the profile for cargo's `--config`, which neither a configuration file nor the environment can
+/// override. Executables rely on these settings.
 const PROFILE: [&str; 13] = [
     // A panic in a driver has to reach the code that stops the robot.
     "profile.release.panic='unwind'",
@@ -32,7 +33,7 @@ const PROFILE: [&str; 13] = [
     "profile.release.package.clap_builder.opt-level='s'",
 ];
 
-/// A build of a plan's package.
+/// A build of the package of a plan.
 #[derive(Debug)]
 pub(super) struct Job<'a> {
     pub(super) cache: &'a Cache,
@@ -41,7 +42,7 @@ pub(super) struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Builds, without the network if possible.
+    /// Builds the package, without the network if possible.
     pub(super) fn build(&self, seal: &mut Seal, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
         let run = self.attempt(false, seal, progress)?;
         if !run.lacks_libraries() {
@@ -51,7 +52,7 @@ impl Job<'_> {
         self.attempt(true, seal, progress)
     }
 
-    /// Builds; fetches missing libraries if `online`.
+    /// Builds the package once; fetches missing libraries if `online` is `true`.
     fn attempt(&self, online: bool, seal: &mut Seal, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
         let mut command = self.command("build");
         command
@@ -90,8 +91,8 @@ impl Job<'_> {
         command
     }
 
-    /// Flags of rustc: a static executable at a fixed address, which makes its relocation table unnecessary, without
-    /// any path of this machine in it.
+    /// Returns the flags of rustc: for a static executable at a fixed address, which makes its relocation table
+    /// unnecessary, and without any path of this machine in the executable.
     ///
     /// The flags are equal for all plans, since other flags would build everything again; so a target outside the home
     /// folder keeps its path in the messages of its panics.

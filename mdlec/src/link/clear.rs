@@ -1,4 +1,4 @@
-//! Empties a cache: removes the files that mdlec keeps there, in a folder that holds no other files.
+//! Empties a cache: removes the files that mdlec keeps there, if the folder holds no other files.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -10,10 +10,11 @@ use std::path::Path;
 use super::cache::remove;
 use super::{Cache, LinkError, Progress, sources};
 
-/// File that a running mdlec locks. It stays, so that all processes wait for the same file.
+/// Name of the file that a running mdlec locks. The file is not removed, so that all processes wait for the
+/// same file.
 const LOCK: &str = "lock";
 
-/// Names of the other files and folders of a cache, besides the unpacked sources.
+/// Names of the other files and folders of a cache, without the unpacked sources.
 const OWN: [&str; 7] = ["cargo", "cargo.new", "compiled", "compiled.new", "target", "tmp", "plans"];
 
 /// Removes the contents of the cache in `folder`, once no other mdlec uses it, and returns the number of bytes freed.
@@ -41,7 +42,7 @@ pub fn clear(folder: &Path, progress: &mut dyn FnMut(Progress)) -> Result<u64, L
     Ok(bytes)
 }
 
-/// Lists a folder that must be a cache; `None` if it does not exist.
+/// Returns the entries of a folder that must be a cache; `None` if the folder does not exist.
 fn contents(folder: &Path) -> Result<Option<Vec<DirEntry>>, LinkError> {
     let found = match fs::read_dir(folder).and_then(Iterator::collect::<io::Result<Vec<_>>>) {
         Ok(found) => found,

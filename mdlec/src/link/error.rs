@@ -3,20 +3,20 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Reason why no executable was built. The message is for the user of mdlec; a long one quotes cargo or rustc at its
-/// end.
+/// Reason why no executable was built. The message is for the user of mdlec; a long message quotes cargo or
+/// rustc at its end.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
-    /// The output is a folder.
+    /// The output is a folder: its path.
     #[error("`{0}` is a folder: name a file for the output with `-o FILE`")]
     OutputIsFolder(PathBuf),
-    /// The output is a special file, such as a device.
+    /// The output is a special file, such as a device: its path.
     #[error("`{0}` is not a file: name a file for the executable with `-o FILE`")]
     OutputIsSpecial(PathBuf),
-    /// The output is a file that the command reads.
+    /// The output is a file that the command reads: its path.
     #[error("`{0}` is an input of this command and would be lost: name another file for the output")]
     OutputIsInput(PathBuf),
-    /// The folder of the output does not exist.
+    /// The folder of the output does not exist: its path.
     #[error("the folder `{0}` does not exist: make it, or name another with `-o FILE`")]
     OutputFolderMissing(PathBuf),
     /// The output cannot be written.
@@ -48,7 +48,7 @@ pub enum LinkError {
          own with the variable MDLEC_CACHE"
     )]
     CacheOfOther {
-        /// The folder.
+        /// Path of the folder.
         path: PathBuf,
         /// User identifier of the owner.
         owner: u32,
@@ -62,12 +62,12 @@ pub enum LinkError {
     /// The folder to be emptied is not a cache.
     #[error("`{path}` is not a cache of mdlec: {why}; nothing was removed")]
     NotACache {
-        /// The folder.
+        /// Path of the folder.
         path: PathBuf,
         /// Content of the folder that a cache does not have, or the absence of a lock file.
         why: String,
     },
-    /// The disk is full.
+    /// The disk is full: the path that could not be written.
     #[error("there is no room left at `{0}` (a full disk, a quota, or `ulimit -f`): make room, then try again")]
     DiskFull(PathBuf),
 
@@ -98,7 +98,7 @@ pub enum LinkError {
         "executables run on Linux, and `{0}` does not: for a microcontroller, print the plan as Rust with `--emit rust`"
     )]
     NotLinux(String),
-    /// The standard library of the machine is not installed, and rustup has it.
+    /// The standard library of the machine is not installed, but rustup offers it: the target triple.
     #[error("Rust's standard library for `{0}` is not installed: run `rustup target add {0}`")]
     MachineToAdd(String),
     /// The standard library of the machine is not installed, and rustup does not offer it.
@@ -143,13 +143,13 @@ pub enum LinkError {
     )]
     Offline,
 
-    /// The target's folder is not a crate.
+    /// The target's folder is not a crate: its path.
     #[error("`{0}` has no Cargo.toml: a target is the folder of its crate, with its alphabet")]
     NotACrate(PathBuf),
     /// The target's alphabet and its manifest name different crates.
     #[error("the target's alphabet names the crate `{name}`, but the Cargo.toml in `{folder}` makes {found}")]
     OtherCrate {
-        /// The target's folder.
+        /// Folder of the target.
         folder: PathBuf,
         /// Name of the crate in the alphabet.
         name: String,
@@ -192,10 +192,10 @@ pub enum LinkError {
         log: PathBuf,
     },
 
-    /// A path that cannot be written in a manifest.
+    /// A path that is not UTF-8, so that no manifest can contain it.
     #[error("`{0}` is not UTF-8, which cargo's manifests need: rename it")]
     NotUtf8(PathBuf),
-    /// The build was stopped.
+    /// A signal has stopped the build: the number of the signal.
     #[error("the build was stopped by signal {0}")]
     Stopped(u8),
     /// Cargo fails for an unknown reason.
@@ -226,13 +226,13 @@ pub enum LinkError {
         /// File with the output of cargo and rustc.
         log: PathBuf,
     },
-    /// An unknown built-in target.
+    /// An unknown built-in target: its name.
     #[error("internal error: `{0}` is not built in; please report it")]
     NoSuchTarget(String),
 }
 
 impl LinkError {
-    /// Exit status of mdlec for this error.
+    /// Returns the exit status of mdlec for this error.
     #[must_use]
     pub fn exit_status(&self) -> u8 {
         match self {
@@ -270,13 +270,13 @@ impl LinkError {
         }
     }
 
-    /// Error for a path in the cache that the system refused.
+    /// Returns the error for a path in the cache that the system refused.
     pub(super) fn cache(path: &Path, error: io::Error) -> Self {
         let path = path.to_owned();
         if is_full(&error) { Self::DiskFull(path) } else { Self::Cache { path, error } }
     }
 
-    /// Error for an output that the system refused.
+    /// Returns the error for an output that the system refused.
     pub(super) fn output(path: &Path, error: io::Error) -> Self {
         let path = path.to_owned();
         if is_full(&error) { Self::DiskFull(path) } else { Self::OutputRefused { path, error } }

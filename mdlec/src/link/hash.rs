@@ -1,6 +1,6 @@
 //! Hashes of texts and files.
 
-/// Hash of some bytes, as text.
+/// Returns the hash of some bytes as text.
 pub(super) fn hash(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }

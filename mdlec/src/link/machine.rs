@@ -1,4 +1,5 @@
-//! The machine that an executable is built for: this one, or another, of which rustc only needs the library.
+//! The machine for which an executable is built: this machine, or another machine, for which rustc needs only
+//! the standard library.
 
 use std::fs;
 use std::path::Path;
@@ -18,22 +19,22 @@ const SHORT: [(&str, &str); 3] = [
 /// Linker of rustc itself, which every installation has.
 const OWN_LINKER: &str = "rust-lld";
 
-/// A machine that executables are built for.
+/// A machine for which executables are built.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Machine {
-    /// Target triple.
+    /// Target triple of the machine.
     pub(super) triple: String,
-    /// `true` if it is not the machine that builds.
+    /// `true` if it is not the machine on which the build runs.
     is_foreign: bool,
 }
 
 impl Machine {
-    /// The machine with this target triple, which builds for itself.
+    /// Returns the machine with this target triple, which builds for itself.
     pub(super) fn host(triple: &str) -> Self {
         Self { triple: triple.to_owned(), is_foreign: false }
     }
 
-    /// Finds the machine `name`, a target triple or a short name; `None` is the `host`.
+    /// Returns the machine `name`, a target triple or a short name; for `None`, the `host`.
     ///
     /// # Errors
     /// Fails if rustc does not know the machine, if it does not run Linux, or if its standard library is not installed.
@@ -63,9 +64,9 @@ impl Machine {
         }
     }
 
-    /// Returns the variable that names the linker to cargo, with its value, where rustc's own linker does all that is
-    /// needed: for the C library musl, the files that a static executable begins and ends with come with rustc. The
-    /// variable would override a linker in the configuration in `cargo_home`, so there is none then.
+    /// Returns the variable that names the linker to cargo, with its value, if rustc's own linker suffices: for
+    /// the C library musl, rustc comes with the object files at the start and the end of a static executable.
+    /// Returns `None` if the configuration in `cargo_home` names a linker, which the variable would override.
     pub(super) fn linker(&self, cargo_home: Option<&Path>) -> Option<(String, &'static str)> {
         let is_configured = || cargo_home.is_some_and(|home| names_linker(home, &self.triple));
         let own = self.is_foreign && self.triple.contains("-linux-musl") && !is_configured();
@@ -74,7 +75,7 @@ impl Machine {
         })
     }
 
-    /// Returns the triple if it is not the machine that builds.
+    /// Returns the triple if this is not the machine on which the build runs.
     pub(super) fn foreign(&self) -> Option<&str> {
         self.is_foreign.then_some(&self.triple)
     }

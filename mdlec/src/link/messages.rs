@@ -13,7 +13,7 @@ use signal_hook::consts::SIGXFSZ;
 use super::Progress;
 use super::seal::Seal;
 
-/// Messages of the system, through rustc or the linker, when a disk is full or a file is too large.
+/// Messages of the system, reported by rustc or the linker, when a disk is full or a file is too large.
 const FULL: [&str; 5] =
     ["No space left on device", "Disk quota exceeded", "File too large", "(signal: 25", "File size limit exceeded"];
 
@@ -27,11 +27,11 @@ pub(super) struct Run {
     pub(super) status: ExitStatus,
     /// `true` if cargo was allowed to use the network.
     pub(super) online: bool,
-    /// `true` if cargo compiled a package, or found one compiled.
+    /// `true` if cargo compiled a package, or found a compiled package.
     pub(super) began: bool,
-    /// `true` if cargo used anything from the cache that was compiled before.
+    /// `true` if cargo used anything that was compiled before and was in the cache.
     pub(super) reused: bool,
-    /// The plan's executable, if there is one.
+    /// Executable of the plan; `None` if there is none.
     pub(super) executable: Option<Executable>,
     /// Messages of rustc, warnings included, in order.
     pub(super) complaints: Vec<Complaint>,
@@ -43,41 +43,42 @@ pub(super) struct Run {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Executable {
     pub(super) path: PathBuf,
-    /// `true` if the executable was there before the run.
+    /// `true` if the executable existed before the run.
     pub(super) fresh: bool,
 }
 
 /// A message of rustc about a package.
 #[derive(Debug)]
 pub(super) struct Complaint {
-    /// The package's manifest.
+    /// Path of the package's manifest.
     pub(super) manifest: PathBuf,
     /// `true` if the message stops the build.
     pub(super) is_error: bool,
-    /// Text of the message as on a terminal without colours.
+    /// Text of the message, as on a terminal without colours.
     pub(super) text: String,
 }
 
 impl Run {
-    /// Returns `true` if the run ended because cargo was not allowed to fetch something: cargo then names the option.
+    /// Returns `true` if the run ended because cargo was not allowed to fetch something. Cargo names the option
+    /// in this case.
     pub(super) fn lacks_libraries(&self) -> bool {
         !self.status.success() && !self.began && self.stderr.contains("--offline")
     }
 
-    /// Returns `true` if the run ended because there was no room for a file.
+    /// Returns `true` if the run ended because there was no disk space for a file.
     pub(super) fn lacks_room(&self) -> bool {
         let text = self.text();
         self.status.signal() == Some(SIGXFSZ) || FULL.iter().any(|sign| text.contains(sign))
     }
 
-    /// Returns `true` if cargo itself panicked. Cargo indents the output of build scripts, so a panic in it begins no
-    /// line; panics of rustc do not count.
+    /// Returns `true` if cargo itself panicked. Cargo indents the output of build scripts, so a panic in a
+    /// build script does not begin a line; panics of rustc do not count.
     pub(super) fn is_cargo_broken(&self) -> bool {
         let is_panic = |line: &str| line.starts_with("thread '") && line.contains("panicked at");
         !self.status.success() && self.stderr.lines().any(|line| is_panic(line) && !line.starts_with("thread 'rustc'"))
     }
 
-    /// Returns the whole output of cargo and rustc.
+    /// Returns the complete output of cargo and rustc.
     pub(super) fn text(&self) -> String {
         let mut text: String = self.complaints.iter().map(|complaint| complaint.text.as_str()).collect();
         text.push_str(&self.stderr);
@@ -93,8 +94,8 @@ enum CargoLine {
     Blocked,
 }
 
-/// Follows the run of cargo to its end, with the network if `online`; `plan` is the plan's manifest. Compiled files are
-/// added to `seal` at once, so that a build that is stopped keeps them.
+/// Follows the run of cargo to its end; `online` is `true` if cargo may use the network, and `plan` is the
+/// plan's manifest. Compiled files enter `seal` at once, so that a build that is stopped keeps them.
 pub(super) fn follow(
     mut child: Child,
     online: bool,
@@ -138,7 +139,7 @@ pub(super) fn follow(
     Ok(Run { status, online, began, reused, executable, complaints, stderr })
 }
 
-/// Passes each line to `take`, until there are no more, reading fails, or `take` returns `false`.
+/// Passes each line to `take`, until there are no more lines, reading fails, or `take` returns `false`.
 fn each_line(lines: Option<impl Read>, mut take: impl FnMut(&[u8]) -> bool) {
     for line in lines.map(BufReader::new).into_iter().flat_map(|lines| lines.split(b'\n')) {
         // What was read before an error is good enough for a message.

@@ -70,16 +70,16 @@ use sources::Sources;
 use target::Dependencies;
 use toolchain::Toolchain;
 
-/// A plan as Rust, with the data for its executable.
+/// A plan as Rust code, with the data for its executable.
 #[derive(Debug, Clone, Copy)]
 pub struct Package<'a> {
     /// Name of the plan, which the executable shows.
     pub plan_name: &'a str,
-    /// Texts that the executable depends on, for its answer to `--version`.
+    /// Texts on which the executable depends, for its answer to `--version`.
     pub version: &'a str,
     /// Plan file that contains the plan.
     pub plan_file: &'a Path,
-    /// Files that the plan was read from; the executable must not overwrite them.
+    /// Files from which the plan was read; the executable must not overwrite them.
     pub inputs: &'a [PathBuf],
     /// Type that implements the plan, in the emitted text.
     pub plan_type: &'a str,
@@ -87,24 +87,25 @@ pub struct Package<'a> {
     pub rust: &'a str,
     /// Crate of the robot.
     pub target: &'a TargetCrate<'a>,
-    /// Machine that will run the executable, as a target triple or a short name; `None` for this one.
+    /// Machine that will run the executable, as a target triple or a short name; `None` for this machine.
     pub machine: Option<&'a str>,
 }
 
 /// A built executable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Built {
-    /// Size in bytes.
+    /// Size of the executable, in bytes.
     pub size: u64,
-    /// `true` if the executable was in the cache already, from an earlier build of the same text.
+    /// `true` if the executable was already in the cache, from an earlier build of the same text.
     pub fresh: bool,
 }
 
-/// Builds the executable of `package` and writes it to `output`, whole or not at all.
+/// Builds the executable of `package` and writes it to `output`, completely or not at all.
 ///
 /// # Errors
-/// Fails if `output` cannot be written, which is checked before the build; if the target's crate does not compile; if
-/// this machine lacks something that a build needs, also one for `package.machine`; or if mdlec emitted invalid Rust.
+/// Fails if `output` cannot be written, which is checked before the build; if the target's crate does not
+/// compile; if this machine lacks something that a build, or a build for `package.machine`, needs; or if mdlec
+/// emitted invalid Rust.
 pub fn build(
     cache: &Cache,
     package: &Package<'_>,
@@ -172,7 +173,7 @@ fn make(
     }
 }
 
-/// Runs cargo, and again if damage in the cache may have made it fail.
+/// Runs cargo, and runs it again if damage in the cache may have caused a failure.
 fn run(job: &Job<'_>, target: &TargetCrate<'_>, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
     let mut mended = Vec::new();
     let mut seal = Seal::check(job.cache, progress)?;

@@ -1,7 +1,7 @@
-//! Ends the cargo of an mdlec that was killed: it would delay the next build until it is done.
+//! Ends the cargo of a killed mdlec, which would otherwise delay the next build until it is done.
 //!
-//! A note in the cache names the process group of the running cargo. A process that holds the lock of the cache and
-//! finds a note knows that the mdlec which wrote it is gone.
+//! A note in the cache names the process group of the running cargo. A process that holds the lock of the cache
+//! and finds a note knows that the mdlec which wrote it has ended.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,13 +11,13 @@ use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process_group};
 
-/// Name of the note in the cache.
+/// Name of the note's file in the cache.
 const NOTE: &str = "cargo";
 
-/// Time that cargo has to end after each signal.
+/// Maximum time for cargo to end after each signal.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// The note; dropping it, when cargo has ended, removes it.
+/// Path of the note. Dropping it, when cargo has ended, removes the note.
 #[derive(Debug)]
 pub(super) struct Note(PathBuf);
 

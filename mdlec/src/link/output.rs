@@ -1,4 +1,4 @@
-//! The output file: checked before the build, written at once after it.
+//! The output file, which is checked before the build and written at once after it.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -10,8 +10,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::{LinkError, cleanup};
 
-/// Writes `bytes` to the file `output`, whole or not at all; a device gets them directly. A file that is overwritten
-/// keeps its permissions. `inputs` are the files that `bytes` were made from.
+/// Writes `bytes` to the file `output`, completely or not at all; a device gets them directly. A file that is
+/// overwritten keeps its permissions. `inputs` are the files from which `bytes` were made.
 ///
 /// # Errors
 /// Fails if `output` is a folder, is one of `inputs`, or cannot be written.
@@ -40,7 +40,7 @@ pub fn must_not_be_read(output: &Path, inputs: &[PathBuf]) -> Result<(), LinkErr
     if is_input { Err(LinkError::OutputIsInput(output.to_owned())) } else { Ok(()) }
 }
 
-/// A file that can be created or overwritten.
+/// A file that can be created or overwritten by a build.
 #[derive(Debug)]
 pub(super) struct Destination {
     /// Path as the caller wrote it.
@@ -109,7 +109,7 @@ impl Destination {
     }
 }
 
-/// Folder of a file, also if the path is only a name.
+/// Returns the folder of a file, also if the path is only a name.
 fn folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

@@ -24,8 +24,8 @@ pub(super) fn write(
     write_package(cache, &name, &[("src/main.rs", &main), ("src/plan.rs", package.rust)], dependencies)
 }
 
-/// Returns the answer of the executable to `--version`, after the plan's name. Of two builds with the same answer that
-/// differ, the crate of a target that is no part of mdlec differs, or the path of the cache.
+/// Returns the answer of the executable to `--version`, after the plan's name. If two builds with the same
+/// answer differ, then the crate of a third-party target differs, or the path of the cache does.
 fn version(package: &Package<'_>, dependencies: &Dependencies, toolchain: &Toolchain) -> String {
     let code = [package.rust, sources::hash(), &dependencies.lock].join("\0");
     format!("({}, code {}, rustc {})", package.version, &hash(code.as_bytes())[..12], toolchain.release)
@@ -45,7 +45,7 @@ pub(super) fn write_emulator(
     write_package(cache, &format!("emulator-{robot}"), &[("src/main.rs", &main)], dependencies)
 }
 
-/// Writes the package `name`, with these source files.
+/// Writes the package `name` with these source files.
 fn write_package(
     cache: &Cache,
     name: &str,
@@ -80,8 +80,8 @@ fn write_files(folder: &Path, files: &[(&str, &str)], lock: &str) -> Result<(), 
     Ok(())
 }
 
-/// Returns a readable package name that no other text, target or machine has: all executables are built in one folder,
-/// and their bytes depend on the name.
+/// Returns a readable package name that is unique to the text, the target and the machine: all executables are
+/// built in one folder, and their bytes depend on the name.
 fn name(package: &Package<'_>, main: &str, target: &str, machine: &str) -> String {
     let mut hasher = blake3::Hasher::new();
     for part in [main, package.rust, target, machine] {
@@ -92,7 +92,7 @@ fn name(package: &Package<'_>, main: &str, target: &str, machine: &str) -> Strin
     format!("plan-{stem}-{}", &hasher.finalize().to_hex()[..12])
 }
 
-/// Text of `Cargo.toml`.
+/// Returns the text of `Cargo.toml`.
 fn manifest(name: &str, dependencies: &Dependencies) -> Result<String, LinkError> {
     let mut text = format!(
         "# Made by mdlec, and made again whenever the plan is compiled.\n\
@@ -110,7 +110,7 @@ fn manifest(name: &str, dependencies: &Dependencies) -> Result<String, LinkError
     Ok(text)
 }
 
-/// Text of `src/main.rs`.
+/// Returns the text of `src/main.rs`.
 fn main(package: &Package<'_>, version: &str) -> String {
     let (target, plan, name) = (package.target.crate_name(), package.plan_type, package.plan_name);
     format!(

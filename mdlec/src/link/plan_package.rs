@@ -16,12 +16,12 @@ pub(super) struct PlanPackage {
 }
 
 impl PlanPackage {
-    /// Name of the package and of its executable.
+    /// Returns the name of the package and of its executable.
     pub(super) fn name(&self) -> &OsStr {
         self.folder.file_name().unwrap_or_default()
     }
 
-    /// Path of the package's manifest.
+    /// Returns the path of the package's manifest.
     pub(super) fn manifest(&self) -> PathBuf {
         self.folder.join("Cargo.toml")
     }

@@ -1,9 +1,9 @@
 //! Checks the hashes of everything used from the cache: libraries, procedural macros, build scripts and their output.
 //!
-//! Cargo compares the times of files. This list names each compiled file with the hash of its contents; before cargo
-//! runs, a file that is not listed or differs is removed, so that cargo compiles it again. This finds damage, and files
-//! that were put there while the folder was open to others. It does not stop an attacker who can write to the cache,
-//! and so to the list; the permissions of the cache do.
+//! Cargo compares the times of files. The list of this module names each compiled file with the hash of its
+//! contents. Before cargo runs, a file that is not listed or differs is removed, so that cargo compiles it
+//! again. The list reveals damage, and files that were put there while the folder was open to others. It does
+//! not stop an attacker who can write to the cache, and so to the list; the permissions of the cache do.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -23,14 +23,15 @@ const LIST: &str = "compiled";
 /// The files that cargo has compiled, with their hashes.
 #[derive(Debug)]
 pub(super) struct Seal {
-    /// Folder to which the paths in the list are relative.
+    /// Folder to which paths in the list are relative.
     target: PathBuf,
     list: PathBuf,
     hashes: BTreeMap<String, String>,
 }
 
 impl Seal {
-    /// Reads the list and removes each compiled file that does not match it. Call it with the cache locked.
+    /// Reads the list, and removes each compiled file that does not match it. Must be called with the cache
+    /// locked.
     pub(super) fn check(cache: &Cache, progress: &mut dyn FnMut(Progress)) -> Result<Self, LinkError> {
         let (target, list) = (cache.target(), cache.folder().join(LIST));
         let text = fs::read_to_string(&list).unwrap_or_default();
@@ -58,7 +59,7 @@ impl Seal {
         Ok(seal)
     }
 
-    /// Lists `files`, which cargo has just compiled, unless they were listed before and are `fresh`.
+    /// Records `files`, which cargo has just compiled, in the list, unless they are listed already and `fresh`.
     pub(super) fn add(&mut self, files: &[PathBuf], fresh: bool) {
         let new = files.iter().filter(|file| !fresh || self.listed(file).is_none());
         let lines: Vec<_> = new.filter_map(|file| Some((self.name(file)?.to_owned(), hash_of(file)?))).collect();
@@ -72,7 +73,8 @@ impl Seal {
         self.hashes.extend(lines);
     }
 
-    /// Lists the files in the folder of a build script: the script under both of its names, or its output.
+    /// Records the files in the folder of a build script in the list: the script under both of its names, or
+    /// its output.
     pub(super) fn add_script(&mut self, inside: &Path, fresh: bool) {
         let mut files = Vec::new();
         // What cannot be read is compiled anew the next time.
@@ -80,7 +82,7 @@ impl Seal {
         self.add(&files, fresh);
     }
 
-    /// Returns for each file `true` if it is listed and unchanged.
+    /// Returns, for each file, `true` if it is listed and unchanged.
     fn fit(&self, files: &[PathBuf]) -> Vec<bool> {
         let next = AtomicUsize::new(0);
         let work = || {
@@ -104,12 +106,12 @@ impl Seal {
         fits
     }
 
-    /// Listed hash of a file.
+    /// Returns the listed hash of a file.
     fn listed(&self, file: &Path) -> Option<&String> {
         self.hashes.get(self.name(file)?)
     }
 
-    /// Name of a file in the list, if it can have one.
+    /// Returns the name of a file in the list; `None` if the list cannot contain the file.
     fn name<'f>(&self, file: &'f Path) -> Option<&'f str> {
         file.strip_prefix(&self.target).ok()?.to_str().filter(|name| !name.contains('\n'))
     }
@@ -119,12 +121,13 @@ fn hash_of(file: &Path) -> Option<String> {
     fs::read(file).ok().map(|bytes| hash(&bytes))
 }
 
-/// Number of threads: a few read files as fast as memory allows.
+/// Returns the number of threads; a few threads read files as fast as memory allows.
 fn workers() -> usize {
     thread::available_parallelism().map_or(1, |all| all.get().min(4))
 }
 
-/// Adds to `files` the files below `folder` that a build uses and all links; with `all`, every file.
+/// Collects in `files` the files below `folder` that a build uses, and all links; collects every file if `all`
+/// is `true`.
 fn taken(folder: &Path, all: bool, files: &mut Vec<PathBuf>) -> io::Result<()> {
     let entries = match fs::read_dir(folder) {
         Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => return Ok(()),
@@ -164,7 +167,7 @@ mod tests {
     use super::super::tests::cache;
     use super::{Progress, Seal};
 
-    /// Writes files like those of cargo, all listed.
+    /// Writes files like those of cargo, and records all of them in the list.
     fn sealed(test: &str) -> (Cache, [PathBuf; 4]) {
         let cache = cache(test);
         let names = ["deps/liba-1.rlib", "deps/libb-2.so", "build/c-3/build-script-build", "build/c-4/output"];

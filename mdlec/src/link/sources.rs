@@ -10,7 +10,7 @@ use mdle_files::Known;
 use super::cache::{remove, write_if_changed};
 use super::{Cache, LinkError};
 
-/// Packages that every plan depends on, with their folders.
+/// Names and folders of the packages on which every plan depends.
 pub(super) const SHARED: [(&str, &str); 3] =
     [("mdle-runtime", "runtime/core"), ("mdle-host", "runtime/host"), ("mdle-atoms", "atoms")];
 
@@ -20,39 +20,40 @@ const PREFIX: &str = "src-";
 /// Time after which an unused version is removed.
 const FORGOTTEN: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
-/// Lock file with the versions of dependencies that mdlec was tested with.
+/// Name of the lock file, with the versions of dependencies with which mdlec was tested.
 pub(super) const LOCK: &str = "Cargo.lock";
 
-/// Folder and package name of a built-in target, by its name for `--target`.
+/// Returns the folder and package name of a built-in target, given its name for `--target`.
 pub(super) fn builtin(target: &str) -> Option<(String, &'static str)> {
     let (name, package) = embedded::TARGETS.iter().find(|(name, _)| *name == target)?;
     Some((format!("targets/{name}"), package))
 }
 
-/// Robots that have an emulator, in the order of their names.
+/// Returns the robots that have an emulator, in alphabetical order.
 pub fn emulators() -> impl Iterator<Item = &'static str> {
     embedded::EMULATORS.iter().map(|(robot, _)| *robot)
 }
 
-/// Folder and package name of the emulator of a built-in target.
+/// Returns the folder and package name of the emulator of a built-in target.
 pub(super) fn emulator(robot: &str) -> Option<(String, &'static str)> {
     let (name, package) = embedded::EMULATORS.iter().find(|(name, _)| *name == robot)?;
     Some((format!("targets/{name}/emulator"), package))
 }
 
-/// Worlds that come with a built-in target, in the order of their names; empty for a target that takes none.
+/// Returns the worlds that come with a built-in target, in alphabetical order; none for a target that takes no
+/// worlds.
 fn worlds(target: &str) -> impl Iterator<Item = &'static str> {
     let folder = format!("targets/{target}/worlds/");
     embedded::FILES.iter().filter_map(move |(file, _)| file.strip_prefix(&*folder)?.strip_suffix(".toml"))
 }
 
-/// Returns the worlds and options of a target, as far as they are known before a run: none for a target outside mdlec.
+/// Returns the worlds and options of a target that are known before a run: none for a third-party target.
 pub fn known(target: &str) -> Known {
     Known { worlds: worlds(target).collect(), options: options(target) }
 }
 
-/// Options of the executables for a built-in target, each with the placeholder of its value, which is empty for an
-/// option without one; `None` for a target that is no part of mdlec.
+/// Returns the options of the executables for a built-in target, each with the placeholder of its value (empty
+/// for an option without a value); `None` for a third-party target.
 fn options(target: &str) -> Option<Vec<(&'static str, &'static str)>> {
     let (folder, _) = builtin(target)?;
     let lines = text(&format!("{folder}/options.txt")).lines().filter(|line| !line.starts_with('#'));
@@ -61,12 +62,12 @@ fn options(target: &str) -> Option<Vec<(&'static str, &'static str)>> {
     Some(options).filter(|options| !options.is_empty())
 }
 
-/// Hash of all packed files.
+/// Returns the hash of all packed files.
 pub(super) fn hash() -> &'static str {
     embedded::HASH
 }
 
-/// Text of a packed file.
+/// Returns the text of a packed file.
 pub(super) fn text(name: &str) -> &'static str {
     let file = embedded::FILES.iter().find(|(file, _)| *file == name);
     file.and_then(|(_, contents)| str::from_utf8(contents).ok()).unwrap_or_default()
@@ -82,7 +83,8 @@ pub(super) struct Sources {
 impl Sources {
     /// Writes the files that the cache lacks, and those that differ from the packed ones.
     ///
-    /// Unchanged files keep their times, by which cargo knows what it has built. Call it with the cache locked.
+    /// Unchanged files keep their times, by which cargo recognizes what it has built. Must be called with the
+    /// cache locked.
     pub(super) fn unpack(cache: &Cache) -> Result<Self, LinkError> {
         let folder = cache.folder().join(format!("{PREFIX}{}-{}", env!("CARGO_PKG_VERSION"), embedded::HASH));
         if !folder.exists() {
@@ -113,8 +115,8 @@ pub(super) fn is_folder(name: &str) -> bool {
     })
 }
 
-/// Removes the sources of versions that have not been used for long, with all build results: most of them belong to old
-/// versions, and a new version has to compile its own anyway.
+/// Removes the sources of versions that have not been used for a long time, with all build results: most of
+/// these belong to old versions, and a new version has to compile everything anyway.
 fn forget_old_versions(cache: &Cache) -> Result<(), LinkError> {
     let is_old = |found: &DirEntry| {
         let used = found.metadata().and_then(|found| found.modified()).ok();

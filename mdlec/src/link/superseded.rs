@@ -1,5 +1,5 @@
-//! Removes what a plan file's former text left in the cache: a package is named after its text, so that an edit leaves
-//! the package before it, with an executable of some megabytes.
+//! Removes the results of a plan file's former text from the cache. A package is named after its text, so an
+//! edit would leave the earlier package with an executable of some megabytes.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -12,12 +12,12 @@ use super::machine::Machine;
 use super::plan_package::PlanPackage;
 use super::{Cache, LinkError};
 
-/// Name of the file in a package's folder that contains the hash of the plan file's path, and of the machine if it is
-/// another.
+/// Name of the file, in a package's folder, that contains the hash of the plan file's path, and of the machine
+/// if it is not this machine.
 const OWNER: &str = "owner";
 
-/// Records that `plan_file` was last built for `machine` as `package`, and removes the packages that it was built as
-/// before for that machine.
+/// Records that `plan_file` was last built for `machine` as `package`, and removes the packages of its earlier
+/// builds for that machine.
 pub(super) fn remove_before(
     cache: &Cache,
     plan_file: &Path,
@@ -55,7 +55,7 @@ fn remove_results(cache: &Cache, name: &OsStr) -> Result<(), LinkError> {
     Ok(())
 }
 
-/// Paths of the entries of a folder; empty if there is no such folder.
+/// Returns the paths of the entries of a folder; empty if there is no such folder.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, LinkError> {
     let entries = fs::read_dir(folder).and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect());
     match entries {

@@ -1,8 +1,8 @@
-//! Crate of the robot, and the packages that a plan for it depends on.
+//! Crate of the robot, and the packages on which a plan for the robot depends.
 //!
-//! A plan and its target must use the same `mdle-runtime`: one type in two packages is two types. So a third-party
-//! target decides. Its path dependencies are used for the plan as well; its dependencies by version or from git are
-//! replaced, in its crate too, by the sources that are part of mdlec.
+//! A plan and its target must use the same `mdle-runtime`, since a type in two packages is two types. A
+//! third-party target therefore decides: its path dependencies are used for the plan as well; its dependencies
+//! by version or from git are replaced, in its crate too, by the sources that are part of mdlec.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -13,7 +13,7 @@ use serde::Deserialize;
 use super::sources::{self, SHARED, Sources};
 use super::{LinkError, toolchain};
 
-/// Crate of a robot. It implements `mdle_host::Target` for a type that its root exports as `Target`.
+/// Crate of a robot, which implements `mdle_host::Target` for a type that its root exports as `Target`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TargetCrate<'a> {
     /// A target that is part of mdlec.
@@ -25,7 +25,7 @@ pub enum TargetCrate<'a> {
     },
     /// A third-party target.
     Path {
-        /// Folder of its Cargo.toml.
+        /// Folder of the crate's `Cargo.toml`.
         folder: &'a Path,
         /// Name of the crate in the target's alphabet.
         crate_name: &'a str,
@@ -33,7 +33,7 @@ pub enum TargetCrate<'a> {
 }
 
 impl<'a> TargetCrate<'a> {
-    /// Name of the crate in the target's alphabet.
+    /// Returns the name of the crate in the target's alphabet.
     #[must_use]
     pub fn crate_name(&self) -> &'a str {
         match self {
@@ -41,7 +41,7 @@ impl<'a> TargetCrate<'a> {
         }
     }
 
-    /// Refuses an `output` that is a file of a third-party crate. Executables may be overwritten, since users build
+    /// Fails if `output` is a file of a third-party crate. Executables may be overwritten, since users build
     /// plans in that folder.
     pub(super) fn must_not_lose(&self, output: &Path) -> Result<(), LinkError> {
         let Self::Path { folder, .. } = self else { return Ok(()) };
@@ -61,19 +61,20 @@ fn is_executable(file: &Path) -> bool {
 /// Dependencies of a plan's package.
 #[derive(Debug)]
 pub(super) struct Dependencies {
-    /// Names of packages with their folders.
+    /// Names of packages, with their folders.
     pub(super) packages: Vec<(String, PathBuf)>,
-    /// Packages of the target to replace: the source as `[patch]` names it, the package, the folder to use instead.
+    /// Packages of the target to replace: the source as `[patch]` names it, the package, and the folder to use
+    /// instead.
     pub(super) patches: Vec<(String, String, PathBuf)>,
-    /// Initial lock file.
+    /// Initial lock file of the package.
     pub(super) lock: String,
     /// Text that distinguishes this target from others.
     pub(super) identity: String,
-    /// Folder of the sources that are part of mdlec: a fault in them is a fault of mdlec.
+    /// Folder of the sources that are part of mdlec; a fault in them is a fault of mdlec.
     pub(super) ours: PathBuf,
 }
 
-/// Determines the dependencies of a plan for `target`.
+/// Returns the dependencies of a plan for `target`.
 pub(super) fn dependencies(target: &TargetCrate<'_>, sources: &Sources) -> Result<Dependencies, LinkError> {
     match target {
         TargetCrate::Builtin { name, crate_name } => builtin(name, crate_name, sources),
@@ -81,7 +82,7 @@ pub(super) fn dependencies(target: &TargetCrate<'_>, sources: &Sources) -> Resul
     }
 }
 
-/// Dependencies of a built-in target: everything from the unpacked sources.
+/// Returns the dependencies of a built-in target, all from the unpacked sources.
 fn builtin(name: &str, crate_name: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
     let (folder, package) = sources::builtin(name)
         .filter(|(_, package)| package.replace('-', "_") == crate_name)
@@ -101,7 +102,7 @@ fn builtin(name: &str, crate_name: &str, sources: &Sources) -> Result<Dependenci
     })
 }
 
-/// Determines the dependencies of the emulator of `robot`.
+/// Returns the dependencies of the emulator of `robot`.
 pub(super) fn emulator_dependencies(robot: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
     let (folder, package) = sources::emulator(robot).ok_or_else(|| LinkError::NoSuchTarget(robot.to_owned()))?;
     Ok(Dependencies {
@@ -113,7 +114,7 @@ pub(super) fn emulator_dependencies(robot: &str, sources: &Sources) -> Result<De
     })
 }
 
-/// Dependencies of a third-party target, as its manifest chooses them.
+/// Returns the dependencies of a third-party target, as its manifest chooses them.
 fn by_path(folder: &Path, crate_name: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
     let manifest = folder.join("Cargo.toml").canonicalize().map_err(|_| LinkError::NotACrate(folder.to_owned()))?;
     let metadata = read(&manifest, crate_name)?;
@@ -164,12 +165,12 @@ fn read(manifest: &Path, crate_name: &str) -> Result<Metadata, LinkError> {
     serde_json::from_slice(&found.stdout).map_err(|error| refused(error.to_string()))
 }
 
-/// Path as text for a manifest.
+/// Returns a path as text for a manifest.
 pub(super) fn utf8(path: &Path) -> Result<&str, LinkError> {
     path.to_str().ok_or_else(|| LinkError::NotUtf8(path.to_owned()))
 }
 
-/// Part of `cargo metadata` that is read.
+/// The part of the output of `cargo metadata` that mdlec uses.
 #[derive(Debug, Deserialize)]
 struct Metadata {
     packages: Vec<Described>,
@@ -192,7 +193,7 @@ struct BuiltCrate {
     kind: Vec<String>,
 }
 
-/// A dependency in the manifest; `kind` is null for one of the library.
+/// A dependency in the manifest; `kind` is null for a dependency of the library.
 #[derive(Debug, Deserialize)]
 struct Dependency {
     name: String,
@@ -215,7 +216,7 @@ impl Described {
 }
 
 impl Dependency {
-    /// Returns `true` for the packages that every plan depends on.
+    /// Returns `true` for a package on which every plan depends.
     fn is_shared(&self) -> bool {
         self.kind.is_none() && SHARED.iter().any(|(name, _)| *name == self.name)
     }

@@ -10,13 +10,13 @@ use super::LinkError;
 /// Oldest Rust version that compiles the packed sources.
 const NEEDED: &str = env!("CARGO_PKG_RUST_VERSION");
 
-/// Prefixes of variables that cargo may read, since they are the user's choice: its folders, its registries, the
-/// network, its use of the machine. All others would change builds, or repeat them.
+/// Prefixes of variables that cargo may read, since they are the user's choice: its folders, its registries,
+/// the network, and its use of the machine. All other variables could change builds or repeat them.
 const KEPT: [&str; 6] =
     ["CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTRIES_", "CARGO_REGISTRY_", "CARGO_BUILD_JOBS"];
 
 /// Working folder of cargo and rustc. They search it, and every folder above it, for `.cargo/config.toml` and
-/// `rust-toolchain.toml`, which can run code: here only the superuser can create them.
+/// `rust-toolchain.toml`, which can run code; only the superuser can create these files in this folder.
 const OUTSIDE: &str = "/";
 
 /// The installed Rust.
@@ -24,7 +24,7 @@ const OUTSIDE: &str = "/";
 pub(super) struct Toolchain {
     /// Target triple of this machine.
     pub(super) host: String,
-    /// Version of rustc, as `1.95.0`.
+    /// Version of rustc, such as `1.95.0`.
     pub(super) release: String,
 }
 
@@ -49,7 +49,7 @@ impl Toolchain {
     }
 }
 
-/// First two numbers of a version.
+/// Returns the first two numbers of a version.
 fn version(text: &str) -> Option<(u32, u32)> {
     let mut parts = text.split('.');
     Some((parts.next()?.parse().ok()?, parts.next()?.parse().ok()?))
@@ -69,12 +69,13 @@ pub(super) fn command(tool: &str) -> Command {
     command
 }
 
-/// Absolute path of the folder in the variable `name`; a relative path is relative to the current folder.
+/// Returns the absolute path of the folder in the variable `name`; a relative path is relative to the current
+/// folder.
 pub(super) fn absolute(name: &str) -> Option<PathBuf> {
     env::var_os(name).filter(|folder| !folder.is_empty()).and_then(|folder| path::absolute(folder).ok())
 }
 
-/// Folder of cargo's configuration and of what it has fetched.
+/// Returns the folder of cargo's configuration and of the packages that cargo has fetched.
 pub(super) fn cargo_home() -> Option<PathBuf> {
     absolute("CARGO_HOME").or_else(|| Some(env::home_dir()?.join(".cargo")))
 }
@@ -84,8 +85,8 @@ pub(super) fn output(mut command: Command, tool: &'static str) -> Result<Output,
     command.output().map_err(|error| unusable(tool, &error))
 }
 
-/// Returns `true` if cargo or rustc would let this variable change their results. `RUSTUP_TOOLCHAIN` stays, since users
-/// choose their Rust with it.
+/// Returns `true` if this variable could change the results of cargo or rustc. `RUSTUP_TOOLCHAIN` is not
+/// included, since users choose their Rust version with it.
 fn is_about_builds(name: &OsStr) -> bool {
     let Some(name) = name.to_str() else { return false };
     let own = name == "CARGO" || name.starts_with("CARGO_") || name.starts_with("__CARGO_");
@@ -93,7 +94,7 @@ fn is_about_builds(name: &OsStr) -> bool {
     (own && !kept) || name == "RUSTC" || name.starts_with("RUSTC_") || matches!(name, "RUSTFLAGS" | "RUSTDOCFLAGS")
 }
 
-/// Error for a program that could not be run.
+/// Returns the error for a program that could not be run.
 pub(super) fn unusable(tool: &'static str, error: &io::Error) -> LinkError {
     let missing = error.kind() == io::ErrorKind::NotFound;
     let why = if missing { "it is not installed".to_owned() } else { format!("it cannot be run ({error})") };
