@@ -9,9 +9,9 @@ use mdle_compiler::diagnostic::{Diagnostic, Sources};
 /// Reason why a plan or a target cannot be read.
 #[derive(Debug)]
 pub enum InputError {
-    /// A file cannot be read, or a folder is no target: a sentence.
+    /// A file cannot be read, or a folder is no target: the reason, as a sentence.
     Unusable(String),
-    /// No target is named, although Rust can only be written for one.
+    /// No target is named, although Rust code can be written only for a target.
     NoTarget,
     /// There is no target of this name.
     UnknownTarget(String),
@@ -19,16 +19,16 @@ pub enum InputError {
     InSettings {
         /// Line of the file, as in `plans/mdle.toml:3`.
         place: String,
-        /// Reason.
+        /// Reason why the target cannot be read.
         error: Box<InputError>,
     },
     /// A file has errors.
     Faulty(FaultyFile),
-    /// The file has no plan of the name asked for.
+    /// The file has no plan of the requested name.
     UnknownPlan {
         /// Name of the file.
         file: String,
-        /// Name asked for.
+        /// Requested name.
         name: String,
         /// Names of the file's plans.
         plans: Vec<String>,
@@ -57,11 +57,11 @@ pub struct FaultyFile {
     pub sources: Sources,
     /// Errors of the file, perhaps with warnings.
     pub diagnostics: Vec<Diagnostic>,
-    /// Name of the target if the file is an alphabet.
+    /// Name of the target, if the file is an alphabet.
     pub target: Option<String>,
 }
 
-/// The way in which a user names targets and plans.
+/// The syntax in which a user names targets and plans.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Spelling {
     /// Options of a command line: `--target sim`.
@@ -84,7 +84,8 @@ impl Spelling {
 }
 
 impl InputError {
-    /// Returns the file with errors, if that is the reason, also where a line of an `mdle.toml` leads to it.
+    /// Returns the file with errors, if that is the reason, also if the file is named by a line of an
+    /// `mdle.toml`.
     #[must_use]
     pub fn faulty_file(self) -> Option<FaultyFile> {
         match self {
@@ -99,8 +100,8 @@ impl InputError {
         }
     }
 
-    /// Returns the message, in which options are spelled for this user. The diagnostics of [`InputError::Faulty`] are
-    /// no part of it; without a target its message is empty.
+    /// Returns the message, with options in the user's syntax. It does not include the diagnostics of
+    /// [`InputError::Faulty`]; for these, the message is empty unless there is a target.
     #[must_use]
     pub fn message(&self, spelling: Spelling) -> String {
         match self {

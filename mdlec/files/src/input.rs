@@ -1,4 +1,4 @@
-//! Reads plan files with the files that they use.
+//! Reads plan files, together with the files that they use.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -17,15 +17,15 @@ use crate::{InputError, Target, Unsaved, read, unsaved};
 /// A plan file, together with the alphabet's files and the files that it uses.
 #[derive(Debug)]
 pub struct Input {
-    /// All these files, for messages.
+    /// The texts of all these files, for messages.
     pub sources: Sources,
-    /// The plan file.
+    /// Identifier of the plan file among the sources.
     pub source: SourceId,
     /// Paths of the plan file and of the files that it uses.
     paths: BTreeMap<SourceId, PathBuf>,
     /// Files that were read, by their canonical paths.
     read: BTreeMap<PathBuf, SourceId>,
-    /// Texts that are used in place of files.
+    /// Texts that are used instead of files.
     unsaved: Unsaved,
     /// Parts of groups among the plans that were compiled last.
     parts: Vec<Part>,
@@ -49,13 +49,13 @@ impl Group {
 }
 
 impl Input {
-    /// Uses the texts of an editor in place of the files that they will be saved to.
+    /// Uses the texts of an editor instead of the files to which they will be saved.
     #[must_use]
     pub fn with_unsaved(self, unsaved: Unsaved) -> Self {
         Self { unsaved, ..self }
     }
 
-    /// Path of a file that was read for the plan.
+    /// Returns the path of a file that was read for the plan.
     #[must_use]
     pub fn path(&self, source: SourceId) -> Option<&Path> {
         self.paths.get(&source).map(PathBuf::as_path)
@@ -66,7 +66,7 @@ impl Input {
         self.compile_within(alphabet, wanted, |_| Ok(()))
     }
 
-    /// Compiles like [`Input::compile`]; a plan that exceeds the limit is an error.
+    /// Compiles as [`Input::compile`] does; a plan that exceeds the limit is an error.
     pub fn compile_within(
         &mut self,
         alphabet: &Alphabet,
@@ -105,17 +105,18 @@ impl Input {
         check_with(self.source, &text, alphabet, self)
     }
 
-    /// Files that were read for the plan, its own first.
+    /// Returns the paths of the files that were read for the plan, its own file first.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         self.paths.values().map(PathBuf::as_path)
     }
 
-    /// Texts of the files that were read for the plan, its own first.
+    /// Returns the texts of the files that were read for the plan, its own file first.
     pub fn texts(&self) -> impl Iterator<Item = &str> {
         self.paths.keys().map(|source| self.sources.text(*source))
     }
 
-    /// Files that were read for the plan and for `target`, which no output may overwrite.
+    /// Returns the paths of the files that were read for the plan and for `target`, which no output may
+    /// overwrite.
     pub fn inputs(&self, target: &Target) -> Vec<PathBuf> {
         let named = |path: &Path| if path == Path::new("-") { PathBuf::from("/dev/stdin") } else { path.to_owned() };
         self.files().map(named).chain(target.files()).collect()
@@ -132,7 +133,8 @@ impl Input {
         names.collect()
     }
 
-    /// Labels of the plans in the file and in the files that it uses, as `Γ_from^to`, with the names of the plans.
+    /// Returns the labels of the plans in the file and in the files that it uses, such as `Γ_from^to`, each
+    /// with the name of its plan.
     pub fn labels(&mut self) -> Vec<(String, String)> {
         let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
         let (files, _) = syntax::parse_with(self.source, &text, &arena, self);
@@ -141,10 +143,10 @@ impl Input {
         files.plans.iter().filter_map(named).collect()
     }
 
-    /// Checks that the file, or one that it uses, has a plan of this name.
+    /// Checks that the file, or a file that it uses, has a plan of this name.
     ///
     /// # Errors
-    /// There are plans, and none of them has the name.
+    /// Fails if there are plans, but none has this name.
     pub fn must_have(&mut self, name: &str) -> Result<(), InputError> {
         let plans = self.plan_names();
         if plans.is_empty() || plans.iter().any(|plan| plan == name) {
@@ -157,7 +159,7 @@ impl Input {
     /// Returns the only plan of `plans`, the names and plans that [`compile`](Self::compile) found.
     ///
     /// # Errors
-    /// `plans` is empty, or has several plans.
+    /// Fails if `plans` is empty or has several plans.
     pub fn only<T>(&self, mut plans: Vec<(String, T)>) -> Result<T, InputError> {
         match (plans.pop(), plans.len()) {
             (Some((_, only)), 0) => Ok(only),
@@ -223,15 +225,15 @@ impl syntax::Loader for Input {
 /// Reads a plan file; `-` is standard input.
 ///
 /// # Errors
-/// The file cannot be read or is not text.
+/// Fails if the file cannot be read or is not text.
 pub fn read_plan(path: &Path, target: &Target) -> Result<Input, InputError> {
     plan(path, read_text(path, read::LARGEST_PLAN)?, target)
 }
 
-/// Makes the input of a plan file whose text was read.
+/// Returns the input for a plan file whose text has been read.
 ///
 /// # Errors
-/// The text is too long.
+/// Fails if the text is too long.
 pub fn plan(path: &Path, text: String, target: &Target) -> Result<Input, InputError> {
     let mut sources = target.sources();
     let source = add(&mut sources, path, text)?;
@@ -252,7 +254,7 @@ fn robots(plan: &Plan<'_>) -> Option<Vec<String>> {
 /// Adds the text of a plan file.
 ///
 /// # Errors
-/// The text is too long.
+/// Fails if the text is too long.
 pub fn add(sources: &mut Sources, path: &Path, text: String) -> Result<SourceId, InputError> {
     let name = shown(path);
     match sources.refusal(&name, text.len()) {
@@ -261,8 +263,8 @@ pub fn add(sources: &mut Sources, path: &Path, text: String) -> Result<SourceId,
     }
 }
 
-/// Name of the plan file next to `path` that was probably meant: one that differs in upper or lower case or in the
-/// extension, or else in few letters.
+/// Returns the name of the plan file beside `path` that was probably meant: a name that differs only in upper
+/// and lower case or in the extension, or otherwise in a few letters.
 fn like(path: &Path) -> Option<String> {
     let name = path.file_name()?.to_str()?.to_lowercase();
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));

@@ -1,7 +1,7 @@
-//! The files of plans: reads plans, the files that they use, and the alphabets of targets, for the stages of
-//! [`mdle_compiler`].
+//! The files of plans: this crate reads plans, the files that they use, and the alphabets of targets, for the
+//! stages of [`mdle_compiler`].
 //!
-//! It prints nothing: what cannot be read is an [`InputError`], whose message names what to type instead.
+//! It prints nothing: an error while reading is an [`InputError`], whose message says what to type instead.
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 
 mod error;

@@ -1,5 +1,5 @@
-//! Reads the files that a user names: regular files up to a maximum size, never a file that waits for a writer; and
-//! standard input.
+//! Reads the files that a user names: standard input, and regular files up to a maximum size, but never a file
+//! that waits for a writer.
 
 use std::fmt;
 use std::fs::{self, FileType, OpenOptions};
@@ -9,9 +9,10 @@ use std::path::Path;
 
 use rustix::fs::OFlags;
 
-/// Maximum size in bytes of a plan, an alphabet or a file that a plan uses: files written by hand are far smaller.
+/// Maximum size, in bytes, of a plan, of an alphabet, or of a file that a plan uses. Files written by hand are
+/// far smaller.
 pub const LARGEST_PLAN: u64 = 64_000_000;
-/// Maximum size in bytes of a machine or a script, which programs write.
+/// Maximum size, in bytes, of a machine or a script, which programs write.
 pub const LARGEST_DATA: u64 = 1_000_000_000;
 
 /// Reason why a file is not read.
@@ -19,7 +20,7 @@ pub const LARGEST_DATA: u64 = 1_000_000_000;
 pub enum Unread {
     /// The file is not a regular file, but of this kind.
     Irregular(&'static str),
-    /// The file has more than this maximum of bytes.
+    /// The file is larger than this maximum, in bytes.
     TooLarge(u64),
     /// The file does not end: a writer may add more.
     Endless,
@@ -34,7 +35,7 @@ impl Unread {
         matches!(self, Self::System(error) if error.kind() == io::ErrorKind::NotFound)
     }
 
-    /// A hint for commands that can read standard input.
+    /// Returns a hint for commands that can read standard input.
     #[must_use]
     pub fn help(&self) -> &'static str {
         match self {
@@ -43,7 +44,7 @@ impl Unread {
         }
     }
 
-    /// Error message for the file that messages call `name`.
+    /// Returns the error message for a file that messages call `name`.
     #[must_use]
     pub fn of(&self, name: impl fmt::Display) -> String {
         match self {
@@ -58,7 +59,7 @@ impl Unread {
 /// Reads a regular file of at most `most` bytes.
 ///
 /// # Errors
-/// The file cannot be read, is larger, or is not a regular file.
+/// Fails if the file cannot be read, is larger, or is not a regular file.
 pub fn file(path: &Path, most: u64) -> Result<Vec<u8>, Unread> {
     // To open a device or a pipe may already do something to it.
     regular(fs::metadata(path).map_err(Unread::System)?.file_type())?;
@@ -73,7 +74,7 @@ pub fn file(path: &Path, most: u64) -> Result<Vec<u8>, Unread> {
 /// Reads standard input, at most `most` bytes.
 ///
 /// # Errors
-/// Standard input cannot be read or is longer.
+/// Fails if standard input cannot be read or is longer.
 pub fn standard_input(most: u64) -> Result<Vec<u8>, Unread> {
     whole(io::stdin().lock(), most)
 }

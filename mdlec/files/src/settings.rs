@@ -20,18 +20,18 @@ const LARGEST: u64 = 1_000_000;
 /// The settings of the plans in a folder; empty if the folder has no `mdle.toml`.
 #[derive(Debug, Default)]
 pub struct Settings {
-    /// Path of the file, if there is one.
+    /// Path of the file; `None` if there is none.
     file: Option<PathBuf>,
     text: SettingsText,
 }
 
-/// Worlds and options of a target, as far as they are known before a run.
+/// Worlds and options of a target that are known before a run.
 #[derive(Debug, Default)]
 pub struct Known {
     /// Names of the worlds; empty if they are not known.
     pub worlds: Vec<&'static str>,
-    /// Options of the target, each with the placeholder of its value, empty for an option without one; `None` if they
-    /// are not known.
+    /// Options of the target, each with the placeholder of its value (empty for an option without a value);
+    /// `None` if they are not known.
     pub options: Option<Vec<(&'static str, &'static str)>>,
 }
 
@@ -51,7 +51,7 @@ pub struct NamedProcess<'s> {
 pub struct RunOption {
     /// Place of the option, as in `plans/mdle.toml:3`.
     place: String,
-    /// Arguments of the executable.
+    /// Arguments for the executable.
     pub arguments: Vec<OsString>,
 }
 
@@ -65,7 +65,7 @@ impl Settings {
     /// Reads the `mdle.toml` beside the plan in the file `plan`.
     ///
     /// # Errors
-    /// The file cannot be read or has errors.
+    /// Fails if the file cannot be read or has errors.
     pub fn beside(plan: &Path) -> Result<Self, InputError> {
         let Some(file) = file_beside(plan) else { return Ok(Self::default()) };
         let bytes = match read::file(&file, LARGEST) {
@@ -85,11 +85,11 @@ impl Settings {
         Ok(Self { file: Some(file), text })
     }
 
-    /// Returns the target that the command line names with `option`, or else that of the file; without either, a robot
-    /// that has every capability.
+    /// Returns the target that the command line names with `option`, or else the target of the file; without
+    /// either, a robot that has every capability.
     ///
     /// # Errors
-    /// There is no such target, or its alphabet cannot be read or has errors.
+    /// Fails if there is no such target, or if its alphabet cannot be read or has errors.
     pub fn target(&self, option: Option<&str>) -> Result<Target, InputError> {
         let mut target = match (option, &self.text.target) {
             (Some(_), _) | (None, None) => target(option),
@@ -102,7 +102,7 @@ impl Settings {
         Ok(target)
     }
 
-    /// Returns the name of the target that the command line gives with `option`, or else that of the file.
+    /// Returns the name of the target that the command line gives with `option`, or else the name in the file.
     #[must_use]
     pub fn name_of_target(&self, option: Option<&str>) -> Option<String> {
         let own = || self.text.target.as_ref().map(|own| self.target_name(&own.value));
@@ -124,12 +124,13 @@ impl Settings {
         })
     }
 
-    /// Returns the options of the file for a run, except those that are also in `given`, the arguments of the command
-    /// line. The options are for the target of the file: if the command line names another one with `target`, there are
-    /// none. `known` returns what is known of a target; the run itself judges the rest.
+    /// Returns the options of the file for a run, except those that are also in `given`, the arguments of the
+    /// command line. The options are for the target of the file: if the command line names another target with
+    /// `target`, there are no options. `known` returns the known worlds and options of a target; the run itself
+    /// checks the rest.
     ///
     /// # Errors
-    /// There is no such world or option.
+    /// Fails if there is no such world or option.
     pub fn run_options(
         &self,
         target: Option<&str>,
@@ -161,8 +162,8 @@ impl Settings {
         world.into_iter().chain(others).collect()
     }
 
-    /// The option `--world`: a file of that name in the folder of the `mdle.toml`, or else a world that the target
-    /// knows.
+    /// Returns the option `--world`: a file of that name in the folder of the `mdle.toml`, or else a world that
+    /// the target knows.
     fn world(&self, world: &Setting, worlds: &[&str]) -> Result<RunOption, InputError> {
         let (place, file) = (self.place(world.line), self.in_folder(&world.value));
         if !file.is_file() && world.value.contains(['.', '/']) {
@@ -178,7 +179,8 @@ impl Settings {
         Ok(RunOption { place, arguments: vec![argument] })
     }
 
-    /// Name or folder of the target, as `--target` takes it: a relative folder is relative to the folder of the file.
+    /// Returns the name or folder of the target, as `--target` takes it. A relative folder is relative to the
+    /// folder of the file.
     fn target_name(&self, value: &str) -> String {
         let is_robot = builtin::alphabets().iter().any(|alphabet| alphabet.target && alphabet.name == value);
         let folder = self.in_folder(value);
@@ -189,19 +191,19 @@ impl Settings {
         }
     }
 
-    /// The path `value`, which is relative to the folder of the file.
+    /// Returns the path `value`, which is relative to the folder of the file.
     fn in_folder(&self, value: &str) -> PathBuf {
         self.file.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).join(value)
     }
 
-    /// The place of a line, for messages.
+    /// Returns the place of a line, for messages.
     fn place(&self, line: usize) -> String {
         format!("{}:{line}", self.file.as_deref().unwrap_or(Path::new(NAME)).display())
     }
 }
 
 impl RunOption {
-    /// Returns the error for the option that a program refused with this text on standard error.
+    /// Returns the error for an option that a program refused with this text on standard error.
     #[must_use]
     pub fn refused(&self, text: &str) -> InputError {
         let is_about_option = |line: &&str| !line.starts_with("Usage:") && !line.starts_with("For more information");

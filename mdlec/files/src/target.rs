@@ -1,4 +1,4 @@
-//! The robot that plans are for: its alphabet, with the shared ones that it uses.
+//! The robot for which plans are written: its alphabet, with the shared alphabets that it uses.
 
 use std::path::{Path, PathBuf};
 
@@ -11,12 +11,12 @@ use crate::read::LARGEST_PLAN;
 use crate::text::read_text;
 use crate::{FaultyFile, InputError, read};
 
-/// The robot that plans are checked against.
+/// The robot against which plans are checked.
 #[derive(Debug)]
 pub struct Target {
     /// Alphabet of the robot.
     pub alphabet: Alphabet,
-    /// Folder of a target that is not part of mdlec.
+    /// Folder of a third-party target; `None` for a target that is part of mdlec.
     pub folder: Option<PathBuf>,
     /// The `mdle.toml` beside the plan, if there is one.
     pub settings: Option<PathBuf>,
@@ -25,12 +25,12 @@ pub struct Target {
 }
 
 impl Target {
-    /// Texts of the alphabet's files: the shared ones, then the target's own.
+    /// Returns the texts of the alphabet's files: the shared alphabets, then the target's own.
     pub fn texts(&self) -> impl Iterator<Item = &str> {
         self.sources.iter().map(|(_, text)| text.as_str())
     }
 
-    /// Returns the alphabet's files alone, as messages show them.
+    /// Returns only the alphabet's files, for messages.
     #[must_use]
     pub fn sources(&self) -> Sources {
         let mut sources = Sources::default();
@@ -40,18 +40,18 @@ impl Target {
         sources
     }
 
-    /// Files that were read for the target.
+    /// Returns the paths of the files that were read for the target.
     pub fn files(&self) -> impl Iterator<Item = PathBuf> {
         let own =
             self.folder.iter().flat_map(|folder| ["alphabet.mdle", "src/alphabet.rs"].map(|file| folder.join(file)));
         own.chain(self.settings.clone())
     }
 
-    /// Checks that the crate of a target that is not part of mdlec is bound to the target's alphabet: nothing can be
-    /// built for it otherwise.
+    /// Checks that the crate of a third-party target is bound to the target's alphabet; otherwise no plan can
+    /// be built for it.
     ///
     /// # Errors
-    /// The generated file `src/alphabet.rs` is missing or out of date.
+    /// Fails if the generated file `src/alphabet.rs` is missing or out of date.
     pub fn must_be_bound(&self) -> Result<(), InputError> {
         let Some(folder) = &self.folder else { return Ok(()) };
         let file = folder.join("alphabet.mdle");
@@ -64,13 +64,13 @@ impl Target {
     }
 }
 
-/// Path of the Rust file that `mdlec bind` generates from the alphabet in `file`.
+/// Returns the path of the Rust file that `mdlec bind` generates from the alphabet in `file`.
 #[must_use]
 pub fn bound(file: &Path) -> PathBuf {
     file.with_file_name("src").join("alphabet.rs")
 }
 
-/// Sentence about the alphabet in `file` whose Rust is missing or out of date.
+/// Returns a sentence about the alphabet in `file` whose Rust file is missing or out of date.
 #[must_use]
 pub fn out_of_date(file: &Path) -> String {
     let (rust, file) = (bound(file), file.display());
@@ -81,11 +81,11 @@ pub fn out_of_date(file: &Path) -> String {
     format!("`{bound}` differs from the bindings of `{file}`\nhelp: `mdlec bind {file}` writes it again")
 }
 
-/// Reads the target that `option` names: one that is part of mdlec, or the folder of another. Without a name it is a
-/// robot with every capability.
+/// Reads the target that `option` names: a target that is part of mdlec, or the folder of a third-party target.
+/// Without a name, returns a robot with every capability.
 ///
 /// # Errors
-/// There is no such target, or its alphabet cannot be read or has errors.
+/// Fails if there is no such target, or if its alphabet cannot be read or has errors.
 pub fn target(option: Option<&str>) -> Result<Target, InputError> {
     let Some(name) = option else { return read_alphabets(None, "") };
     if let Some(builtin) = builtin::alphabets().iter().find(|alphabet| alphabet.target && alphabet.name == name) {
@@ -102,10 +102,10 @@ pub fn target(option: Option<&str>) -> Result<Target, InputError> {
     Ok(target)
 }
 
-/// Reads the alphabet in this file, with the shared ones that it uses.
+/// Reads the alphabet in this file, with the shared alphabets that it uses.
 ///
 /// # Errors
-/// The file cannot be read or has errors.
+/// Fails if the file cannot be read or has errors.
 pub fn alphabet(file: &Path) -> Result<Alphabet, InputError> {
     let name = file.display().to_string();
     let text = read_text(file, LARGEST_PLAN)?;

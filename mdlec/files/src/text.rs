@@ -9,7 +9,7 @@ use crate::{FaultyFile, InputError, read};
 /// Reads a text file of at most `most` bytes, or standard input for `-`.
 ///
 /// # Errors
-/// The file cannot be read or is not text.
+/// Fails if the file cannot be read or is not text.
 pub fn read_text(path: &Path, most: u64) -> Result<String, InputError> {
     let name = shown(path);
     let is_input = path == Path::new("-");
@@ -27,18 +27,19 @@ pub fn read_text(path: &Path, most: u64) -> Result<String, InputError> {
     })
 }
 
-/// Removes a byte order mark, which editors write and which is not part of a plan.
+/// Removes a byte order mark, which some editors write and which is not part of a plan.
 #[must_use]
 pub fn without_mark(bytes: Vec<u8>) -> Vec<u8> {
     bytes.strip_prefix(b"\xEF\xBB\xBF").map(<[u8]>::to_vec).unwrap_or(bytes)
 }
 
-/// Name of a file in messages.
+/// Returns the name of a file for messages.
 pub(crate) fn shown(path: &Path) -> String {
     if path == Path::new("-") { "standard input".into() } else { path.display().to_string() }
 }
 
-/// Error for a file that is not text, with the part of the file that can be shown; its first `valid` bytes are valid.
+/// Returns the error for a file that is not text, with the part of the file that can be shown; its first
+/// `valid` bytes are valid UTF-8.
 fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> InputError {
     let mut sources = Sources::default();
     let source = sources.add(name, String::from_utf8_lossy(bytes));
@@ -49,7 +50,7 @@ fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> InputError {
     InputError::Faulty(FaultyFile { sources, diagnostics: vec![found], target: None })
 }
 
-/// Hint for a path without the extension `.mdle`.
+/// Returns a hint for a path without the extension `.mdle`.
 fn plan_nearby(path: &Path) -> String {
     let with_ending = path.with_extension("mdle");
     if with_ending.is_file() { format!("\nhelp: there is `{}`", with_ending.display()) } else { String::new() }

@@ -1,38 +1,38 @@
-//! Texts that an editor has not saved yet: they are read in place of the files.
+//! Texts that an editor has not saved yet, which are read instead of the files.
 
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Texts of an editor by the places of their files.
+/// Texts of an editor, by the canonical paths of their files.
 #[derive(Debug, Clone, Default)]
 pub struct Unsaved(BTreeMap<PathBuf, Arc<str>>);
 
 impl Unsaved {
-    /// Uses `text` in place of the file `path` from now on. A path whose folder does not exist has no effect, since no
-    /// plan can use it.
+    /// Uses `text` instead of the file `path` from now on. A path whose folder does not exist has no effect,
+    /// since no plan can use it.
     pub fn insert(&mut self, path: &Path, text: &str) {
         if let Ok(place) = place(path) {
             self.0.insert(place, text.into());
         }
     }
 
-    /// Returns the text at this place, if the editor has one.
+    /// Returns the text for this canonical path, if the editor has one.
     pub(crate) fn text(&self, place: &Path) -> Option<&str> {
         self.0.get(place).map(AsRef::as_ref)
     }
 
-    /// Returns the place of a file that is on the disk or among these texts.
+    /// Returns the canonical path of a file that is on the disk or among these texts.
     pub(crate) fn place(&self, path: &Path) -> io::Result<PathBuf> {
         path.canonicalize().or_else(|error| place(path).ok().filter(|place| self.0.contains_key(place)).ok_or(error))
     }
 }
 
-/// Returns the canonical path of a file, which may be one that was never saved in a folder that exists.
+/// Returns the canonical path of a file. The file need not exist, but its folder must.
 ///
 /// # Errors
-/// There is no such folder.
+/// Fails if there is no such folder.
 pub fn place(path: &Path) -> io::Result<PathBuf> {
     path.canonicalize().or_else(|error| match (path.parent(), path.file_name()) {
         (Some(folder), Some(name)) => {
@@ -54,7 +54,7 @@ mod tests {
 
     const MAIN: &str = "use \"leg.mdle\"\n{ Main (bumper) Leg }\n";
 
-    /// Codes of the diagnostics of `MAIN` in this folder.
+    /// Returns the codes of the diagnostics of `MAIN` in this folder.
     fn codes(folder: &Path, unsaved: &Unsaved) -> Vec<&'static str> {
         let target = target(None).unwrap();
         let mut input = plan(&folder.join("main.mdle"), MAIN.into(), &target).unwrap().with_unsaved(unsaved.clone());

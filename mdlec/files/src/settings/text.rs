@@ -21,7 +21,7 @@ pub(super) struct SettingsText {
     pub(super) modules: Vec<(String, Setting)>,
 }
 
-/// A value, and the number of its line from 1.
+/// A value, with its line number from 1.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Setting {
     pub(super) line: usize,
@@ -34,7 +34,7 @@ pub(super) struct OptionText {
     pub(super) line: usize,
     /// Name of the option, without `--`.
     pub(super) name: String,
-    /// Arguments of the executable; none if the option is `false`.
+    /// Arguments for the executable; none if the option is `false`.
     pub(super) arguments: Vec<String>,
 }
 
@@ -63,7 +63,7 @@ impl OptionText {
     }
 }
 
-/// An error, and the number of its line from 1.
+/// An error, with its line number from 1.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct SettingsError {
     pub(super) line: usize,
@@ -101,7 +101,7 @@ pub(super) fn read(text: &str) -> Result<SettingsText, SettingsError> {
     Ok(settings)
 }
 
-/// The entries of a table in the order of their lines.
+/// Returns the entries of a table in the order of their lines.
 fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t Key<'i>, &'t Spanned<DeValue<'i>>)> {
     let mut entries: Vec<_> = table.iter().collect();
     entries.sort_by_key(|(key, _)| key.span().start);
@@ -111,11 +111,11 @@ fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t Key<'i>, &'t Spanned<DeV
 /// A key as TOML represents it.
 type Key<'i> = Spanned<std::borrow::Cow<'i, str>>;
 
-/// The text that is being read.
+/// Reader of the text of an `mdle.toml`.
 struct Reading<'t>(&'t str);
 
 impl Reading<'_> {
-    /// Reads a value that must be text; `example` shows one.
+    /// Reads a value that must be text; `example` shows an example.
     fn text(&self, key: &Key<'_>, value: &Spanned<DeValue<'_>>, example: &str) -> Result<Setting, SettingsError> {
         let found = value.get_ref();
         match found.as_str() {
@@ -205,13 +205,13 @@ impl Reading<'_> {
         SettingsError { line: self.line(&place.span()), message }
     }
 
-    /// The number of the line that a span begins in, from 1.
+    /// Returns the number of the line in which a span begins, from 1.
     fn line(&self, span: &Range<usize>) -> usize {
         self.0.bytes().take(span.start).filter(|byte| *byte == b'\n').count() + 1
     }
 }
 
-/// The type of a value, for messages.
+/// Returns the name of a value's type, for messages.
 fn kind(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(text) if text.contains('\0') => "text with U+0000",
