@@ -17,13 +17,13 @@ pub enum EmbedError {
     Plan {
         /// Files to which the diagnostics refer.
         sources: Box<Sources>,
-        /// Diagnostics of `mdlec check`, errors among them.
+        /// Diagnostics of `mdlec check`, which include errors.
         diagnostics: Vec<Diagnostic>,
     },
     /// The plan or the target cannot be read, or the plan to compile is not determined.
     #[error("{}", .0.message(Spelling::BuildScript))]
     Input(InputError),
-    /// The process is no build script.
+    /// The process is not a build script, as cargo has not set `OUT_DIR`.
     #[error("the variable OUT_DIR is not set: plans are embedded by the build script of a package")]
     NoOutDir,
     /// The name of an input has a line break, after which cargo would read another instruction.
@@ -31,10 +31,10 @@ pub enum EmbedError {
         "the name {0:?} contains a line break, so cargo cannot watch this file\nhelp: rename the file or its folder"
     )]
     LineBreak(PathBuf),
-    /// The file to write is one that was read.
+    /// The file to write is a file that was read: its path.
     #[error("`{0}` is the plan itself and would be lost: rename the plan's file")]
     OutputIsInput(PathBuf),
-    /// The Rust cannot be written.
+    /// The Rust code cannot be written.
     #[error("`{path}` cannot be written: {error}")]
     Output {
         /// File to write.
@@ -60,7 +60,7 @@ impl From<InputError> for EmbedError {
     }
 }
 
-/// Number of errors, then the diagnostics as people read them.
+/// Returns the number of errors, followed by the diagnostics for people.
 fn report(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
     let errors = diagnostics.iter().filter(|found| found.code.severity() == Severity::Error).count();
     let most = most_shown(diagnostics);

@@ -1,5 +1,5 @@
-//! Embeds plans in an application: the application's build script compiles them to Rust, and the application includes
-//! that.
+//! Embeds plans in an application: the application's build script compiles them to Rust code, which the
+//! application includes.
 //!
 //! ```no_run
 //! // build.rs
@@ -48,18 +48,18 @@ pub struct Embed {
     plan: Option<String>,
 }
 
-/// Embeds a plan of this file; a path is relative to the folder of the package.
+/// Returns the plan of this file, to be embedded; a path is relative to the folder of the package.
 pub fn plan(file: impl Into<PathBuf>) -> Embed {
     Embed { file: file.into(), target: None, plan: None }
 }
 
 impl Embed {
-    /// Sets the robot, which is required: one of `mdlec targets`, or the folder of a target of your own.
+    /// Sets the robot, which is required: a name from `mdlec targets`, or the folder of a target of your own.
     pub fn target(self, target: impl Into<String>) -> Self {
         Self { target: Some(target.into()), ..self }
     }
 
-    /// Selects a plan of the file; required if several plans are not used by any other.
+    /// Selects a plan of the file. Required if the file has several plans that no other plan uses.
     pub fn plan(self, name: impl Into<String>) -> Self {
         Self { plan: Some(name.into()), ..self }
     }
@@ -69,8 +69,8 @@ impl Embed {
     /// that was read: the plan, the files that it uses, and the alphabet of a target of your own.
     ///
     /// # Errors
-    /// The plan has errors, its file or the target cannot be read, or the Rust cannot be written. A `main` that returns
-    /// the error shows the messages of `mdlec check`.
+    /// Fails if the plan has errors, if its file or the target cannot be read, or if the Rust code cannot be
+    /// written. A `main` that returns the error shows the messages of `mdlec check`.
     pub fn write(self) -> Result<(), EmbedError> {
         let folder = env::var_os("OUT_DIR").ok_or(EmbedError::NoOutDir)?;
         let mut name = OsString::from(self.file.file_stem().unwrap_or_default());
@@ -81,7 +81,7 @@ impl Embed {
         out.write_all(instructions.as_bytes()).and_then(|()| out.flush()).map_err(EmbedError::Cargo)
     }
 
-    /// Writes the Rust to `output`, and returns the instructions for cargo.
+    /// Writes the Rust code to `output`, and returns the instructions for cargo.
     fn write_to(&self, output: &Path) -> Result<String, EmbedError> {
         let mut target = mdle_files::target(Some(self.target.as_deref().ok_or(InputError::NoTarget)?))?;
         // An application runs no modules beside its plan.
@@ -113,18 +113,18 @@ impl Embed {
     }
 }
 
-/// Returns `true` if `output` is one of `inputs` by any path.
+/// Returns `true` if `output` is one of `inputs`, by any path.
 fn is_among(output: &Path, inputs: &[PathBuf]) -> bool {
     let Ok(output) = output.canonicalize() else { return false };
     inputs.iter().any(|input| input.canonicalize().is_ok_and(|input| input == output))
 }
 
-/// Lines that make cargo show warnings.
+/// Returns the lines that make cargo show warnings.
 fn warnings(sources: &Sources, found: &[Diagnostic]) -> String {
     found.iter().map(|warning| warning_line(&sources.message(warning))).collect()
 }
 
-/// A warning in the one line that cargo accepts.
+/// Returns a warning as a single line, which is all that cargo accepts.
 fn warning_line(warning: &Message<'_>) -> String {
     let place = warning.spans.first().map(|place| format!("{}:{}:{}: ", place.file, place.line, place.column));
     let help: String = warning.help.iter().map(|help| format!("; help: {help}")).collect();
@@ -132,7 +132,8 @@ fn warning_line(warning: &Message<'_>) -> String {
     format!("cargo::warning={}\n", Printable(text))
 }
 
-/// Line that makes cargo watch `file`. Cargo would read text after a line break as another instruction.
+/// Returns the line that makes cargo watch `file`. Fails if the name contains a line break, since cargo would
+/// read the text after it as another instruction.
 fn watched(file: &Path) -> Result<String, EmbedError> {
     let line = format!("cargo::rerun-if-changed={}", file.display());
     if line.contains(['\n', '\r']) { Err(EmbedError::LineBreak(file.to_owned())) } else { Ok(line + "\n") }
