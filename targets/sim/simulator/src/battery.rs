@@ -2,28 +2,29 @@
 
 use mdle_runtime::{Supply, Volts};
 
-/// A battery and what uses it. Watts, joules and volts.
+/// A battery and its consumers, in watts, joules and volts.
 ///
-/// The documents on the robots give no figures, so these are assumed: a pair of lead-acid batteries as this size of
-/// robot carries, and the power of a computer with its sonars. The energy of a metre is that of rolling friction (a
-/// twentieth of the weight) through motors with an efficiency of three tenths.
+/// The documents on the robots give no figures, so the figures are assumptions: a pair of lead-acid batteries
+/// that suits the size of the robot, and the power of a computer with sonars. The energy per metre is that of
+/// rolling friction (a twentieth of the weight), with motors of 30 % efficiency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Pack {
     /// Energy of the full battery, in joules.
     pub(crate) capacity: f64,
-    /// Power that is used all the time, in watts.
+    /// Power that is always used, in watts.
     pub(crate) standby: f64,
-    /// Energy for a metre of a wheel, in joules: the mean of both wheels counts.
+    /// Energy per metre that a wheel rolls, in joules; the mean of both wheels counts.
     pub(crate) metre: f64,
-    /// Power that the charger gives, in watts.
+    /// Power that the charger supplies, in watts.
     pub(crate) charger: f64,
-    /// Number of cells of lead and acid.
+    /// Number of lead-acid cells.
     pub(crate) cells: f64,
 }
 
 /// Joules of a watt-hour.
 const WATT_HOUR: f64 = 3600.0;
-/// Voltages of a cell at rest: empty, full, and below which it has to be charged, which is 10.8 V for a battery of six.
+/// Voltages of a cell at rest: empty, full, and the limit below which it has to be charged, which is 10.8 V for
+/// a battery of six cells.
 const EMPTY: f64 = 1.75;
 const FULL: f64 = 2.12;
 const LOW: f64 = 1.8;
@@ -46,7 +47,7 @@ pub(crate) struct Battery {
 }
 
 impl Battery {
-    /// A battery with this charge, from 0 to 1.
+    /// Returns a battery with this charge, from 0 to 1.
     pub(crate) fn new(pack: Pack, charge: f64) -> Self {
         Self { pack, charge: charge.clamp(0.0, 1.0) }
     }
@@ -56,14 +57,15 @@ impl Battery {
         self.charge = charge.clamp(0.0, 1.0);
     }
 
-    /// Lets `seconds` pass, in which the wheels rolled `rolled` metres, on the charger or not.
+    /// Updates the charge after `seconds` in which the wheels rolled `rolled` metres; `is_plugged` is `true` on
+    /// the charger.
     pub(crate) fn passed(&mut self, seconds: f64, rolled: f64, is_plugged: bool) {
         let Pack { capacity, standby, metre, charger, .. } = self.pack;
         let given = if is_plugged { charger } else { 0.0 };
         self.charge = (self.charge + ((given - standby) * seconds - metre * rolled) / capacity).clamp(0.0, 1.0);
     }
 
-    /// Returns `true` if there is nothing left to drive by.
+    /// Returns `true` if the battery is too empty to drive.
     pub(crate) fn is_empty(&self) -> bool {
         self.charge <= 0.0
     }

@@ -15,15 +15,16 @@ use crate::walls::Walls;
 use contact::{slid, turned};
 use odometry::Odometry;
 
-/// Maximum step of the integration, in seconds: the robot moves about a centimetre in it, less than any wall is thick.
+/// Maximum step of the integration, in seconds. In one step the robot moves about a centimetre, less than the
+/// thickness of any wall.
 pub(crate) const STEP: f64 = 0.01;
 /// Maximum distance, in metres, at which the bumper feels a wall.
 const FEELS: f64 = 0.001;
-/// Minimum fraction of the forward speed that contact with a wall must leave so that the wheels keep turning: that at a
-/// wall met at 45°.
+/// Minimum fraction of the forward speed that contact with a wall must leave so that the wheels keep turning:
+/// the fraction at a wall that is hit at 45°.
 const GLANCES: f64 = 0.5;
-/// Range of the search for walls, in metres beyond the body: the body moves as far as the search has found free without
-/// another one.
+/// Range of the search for walls, in metres beyond the body. The body can move as far as the search has found
+/// free before another search is needed.
 const LOOKS: f64 = 0.6;
 
 /// The place and the motion of the body.
@@ -37,15 +38,15 @@ pub(crate) struct Body {
     left: f64,
     /// The speed of the right wheel, in m/s.
     right: f64,
-    /// Distance, in metres, that the body can go in any direction before it may touch an obstacle that never moves.
+    /// Distance, in metres, that the body can move in any direction before it may touch a fixed obstacle.
     clear: f64,
 }
 
-/// The obstacle that the body met in a step.
+/// The obstacle that the body hit in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Obstacle {
     Nothing,
-    /// A wall that lets it go forward only this fast, in m/s, and does not let it turn if `turns` is `false`.
+    /// A wall that allows only this forward speed, in m/s, and prevents turning if `turns` is `false`.
     Wall {
         forward: f64,
         turns: bool,
@@ -53,7 +54,7 @@ enum Obstacle {
 }
 
 impl Body {
-    /// Creates a body at rest at `pose`, with the errors of this seed or none.
+    /// Returns a body at rest at `pose`, with the errors of this seed, or without errors.
     pub(crate) fn new(drive: Drive, pose: Pose, seed: Option<u64>) -> Self {
         Self { pose, drive, odometry: Odometry::new(drive.slip, seed), left: 0.0, right: 0.0, clear: 0.0 }
     }
@@ -63,7 +64,7 @@ impl Body {
         Self::new(self.drive, pose, seed)
     }
 
-    /// Returns the greatest distance, in metres, that a place of the body goes in this time.
+    /// Returns the maximum distance, in metres, that a point of the body moves in this time.
     pub(crate) fn goes_most(&self, seconds: f64) -> f64 {
         let way = self.drive.fastest * seconds;
         let turn = Radians(2.0 * self.drive.fastest / self.drive.wheel_base * seconds);
@@ -76,12 +77,12 @@ impl Body {
         Footprint { pose: self.pose, form: self.drive.form }
     }
 
-    /// Returns the pose by the turns of the wheels: the origin at the start.
+    /// Returns the pose according to the wheels: the origin at the start.
     pub(crate) fn odometry(&self) -> Pose {
         self.odometry.pose
     }
 
-    /// The velocities of the wheels, as a twist of the body.
+    /// Returns the velocities of the wheels, as a twist of the body.
     pub(crate) fn velocity(&self) -> Twist {
         Twist {
             v: MetersPerSecond((self.left + self.right) / 2.0),
@@ -89,12 +90,13 @@ impl Body {
         }
     }
 
-    /// The mean speed of the wheels, in metres per second, whichever way they turn.
+    /// Returns the mean speed of the wheels, in metres per second, whichever way they turn.
     pub(crate) fn wheels(&self) -> f64 {
         (self.left.abs() + self.right.abs()) / 2.0
     }
 
-    /// The bumper switches in contact: bit `i` for number `i` of this many, counted counter-clockwise from the front.
+    /// Returns the bumper switches in contact: bit `i` for switch `i` of `switches`, counted counter-clockwise
+    /// from the front.
     pub(crate) fn pressed(&self, switches: u8, walls: &Walls) -> u32 {
         let body = self.footprint();
         if self.clear > FEELS && walls.moving_gap(&body) >= FEELS {
@@ -171,7 +173,8 @@ impl Body {
         Obstacle::Wall { forward, turns }
     }
 
-    /// Returns `true` if the body overlaps nothing at `there`, after its places have moved by at most `way` metres.
+    /// Returns `true` if the body overlaps nothing at `there`, after its points have moved by at most `way`
+    /// metres.
     fn is_free(&mut self, there: &Pose, way: f64, walls: &Walls) -> bool {
         let body = Footprint { pose: *there, form: self.drive.form };
         if walls.moving_gap(&body) < 0.0 {
@@ -186,8 +189,8 @@ impl Body {
 }
 
 impl Drive {
-    /// The wheel speeds of an input: both slowed alike where one is too fast, so the curve stays the same, then
-    /// truncated.
+    /// Returns the wheel speeds for an input. If a wheel is too fast, both are slowed by the same factor, so
+    /// that the curve stays the same; then they are truncated.
     fn commanded(&self, input: &Twist) -> (f64, f64) {
         let across = input.omega.0 * (self.wheel_base / 2.0);
         let (left, right) = (input.v.0 - across, input.v.0 + across);
@@ -197,7 +200,7 @@ impl Drive {
     }
 }
 
-/// A speed that has come nearer to the commanded one, by `most` at most.
+/// Returns a speed that has changed towards the commanded speed by at most `most`.
 fn approached(speed: f64, commanded: f64, most: f64) -> f64 {
     speed + (commanded - speed).clamp(-most, most)
 }

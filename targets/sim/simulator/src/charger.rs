@@ -1,4 +1,4 @@
-//! A charger: the pose in which a robot is on it, and by how much the robot may miss that.
+//! A charger: the pose at which a robot is on the charger, and its tolerance.
 
 use mdle_runtime::{Meters, Pose, Radians};
 
@@ -12,12 +12,13 @@ const HEADING: Radians = Radians::from_degrees(15.0);
 pub struct Charger {
     /// The centre of a robot on the charger, in metres, and its heading.
     pub pose: Pose,
-    /// Maximum distance of the robot's centre from there, in metres; above 0.
+    /// Maximum distance of the robot's centre from that pose, in metres; above 0.
     pub reach: f64,
 }
 
 impl Charger {
-    /// Returns `true` if a robot at `pose` is on the charger: within reach, and with a heading at most 15 degrees off.
+    /// Returns `true` if a robot at `pose` is on the charger: within reach, with a heading that deviates by at
+    /// most 15 degrees.
     #[must_use]
     pub fn holds(&self, pose: &Pose) -> bool {
         let off = Radians(pose.theta.0 - self.pose.theta.0).wrapped();

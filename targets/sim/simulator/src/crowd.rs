@@ -1,9 +1,9 @@
-//! Many robots in one world: which of them are near each other.
+//! Many robots in one world, with a search for robots that are near each other.
 
 use crate::footprint::Footprint;
 use crate::place::Place;
 
-/// Least length of a cell's side, in metres.
+/// Minimum side length of a cell, in metres.
 const CELL_LEAST: f64 = 1.0;
 /// Maximum number of cells for each robot.
 const CELLS_MOST: f64 = 8.0;
@@ -13,22 +13,22 @@ const CELLS_MOST: f64 = 8.0;
 pub struct Crowd {
     bodies: Vec<Footprint>,
     least: Place,
-    /// Length of a cell's side, in metres.
+    /// Side length of a cell, in metres.
     cell: f64,
     columns: usize,
     rows: usize,
-    /// Index of the first entry of each cell, row by row; one more than there are cells.
+    /// Index of the first entry of each cell, row by row, with one more element at the end.
     starts: Vec<u32>,
-    /// Robots by the cells of their centres.
+    /// Numbers and places of the robots, ordered by the cells of their centres.
     entries: Vec<(u32, Footprint)>,
 }
 
-/// Groups of robots: no robot of one can touch a robot of another.
+/// Groups of robots: no robot of one group can touch a robot of another.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Groups {
-    /// Numbers of the robots, group by group; within a group in their order.
+    /// Numbers of the robots, group by group, in ascending order within a group.
     members: Vec<u32>,
-    /// Index of the first member of each group; one more than there are groups.
+    /// Index of the first member of each group, with one more element at the end.
     starts: Vec<u32>,
 }
 
@@ -51,7 +51,7 @@ impl Crowd {
         crowd
     }
 
-    /// Enters all robots: first counted for each cell, then put in place.
+    /// Enters all robots into the grid: first counts them for each cell, then puts them in place.
     fn enter(&mut self) {
         let cells: Vec<usize> = self.bodies.iter().map(|body| self.cell_of(body.at())).collect();
         let mut starts = vec![0_u32; self.columns * self.rows + 1];
@@ -128,7 +128,7 @@ impl Crowd {
     }
 }
 
-/// Returns the least known number in the group of `number`, and shortens the chain that leads to it.
+/// Returns the lowest known number in the group of `number`, and shortens the chain that leads to it.
 fn leader(leaders: &mut [u32], mut number: u32) -> u32 {
     while leaders[number as usize] != number {
         leaders[number as usize] = leaders[leaders[number as usize] as usize];
@@ -138,7 +138,8 @@ fn leader(leaders: &mut [u32], mut number: u32) -> u32 {
 }
 
 impl Groups {
-    /// Returns the groups by their leaders: a leader is the least of its group, or names a lower robot of it.
+    /// Returns the groups, given the leaders: the leader of a robot is itself if it has the lowest number of
+    /// its group, and otherwise a robot with a lower number in the group.
     fn of(leaders: &mut [u32]) -> Self {
         let mut sizes = vec![0_u32; leaders.len()];
         for number in 0..leaders.len() as u32 {

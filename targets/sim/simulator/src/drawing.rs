@@ -29,7 +29,7 @@ impl Drawing {
         Self { world: world.clone(), trail }
     }
 
-    /// Begins the record of a robot whose world is not known, at its first output: the way is that of the odometry.
+    /// Begins the record of a robot whose world is not known, at its first output; the way comes from odometry.
     /// `setup` names the run in titles. Only an `animated` record keeps the data of a moving picture.
     #[must_use]
     pub fn without_world(y: &Sensed, setup: String, animated: bool) -> Self {
@@ -72,18 +72,19 @@ impl Drawing {
         }
     }
 
-    /// Records the pose in which `robot` was stopped.
+    /// Records the pose at which `robot` was stopped.
     pub fn stopped(&mut self, robot: &Simulated) {
         self.trail.went(&robot.pose());
     }
 
-    /// Records that an atom with this law begins where the robot is; `number` is its state in the first pass of the
-    /// enclosing loops.
+    /// Records that an atom with this law begins at the robot's current pose; `number` is its state in the
+    /// first pass of the enclosing loops.
     pub fn began(&mut self, number: u64, law: &str, t: Nanos) {
         self.trail.began(number, law, t);
     }
 
-    /// Records that the turns of `plan` have ended at time `t`, by this cause; `is_over` is `false` if it was stopped.
+    /// Records that the turns of `plan` have ended at time `t` for this cause; `is_over` is `false` if the plan
+    /// was stopped.
     pub fn ended(&mut self, plan: &str, is_over: bool, by: &str, t: Nanos) {
         self.trail.ended(plan, is_over, by, t);
     }
@@ -112,8 +113,8 @@ mod tests {
     use crate::model::{Body, Part};
     use crate::robot::Make;
 
-    /// Returns the trail of a robot that goes ahead at `speed`, in m/s, from the origin for `turns` periods, and the
-    /// robot.
+    /// Returns the trail of a robot that drives ahead from the origin at `speed`, in m/s, for `turns` periods,
+    /// and the robot itself.
     fn ahead(world: &str, make: &Make, speed: f64, turns: usize, period: Duration) -> (Trail, Simulated) {
         let world = World::parse("a test's world", world).expect("a good world");
         let mut robot = Simulated::with(make, &world, Pose::ORIGIN, period).expect("a start on the floor");

@@ -9,7 +9,7 @@ use crate::robot::Simulated;
 use crate::trail::{Companion, Trail};
 use crate::world::World;
 
-/// The record of several robots in a world, and the picture of it.
+/// The record of several robots in a world, from which their picture is drawn.
 #[derive(Debug, Clone)]
 pub struct FleetDrawing {
     world: World,
@@ -38,7 +38,7 @@ impl FleetDrawing {
         Self { world: world.clone(), title: title.to_owned(), robots: Vec::new(), contacts: Vec::new() }
     }
 
-    /// Records where the robot of this name is, and whether it touches something.
+    /// Records the pose of the robot of this name; `touches` is `true` if the robot touches something.
     pub fn went(&mut self, name: &str, robot: &Simulated, touches: bool) {
         let Footprint { pose, form } = robot.footprint();
         let place = Place::of(&pose);

@@ -1,5 +1,5 @@
-//! The area of the floor that a robot's body covers, a disc or a rectangle around its centre, as walls, things and
-//! other robots touch it and sonars hear it.
+//! The area of the floor that a robot's body covers: a disc or a rectangle around its centre. Walls, moving
+//! objects and other robots touch this area, and sonars hear it.
 
 #[cfg(test)]
 mod tests;
@@ -12,27 +12,27 @@ use crate::grid::Segment;
 use crate::place::Place;
 use crate::surfaces::{Surface, apart};
 
-/// The radius of the disc that is a Scout, in metres.
+/// Radius of a Scout, which is a disc, in metres.
 pub(crate) const RADIUS: f64 = 0.205;
 
-/// The form of a body, in metres.
+/// Form of a body, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Form {
     /// A disc.
     Disc {
-        /// Radius of the disc.
+        /// Radius of the disc, in metres.
         radius: f64,
     },
-    /// A rectangle that drives along its length.
+    /// A rectangle that drives in the direction of its length.
     Rectangle {
-        /// Half of the length.
+        /// Half of the length, in metres.
         half_length: f64,
-        /// Half of the width.
+        /// Half of the width, in metres.
         half_width: f64,
     },
 }
 
-/// A body at its place.
+/// A body at its pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Footprint {
     /// Pose of the centre.
@@ -41,25 +41,25 @@ pub struct Footprint {
     pub form: Form,
 }
 
-/// The nearest places of a body and of an obstacle.
+/// The nearest points of a body and an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Contact {
-    /// The distance between both, in metres; negative where they overlap.
+    /// Distance between the two points, in metres; negative where body and obstacle overlap.
     pub(crate) gap: f64,
-    /// Place on the obstacle.
+    /// Point on the obstacle.
     pub(crate) place: Place,
-    /// The place of the body from which the obstacle pushes it off: of a disc the centre.
+    /// Point of the body from which the obstacle pushes the body off; the centre of a disc.
     pub(crate) body: Place,
 }
 
-/// The gap of a rectangle that overlaps something: how deep is not known.
+/// Gap of a rectangle that overlaps something; the depth of the overlap is not known.
 const OVERLAPS: f64 = -1.0;
 
 impl Form {
-    /// The disc of a Scout.
+    /// The form of a Scout.
     pub(crate) const SCOUT: Self = Self::Disc { radius: RADIUS };
 
-    /// Returns the form of a robot with these measures: a disc if it is as long as wide.
+    /// Returns the form of a robot with these measures: a disc if its length equals its width.
     #[must_use]
     pub fn of(shape: &Shape) -> Self {
         let (half_length, half_width) = (shape.half_length.0, shape.half_width.0);
@@ -79,7 +79,7 @@ impl Form {
         }
     }
 
-    /// Half of the length and half of the width, in metres.
+    /// Returns half of the length and half of the width, in metres.
     #[must_use]
     pub fn halves(self) -> (f64, f64) {
         match self {
@@ -88,8 +88,8 @@ impl Form {
         }
     }
 
-    /// Greatest distance, in metres, by which a place of the outline moves when the body moves by `way` metres and
-    /// turns by `turn`: a disc may turn anywhere.
+    /// Returns the maximum distance, in metres, by which a point of the outline moves when the body moves by
+    /// `way` metres and turns by `turn`; a disc may turn freely.
     pub(crate) fn moved(self, way: f64, turn: Radians) -> f64 {
         match self {
             Self::Disc { .. } => way.abs(),
@@ -110,7 +110,7 @@ impl fmt::Display for Form {
 }
 
 impl Footprint {
-    /// Returns the centre.
+    /// Returns the position of the centre.
     #[must_use]
     pub fn at(&self) -> Place {
         Place::of(&self.pose)
@@ -128,7 +128,7 @@ impl Footprint {
         self.contact_with(other).gap
     }
 
-    /// Returns the sides of a rectangle, counter-clockwise from the front; a disc has none.
+    /// Returns the sides of a rectangle, counter-clockwise from the front; none for a disc.
     pub(crate) fn sides(&self) -> impl Iterator<Item = Segment> {
         let corners = match self.form {
             Form::Disc { .. } => None,
@@ -140,19 +140,19 @@ impl Footprint {
         sides.into_iter().flatten().map(|(from, to)| Segment::between(from, to))
     }
 
-    /// Returns the ends of each side of a rectangle, counter-clockwise from the front; a disc has none.
+    /// Returns the ends of each side of a rectangle, counter-clockwise from the front; none for a disc.
     pub fn edges(&self) -> impl Iterator<Item = (Place, Place)> {
         self.sides().map(|side| (side.from, side.to()))
     }
 
-    /// A place given from the centre, in axes that turn with the body, as a place on the floor.
+    /// Converts a point relative to the centre, in axes that turn with the body, to a point on the floor.
     fn outward(&self, place: Place) -> Place {
         let (sin, cos) = libm::sincos(self.pose.theta.0);
         let at = self.at();
         Place { x: at.x + place.x * cos - place.y * sin, y: at.y + place.x * sin + place.y * cos }
     }
 
-    /// A place on the floor as seen from the centre, in axes that turn with the body.
+    /// Converts a point on the floor to a point relative to the centre, in axes that turn with the body.
     fn inward(&self, place: Place) -> Place {
         let (sin, cos) = libm::sincos(self.pose.theta.0);
         let (x, y) = (place.x - self.pose.x.0, place.y - self.pose.y.0);
@@ -171,7 +171,8 @@ impl Footprint {
         }
     }
 
-    /// Returns the place of the body that is nearest to `at`, which is outside: of a disc, of its edge.
+    /// Returns the point of the body that is nearest to `at`, which is outside; for a disc, a point of its
+    /// edge.
     fn nearest(&self, at: Place) -> Place {
         match self.form {
             Form::Disc { radius } => {
@@ -204,7 +205,7 @@ impl Footprint {
         contacts.fold(nothing, |least, contact| if contact.gap < least.gap { contact } else { least })
     }
 
-    /// Returns `true` if a part of the segment lies in the rectangle: it is cut off at each pair of sides.
+    /// Returns `true` if a part of the segment lies in the rectangle, by clipping it at each pair of sides.
     fn is_crossed(&self, segment: &Segment) -> bool {
         let (half_length, half_width) = self.form.halves();
         let (from, to) = (self.inward(segment.from), self.inward(segment.to()));
@@ -223,7 +224,7 @@ impl Footprint {
         least <= most
     }
 
-    /// Returns the contact of the body with another one.
+    /// Returns the contact of the body with another body.
     pub(crate) fn contact_with(&self, other: &Self) -> Contact {
         let at = self.at();
         match (self.form, other.form) {

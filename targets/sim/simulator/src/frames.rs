@@ -1,18 +1,18 @@
-//! The moments of a run for a picture that moves: always a bounded number, evenly spread, however long the run.
+//! The moments of a run for a moving picture: a bounded number, evenly spread, however long the run is.
 
 use mdle_runtime::{Nanos, Pose, SONARS};
 
 use crate::place::Place;
 
-/// Maximum number of moments kept; at this number every second one is removed.
+/// Maximum number of moments kept; when it is reached, every second moment is removed.
 pub(crate) const FRAMES_MOST: usize = 800;
 
-/// A moment.
+/// A recorded moment of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Frame {
     pub(crate) t: Nanos,
     pub(crate) pose: Pose,
-    /// Place of each sonar's new echo; `None` if it has none.
+    /// Position of each sonar's new echo; `None` for a sonar without a new echo.
     pub(crate) echoes: [Option<Place>; SONARS],
     /// Displacement of each moving object of the world; `None` for an open door.
     pub(crate) things: Vec<Option<Place>>,
@@ -22,9 +22,9 @@ pub(crate) struct Frame {
 #[derive(Debug, Clone)]
 pub(crate) struct Frames {
     kept: Vec<Frame>,
-    /// The last moment of the run, kept or not.
+    /// The last moment of the run, even if it is not among the recorded ones.
     last: Option<Frame>,
-    /// Number of moments for each recorded one.
+    /// Number of moments per recorded moment.
     stride: u64,
     seen: u64,
 }

@@ -7,15 +7,15 @@ use crate::place::Place;
 
 /// Maximum coordinate and maximum radius, in metres, as in the file of a world.
 const FURTHEST: f64 = 1e6;
-/// Dots of the edge of a circle on a map.
+/// Number of dots on the edge of a circle on a map.
 const DOTS: u16 = 72;
 
-/// A zone of the floor in which a run is to end.
+/// A zone of the floor in which a run should end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
-    /// The places of the robot's centre.
+    /// Zone in which the robot's centre must be.
     pub zone: Zone,
-    /// A heading and its tolerance to either side.
+    /// Required heading and its tolerance to either side; `None` for any heading.
     pub heading: Option<(Radians, Radians)>,
 }
 
@@ -42,7 +42,7 @@ impl Goal {
     /// Reads `x,y,radius` or `x,y,radius,heading,tolerance`.
     ///
     /// # Errors
-    /// The text is no such goal: a sentence with what to type instead.
+    /// Fails with a sentence that says what to type instead.
     pub fn read(text: &str) -> Result<Self, String> {
         let sentence = "expected `world`, or x,y,radius in metres and perhaps heading,tolerance in degrees, as in \
                         `7,3,0.5` or `7,3,50cm,90,15`";

@@ -1,45 +1,47 @@
-//! Segments in a uniform grid: the first one a ray meets, and those near a place. All of the simulator's geometry of
-//! rays is here.
+//! Segments in a uniform grid: finds the first segment that a ray hits, and the segments near a place. The
+//! simulator's geometry of rays is all in this module.
 //!
-//! A ray visits the cells on its way in order (Amanatides and Woo, 1987) and stops in the first cell that it does not
-//! leave before a hit. Only additions, multiplications, divisions and square roots: the same bits on every machine.
+//! A ray visits the cells on its way in order (Amanatides and Woo, 1987) and stops in the first cell that it
+//! does not leave before a hit. It uses only additions, multiplications, divisions and square roots, so that
+//! results have the same bits on every machine.
 
 use crate::place::Place;
 
-/// Cells for each segment, about: more are faster and take more memory.
+/// Approximate number of cells per segment: more cells are faster and take more memory.
 const CELLS_FOR_EACH: f64 = 3.0;
 /// Maximum number of cells along one axis.
 const CELLS_MOST: f64 = 4096.0;
 /// Maximum number of cells that a segment of mean length crosses: a world of long walls gets larger cells.
 const CROSSED_MOST: f64 = 8.0;
-/// Part of a cell by which a segment is entered beyond its ends, so that rounding loses none.
+/// Fraction of a cell by which a segment extends beyond its ends when it is entered, so that rounding loses no
+/// cell.
 const BEYOND: f64 = 1e-6;
 
-/// A segment from `from`, by `along`.
+/// A segment from the point `from` to `from` plus `along`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Segment {
     pub(crate) from: Place,
     pub(crate) along: Place,
 }
 
-/// The point at which a ray meets a segment.
+/// The point at which a ray hits a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hit {
-    /// Distance from where the ray began, in metres.
+    /// Distance from the start of the ray, in metres.
     pub(crate) range: f64,
     /// The number of the segment.
     pub(crate) segment: usize,
 }
 
-/// Segments, entered in each cell that they touch.
+/// A grid of segments, each of which is entered in every cell that it touches.
 #[derive(Debug, Clone)]
 pub(crate) struct Grid {
     least: Place,
-    /// The length of a cell's side, in metres.
+    /// Side length of a cell, in metres.
     cell: f64,
     columns: usize,
     rows: usize,
-    /// Index of the first entry of each cell; one more than there are cells.
+    /// Index of the first entry of each cell, with one more element at the end.
     starts: Vec<u32>,
     entries: Vec<(Segment, u32)>,
 }
@@ -53,8 +55,8 @@ impl Segment {
         Place { x: self.from.x + self.along.x, y: self.from.y + self.along.y }
     }
 
-    /// Returns the distance that a ray from `from` in the unit direction `way` goes before it meets this segment, if
-    /// below `most`.
+    /// Returns the distance that a ray from `from` in the unit direction `way` travels before it hits this
+    /// segment, if it is below `most`.
     pub(crate) fn met(&self, from: Place, way: Place, most: f64) -> Option<f64> {
         let (ox, oy) = (self.from.x - from.x, self.from.y - from.y);
         // Cramer's rule; divided only once it is known that there is a hit.
@@ -67,7 +69,7 @@ impl Segment {
         met.then(|| range / size)
     }
 
-    /// The place of this segment that is nearest to `at`.
+    /// Returns the place of this segment that is nearest to `at`.
     pub(crate) fn nearest(&self, at: Place) -> Place {
         let (ox, oy) = (at.x - self.from.x, at.y - self.from.y);
         let part =
@@ -79,7 +81,7 @@ impl Segment {
 }
 
 impl Grid {
-    /// A grid of these segments, whose coordinates must be finite.
+    /// Returns a grid of these segments, whose coordinates must be finite.
     pub(crate) fn of(segments: &[Segment]) -> Self {
         let ends = || segments.iter().flat_map(|segment| [segment.from, segment.to()]);
         let bound = |of: fn(Place) -> f64, pick: fn(f64, f64) -> f64| ends().map(of).reduce(pick).unwrap_or(0.0);
@@ -98,7 +100,7 @@ impl Grid {
         grid
     }
 
-    /// Enters all segments: first counted for each cell, then put in place.
+    /// Enters all segments: first counts them for each cell, then puts them in place.
     fn enter(&mut self, segments: &[Segment]) {
         let mut starts = vec![0_u32; self.columns * self.rows + 1];
         for segment in segments {
@@ -120,8 +122,8 @@ impl Grid {
         (self.starts, self.entries) = (starts, entries);
     }
 
-    /// Calls `take` with every cell that a segment touches: column by column, the rows between where it comes in and
-    /// out.
+    /// Calls `take` with every cell that a segment touches: column by column, with the rows between its entry
+    /// and its exit.
     fn touched(&self, segment: &Segment, mut take: impl FnMut(usize)) {
         let Segment { from, along } = *segment;
         let to = segment.to();
@@ -157,8 +159,8 @@ impl Grid {
         &self.entries[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
-    /// Returns the first segment that a ray from `from` in the unit direction `way` meets, if nearer than `most`
-    /// metres.
+    /// Returns the first segment that a ray from `from` in the unit direction `way` hits, if it is closer than
+    /// `most` metres.
     pub(crate) fn ray(&self, from: Place, way: Place, most: f64) -> Option<Hit> {
         let (entered, left) = self.crossed(from, way, most)?;
         let at = Place { x: from.x + entered * way.x, y: from.y + entered * way.y };
@@ -206,13 +208,13 @@ impl Grid {
         (entered <= left).then_some((entered, left))
     }
 
-    /// The number of segments in the cell of a place.
+    /// Returns the number of segments in the cell of a place.
     pub(crate) fn beside(&self, at: Place) -> u64 {
         self.entries(self.column(at.x), self.row(at.y)).len() as u64
     }
 
-    /// Calls `take` with each segment that touches the cells within `reach` of `at`; one in several cells comes several
-    /// times.
+    /// Calls `take` with each segment that touches a cell within `reach` of `at`; a segment in several cells
+    /// comes several times.
     pub(crate) fn near(&self, at: Place, reach: f64, mut take: impl FnMut(usize, &Segment)) {
         for row in self.row(at.y - reach)..=self.row(at.y + reach) {
             for column in self.column(at.x - reach)..=self.column(at.x + reach) {
@@ -226,9 +228,9 @@ impl Grid {
 
 /// A ray along one axis of the grid.
 struct Axis {
-    /// Distance along the ray to the next border.
+    /// Distance along the ray to the next cell border.
     next: f64,
-    /// Distance along the ray from one border to the next.
+    /// Distance along the ray between two cell borders.
     between: f64,
     forward: bool,
 }
@@ -243,7 +245,7 @@ impl Axis {
         Self { next: (border - from) / way, between: (cell / way).abs(), forward }
     }
 
-    /// Moves on to the next cell. Returns `true` if there is one.
+    /// Moves on to the next cell; returns `true` if there is one.
     fn step(&mut self, number: &mut usize, count: usize) -> bool {
         self.next += self.between;
         let next = if self.forward { *number + 1 } else { number.wrapping_sub(1) };

@@ -1,7 +1,8 @@
 //! The simulator of the target `sim`, without a host: worlds, the robot in them, and its pictures as texts.
 //!
-//! It does no I/O and needs no operating system. Nothing here depends on the machine it runs on: no wall clock, no
-//! platform trigonometry, no unordered maps. Two runs with the same options give the same bytes.
+//! This crate does no I/O and needs no operating system. It does not depend on the machine on which it runs: it
+//! uses no wall clock, no trigonometry of the platform and no unordered maps. Two runs with the same options
+//! produce the same bytes.
 #![forbid(unsafe_code)]
 
 /// The alphabet of the target `sim`, which `mdlec bind` writes beside `alphabet.mdle`.

@@ -1,4 +1,4 @@
-//! Models of the simulated robots: bodies, and the parts of them that can be left out.
+//! Models of the simulated robots: bodies, and the parts of bodies that can be left out.
 
 mod figures;
 
@@ -13,13 +13,14 @@ use figures::{atrv, ideal, scout};
 /// A body to simulate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Body {
-    /// The size and the motors of a Super Scout, whose sonars all ping in every turn and hear the nearest object in
-    /// their cones, and whose odometry has no errors.
+    /// A body with the size and the motors of a Super Scout. Its sonars all ping in every turn and hear the
+    /// nearest object in their cones, and its odometry has no errors.
     #[default]
     Ideal,
-    /// A Nomadic Super Scout II: its sonars fire in turn, miss what they do not face, and err; its wheels slip.
+    /// A Nomadic Super Scout II. Its sonars fire in turn, miss surfaces that they do not face, and have errors;
+    /// its wheels slip.
     Scout,
-    /// An iRobot ATRV-mini, a rectangle of 0.63 m by 0.54 m: 24 sonars on four boards, skid steering.
+    /// An iRobot ATRV-mini: a rectangle of 0.63 m by 0.54 m with 24 sonars on four boards and skid steering.
     Atrv,
 }
 
@@ -33,28 +34,28 @@ impl fmt::Display for Body {
     }
 }
 
-/// Parts of a body that can be left out, to see their effect.
+/// Parts of a body that can be left out to see their effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// The lobe of a sonar: without it everything in a cone of 25° is heard alike.
+    /// Lobe of a sonar. Without it, all objects in a cone of 25° are heard equally.
     Lobe,
-    /// Surfaces that reflect like mirrors: without it they are heard from any angle.
+    /// Surfaces that reflect like mirrors. Without this part, surfaces are heard from any angle.
     Specular,
-    /// Minimum range: without it the sonars hear objects at any distance.
+    /// Minimum range. Without it, the sonars hear objects at any distance.
     Minimum,
-    /// The steps in which ranges come: without them ranges are exact.
+    /// Resolution of ranges. Without it, ranges are exact.
     Steps,
-    /// Errors of ranges and missed echoes, which take a seed.
+    /// Errors of ranges and missed echoes, which need a seed.
     Noise,
-    /// Ranges that mean nothing, which take a seed.
+    /// Random ranges without meaning, which need a seed.
     Outliers,
-    /// Firing order: sonars ping one after another; without it all of them ping in every turn.
+    /// Firing order, in which sonars ping one after another. Without it, all sonars ping in every turn.
     Order,
-    /// The slip of the wheels, which takes a seed.
+    /// Slip of the wheels, which needs a seed.
     Slip,
 }
 
-/// All parts with the names that options give them.
+/// All parts, with their names in options.
 pub const PARTS: [(&str, Part); 8] = [
     ("lobe", Part::Lobe),
     ("specular", Part::Specular),
@@ -71,73 +72,75 @@ pub const PARTS: [(&str, Part); 8] = [
 pub(crate) struct Model {
     pub(crate) drive: Drive,
     pub(crate) hearing: Hearing,
-    /// Bumper switches: number `i` of them lies at `i` parts of a circle counter-clockwise from the front.
+    /// Number of bumper switches; switch `i` lies at the fraction `i` of a circle, counter-clockwise from the
+    /// front.
     pub(crate) switches: u8,
     pub(crate) pack: Pack,
 }
 
-/// Wheels and outline. Metres and seconds.
+/// Wheels and outline, in metres and seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Drive {
     /// Form of the body.
     pub(crate) form: Form,
-    /// The distance between the wheels.
+    /// Distance between the wheels, in metres.
     pub(crate) wheel_base: f64,
-    /// Maximum speed of a wheel.
+    /// Maximum speed of a wheel, in m/s.
     pub(crate) fastest: f64,
-    /// Acceleration of a wheel.
+    /// Acceleration of a wheel, in m/s².
     pub(crate) acceleration: f64,
-    /// Wheel speeds are commanded in whole numbers of this, rounded towards zero.
+    /// Unit of commanded wheel speeds, in m/s; speeds are rounded towards zero to whole numbers of this unit.
     pub(crate) unit: f64,
-    /// `None` for odometry without errors.
+    /// Errors of odometry; `None` for odometry without errors.
     pub(crate) slip: Option<Slip>,
 }
 
 /// Errors of odometry: standard deviations of normal distributions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Slip {
-    /// Relative error of the way driven, drawn once for a run: the size of the tyres.
+    /// Relative error of the way driven, drawn once for a run; it represents the size of the tyres.
     pub(crate) way: f64,
-    /// Relative error of the angle turned, drawn once for a run: the points at which the wheels touch the floor.
+    /// Relative error of the angle turned, drawn once for a run; it represents the points at which the wheels
+    /// touch the floor.
     pub(crate) turn: f64,
-    /// Error of the heading, in radians for each metre driven, drawn once for a run: wheels that are not quite alike.
+    /// Error of the heading, in radians per metre driven, drawn once for a run; it represents unequal wheels.
     pub(crate) bend: f64,
-    /// Error of the heading, in radians, after a metre driven; grows with the square root of the way.
+    /// Error of the heading, in radians, after a metre driven; it grows with the square root of the way.
     pub(crate) wander: f64,
 }
 
-/// The sonars. Metres and radians.
+/// The model of the sonars, in metres and radians.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hearing {
     pub(crate) transducers: Vec<Transducer>,
-    /// The distance from the centre at which laws take the transducers to be.
+    /// Distance of the transducers from the centre as laws assume it, in metres.
     pub(crate) ring_radius: f64,
-    /// Distance, on a wall beside the robot, between the places that the two neighbours of the sonar square to it hear,
-    /// in metres; `None` if ranges are too coarse to measure a heading.
+    /// Distance, on a wall beside the robot, between the points that the two neighbours of the sonar square to
+    /// the wall hear, in metres; `None` if ranges are too coarse to measure a heading.
     pub(crate) beside_apart: Option<f64>,
     /// Angle of the outermost rays from the axis.
     pub(crate) half_cone: Radians,
-    /// Maximum angle off the axis at which something that faces the sonar is heard; `None` for the angle of the
-    /// outermost ray.
+    /// Maximum angle off the axis at which a surface that faces the sonar is heard; `None` for the angle of the
+    /// outermost rays.
     pub(crate) lobe: Option<Radians>,
-    /// Maximum angle between the axis and the normal of a surface on it at which the surface is heard; `None`: any
-    /// angle.
+    /// Maximum angle between the axis and the normal of a surface on the axis at which the surface is heard;
+    /// `None` for any angle.
     pub(crate) facing: Option<Radians>,
     pub(crate) least: f64,
     pub(crate) most: f64,
-    /// Ranges are whole numbers of this, rounded down; 0 for exact ones.
+    /// Resolution of ranges, in metres, to which they are rounded down; 0 for exact ranges.
     pub(crate) step: f64,
-    /// The spread of a range's error.
+    /// Standard deviation of a range's error, in metres.
     pub(crate) spread: f64,
     /// Maximum common error of all ranges of a run, as a fraction: it depends on the temperature of the air.
     pub(crate) scale: f64,
-    /// Standard deviation of the loudness of an echo, as a part of the loudness needed to hear it.
+    /// Standard deviation of the loudness of an echo, as a fraction of the loudness needed to hear it.
     pub(crate) fading: f64,
-    /// The share of pings that bring no echo, at any distance.
+    /// Fraction of pings without an echo, at any distance.
     pub(crate) misses: f64,
-    /// The share of pings that bring a random range.
+    /// Fraction of pings with a random range.
     pub(crate) outliers: f64,
-    /// Groups of transducers that ping together, in order, and the time between two groups; `None`: all ping in every
+    /// Groups of transducers that ping together, and the time between two groups; `None` if all ping in every
     /// turn.
     pub(crate) order: Option<Order>,
 }
@@ -152,11 +155,11 @@ pub(crate) struct Order {
 /// A sonar on the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Transducer {
-    /// Forward and to the left of the centre.
+    /// Position ahead of the centre, in metres; `y` is the position to the left.
     pub(crate) x: f64,
     pub(crate) y: f64,
     pub(crate) bearing: Radians,
-    /// The direction, of the paper's sixteen, that it speaks for.
+    /// Sonar, of the paper's sixteen, that the transducer represents.
     pub(crate) sonar: SonarId,
 }
 
@@ -164,7 +167,7 @@ pub(crate) struct Transducer {
 const HALF_CONE: Radians = Radians::from_degrees(12.5);
 
 impl Model {
-    /// The model of a body without some of its parts.
+    /// Returns the model of a body without some of its parts.
     pub(crate) fn of(body: Body, without: &[Part]) -> Self {
         let mut model = match body {
             Body::Ideal => ideal(),

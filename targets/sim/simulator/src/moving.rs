@@ -1,7 +1,8 @@
 //! Moving parts of a world: doors that open and close, boxes and discs on a schedule.
 //!
-//! Nothing moves into the robot: a door that would close on it stays open, and a box or disc that would move into it
-//! stops in contact with it, until it is gone. Its schedule goes on from there, so it comes later everywhere.
+//! No object moves into the robot: a door that would close on the robot stays open, and a box or disc that
+//! would move into it stops in contact until the robot has gone. The object's schedule then continues, so the
+//! object is late from there on.
 
 use crate::footprint::{Footprint, Form};
 use crate::grid::{Hit, Segment};
@@ -9,13 +10,14 @@ use crate::outline::Outline;
 use crate::place::Place;
 use crate::surfaces::{Ends, Surface, apart, ends, surface};
 
-/// Minimum distance to which a moving object approaches the robot, in metres: the bumper feels it.
+/// Minimum distance, in metres, to which a moving object approaches the robot; the bumper feels the object at
+/// this distance.
 const STOPS_AT: f64 = 1e-4;
 
 /// A moving object.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Thing {
-    /// A closed door, or a box or disc where its schedule begins.
+    /// Outline of a closed door, or of a box or disc where its schedule begins.
     pub outline: Outline,
     /// Motion of the object.
     pub schedule: Schedule,
@@ -24,24 +26,25 @@ pub struct Thing {
 /// The motion of a moving object over time, in seconds since the robot was switched on.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Schedule {
-    /// A door, closed except at these times: from, to.
+    /// A door, which is closed except at certain times.
     Open {
-        /// Intervals during which the door is open: each its beginning and its end, in seconds. None overlaps another.
+        /// Intervals during which the door is open, each with its begin and end, in seconds. They do not
+        /// overlap.
         times: Vec<[f64; 2]>,
         /// Period after which the times repeat, in seconds; `None` if they do not.
         every: Option<f64>,
     },
-    /// A box or disc that moves straight from place to place.
+    /// A box or disc that moves straight from stop to stop.
     Way {
-        /// Times and places of the centre: at least one, in order. The object rests before the first and after the
-        /// last.
+        /// Times and positions of the centre: at least one, in order. The object rests before the first stop
+        /// and after the last.
         stops: Vec<Stop>,
-        /// `true` if the way begins again at the first stop after the last.
+        /// `true` if the object continues from the first stop after the last stop.
         repeats: bool,
     },
 }
 
-/// A place of a moving object at one time.
+/// Position of a moving object at a certain time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
     /// Time of the stop, in seconds.
@@ -51,12 +54,12 @@ pub struct Stop {
 }
 
 impl Thing {
-    /// Returns the corners of the object when it has gone this far from where it begins.
+    /// Returns the corners of the object after it has moved by `gone` from its first position.
     pub fn corners(&self, gone: Place) -> impl Iterator<Item = Place> {
         self.outline.points.iter().map(move |point| Place { x: point.x + gone.x, y: point.y + gone.y })
     }
 
-    /// Returns the places between which the centre of the object moves; a door has no such places.
+    /// Returns the positions between which the centre of the object moves; none for a door.
     pub(crate) fn way(&self) -> impl Iterator<Item = Place> {
         let stops = match &self.schedule {
             Schedule::Open { .. } => [].as_slice(),
@@ -118,7 +121,7 @@ pub(crate) struct Moving {
     rough: f64,
     /// Sides at the current place; empty for an open door.
     now: Vec<Segment>,
-    /// A circle around the object where it begins, and its displacement from there.
+    /// Centre of a circle around the object at its first position; `moved` is the displacement from there.
     centre: Place,
     radius: f64,
     moved: Option<Place>,
@@ -169,7 +172,7 @@ impl Moving {
         self.moved = moved;
     }
 
-    /// Lets the thing's clock go on, unless that would move it into `body`.
+    /// Advances the object's clock, unless the object would then move into `body`.
     pub(crate) fn advance(&mut self, seconds: f64, body: &Footprint) {
         let moved = self.schedule.moved(self.t + seconds);
         if moved == self.moved {
@@ -192,13 +195,13 @@ impl Moving {
         }
     }
 
-    /// The middle of the circle around it, now; `None` for an open door.
+    /// Returns the current centre of the circle around the object; `None` for an open door.
     pub(crate) fn around(&self) -> Option<Place> {
         let Place { x, y } = self.moved?;
         Some(Place { x: self.centre.x + x, y: self.centre.y + y })
     }
 
-    /// Returns the distance of the object from `at`, exact where it is below `most`; infinite for an open door.
+    /// Returns the distance of the object from `at`, exact if it is below `most`; infinite for an open door.
     pub(crate) fn distance(&self, at: Place, most: f64) -> f64 {
         match self.around() {
             Some(around) if apart(around, at) - self.radius < most => {
@@ -208,7 +211,8 @@ impl Moving {
         }
     }
 
-    /// Returns the distance between the thing and a body, exact where it is below `most`; infinite for an open door.
+    /// Returns the distance between the object and a body, exact if it is below `most`; infinite for an open
+    /// door.
     pub(crate) fn gap(&self, body: &Footprint, most: f64) -> f64 {
         if let Form::Disc { radius } = body.form {
             return self.distance(body.at(), most + radius) - radius;
@@ -221,7 +225,7 @@ impl Moving {
         }
     }
 
-    /// Returns the first side of the thing that a ray meets, if nearer than `most`.
+    /// Returns the first side of the object that a ray hits, if it is closer than `most`.
     pub(crate) fn ray(&self, from: Place, way: Place, most: f64) -> Option<Hit> {
         let around = self.around()?;
         let (x, y) = (around.x - from.x, around.y - from.y);
@@ -239,7 +243,7 @@ impl Moving {
         best
     }
 
-    /// Returns the surface of the thing that a ray meets, if nearer than `most`.
+    /// Returns the surface of the object that a ray hits, if it is closer than `most`.
     pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
         let Hit { range, segment } = self.ray(from, way, most)?;
         let at = Place { x: from.x + range * way.x, y: from.y + range * way.y };

@@ -1,11 +1,12 @@
-//! Random numbers of a run: each purpose has a stream of its own, so that leaving one out changes no other.
+//! Random numbers of a run. Each purpose has a separate stream, so that leaving out one purpose does not change
+//! the others.
 
 use std::f64::consts::TAU;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// Numbers drawn one after the other, the same for the same seed and purpose.
+/// A stream of random numbers, which is the same for the same seed and purpose.
 #[derive(Debug, Clone)]
 pub(crate) struct Noise(ChaCha8Rng);
 
@@ -14,7 +15,7 @@ pub(crate) struct Noise(ChaCha8Rng);
 pub(crate) enum Purpose {
     /// Errors of the sonars' ranges.
     Ranges = 0,
-    /// Ranges that mean nothing.
+    /// Random ranges without meaning.
     Outliers = 1,
     /// Random loudness of echoes.
     Fading = 2,
@@ -31,14 +32,14 @@ impl Noise {
         Self(random)
     }
 
-    /// A number from the standard normal distribution, by Box and Muller's transform.
+    /// Returns a number from the standard normal distribution, by Box and Muller's transform.
     pub(crate) fn normal(&mut self) -> f64 {
         let (one, other) = (self.uniform(), self.uniform());
         // 1 - u lies above 0, where the logarithm is finite.
         libm::sqrt(-2.0 * libm::log(1.0 - one)) * libm::cos(TAU * other)
     }
 
-    /// A number from 0 up to, not including, 1.
+    /// Returns a number from 0 up to, but not including, 1.
     pub(crate) fn uniform(&mut self) -> f64 {
         // The upper 53 bits are all that an f64 can hold.
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64

@@ -5,9 +5,9 @@ use crate::place::Place;
 /// A wall, a box or a disc, as the line around it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
-    /// The name in messages.
+    /// Name of the outline in messages.
     pub name: String,
-    /// Corners in order; a box ends where it began. A disc has 48 of them.
+    /// Corners in order; a box ends where it began. A disc has 48 corners.
     pub points: Vec<Place>,
     /// `true` for a box or a disc, which is solid inside; a wall has no thickness.
     pub solid: bool,
@@ -21,7 +21,7 @@ impl Outline {
         self.points.iter().zip(self.points.iter().skip(1)).map(move |(from, to)| (self, *from, *to))
     }
 
-    /// Returns `true` if `place` is inside: a line from it crosses an odd number of sides.
+    /// Returns `true` if `place` is inside, because a line from it crosses an odd number of sides.
     pub(crate) fn surrounds(&self, place: Place) -> bool {
         let crossed = self.segments().filter(|(_, from, to)| {
             let between = (from.y > place.y) != (to.y > place.y);

@@ -6,13 +6,15 @@ use crate::footprint::{Contact, Footprint};
 use crate::place::Place;
 use crate::walls::Walls;
 
-/// Distance, in metres, by which a slide is led off the surface, so that rounding does not turn it into the surface.
+/// Distance, in metres, by which a slide is led away from the surface, so that rounding does not lead it into
+/// the surface.
 const LED_OFF: f64 = 1e-8;
-/// Maximum number of surfaces along which one step slides: a corner has two.
+/// Maximum number of surfaces along which a step slides; a corner has two.
 const SLIDES: usize = 3;
 
-/// Returns the way that `body` goes when it is to move by `way`: all of it if that is free, else up to the contact and
-/// on along the surface. The step must be shorter than the body; where it ends, the body overlaps nothing.
+/// Returns the movement of `body` for the intended movement `way`: all of it if that is free, otherwise up to
+/// the contact and then along the surface. The step must be shorter than the body; at its end, the body
+/// overlaps nothing.
 pub(crate) fn slid(body: &Footprint, way: Place, walls: &Walls) -> Place {
     let at = body.at();
     let reach = libm::hypot(way.x, way.y) + LED_OFF;
@@ -33,8 +35,8 @@ pub(crate) fn slid(body: &Footprint, way: Place, walls: &Walls) -> Place {
     Place { x: here.x - at.x, y: here.y - at.y }
 }
 
-/// Returns `body` turned by `turn`. Where a corner or side of it would turn into an obstacle, it is pushed off by as
-/// much as the turn needs; if there is no room for that, it does not turn.
+/// Returns `body` turned by `turn`. If a corner or side would turn into an obstacle, the body is pushed off by
+/// as much as the turn needs; if there is no room for that, it does not turn.
 pub(crate) fn turned(body: &Footprint, turn: Radians, walls: &Walls) -> Footprint {
     let Radians(theta) = body.pose.theta;
     let there = Footprint { pose: Pose { theta: Radians(theta + turn.0), ..body.pose }, ..*body };
@@ -56,7 +58,7 @@ fn moved(body: &Footprint, to: Place) -> Footprint {
     Footprint { pose: Pose { x: Meters(to.x), y: Meters(to.y), ..body.pose }, ..*body }
 }
 
-/// The direction away from the surface of a contact.
+/// Returns the direction away from the surface of a contact.
 fn normal(contact: Contact) -> Option<Place> {
     let Contact { place, body, .. } = contact;
     let (x, y) = (body.x - place.x, body.y - place.y);

@@ -17,8 +17,8 @@ pub(crate) struct Odometry {
 #[derive(Debug, Clone)]
 struct Errors {
     noise: Noise,
-    /// Factors of the measured way (`way`) and turn (`turn`), error of the heading in radians for each metre (`bend`),
-    /// and standard deviation of the heading in radians after a metre (`wander`).
+    /// Factors of the measured way (`way`) and turn (`turn`), error of the heading in radians per metre
+    /// (`bend`), and standard deviation of the heading in radians after a metre (`wander`).
     way: f64,
     turn: f64,
     bend: f64,
@@ -37,7 +37,7 @@ impl Odometry {
         Self { pose: Pose::ORIGIN, errors }
     }
 
-    /// The wheels have rolled an arc of length `way` that turns by `turn`.
+    /// Records that the wheels have rolled an arc of length `way` that turns by `turn`.
     pub(crate) fn rolled(&mut self, way: f64, turn: f64) {
         let (mut measured, mut turned) = (way, turn);
         if let Some(errors) = self.errors.as_mut().filter(|_| way != 0.0 || turn != 0.0) {

@@ -10,7 +10,7 @@ use crate::model::{self, Model, Part};
 use crate::noise::{Noise, Purpose};
 use crate::world::World;
 
-/// A tenth of an inch a second.
+/// A tenth of an inch per second, in m/s.
 const UNIT: f64 = 0.00254;
 
 fn twist(v: f64, omega: f64) -> Twist {
@@ -25,12 +25,12 @@ fn touches(body: &Body, walls: &Walls) -> bool {
     body.pressed(6, walls) != 0
 }
 
-/// A body at the origin, at rest.
+/// Returns a body at rest at the origin.
 fn at_rest(body: model::Body, seed: Option<u64>) -> Body {
     Body::new(Model::of(body, &[]).drive, Pose::ORIGIN, seed)
 }
 
-/// A body at the origin that has driven this long with this input.
+/// Returns a body that has driven from the origin with this input for this number of turns.
 fn driven(input: Twist, turns: usize, walls: &Walls) -> Body {
     let mut body = at_rest(model::Body::Ideal, None);
     for _ in 0..turns {
@@ -131,7 +131,7 @@ fn a_corner_presses_the_switches_of_both_its_walls() {
     assert_eq!(body.pressed(12, &corner), 0b1001, "ahead and to the left: {:?}", body.pose);
 }
 
-/// A rectangle of 0.63 m by 0.54 m at the origin, at rest.
+/// Returns a rectangle of 0.63 m by 0.54 m at the origin, at rest.
 fn atrv() -> Body {
     at_rest(model::Body::Atrv, None)
 }

@@ -6,7 +6,7 @@ use super::*;
 
 const HERE: Place = Place { x: 0.0, y: 0.0 };
 const DISC: Footprint = Footprint { pose: pose(2.0, 0.0), form: Form::Disc { radius: 0.5 } };
-/// One metre long and 0.6 m wide.
+/// Rectangle that is 1 m long and 0.6 m wide.
 const FORM: Form = Form::Rectangle { half_length: 0.5, half_width: 0.3 };
 
 const fn pose(x: f64, y: f64) -> Pose {

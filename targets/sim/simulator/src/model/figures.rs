@@ -1,4 +1,4 @@
-//! The figures of the bodies, and where they come from.
+//! The figures of the bodies, with their sources.
 
 use mdle_runtime::{Nanos, Radians, SonarId};
 
@@ -8,9 +8,9 @@ use crate::footprint::Form;
 use super::{Drive, HALF_CONE, Hearing, Model, Order, Slip, Transducer};
 
 const INCH: f64 = 0.0254;
-/// The order in which everybody fired a Scout's sonars.
+/// The usual firing order of a Scout's sonars.
 const SCOUT_ORDER: [usize; 16] = [0, 2, 15, 1, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8];
-/// The radius of a Scout's ring.
+/// Radius of a Scout's ring of sonars, in metres.
 const RING_RADIUS: f64 = 0.19;
 
 pub(super) fn ideal() -> Model {
@@ -51,9 +51,10 @@ pub(super) fn ideal() -> Model {
     }
 }
 
-/// A flat wall was measured to answer a Polaroid module up to 42° off its normal, something that faces it whatever the
-/// angle up to about half of that, and a thin cylinder up to less (Cao and Borenstein, 2002): both limits on an
-/// ellipse, 21² + 35² = 41². Ranges err by 3 cm at most, so by a third of that; absolutely by one part in a hundred.
+/// Returns the model of a Scout. A flat wall was measured to answer a Polaroid module up to 42° off its normal,
+/// an object that faces the module at any angle up to about half of that, and a thin cylinder up to less (Cao
+/// and Borenstein, 2002): both limits lie on an ellipse, 21² + 35² = 41². Ranges err by at most 3 cm, so the
+/// standard deviation is a third of that; their absolute error is at most 1 %.
 pub(super) fn scout() -> Model {
     let ideal = ideal();
     Model {
@@ -85,8 +86,9 @@ pub(super) fn scout() -> Model {
     }
 }
 
-/// The places, in millimetres and degrees, of the first twelve sonars of the 24 that the University of Massachusetts'
-/// ATRV-mini has, with the sonar of the sixteen each speaks for; the other twelve are their mirror images.
+/// Places, in millimetres and degrees, of the first twelve of the 24 sonars of the ATRV-mini of the University
+/// of Massachusetts, each with the sonar of the sixteen that it represents; the other twelve are their mirror
+/// images.
 const ATRV_LEFT: [(f64, f64, f64, u8); 12] = [
     (258.17, 114.70, 0.0, 0),
     (252.24, 152.17, 18.0, 1),
