@@ -7,14 +7,14 @@ use mdle_runtime::{Meters, Pose};
 /// A place on the floor, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// Along the first axis.
+    /// Coordinate along the first axis, in metres.
     pub x: f64,
-    /// Along the second axis, to the left of the first.
+    /// Coordinate along the second axis, to the left of the first, in metres.
     pub y: f64,
 }
 
 impl Place {
-    /// Returns the place of a pose.
+    /// Returns the position of a pose.
     #[must_use]
     pub fn of(pose: &Pose) -> Self {
         let (Meters(x), Meters(y)) = (pose.x, pose.y);

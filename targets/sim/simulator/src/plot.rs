@@ -1,5 +1,5 @@
-//! The pictures of a run: of `--plot`, the floor, the way driven and where each atom began; of `--record`, one that
-//! moves.
+//! The pictures of a run: for `--plot`, the floor with the way driven and the places where atoms began; for
+//! `--record`, a moving picture.
 
 mod chart;
 mod colours;

@@ -24,7 +24,7 @@ pub struct Simulated {
     body: Body,
     ring: Ring,
     shape: Shape,
-    /// Drift of its odometry, measured by walls.
+    /// Drift of the robot's odometry, measured by walls.
     compass: Compass,
     battery: Battery,
     charger: Option<Charger>,
@@ -37,7 +37,7 @@ pub struct Simulated {
     exchanges: u64,
 }
 
-/// The parts of a simulation besides its world.
+/// The parts of a simulation other than its world.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Make {
     /// The body.
@@ -49,7 +49,7 @@ pub struct Make {
 }
 
 impl Make {
-    /// The form of the body.
+    /// Returns the form of the body.
     #[must_use]
     pub fn form(&self) -> Form {
         Model::of(self.body, &self.without).drive.form
@@ -59,7 +59,7 @@ impl Make {
 /// Reason why an exchange failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
-    /// The input is not finite: a law has computed nonsense.
+    /// The input is not finite, because a law has computed an invalid value.
     Input,
 }
 
@@ -74,19 +74,19 @@ impl fmt::Display for Fault {
 impl std::error::Error for Fault {}
 
 impl Simulated {
-    /// A robot with an ideal body at rest at `start` in `world`, whose odometry begins there. Its sonars are exact, or
-    /// noisy with a seed.
+    /// Returns a robot with an ideal body at rest at `start` in `world`, whose odometry begins there. Its
+    /// sonars are exact, or noisy with a seed.
     ///
     /// # Errors
-    /// The robot cannot stand at `start`.
+    /// Fails if the robot cannot stand at `start`.
     pub fn new(world: &World, start: Pose, seed: Option<u64>, period: Duration) -> Result<Self, StartError> {
         Self::with(&Make { seed, ..Make::default() }, world, start, period)
     }
 
-    /// A robot of this make at rest at `start` in `world`, whose odometry begins there.
+    /// Returns a robot of this make at rest at `start` in `world`, whose odometry begins there.
     ///
     /// # Errors
-    /// The robot cannot stand at `start`.
+    /// Fails if the robot cannot stand at `start`.
     pub fn with(make: &Make, world: &World, start: Pose, period: Duration) -> Result<Self, StartError> {
         let walls = Walls::of(world);
         let Model { drive, hearing, switches, pack } = Model::of(make.body, &make.without);
@@ -120,7 +120,7 @@ impl Simulated {
     /// Returns a robot with the body and the world of this one, and its battery as it is now, at rest at `start`.
     ///
     /// # Errors
-    /// The robot cannot stand at `start` in `world`, which is that of this robot.
+    /// Fails if the robot cannot stand at `start` in `world`, which must be the world of this robot.
     pub fn another(&self, world: &World, start: Pose, seed: Option<u64>) -> Result<Self, StartError> {
         start::check(&start, self.footprint().form, world, &self.walls)?;
         Ok(Self {
@@ -156,19 +156,20 @@ impl Simulated {
         self.body.pose
     }
 
-    /// Sets the charge of its battery, from 0 to 1; it is full at first.
+    /// Sets the charge of the robot's battery, from 0 to 1; the battery is full by default.
     #[must_use]
     pub fn charged(mut self, charge: f64) -> Self {
         self.battery.charge(charge);
         self
     }
 
-    /// Sets the charge of its battery from now on, from 0 to 1.
+    /// Sets the charge of the robot's battery from now on, from 0 to 1.
     pub fn set_charge(&mut self, charge: f64) {
         self.battery.charge(charge);
     }
 
-    /// Sees to its supply from now on: the charge of its battery, from 0 to 1, and the charger of its world.
+    /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its
+    /// world.
     pub fn supply(&mut self, charge: f64, charger: Option<Charger>) {
         self.battery.charge(charge);
         self.charger = charger;
@@ -197,12 +198,13 @@ impl Simulated {
         self.walls.gap(&self.footprint(), reach)
     }
 
-    /// Sets the places of the other robots in the world: the robot hears them and cannot pass through them.
+    /// Sets the positions of the other robots in the world, which the robot hears and cannot pass through.
     pub fn see(&mut self, others: &[Footprint]) {
         self.walls.put_others(others);
     }
 
-    /// Replaces the other robots, which this robot hears and cannot pass through; `others` receives those before.
+    /// Replaces the other robots, which this robot hears and cannot pass through; `others` receives the
+    /// previous ones.
     pub fn swap_others(&mut self, others: &mut Others) {
         self.walls.swap_others(others);
     }
@@ -220,8 +222,8 @@ impl Simulated {
         self.ring.order()
     }
 
-    /// Lets these sonars ping from the next exchange on, one after the other; ignored on a body whose sonars ping
-    /// together.
+    /// Makes these sonars ping from the next exchange on, one after the other; ignored on a body whose sonars
+    /// ping together.
     pub fn order_sonars(&mut self, order: &[u8]) {
         if self.ring.order().is_some() {
             self.ring.reorder(order);
@@ -233,21 +235,21 @@ impl Simulated {
         self.walls.gone()
     }
 
-    /// The place of a wall that the body touches; its centre if it touches none.
+    /// Returns the point of a wall that the body touches; its centre if it touches none.
     pub(crate) fn touched(&self) -> Place {
         let at = Place::of(&self.body.pose);
         let body = self.footprint();
         self.walls.contact(&body, 0.1 * body.form.radius()).map_or(at, |contact| contact.place)
     }
 
-    /// The time of the next exchange.
+    /// Returns the time of the next exchange.
     #[must_use]
     pub fn now(&self) -> Nanos {
         let period = u64::try_from(self.period.as_nanos()).unwrap_or(u64::MAX);
         Nanos(self.exchanges.saturating_mul(period))
     }
 
-    /// Drives for the period that ends `now`, and pings whenever a sonar is due in it.
+    /// Drives for the period that ends at `now`, and pings whenever a sonar is due during it.
     fn drive(&mut self, input: &Twist, now: Nanos) {
         let begins = Nanos(now.0.saturating_sub(u64::try_from(self.period.as_nanos()).unwrap_or(u64::MAX)));
         if self.exchanges == 0 {
@@ -274,7 +276,7 @@ impl Simulated {
     /// of them takes its output.
     ///
     /// # Errors
-    /// The input is not finite.
+    /// Fails if the input is not finite.
     pub fn moves(&mut self, input: &Twist) -> Result<(), Fault> {
         if !(input.v.0.is_finite() && input.omega.0.is_finite()) {
             return Err(Fault::Input);

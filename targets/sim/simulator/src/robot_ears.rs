@@ -1,4 +1,4 @@
-//! Two ears of a simulated robot, in the middle of it: they hear the sources of its world.
+//! Two ears in the middle of a simulated robot, which hear the sound sources of its world.
 
 use mdle_runtime::{Nanos, Pose, Radians};
 use mdle_sound::{EarPose, Ears, RATE, SoundRoom, SphericalHead};
@@ -8,7 +8,7 @@ use crate::world::World;
 /// The ears of a robot.
 pub struct RobotEars {
     ears: Ears,
-    /// Pose at the exchange before, and the number of samples until then.
+    /// Pose at the exchange before, and number of samples until then; `None` before the first exchange.
     before: Option<(Pose, u64)>,
 }
 
@@ -23,8 +23,8 @@ impl RobotEars {
         Some(Self { ears, before: None })
     }
 
-    /// Returns what the left and the right ear have heard from the exchange before until this one, at which the robot
-    /// has this pose.
+    /// Returns the samples of the left and the right ear from the exchange before until this one, at which the
+    /// robot has this pose.
     pub fn heard(&mut self, here: &Pose, now: Nanos) -> Vec<[f32; 2]> {
         let until = (u128::from(now.0) * u128::from(RATE) / 1_000_000_000).try_into().unwrap_or(u64::MAX);
         let (before, since) = self.before.replace((*here, until)).unwrap_or((*here, until));

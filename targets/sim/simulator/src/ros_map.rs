@@ -1,8 +1,8 @@
 //! Worlds from maps of ROS as `map_server` saves them: a YAML file of a few keys beside an image.
 //!
-//! Pixels darker than the threshold are occupied; where they border on others there is a wall. The steps that pixels
-//! make of a slanted wall are smoothed out, since a sonar would not hear it otherwise. The unknown is floor. The robot
-//! starts at the origin of the map's frame, which is where the mapping robot began.
+//! Pixels darker than the threshold are occupied; there is a wall where they border on other pixels. The pixel
+//! steps of a slanted wall are smoothed, since a sonar would not hear the wall otherwise. Unknown pixels are
+//! floor. The robot starts at the origin of the map's frame, which is where the mapping robot began.
 
 mod contours;
 mod header;
@@ -24,7 +24,7 @@ impl Header {
     /// Returns the world of this header and the bytes of its image; errors call the image `file`.
     ///
     /// # Errors
-    /// The bytes are no image that can be read, or one with too many walls.
+    /// Fails if the bytes are no readable image, or an image with too many walls.
     pub fn world(&self, file: &str, bytes: &[u8]) -> Result<World, WorldError> {
         let image = Image::read(bytes).map_err(|what| WorldError::new(file, None, what))?;
         let (sin, cos) = libm::sincos(self.yaw);

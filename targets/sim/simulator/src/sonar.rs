@@ -1,4 +1,4 @@
-//! The sonars: the order in which they ping, and the ranges that they hear, errors included.
+//! The sonars: the order in which they ping, and the ranges that they measure, with errors.
 
 mod echo;
 #[cfg(test)]
@@ -17,18 +17,18 @@ use crate::walls::Walls;
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     pub(crate) pings: [Pings; SONARS],
-    /// The model of the sonars, which robots with one body share.
+    /// The model of the sonars, which all robots with the same body share.
     pub(crate) hearing: Arc<Hearing>,
-    /// Newest range of each transducer, as a range of the sonar that it speaks for; `None` when no echo came back.
+    /// Newest range of each transducer, as a range of the sonar that it represents; `None` if no echo returned.
     ranges: Vec<Option<f64>>,
     /// Newest ping of each transducer, with the range from the transducer itself.
     pub(crate) heard: Vec<Heard>,
     errors: Option<Errors>,
-    /// The group that pings next, and when, where there is an order.
+    /// The group that pings next, and its time, if there is a firing order.
     next: (usize, Nanos),
 }
 
-/// The last ping of one transducer, of which several may speak for one sonar.
+/// The last ping of a transducer; several transducers may represent one sonar.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Heard {
     /// Range from the transducer; `None` when no echo came back.
@@ -48,7 +48,7 @@ struct Errors {
 }
 
 impl Ring {
-    /// Sonars that err by this seed, or not at all.
+    /// Returns sonars with the errors of this seed, or without errors.
     pub(crate) fn new(hearing: impl Into<Arc<Hearing>>, seed: Option<u64>) -> Self {
         let hearing = hearing.into();
         let errors = seed.map(|seed| {
@@ -66,7 +66,7 @@ impl Ring {
         Self { pings: [Pings::default(); SONARS], hearing, ranges, heard, errors, next: (0, Nanos::ZERO) }
     }
 
-    /// Returns the time of the next ping; `None` where all sonars ping in every turn.
+    /// Returns the time of the next ping; `None` if all sonars ping in every turn.
     pub(crate) fn due(&self) -> Option<Nanos> {
         self.hearing.order.as_ref().map(|_| self.next.1)
     }
@@ -81,7 +81,7 @@ impl Ring {
         groups.iter().map(sonar).collect()
     }
 
-    /// Lets these sonars ping from now on, one after the other, where they do so.
+    /// Makes these sonars ping from now on, one after the other, if the sonars ping in turn.
     pub(crate) fn reorder(&mut self, sonars: &[u8]) {
         let transducers = &self.hearing.transducers;
         let of = |sonar: &u8| transducers.iter().position(|known| known.sonar.number() == usize::from(*sonar));
@@ -92,7 +92,7 @@ impl Ring {
         }
     }
 
-    /// Fires the sonars that are due at `at`, from the robot at `pose`, which is at `odometry` by its own reckoning.
+    /// Fires the sonars that are due at `at`, on a robot at `pose` whose odometry reads `odometry`.
     pub(crate) fn ping(&mut self, pose: &Pose, odometry: Pose, at: Nanos, walls: &Walls) {
         let Some(Order { groups, gap }) = &self.hearing.order else {
             for number in 0..self.ranges.len() {
@@ -114,7 +114,8 @@ impl Ring {
         }
     }
 
-    /// Pings until every sonar has as many pings as are kept: it was switched on a while before the plan began.
+    /// Pings until every sonar has the number of pings that an output keeps, as if the robot had been switched
+    /// on a while before the plan began.
     pub(crate) fn warm_up(&mut self, pose: &Pose, odometry: Pose, walls: &Walls) {
         let Some(order) = &self.hearing.order else { return };
         for _ in 0..order.groups.len() * mdle_runtime::PINGS_KEPT {
@@ -123,7 +124,8 @@ impl Ring {
         self.next.1 = self.hearing.order.as_ref().map_or(Nanos::ZERO, |order| order.gap);
     }
 
-    /// The sonar that this transducer speaks for, if no other that does so pings later in the order.
+    /// Returns the sonar that this transducer represents, if no other transducer of that sonar pings later in
+    /// the order.
     fn completed(&self, group: usize, number: usize) -> Option<usize> {
         let speaks_for =
             |number: usize| self.hearing.transducers.get(number).map(|transducer| transducer.sonar.number());
@@ -134,7 +136,7 @@ impl Ring {
         here.chain(later).all(|other| speaks_for(*other) != Some(sonar)).then_some(sonar)
     }
 
-    /// Lets one transducer ping.
+    /// Makes one transducer ping.
     fn listen(&mut self, number: usize, pose: &Pose, at: Nanos, walls: &Walls) {
         let Self { hearing, errors, ranges, heard: all, .. } = self;
         let (Some(transducer), Some(range), Some(last)) =
@@ -157,8 +159,8 @@ impl Ring {
 }
 
 impl Errors {
-    /// Returns the range that is heard instead of the exact one. Every ping draws the same number of random numbers,
-    /// whatever it hears.
+    /// Returns the measured range for an exact range. Every ping draws the same number of random numbers,
+    /// whatever its result.
     fn of(&mut self, exact: Option<f64>, hearing: &Hearing) -> Option<f64> {
         let missed = self.ranges.uniform() < hearing.misses;
         let error = hearing.spread * self.ranges.normal();
@@ -186,8 +188,8 @@ fn is_on_the_ring(transducer: &Transducer, ring_radius: f64) -> bool {
         && (libm::hypot(transducer.x, transducer.y) - ring_radius).abs() < 1e-9
 }
 
-/// A transducer's range as one from the ring: along the transducer's axis from the place nearest to the centre, less
-/// the ring's radius.
+/// Returns a transducer's range as a range from the ring: measured along the transducer's axis from the point
+/// nearest to the centre, minus the ring's radius.
 fn as_of_the_ring(range: f64, transducer: &Transducer, hearing: &Hearing) -> f64 {
     if is_on_the_ring(transducer, hearing.ring_radius) {
         return range;
@@ -206,7 +208,7 @@ fn stepped(range: f64, step: f64) -> f64 {
     if step > 0.0 { libm::floor(range / step + 1e-9) * step } else { range }
 }
 
-/// Returns the ping of this sonar by the nearest echo that its transducers heard last.
+/// Returns the ping of this sonar, from the nearest echo that its transducers heard last.
 fn nearest(hearing: &Hearing, ranges: &[Option<f64>], sonar: usize, at: Nanos, odometry: Pose) -> Ping {
     let speaking = hearing.transducers.iter().zip(ranges).filter(|(transducer, _)| transducer.sonar.number() == sonar);
     let heard = speaking.filter_map(|(transducer, range)| Some((transducer, (*range)?)));

@@ -11,7 +11,7 @@ use crate::place::Place;
 use crate::walls::{self, Walls};
 use crate::world::World;
 
-/// Directions in which a closed floor must have a wall.
+/// Number of directions in which an enclosed floor must have a wall.
 const LOOKS: u16 = 180;
 /// Range of the search for walls, in metres: across any world.
 const SIGHT: f64 = 1e7;
@@ -69,7 +69,7 @@ impl FromStr for Start {
 /// Checks that a robot of this form can start at `pose` in `world`, whose walls are `walls`.
 ///
 /// # Errors
-/// The reason why it cannot start there.
+/// Fails with the reason why the robot cannot start there.
 pub fn check(pose: &Pose, form: Form, world: &World, walls: &Walls) -> Result<(), StartError> {
     let (place, body) = (Place::of(pose), Footprint { pose: *pose, form });
     if let Some(outline) = world.solid(place) {

@@ -14,7 +14,7 @@ const TRIES: u32 = 1000;
 /// Maximum values of `--start-noise`, in metres and degrees.
 const MOST: [f64; 2] = [100.0, 180.0];
 
-/// Maximum error of a start along each axis, and in heading; to either side, with a uniform distribution.
+/// Maximum error of a start pose along each axis and in heading, to either side, with a uniform distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StartNoise {
     metres: f64,
@@ -25,7 +25,8 @@ impl StartNoise {
     /// Reads `metres,degrees`.
     ///
     /// # Errors
-    /// The text is not a length and an angle within their limits: a sentence with what to type instead.
+    /// Fails with a sentence that says what to type instead if the text is not a length and an angle within
+    /// their limits.
     pub fn read(text: &str) -> Result<Self, String> {
         let sentence = "expected metres,degrees: up to 100 and 180, as in `0.1,5`";
         let (metres, degrees) = text.split_once(',').ok_or(sentence)?;
@@ -35,10 +36,11 @@ impl StartNoise {
         is_within.then_some(Self { metres, degrees }).ok_or_else(|| sentence.to_owned())
     }
 
-    /// The start pose of `seed`: the first drawn around `start` at which a robot of this form can stand.
+    /// Returns the start pose of `seed`: the first drawn around `start` at which a robot of this form can
+    /// stand.
     ///
     /// # Errors
-    /// The reason why the robot cannot stand at the last pose tried.
+    /// Fails with the reason why the robot cannot stand at the last pose tried.
     pub fn pose(self, start: &Pose, seed: u64, form: Form, world: &World, walls: &Walls) -> Result<Pose, StartError> {
         let mut noise = Noise::of(seed, Purpose::Start);
         let mut pose = self.drawn(start, &mut noise);

@@ -3,9 +3,9 @@
 use crate::grid::Segment;
 use crate::place::Place;
 
-/// Ends nearer to another segment than this, in metres, belong together.
+/// Distance, in metres, below which the end of a segment belongs to another segment.
 const TOGETHER: f64 = 1e-3;
-/// The cosine of the turn up to which two segments are one smooth surface: 30°.
+/// Cosine of the angle up to which two segments form a smooth surface: 30°.
 const SMOOTH: f64 = 0.866;
 
 /// The form of one end of a segment.
@@ -15,21 +15,22 @@ pub(crate) enum End {
     Edge,
     /// The end lies at the middle of another segment.
     Covered,
-    /// The end meets another segment, which goes on in this unit direction.
+    /// The end meets another segment, which continues in this unit direction.
     Meets(Place),
 }
 
-/// Both ends of a segment, first the one it is given from.
+/// Both ends of a segment; the first is the end from which the segment is given.
 pub(crate) type Ends = [End; 2];
 
-/// The surface that a ray has met.
+/// The surface that a ray has hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Surface {
-    /// Distance that the ray went, in metres.
+    /// Length of the ray, in metres.
     pub(crate) range: f64,
     /// The unit normal of the surface, on the side of the ray.
     pub(crate) normal: Place,
-    /// Distance of the nearest edge that sends sound back to where the ray came from, in metres; infinite without one.
+    /// Distance, in metres, of the nearest edge that reflects sound back to the start of the ray; infinite
+    /// without such an edge.
     pub(crate) edge: f64,
     /// Roughness, from 0 to 1.
     pub(crate) rough: f64,
@@ -42,7 +43,8 @@ pub(crate) fn ends<'s>(segment: &Segment, others: impl Iterator<Item = &'s Segme
     meeting.ends()
 }
 
-/// The ends of a segment, with the segments met at each so far: it takes no memory, however many lie there.
+/// The ends of a segment, with the segments found at each so far. It needs the same memory however many there
+/// are.
 pub(crate) struct Meeting {
     segment: Segment,
     ends: [(End, Option<Segment>); 2],
@@ -53,7 +55,7 @@ impl Meeting {
         Self { segment, ends: [(End::Edge, None); 2] }
     }
 
-    /// Takes another segment into account, which may come again.
+    /// Includes another segment, which may be given several times.
     pub(crate) fn touched(&mut self, other: &Segment) {
         let places = [self.segment.from, self.segment.to()];
         if *other == self.segment {
@@ -74,7 +76,7 @@ impl Meeting {
     }
 }
 
-/// The end of a segment at `at`, where another one is.
+/// Returns the form of a segment's end at `at`, where `other` is.
 fn met(other: &Segment, at: Place) -> End {
     let way = |sign: f64| {
         let length = libm::hypot(other.along.x, other.along.y);
@@ -89,8 +91,8 @@ fn met(other: &Segment, at: Place) -> End {
     }
 }
 
-/// Returns the surface that a ray in the unit direction `way` meets at `at`, on `segment`, after `range` metres. It is
-/// smooth.
+/// Returns the surface that a ray in the unit direction `way` hits at `at`, on `segment`, after `range` metres.
+/// The surface is smooth.
 pub(crate) fn surface(segment: &Segment, ends: &Ends, at: Place, way: Place, range: f64) -> Surface {
     let length = libm::hypot(segment.along.x, segment.along.y);
     let along = Place { x: segment.along.x / length, y: segment.along.y / length };

@@ -12,7 +12,8 @@ use crate::frames::{Frame, Frames};
 use crate::place::Place;
 pub(crate) use ways::{Atom, Mark, Ways};
 
-/// Side of a square, in metres, in which at most one echo is kept: so even a long run keeps a limited number of echoes.
+/// Side of a square, in metres, in which at most one echo is kept, so that even a long run keeps a limited
+/// number of echoes.
 const SQUARE: f64 = 0.04;
 
 /// The way of a robot.
@@ -25,7 +26,7 @@ pub(crate) struct Trail {
     pub(crate) here: Pose,
     /// Current displacement of each moving object of the world; `None` for an open door.
     pub(crate) things: Vec<Option<Place>>,
-    /// The way, by the atoms that drove it.
+    /// The way, divided by the atoms that drove it.
     pub(crate) ways: Ways,
     /// Text about the run for a title.
     pub(crate) about: About,
@@ -41,9 +42,9 @@ pub(crate) struct Trail {
     ended: Option<Nanos>,
     /// Frames of an animated picture, if one is recorded.
     pub(crate) frames: Option<Frames>,
-    /// The other robots of a fleet; none where one robot drives alone.
+    /// The other robots of a fleet; empty if there is only one robot.
     pub(crate) companions: Vec<Companion>,
-    /// Name for that which drove a way: `atom`, or `robot` in a fleet.
+    /// Word for the cause of a way: `atom`, or `robot` in a fleet.
     pub(crate) kind: &'static str,
 }
 
@@ -58,16 +59,16 @@ pub(crate) struct Companion {
 /// Descriptions of a run, for titles.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct About {
-    /// World, body and seed.
+    /// Text about the world, the body and the seed.
     pub(crate) setup: String,
     /// Name of the plan; empty if it has no name, or before the run has ended.
     pub(crate) plan: String,
-    /// Cause and time of the end; empty before that.
+    /// Cause and time of the end; empty before the run has ended.
     pub(crate) end: String,
 }
 
 impl Trail {
-    /// The trail of a body that begins here.
+    /// Returns the trail of a body that begins here.
     pub(crate) fn from(body: &Footprint) -> Self {
         let pose = &body.pose;
         Self {
@@ -111,19 +112,20 @@ impl Trail {
         }
     }
 
-    /// The body comes into contact with an obstacle here, at time `t`.
+    /// Records that the body comes into contact with an obstacle at `place`, at time `t`.
     pub(crate) fn touched(&mut self, place: Place, t: Nanos) {
         if self.touched.insert(square(place)) {
             self.contacts.push((place, t));
         }
     }
 
-    /// An atom begins where the robot is; `number` is its state in the first pass of the loops around it.
+    /// Records that an atom begins at the robot's pose; `number` is its state in the first pass of the
+    /// enclosing loops.
     pub(crate) fn began(&mut self, number: u64, law: &str, t: Nanos) {
         self.ways.began(number, law, t, Place::of(&self.here));
     }
 
-    /// The turns of the run have ended.
+    /// Records that the turns of the run have ended.
     pub(crate) fn ended(&mut self, plan: &str, is_over: bool, by: &str, t: Nanos) {
         self.ended = Some(t);
         self.ways.ended(t);
@@ -138,8 +140,8 @@ impl Trail {
     }
 }
 
-/// Returns the places on the floor of the echoes of the newest pings, by sonar: on the axes of their cones. A sonar
-/// that has not pinged since `before` has no echo.
+/// Returns the positions on the floor of the echoes of the newest pings, by sonar, on the axes of their cones;
+/// `None` for a sonar without a ping since `before`.
 #[must_use]
 pub fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Place>; SONARS] {
     let mut echoes = [None; SONARS];

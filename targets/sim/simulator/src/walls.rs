@@ -1,4 +1,4 @@
-//! The fixed and moving obstacles of a world, prepared for queries: rays, distances, contacts.
+//! The fixed and moving obstacles of a world, prepared for queries of rays, distances and contacts.
 
 use std::sync::Arc;
 
@@ -12,16 +12,17 @@ use crate::place::Place;
 use crate::surfaces::{Ends, Meeting, Surface, apart, surface};
 use crate::world::World;
 
-/// Maximum number of pairs of an end of a segment and what shares its cell: each is looked at once, in a second or so.
+/// Maximum number of pairs of a segment's end and another segment in its cell: checking this number takes about
+/// a second.
 const PAIRS_MOST: u64 = 100_000_000;
 
-/// Distance beyond a cone, in metres, by which a robot may be off and still counts as in it: more than rounding.
+/// Distance, in metres, beyond a cone at which a robot still counts as inside it; larger than rounding errors.
 const BESIDE: f64 = 1e-6;
 
-/// The walls of a world at a time.
+/// The walls of a world at a certain time.
 #[derive(Debug, Clone)]
 pub struct Walls {
-    /// Obstacles that never move, which robots in one world share.
+    /// Fixed obstacles, which all robots in a world share.
     standing: Arc<Standing>,
     moving: Vec<Moving>,
     others: Others,
@@ -29,7 +30,7 @@ pub struct Walls {
     rough: f64,
 }
 
-/// The obstacles of a world that never move.
+/// The fixed obstacles of a world.
 #[derive(Debug)]
 struct Standing {
     segments: Vec<Segment>,
@@ -39,7 +40,7 @@ struct Standing {
     grid: Grid,
 }
 
-/// The other robots around one.
+/// The other robots around a robot.
 #[derive(Debug, Clone, Default)]
 pub struct Others {
     /// Robots that its sonars may hear.
@@ -57,10 +58,10 @@ impl Walls {
         Self::in_grid(world, segments, grid)
     }
 
-    /// The walls of a world that may have too many in one place to be ready within seconds.
+    /// Returns the walls of a world, unless it has so many in one place that preparing them would take too long.
     ///
     /// # Errors
-    /// A sentence that names the part of the world that is too large.
+    /// Fails with a sentence that names the part of the world that is too large.
     pub fn of_any(world: &World) -> Result<Self, String> {
         let segments = segments(world);
         let grid = Grid::of(&segments);
@@ -104,7 +105,7 @@ impl Walls {
         self.cast_among(&self.others.heard, from, way, most)
     }
 
-    /// Returns the distance that a ray goes, as [`Walls::cast`] does, with these other robots alone.
+    /// Returns the distance that a ray goes, as [`Walls::cast`] does, but considers only these other robots.
     pub(crate) fn cast_among(&self, others: &[Footprint], from: Place, way: Place, most: f64) -> Option<f64> {
         let range = nearest_of(others, from, way, most).map_or(most, |(range, _)| range);
         let range = self.standing.grid.ray(from, way, range).map_or(range, |hit| hit.range);
@@ -118,7 +119,7 @@ impl Walls {
         self.found_among(&self.others.heard, from, way, most)
     }
 
-    /// Returns the surface that a ray meets, as [`Walls::found`] does, with these other robots alone.
+    /// Returns the surface that a ray hits, as [`Walls::found`] does, but considers only these other robots.
     pub(crate) fn found_among(&self, others: &[Footprint], from: Place, way: Place, most: f64) -> Option<Surface> {
         let at = |range: f64| Place { x: from.x + range * way.x, y: from.y + range * way.y };
         let other = nearest_of(others, from, way, most);
@@ -137,7 +138,7 @@ impl Walls {
         })
     }
 
-    /// The distance from `at` to the nearest wall, in metres, or `reach` if that is less.
+    /// Returns the distance from `at` to the nearest wall, in metres, or `reach` if that is less.
     #[must_use]
     pub fn clearance(&self, at: Place, reach: f64) -> f64 {
         self.standing(at, reach).min(self.moving(at))
@@ -184,7 +185,7 @@ impl Walls {
         self.others.touched.iter().fold(least, |least, other| least.min(body.contact_with(other).gap))
     }
 
-    /// The nearest contact of a body with an obstacle, if its gap is less than `reach`.
+    /// Returns the nearest contact of a body with an obstacle, if its gap is less than `reach`.
     pub(crate) fn contact(&self, body: &Footprint, reach: f64) -> Option<Contact> {
         let mut nearest = (reach, None);
         self.contacts(body, reach, |contact| {
@@ -210,7 +211,7 @@ impl Walls {
         self.moving.iter().map(Moving::gone)
     }
 
-    /// Returns the middle of each of the moving objects, but for open doors.
+    /// Returns the centre of each moving object, except open doors.
     pub(crate) fn things(&self) -> impl Iterator<Item = Place> {
         self.moving.iter().filter_map(Moving::around)
     }
@@ -239,17 +240,17 @@ impl Walls {
         }
     }
 
-    /// Exchanges the other robots for these.
+    /// Exchanges the other robots with those in `others`.
     pub(crate) fn swap_others(&mut self, others: &mut Others) {
         std::mem::swap(&mut self.others, others);
     }
 
-    /// Returns `true` if anything here ever moves.
+    /// Returns `true` if any object in the world can move.
     pub(crate) fn move_at_all(&self) -> bool {
         !self.moving.is_empty()
     }
 
-    /// Moves all things for `seconds`, but none of them into `body`.
+    /// Moves all objects for `seconds`, but none of them into `body`.
     pub(crate) fn advance(&mut self, seconds: f64, body: &Footprint) {
         for thing in &mut self.moving {
             thing.advance(seconds, body);
@@ -269,7 +270,8 @@ fn segments(world: &World) -> Vec<Segment> {
     world.segments().map(|(_, from, to)| Segment::between(from, to)).collect()
 }
 
-/// Returns the wall or box of `world` that is nearest to `body`, with everything where it begins.
+/// Returns the wall or box of `world` that is nearest to `body`, with all moving objects at their first
+/// positions.
 pub(crate) fn nearest<'w>(world: &'w World, body: &Footprint) -> Option<&'w Outline> {
     let distances =
         world.everything().map(|(outline, from, to)| (outline, body.contact(&Segment::between(from, to)).gap));

@@ -9,7 +9,7 @@ use crate::moving::Thing;
 use crate::outline::Outline;
 use crate::place::Place;
 
-/// More walls and sides than this are refused: a million of them takes a second to make ready.
+/// Maximum number of walls and sides; preparing a million of them takes a second.
 const SEGMENTS_MOST: usize = 1_000_000;
 
 /// The surroundings of the simulated robot. All coordinates are finite and no wall has length zero.
@@ -19,20 +19,21 @@ pub struct World {
     pub outlines: Vec<Outline>,
     /// Doors, and boxes and discs that move.
     pub things: Vec<Thing>,
-    /// The start pose unless an option says otherwise.
+    /// Default start pose.
     pub start: Pose,
-    /// The place where a plan is to leave the robot, if the world has one.
+    /// The goal, if the world has one.
     pub goal: Option<Goal>,
     /// The charger, if the world has one.
     pub charger: Option<Charger>,
     /// Sources of sound.
     pub sounds: Vec<SoundSource>,
-    /// Time in seconds in which sound falls by 60 dB; 0 if nothing reflects it.
+    /// Reverberation time, in seconds, in which sound decays by 60 dB; 0 if nothing reflects sound.
     pub t60: f64,
-    /// Roughness of other robots, and of the outlines and things of a file that give none of their own: from 0 (as
-    /// smooth as the body's model) to 1 (heard by sonars at any angle).
+    /// Default roughness of other robots and of outlines and objects of a file: from 0 (as smooth as the body's
+    /// model) to 1 (heard by sonars at any angle).
     pub rough: f64,
-    /// Number of the first outlines that are contours of a map: inside an odd number of them it is solid.
+    /// Number of the first outlines that are contours of a map; a place inside an odd number of contours is
+    /// solid.
     pub(crate) contours: usize,
 }
 
@@ -53,7 +54,7 @@ impl World {
         }
     }
 
-    /// The box, disc or contour inside of which `place` lies.
+    /// Returns the box, disc or contour that contains `place`.
     pub(crate) fn solid(&self, place: Place) -> Option<&Outline> {
         let around = || self.outlines.iter().take(self.contours).filter(|outline| outline.surrounds(place));
         if around().count() % 2 == 1 {
@@ -63,8 +64,8 @@ impl World {
         outlines.into_iter().find(|outline| outline.solid && outline.surrounds(place))
     }
 
-    /// The name of the wall, box or disc that keeps robots of this radius, in metres, off a charger: it surrounds the
-    /// place of a robot on the charger, or is nearer to it than the radius.
+    /// Returns the name of the wall, box or disc that keeps robots of this radius, in metres, off a charger: it
+    /// surrounds the position of a robot on the charger, or is closer to it than the radius.
     pub(crate) fn obstacle_at(&self, charger: &Charger, radius: f64) -> Option<&str> {
         let place = Place::of(&charger.pose);
         let near = || {
@@ -78,7 +79,7 @@ impl World {
         self.solid(place).or_else(|| near().map(|(outline, ..)| outline)).map(|outline| outline.name.as_str())
     }
 
-    /// Checks that a world has no more walls and sides than can be made ready.
+    /// Checks that a world has no more walls and sides than can be prepared.
     pub(crate) fn check_size(&self) -> Result<(), String> {
         match self.everything().count() {
             count if count > SEGMENTS_MOST => {
@@ -99,8 +100,8 @@ impl World {
         self.outlines.iter().flat_map(Outline::segments)
     }
 
-    /// Returns all walls and sides of boxes, and the sides of everything that moves where it begins, each with its
-    /// outline.
+    /// Returns all walls and sides of boxes, and the sides of all moving objects at their first positions, each
+    /// with its outline.
     pub(crate) fn everything(&self) -> impl Iterator<Item = (&Outline, Place, Place)> {
         self.segments().chain(self.things.iter().flat_map(|thing| thing.outline.segments()))
     }

@@ -6,7 +6,7 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WorldError {
     file: String,
-    /// Line and column, from 1; `None` when it is about the file as a whole.
+    /// Line and column, from 1; `None` for a defect of the whole file.
     place: Option<(usize, usize)>,
     what: String,
 }
@@ -24,7 +24,7 @@ impl fmt::Display for WorldError {
 impl std::error::Error for WorldError {}
 
 impl WorldError {
-    /// The defect at a line and column, from 1, of a file, or of the file as a whole.
+    /// Returns the defect at a line and column, from 1, or of the whole file.
     pub(crate) fn new(file: &str, place: Option<(usize, usize)>, what: impl Into<String>) -> Self {
         Self { file: file.to_owned(), place, what: what.into() }
     }

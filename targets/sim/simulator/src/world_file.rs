@@ -1,7 +1,8 @@
-//! Reading a world from TOML; afterwards every coordinate is finite, in metres, and every wall, box and disc has a
-//! size.
+//! Reads a world from TOML and checks that every coordinate is finite, in metres, and that every wall, box and
+//! disc has a size.
 //!
-//! Obstacles may overlap: together they are one. Moving things go through fixed ones, but never into the robot.
+//! Obstacles may overlap and then act as one. Moving objects pass through fixed obstacles, but never into the
+//! robot.
 
 mod outlines;
 mod sounds;
@@ -17,10 +18,10 @@ use crate::world_error::WorldError;
 use outlines::{Stands, Unit};
 use text::WorldText;
 
-/// A longer text is refused: to be read it takes up to 70 times its bytes of memory.
+/// Maximum size of the text, in bytes; reading a text takes up to 70 times its size in memory.
 const BYTES_MOST: usize = 8 << 20;
 
-/// A defect of the text: its place, and a message.
+/// A defect of the text: its byte range, and a message.
 pub(crate) struct Wrong(pub(crate) Option<Range<usize>>, pub(crate) String);
 
 impl Wrong {
@@ -29,7 +30,7 @@ impl Wrong {
     }
 }
 
-/// The world that `text` describes.
+/// Returns the world that `text` describes.
 pub(crate) fn parse(file: &str, text: &str) -> Result<World, WorldError> {
     read(text)
         .map_err(|Wrong(span, what)| WorldError::new(file, span.map(|span| line_and_column(text, span.start)), what))

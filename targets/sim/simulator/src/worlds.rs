@@ -1,4 +1,4 @@
-//! Worlds from texts: those that come with the simulator, a user's TOML, and maps of ROS.
+//! Worlds from texts: the worlds that come with the simulator, a user's TOML, and maps of ROS.
 
 use crate::ros_map::Header;
 use crate::world::World;
@@ -17,7 +17,7 @@ impl World {
     /// Returns the world of a TOML text, which errors call `file`.
     ///
     /// # Errors
-    /// What is wrong with the text, and where.
+    /// Fails with the error of the text, and its place.
     pub fn parse(file: &str, text: &str) -> Result<Self, WorldError> {
         world_file::parse(file, text)
     }
@@ -26,28 +26,28 @@ impl World {
     /// `file` and `image`.
     ///
     /// # Errors
-    /// The defect of either file, with its place.
+    /// Fails with the defect of either file, and its place.
     pub fn of_map((file, text): (&str, &str), (image, bytes): (&str, &[u8])) -> Result<Self, WorldError> {
         Header::parse(file, text)?.world(image, bytes)
     }
 
-    /// The office floor of the paper's tour.
+    /// Returns the office floor of the paper's tour.
     ///
     /// # Errors
-    /// Never: a test reads it. It is the file of a user like any other.
+    /// Never fails, as a test reads the world. Its file has the same format as a user's file.
     pub fn office() -> Result<Self, WorldError> {
         let [(_, office), ..] = WORLDS;
         Self::parse("the office floor", office)
     }
 
-    /// The world of this name that comes with the simulator, if there is one.
+    /// Returns the world of this name that comes with the simulator, if there is one.
     #[must_use]
     pub fn named(name: &str) -> Option<Result<Self, WorldError>> {
         let (name, text) = WORLDS.iter().find(|(known, _)| *known == name)?;
         Some(Self::parse(name, text))
     }
 
-    /// The names of the worlds that come with the simulator.
+    /// Returns the names of the worlds that come with the simulator.
     pub fn names() -> impl Iterator<Item = &'static str> {
         WORLDS.iter().map(|(name, _)| *name)
     }

@@ -11,29 +11,29 @@ use super::sizes::MARGIN;
 
 /// Width of a chart, in pixels.
 const WIDTH: f64 = 960.0;
-/// Width of the names at the left.
+/// Width of the names at the left, in pixels.
 const NAMES: f64 = 190.0;
 /// Maximum number of letters of a name.
 const LETTERS_MOST: usize = 24;
-/// Height of a row of atoms.
+/// Height of a row of atoms, in pixels.
 const ROW: f64 = 22.0;
-/// Height of the curves of a signal, and the distance between two of them.
+/// Height of the curve of a signal, and the distance between two curves, in pixels.
 const CURVE: (f64, f64) = (84.0, 22.0);
-/// Minimum distance between two numbers of the time axis.
+/// Minimum distance between two numbers of the time axis, in pixels.
 const APART: f64 = 80.0;
-/// Maximum number of rows of atoms: the rest share the last.
+/// Maximum number of rows of atoms; all further atoms share the last row.
 const ROWS_MOST: usize = 24;
 
 /// A run over time.
 #[derive(Debug, Clone, Default)]
 pub struct TimeChart {
-    /// The title.
+    /// Title of the chart.
     pub title: String,
-    /// The atoms, by the text of their laws: a row for each.
+    /// The atoms, by the text of their laws, with a row for each.
     pub atoms: Vec<String>,
-    /// The stays in atoms: the number of the atom, the begin and the end.
+    /// The periods in atoms: the number of the atom, the begin and the end.
     pub stays: Vec<(usize, Nanos, Nanos)>,
-    /// The signals.
+    /// The signals, with a curve for each.
     pub signals: Vec<SignalCurve>,
     /// End of the run.
     pub end: Nanos,
@@ -44,7 +44,7 @@ pub struct TimeChart {
 pub struct SignalCurve {
     /// Name of the signal, with its unit.
     pub name: String,
-    /// Times and values; a gap where a value is not finite.
+    /// Times and values; a value that is not finite leaves a gap.
     pub values: Vec<(Nanos, f64)>,
 }
 
@@ -107,7 +107,7 @@ impl TimeChart {
         group
     }
 
-    /// Draws a signal between its least and its greatest value.
+    /// Draws a signal between its minimum and its maximum.
     fn curve(&self, signal: &SignalCurve, above: f64) -> Group {
         let (height, below) = (CURVE.0, above + CURVE.0);
         let finite = || signal.values.iter().filter(|(_, value)| value.is_finite());

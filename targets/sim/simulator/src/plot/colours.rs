@@ -1,5 +1,5 @@
-//! The colours of a plot on light and on dark pages: everybody can distinguish atoms that follow each other, also
-//! people who see no red or green.
+//! The colours of a plot on light and on dark pages. Consecutive atoms have colours that all people can
+//! distinguish, including people who do not see red or green.
 
 use std::fmt::Write as _;
 
@@ -9,14 +9,14 @@ struct Palette {
     faint: &'static str,
     paper: &'static str,
     grid: &'static str,
-    /// Inside of boxes and discs.
+    /// Colour of the inside of boxes and discs.
     solid: &'static str,
     echo: &'static str,
     contact: &'static str,
     goal: &'static str,
-    /// Inside of the sign of a charger.
+    /// Colour of the inside of a charger's sign.
     charge: &'static str,
-    /// The colours of the atoms, over and over, each with the colour of a number on it.
+    /// The colours of the atoms, used in rotation, each with the colour of a number on it.
     atoms: [(&'static str, &'static str); COUNT],
 }
 
@@ -67,13 +67,13 @@ const DARK: Palette = Palette {
     ],
 };
 
-/// The class of a line, `way`, of the inside of a disc, `disc`, or of the number on it, `on`, in the colour of this
-/// atom.
+/// Returns the class, in the colour of this atom, of a line (`way`), of the inside of a disc (`disc`), or of
+/// the number on it (`on`).
 pub(super) fn class(kind: &str, atom: usize) -> String {
     format!("{kind}{}", atom % COUNT)
 }
 
-/// The style sheet of a picture, light and dark.
+/// Returns the style sheet of a picture, light and dark.
 pub(super) fn style() -> String {
     format!("\n{}@media (prefers-color-scheme: dark) {{\n{}}}\n", rules(&LIGHT), rules(&DARK))
 }
@@ -125,7 +125,8 @@ mod tests {
         times(&[0.2126, 0.7152, 0.0722], rgb)
     }
 
-    /// Lightness and the two opponent colours (CIE 1976), in which distances are about as they are seen.
+    /// Converts a colour to lightness and two opponent colours (CIE 1976), in which distances are about as
+    /// people see them.
     fn lab(rgb: &Rgb) -> Rgb {
         let part = |row: Rgb, white: f64| {
             let part = times(&row, rgb) / white;

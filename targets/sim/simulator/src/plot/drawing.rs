@@ -1,4 +1,4 @@
-//! The picture of a run that is over: the floor, the way coloured by atom, echoes and contacts, and the legend.
+//! The picture of a finished run: the floor, the way coloured by atom, echoes and contacts, and the legend.
 
 use std::collections::BTreeSet;
 
@@ -17,13 +17,13 @@ use crate::place::Place;
 use crate::trail::{Companion, Trail};
 use crate::world::World;
 
-/// Distance between two points of the way that callouts avoid, in pixels.
+/// Distance, in pixels, between two points of the way that callouts avoid.
 const STEP: f64 = 6.0;
 
-/// Side of a square in which one echo is drawn, in pixels.
+/// Side of a square, in pixels, in which at most one echo is drawn.
 const SQUARE: f64 = 8.0;
 
-/// The plot of a trail on the floor of `world`.
+/// Returns the plot of a trail on the floor of `world`, as SVG.
 pub(crate) fn svg(world: &World, trail: &Trail) -> String {
     let layout = Layout::of(world, trail);
     let document = document(&layout, layout.height)
@@ -40,7 +40,7 @@ pub(crate) fn svg(world: &World, trail: &Trail) -> String {
     format!("{document}\n")
 }
 
-/// An empty picture of this height.
+/// Returns an empty picture of this height.
 pub(super) fn document(layout: &Layout, height: f64) -> Document {
     let size = (0, 0, tenths(layout.width()), tenths(height));
     let document = Document::new().set("viewBox", size).set("width", size.2).set("height", size.3);
@@ -58,7 +58,7 @@ fn echoes(layout: &Layout, trail: &Trail) -> Path {
     path.set("class", "echo").set("stroke-opacity", 0.55).set("stroke-width", 1.6).set("stroke-linecap", "round")
 }
 
-/// The way of each atom as written, all its passes in one path.
+/// Draws the way of each atom as written, with all its passes in one path.
 fn way(layout: &Layout, trail: &Trail) -> Group {
     let data = |way: &[Place]| through(simplified(way.iter().map(|place| layout.at(*place))));
     let ways = &trail.ways;
@@ -74,7 +74,7 @@ fn way(layout: &Layout, trail: &Trail) -> Group {
     driven.fold(group, |group, (atom, data)| group.add(path(data).set("class", class("way", atom))))
 }
 
-/// The body: a disc or rectangle with a line to its front.
+/// Draws the body: a disc or rectangle with a line to its front.
 pub(super) fn body(layout: &Layout, pose: &Pose, form: Form, class: &str) -> Group {
     let centre = layout.at(Place::of(pose));
     let front = layout.at(Place::of(&pose.towards(pose.theta, Meters(form.halves().0))));
@@ -90,13 +90,13 @@ pub(super) fn body(layout: &Layout, pose: &Pose, form: Form, class: &str) -> Gro
     group.add(line(centre, front))
 }
 
-/// A cross where the body touched an obstacle.
+/// Draws a cross at each place where the body touched an obstacle.
 fn contacts(layout: &Layout, trail: &Trail) -> Group {
     let touched = trail.contacts.iter().map(|(place, _)| cross(layout.at(*place)));
     touched.fold(Group::new(), Group::add)
 }
 
-/// A callout for each atom as written, at the place where it first began.
+/// Draws a callout for each atom as written, at the place where it first began.
 fn marks(layout: &Layout, trail: &Trail) -> Group {
     let atoms = || trail.ways.atoms.iter().take(ROWS_MOST);
     let dots: Vec<Pixel> = atoms().map(|atom| layout.at(atom.place)).collect();

@@ -1,4 +1,4 @@
-//! A film of a run: the speed at which it is shown, the atoms that run, and the animations that all repeat together.
+//! A film of a run: its speed, the atoms that run, and the animations, which all repeat together.
 
 use mdle_runtime::Nanos;
 use svg::node::element::{Animate, AnimateTransform};
@@ -8,25 +8,25 @@ use crate::frames::Frame;
 use crate::place::Place;
 use crate::trail::{Mark, Trail};
 
-/// Maximum duration of the film, in seconds, before its pause at the end.
+/// Maximum duration of the film, in seconds, without the pause at the end.
 const SHOWN_MOST: f64 = 20.0;
-/// Maximum number of places of all ways for a film that draws each place, about 200 m.
+/// Maximum number of places of all ways, about 200 m, for a film that draws each place.
 const PLACES_MOST: usize = 20_000;
-/// Maximum number of atoms that begin and are all shown; of more, those that begin and end between two moments are left
-/// out.
+/// Maximum number of atoms that begin and are all shown; if there are more, atoms that begin and end between
+/// two moments are left out.
 const ACTS_MOST: usize = 1000;
-/// The rest at the end, in seconds.
+/// Pause at the end, in seconds.
 const REST: f64 = 2.5;
 
 /// A film of a run.
 pub(super) struct Film<'f> {
     /// Moments of the run.
     pub(super) frames: &'f [Frame],
-    /// The atoms that run in it, in order.
+    /// The atoms that run in the film, in order.
     pub(super) acts: Vec<Act>,
     /// Factor by which the film is faster than the run.
     pub(super) times: f64,
-    /// `true` if the ways are short enough to be written down place by place.
+    /// `true` if the ways are short enough to be written place by place.
     smooth: bool,
 }
 
@@ -37,13 +37,13 @@ pub(super) struct Act {
     pub(super) mark: Option<usize>,
     pub(super) from: Nanos,
     pub(super) to: Nanos,
-    /// Indices of the act's first moment, and of its last, with which the next act begins.
+    /// Index of the act's first moment; the last moment is the first moment of the next act.
     first: usize,
     last: usize,
 }
 
 impl<'f> Film<'f> {
-    /// The film of these moments of a trail.
+    /// Returns the film of these moments of a trail.
     pub(super) fn of(frames: &'f [Frame], trail: &Trail) -> Self {
         let marks = &trail.ways.marks;
         let mut acts: Vec<Act> = Vec::new();
@@ -77,12 +77,12 @@ impl<'f> Film<'f> {
         Self { frames, acts, times: round_step((seconds / SHOWN_MOST).max(1.0)), smooth }
     }
 
-    /// The atom that runs in an act, by its position among those that began.
+    /// Returns the atom that runs in an act, by its position among those that began.
     pub(super) fn atom(act: &Act, trail: &Trail) -> Option<usize> {
         act.mark.and_then(|mark| trail.ways.marks.get(mark))?.atom
     }
 
-    /// The moments of an act.
+    /// Returns the moments of an act.
     pub(super) fn of_act(&self, act: &Act) -> &'f [Frame] {
         self.frames.get(act.first..=act.last).unwrap_or_default()
     }
@@ -118,20 +118,21 @@ impl<'f> Film<'f> {
         libm::round(shown / self.duration() * 1e5) / 1e5
     }
 
-    /// An attribute that goes smoothly through these values.
+    /// Returns the animation of an attribute that changes smoothly through these values.
     pub(super) fn animate(&self, attribute: &str, values: impl Iterator<Item = (Nanos, String)>) -> Animate {
         let attributes = self.smooth(values).into_iter();
         attributes
             .fold(Animate::new().set("attributeName", attribute), |animate, (name, value)| animate.set(name, value))
     }
 
-    /// A movement that goes smoothly through these values.
+    /// Returns the animation of a movement that goes smoothly through these values.
     pub(super) fn transform(&self, kind: &str, values: impl Iterator<Item = (Nanos, String)>) -> AnimateTransform {
         let animate = AnimateTransform::new().set("attributeName", "transform").set("type", kind);
         self.smooth(values).into_iter().fold(animate, |animate, (name, value)| animate.set(name, value))
     }
 
-    /// An attribute that has each of these values from its time on, and the first also before.
+    /// Returns the animation of an attribute that has each of these values from its time on; the first value
+    /// also applies before its time.
     pub(super) fn switch(&self, attribute: &str, values: impl Iterator<Item = (Nanos, String)>) -> Animate {
         let mut keyed: Vec<(f64, String)> = values.map(|(t, value)| (self.key(t), value)).collect();
         if let Some(first) = keyed.first_mut() {
@@ -141,7 +142,7 @@ impl<'f> Film<'f> {
         self.attributes(&keyed).into_iter().fold(animate, |animate, (name, value)| animate.set(name, value))
     }
 
-    /// Returns an animation that shows something from one time on, and until another.
+    /// Returns an animation that shows an element from one time on, until another time if that is given.
     pub(super) fn visible(&self, from: Nanos, to: Option<Nanos>) -> Animate {
         let before = (self.key(from) > 0.0).then(|| (Nanos::ZERO, "hidden".to_owned()));
         let behind = to.map(|to| (to, "hidden".to_owned()));
@@ -171,13 +172,13 @@ impl<'f> Film<'f> {
     }
 }
 
-/// The last of the marks in a range, with its number.
+/// Returns the last of the marks in a range, with its number.
 fn newest(marks: &[Mark], before: usize, begun: usize) -> Option<(usize, &Mark)> {
     let number = begun.checked_sub(1).filter(|number| *number >= before)?;
     Some((number, marks.get(number)?))
 }
 
-/// Values without those that are as the one before.
+/// Returns the values without those that equal the value before.
 pub(super) fn changes<T>(values: impl Iterator<Item = (T, String)>) -> impl Iterator<Item = (T, String)> {
     let mut last = None;
     values.filter(move |(_, value)| last.replace(value.clone()).as_ref() != Some(value))

@@ -13,10 +13,10 @@ use crate::world::World;
 /// Minimum distance between two numbers of an axis, in pixels.
 const APART: f64 = 50.0;
 
-/// Name of the region in which anything of the floor is drawn.
+/// Name of the region to which everything on the floor is clipped.
 const REGION: &str = "floor";
 
-/// The ground of a picture of this height, its title, and the axes of its floor.
+/// Returns the background of a picture of this height, its title, and the axes of its floor.
 pub(super) fn drawn(layout: &Layout, world: &World, height: f64) -> Group {
     let background = Rectangle::new().set("width", layout.width()).set("height", height).set("class", "paper");
     let region = ClipPath::new().set("id", REGION).add(
@@ -65,21 +65,22 @@ fn axes(layout: &Layout) -> Group {
     Group::new().add(grid).add(axis).add(numbers).add(names)
 }
 
-/// The multiples of `step` in a range.
+/// Returns the multiples of `step` in a range.
 fn multiples((least, most): (f64, f64), step: f64) -> impl Iterator<Item = f64> {
     let first = libm::ceil(least / step) as i64;
     let last = libm::floor(most / step) as i64;
     (first..=last).map(move |times| times as f64 * step)
 }
 
-/// A number of an axis, without zeros that say nothing.
+/// Returns a number for an axis, without unnecessary zeros.
 fn number(value: f64, step: f64) -> String {
     let places = (-libm::floor(libm::log10(step * (1.0 + 1e-9)))).clamp(0.0, 9.0) as usize;
     // Adding zero makes a negative zero positive.
     format!("{:.places$}", libm::round(value / step) * step + 0.0)
 }
 
-/// A charger: the circle that the centre of a robot has to be in, and a flash of lightning at its middle.
+/// Draws a charger: the circle in which the centre of a robot has to be, with a flash of lightning in the
+/// middle.
 pub(super) fn socket(circle: impl IntoIterator<Item = Pixel>, (x, y): Pixel) -> Group {
     let flash = format!("M{} {}l-5 9h4l-3 7l8 -10h-4l4 -6z", tenths(x + 1.0), tenths(y - 8.0));
     let flash = Path::new().set("d", flash).set("class", "ink charge").set("stroke-width", 1);

@@ -1,14 +1,14 @@
-//! The places of the atoms' numbers: beside the places where the atoms began, and never on top of each other.
+//! The positions of the atoms' numbers: beside the places where the atoms began, without overlaps.
 
 use std::f64::consts::TAU;
 
 use super::shapes::{Pixel, RADIUS};
 
-/// The radius of the dot at the place itself.
+/// Radius of the dot at the place itself, in pixels.
 pub(super) const DOT: f64 = 3.0;
-/// Directions tried around a place.
+/// Number of directions that are tried around a place.
 const DIRECTIONS: u8 = 16;
-/// Distances tried, nearest first.
+/// Distances that are tried, in pixels, nearest first.
 const DISTANCES: [f64; 6] = [22.0, 36.0, 50.0, 66.0, 84.0, 104.0];
 /// Minimum distance between two labels, in pixels.
 const APART: f64 = 3.0;
@@ -16,8 +16,9 @@ const APART: f64 = 3.0;
 /// A rectangle: from left to right, and from top to bottom.
 pub(super) type Room = ((f64, f64), (f64, f64));
 
-/// Returns a label for each of the `dots`, in order, inside `room` and clear of all dots and of the labels before it;
-/// where that can be, also of the `lines`, given by places no farther apart than a label is wide.
+/// Returns a label for each of the `dots`, in order, inside `room` and clear of all dots and of the labels
+/// before it; if possible, also clear of the `lines`, which are given by places no farther apart than the width
+/// of a label.
 pub(super) fn placed(dots: &[Pixel], lines: &[Pixel], ((left, right), (top, bottom)): Room) -> Vec<Pixel> {
     let mut labels: Vec<Pixel> = Vec::with_capacity(dots.len());
     for dot in dots {

@@ -1,4 +1,4 @@
-//! The sizes of a plot and the places of its parts, in pixels; both axes have one scale.
+//! The sizes of a plot and the positions of its parts, in pixels. Both axes have the same scale.
 
 use super::rows::{self, Row};
 use super::shapes::Pixel;
@@ -17,28 +17,29 @@ const FLOOR_LEAST: f64 = 160.0;
 const SCALE_MOST: f64 = 220.0;
 /// Height of the numbers below the floor, in pixels.
 pub(super) const BELOW: f64 = 44.0;
-/// The height of a line of the legend.
+/// Height of a line of the legend, in pixels.
 pub(super) const LINE: f64 = 22.0;
-/// The lines of the legend besides the atoms: the heads of the columns, a free one, the signs, and the scale.
+/// Number of lines of the legend in addition to the atoms: the column heads, an empty line, the signs, and the
+/// scale.
 pub(super) const KEY: usize = 9;
 /// Maximum number of symbols of moving objects.
 const SIGNS: usize = 2;
-/// Minimum width of a legend, in pixels: that of its symbols.
+/// Minimum width of a legend, in pixels, which its symbols need.
 const LEGEND_LEAST: f64 = 170.0;
 
 /// The sizes of a plot.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Layout {
-    /// The part of the floor that is shown.
+    /// Part of the floor that is shown.
     pub(super) view: View,
-    /// The pixels of a metre.
+    /// Scale, in pixels per metre.
     pub(super) scale: f64,
     pub(super) title: Title,
-    /// The height of the title, with the margin above it.
+    /// Height of the title, with the margin above it, in pixels.
     pub(super) top: f64,
-    /// The width of the part that holds the floor, axes included.
+    /// Width of the part that contains the floor and its axes, in pixels.
     pub(super) chart: f64,
-    /// The width of the legend.
+    /// Width of the legend, in pixels.
     pub(super) legend: f64,
     pub(super) height: f64,
     /// The atoms as the legend lists them.
@@ -46,7 +47,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout that shows the whole way and the room around it.
+    /// Returns the layout that shows the whole way and the room around it.
     pub(super) fn of(world: &World, trail: &Trail) -> Self {
         let View { x, y } = View::of(world, trail);
         let scale = (FLOOR_MOST.0 / (x.1 - x.0)).min(FLOOR_MOST.1 / (y.1 - y.0)).min(SCALE_MOST);
@@ -67,13 +68,13 @@ impl Layout {
         Self { view: View { x, y }, scale, title, top, chart, legend, height, rows }
     }
 
-    /// The pixel of a place on the floor.
+    /// Returns the pixel of a place on the floor.
     pub(super) fn at(&self, place: Place) -> Pixel {
         let View { x, y } = self.view;
         (MARGIN + LEFT + (place.x - x.0) * self.scale, self.top + (y.1 - place.y) * self.scale)
     }
 
-    /// Returns `true` if some of what lies between these places may be shown.
+    /// Returns `true` if something between these places may be visible.
     pub(super) fn shows_any(&self, places: impl Iterator<Item = Place>) -> bool {
         let overlaps = |one: (f64, f64), other: (f64, f64)| one.0 <= other.1 && other.0 <= one.1;
         let (x, y): (Vec<f64>, Vec<f64>) = places.map(|place| (place.x, place.y)).unzip();
@@ -85,31 +86,32 @@ impl Layout {
         self.chart + self.legend
     }
 
-    /// Lower end of the floor, where the axis is.
+    /// Returns the lower end of the floor, where the axis is, in pixels.
     pub(super) fn bottom(&self) -> f64 {
         self.height - MARGIN - BELOW
     }
 
-    /// The middle of a line of the legend, from 0.
+    /// Returns the middle of a line of the legend, from 0.
     pub(super) fn line(&self, number: usize) -> f64 {
         self.top + LINE * (number as f64 + 0.5)
     }
 
-    /// The middle of the line of an atom, by its position among those that began.
+    /// Returns the middle of the line of an atom, by its position among those that began.
     pub(super) fn line_of(&self, atom: usize) -> f64 {
         // Below the heads of the columns; those that are not listed share the last line.
         self.line(1 + atom.min(self.rows.len().saturating_sub(1)))
     }
 }
 
-/// Returns the part of a range that is shown, and its pixels: at least the least, with more of the floor around it.
+/// Returns the part of a range that is shown, with more of the floor around it where the minimum size requires
+/// it, and its size in pixels.
 fn shown((least, most): (f64, f64), scale: f64) -> ((f64, f64), f64) {
     let pixels = libm::ceil(((most - least) * scale).max(FLOOR_LEAST));
     let more = (pixels / scale - (most - least)) / 2.0;
     ((least - more, most + more), pixels)
 }
 
-/// The step between the numbers of an axis: one, two or five times a power of ten, at least `least`.
+/// Returns the step between the numbers of an axis: one, two or five times a power of ten, at least `least`.
 pub(super) fn round_step(least: f64) -> f64 {
     let power = libm::pow(10.0, libm::floor(libm::log10(least)));
     let step = [1.0, 2.0, 5.0].into_iter().map(|digit| digit * power).find(|step| *step >= least * (1.0 - 1e-9));

@@ -13,7 +13,7 @@ use crate::world::World;
 /// Maximum length of the scale bar, in pixels.
 const BAR_MOST: f64 = 100.0;
 
-/// The legend of a run.
+/// Returns the legend of a run.
 pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
     let (left, right) = (layout.chart, layout.width() - MARGIN);
     let indented = left + 2.0 * RADIUS + 10.0;
@@ -69,7 +69,7 @@ fn signs(layout: &Layout, x: f64, world: &World, trail: &Trail) -> Vec<(Group, &
     signs
 }
 
-/// A bar as long as the round number of metres beside it.
+/// Returns a bar as long as the round number of metres beside it.
 fn scale_bar(layout: &Layout) -> Group {
     let metres = round_step(BAR_MOST / layout.scale * 0.4);
     let (left, y) = (layout.chart, layout.height - MARGIN - 10.0);

@@ -1,7 +1,8 @@
-//! The picture that moves: the way is drawn as it was driven, the robot drives it, and the running atom is named.
+//! The moving picture of a run: the way is drawn as it was driven, the robot drives along it, and the running
+//! atom is named.
 //!
-//! Everything repeats together, after a moment of rest. A viewer that moves nothing shows the end of the run; one that
-//! runs scripts also shows the time, and has a button to pause and a strip to seek.
+//! Everything repeats together, after a pause. A viewer without animation shows the end of the run; a viewer
+//! that runs scripts also shows the time, a button to pause and a strip to seek.
 
 use mdle_runtime::{Pose, Radians};
 use svg::node::element::{Group, Path, Rectangle, Script};
@@ -20,10 +21,10 @@ use crate::place::Place;
 use crate::trail::Trail;
 use crate::world::World;
 
-/// Shows the time, pauses and seeks. It has no letters that XML escapes.
+/// Script that shows the time, pauses and seeks. It has no characters that XML escapes.
 const SCRIPT: &str = include_str!("film.js");
 
-/// The moving picture of a trail on the floor of `world`.
+/// Returns the moving picture of a trail on the floor of `world`.
 pub(crate) fn animated(world: &World, trail: &Trail) -> String {
     let layout = Layout::of(world, trail);
     let frames = trail.frames.as_ref().map(Frames::all).unwrap_or_default();
@@ -43,7 +44,7 @@ pub(crate) fn animated(world: &World, trail: &Trail) -> String {
     format!("{document}\n")
 }
 
-/// The way of each atom, which grows while it runs.
+/// Returns the way of each atom, which grows while it runs.
 fn ways(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     let group = Group::new().set("stroke-width", 2.5).set("stroke-linejoin", "round").set("fill", "none");
     film.acts.iter().fold(group, |group, act| {
@@ -71,7 +72,7 @@ fn ways(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     })
 }
 
-/// The length of a line up to each of its places.
+/// Returns the length of a line up to each of its places.
 fn lengths(pixels: &[Pixel]) -> Vec<f64> {
     let steps = pixels.iter().zip(pixels.iter().skip(1));
     let steps = steps.scan(0.0, |length, (one, other)| {
@@ -104,7 +105,7 @@ fn contacts(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     })
 }
 
-/// The body, which drives and turns.
+/// Draws the body, which drives and turns.
 fn robot(layout: &Layout, film: &Film<'_>, trail: &Trail) -> Group {
     let at = |pose: &Pose| {
         let (x, y) = layout.at(Place::of(pose));
@@ -138,7 +139,7 @@ fn robot(layout: &Layout, film: &Film<'_>, trail: &Trail) -> Group {
     moved.set("stroke-width", 1.8).add(turned).add(drives)
 }
 
-/// The line of the legend whose atom runs.
+/// Draws the highlight of the legend's line whose atom runs.
 fn highlight(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Rectangle {
     let y = |atom: Option<usize>| format!("{}", tenths(layout.line_of(atom.unwrap_or(0)) - LINE / 2.0));
     let values = film.acts.iter().map(|act| (act.from, y(Film::atom(act, trail))));

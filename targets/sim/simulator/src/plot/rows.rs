@@ -1,4 +1,4 @@
-//! The rows of a legend: each atom as written once, with the number of times that it ran, and for how long in all.
+//! The rows of a legend: each atom as written once, with the number of its runs and their total duration.
 
 use mdle_runtime::Printable;
 
@@ -15,16 +15,16 @@ const APART: f64 = 22.0;
 /// An atom in the legend.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Row {
-    /// Number of the atom; empty for the line that counts the atoms not listed.
+    /// Number of the atom; empty for the line that counts the atoms that are not listed.
     pub(super) number: String,
     pub(super) law: String,
-    /// Number of times that it ran; empty if each atom ran once.
+    /// Number of times that the atom ran; empty if each atom ran once.
     pub(super) times: String,
-    /// The time for which it ran in all.
+    /// Total time for which the atom ran.
     pub(super) total: String,
 }
 
-/// The rows of a run.
+/// Returns the rows of a run.
 pub(super) fn of(trail: &Trail) -> Vec<Row> {
     let ways = &trail.ways;
     let again = ways.atoms.iter().any(|atom| atom.times > 1);
@@ -48,12 +48,12 @@ fn total(atom: &Atom) -> String {
     format!("{:.1} s", atom.total.seconds())
 }
 
-/// The width of the column of totals, with the space before it, in pixels.
+/// Returns the width of the column of totals, with the space before it, in pixels.
 pub(super) fn last_column(rows: &[Row]) -> f64 {
     column(rows.iter().map(|row| &row.total))
 }
 
-/// The width of both columns of figures, in pixels.
+/// Returns the width of both columns of figures, in pixels.
 pub(super) fn columns(rows: &[Row]) -> f64 {
     last_column(rows) + column(rows.iter().map(|row| &row.times))
 }
@@ -63,7 +63,7 @@ fn column<'r>(texts: impl Iterator<Item = &'r String>) -> f64 {
     if letters == 0 { 0.0 } else { letters as f64 * f64::from(LETTERS) * LETTER + APART }
 }
 
-/// A law as long as there is room for, its numbers to a thousandth.
+/// Returns a law that is shortened to the available room, with numbers to a thousandth.
 pub(super) fn shortened(law: &str) -> String {
     let words = law.split(' ').map(|word| match (word.split_once('.'), word.parse::<f64>()) {
         (Some((_, decimals)), Ok(number)) if decimals.len() > 3 => format!("{}", libm::round(number * 1e3) / 1e3),

@@ -1,4 +1,4 @@
-//! The strip below a picture that moves: the running atom, and the time as a line in the colours of the atoms.
+//! The strip below a moving picture: the running atom, and the time as a line in the colours of the atoms.
 
 use mdle_runtime::Nanos;
 use svg::node::element::{Group, Path, Rectangle, TSpan, Text};
@@ -12,7 +12,7 @@ use super::shapes::{badge, line, polyline, tenths, text};
 use super::sizes::{LEFT, LETTERS, MARGIN};
 use crate::trail::Trail;
 
-/// Height of the part below the floor: the running atom, and the time.
+/// Height of the part below the floor, in pixels: the running atom and the time.
 pub(super) const STRIP: f64 = 84.0;
 /// Half the height of the line of time, in pixels.
 const HALF: f64 = 5.0;
@@ -21,7 +21,7 @@ const APART: f64 = 70.0;
 /// Half the height of the signs of the button, in pixels.
 const BUTTON: f64 = 9.0;
 
-/// The strip of a film.
+/// Returns the strip of a film.
 pub(super) fn strip(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     let (left, right) = (MARGIN + LEFT, layout.width() - MARGIN);
     let (above, middle) = (layout.height + 4.0, layout.height + 36.0);
@@ -51,7 +51,7 @@ pub(super) fn strip(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
         .add(button((left - 22.0, middle)))
 }
 
-/// The line of time, each pass in the colour of its atom.
+/// Draws the time line, with each pass in the colour of its atom.
 fn times(trail: &Trail, film: &Film<'_>, middle: f64, at: impl Fn(Nanos) -> f64) -> Group {
     let mut data = vec![String::new(); trail.ways.atoms.len()];
     for act in &film.acts {
@@ -67,7 +67,7 @@ fn times(trail: &Trail, film: &Film<'_>, middle: f64, at: impl Fn(Nanos) -> f64)
     })
 }
 
-/// Round times below the line.
+/// Draws round times below the line.
 fn ticks(film: &Film<'_>, below: f64, at: impl Fn(Nanos) -> f64) -> Group {
     let end = film.end().seconds();
     let step = round_step((end * APART / (at(film.end()) - at(Nanos::ZERO))).max(0.1));
@@ -81,7 +81,7 @@ fn ticks(film: &Film<'_>, below: f64, at: impl Fn(Nanos) -> f64) -> Group {
     })
 }
 
-/// Number and law of the running atom.
+/// Draws the number and the law of the running atom.
 fn running(trail: &Trail, film: &Film<'_>, (x, y): (f64, f64)) -> Group {
     trail.ways.atoms.iter().enumerate().fold(Group::new(), |group, (number, atom)| {
         let acts: Vec<&Act> = film.acts.iter().filter(|act| Film::atom(act, trail) == Some(number)).collect();
@@ -102,7 +102,7 @@ fn running(trail: &Trail, film: &Film<'_>, (x, y): (f64, f64)) -> Group {
     })
 }
 
-/// The length of the run and the speed at which it is shown; before that, a script writes the time.
+/// Returns the text of the length of the run and of the speed of the film; a script writes the time before it.
 fn speed(film: &Film<'_>, (x, y): (f64, f64)) -> Text {
     let end = format!("{:.1} s", film.end().seconds());
     let fast = match film.times {
@@ -112,7 +112,7 @@ fn speed(film: &Film<'_>, (x, y): (f64, f64)) -> Text {
     text("", (x, y), "end").add(TSpan::new("").set("class", "now")).add(TSpan::new(format!("{end}{fast}")))
 }
 
-/// Draws the sign that pauses and the sign that resumes; both are hidden where no script answers to them.
+/// Draws the signs for pause and resume; both are hidden if the viewer runs no script.
 fn button((x, y): (f64, f64)) -> Group {
     let area = Rectangle::new().set("x", x - 14.0).set("y", y - 14.0).set("width", 28).set("height", 28);
     let bars = format!("M{} {}v{}m{} 0v-{}", x - 4.0, y - BUTTON, 2.0 * BUTTON, 8.0, 2.0 * BUTTON);

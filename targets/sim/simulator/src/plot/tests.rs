@@ -1,4 +1,4 @@
-//! Pictures of runs of all sorts: well-formed, everything inside, the same bytes again, and small.
+//! Tests of pictures of various runs: well-formed, with everything inside, reproducible, and small.
 
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS};
 use svg::parser::Event;
@@ -34,7 +34,7 @@ fn run(turns: u64, an_atom_every: u64, law: &str) -> Trail {
     trail
 }
 
-/// Checks that a picture is a tree of elements; its tags, and all its text.
+/// Returns the tags and the text of a picture, after checking that it is a tree of elements.
 fn read(picture: &str) -> (Vec<String>, String) {
     let (mut open, mut tags, mut text) = (Vec::new(), Vec::new(), String::new());
     for event in svg::read(picture).unwrap() {
@@ -80,7 +80,7 @@ fn pictures_of_every_run_are_well_formed_and_say_what_ran() {
     }
 }
 
-/// A run of passes of three atoms, each of one turn in ten.
+/// Returns a run of passes of three atoms, each of one turn in ten.
 fn passes(passes: u64) -> Trail {
     let mut trail = run(0, 1, "");
     for turn in 0..30 * passes {
@@ -158,7 +158,7 @@ fn a_record_is_small_however_long_the_run() {
     }
 }
 
-/// The values of an attribute of all elements of this name.
+/// Returns the values of an attribute of all elements of this name.
 fn values(picture: &str, tag: &str, attribute: &str) -> Vec<String> {
     let elements = svg::read(picture).unwrap().filter_map(|event| {
         let Event::Tag(name, _, attributes) = event else { return None };
@@ -182,7 +182,7 @@ fn all_animations_repeat_together_and_their_times_are_in_order() {
     }
 }
 
-/// A door that opens, someone who walks, and one who never does; the walker has gone 2 m in the end.
+/// A world with a door that opens, a walker who has gone 2 m in the end, and a walker who never moves.
 const THINGS: &str = "[[door]]\npoints = [[0, 1], [1, 1]]\nopen = [[1, 2]]\n\
                       [[disc]]\nradius = 0.25\nschedule = [[0, 2, 0], [4, 4, 0]]\n\
                       [[box]]\nsize = [0.5, 0.5]\nschedule = [[0, -7, -3]]\n";

@@ -1,4 +1,5 @@
-//! Drawings of the moving objects of a world: doors dashed, the rest at its last place, with the way it goes.
+//! Drawings of the moving objects of a world: doors are dashed, other objects are at their last position, with
+//! their way.
 
 use svg::node::element::{Group, Path};
 
@@ -31,7 +32,7 @@ impl Sign {
         }
     }
 
-    /// The sign around height 0.
+    /// Draws the sign around height 0.
     pub(super) fn drawn(self, x: f64) -> Group {
         match self {
             Self::Door => Group::new().add(door([(x - 9.0, 0.0), (x + 9.0, 0.0)])),
@@ -58,7 +59,7 @@ pub(super) fn signs(layout: &Layout, world: &World) -> impl Iterator<Item = Sign
     [Sign::Door, Sign::Moves].into_iter().filter(move |sign| shown.contains(sign))
 }
 
-/// Draws everything that moves at its last place.
+/// Draws all moving objects at their last position.
 pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
     let things = world.things.iter().zip(&trail.things);
     things.fold(ways(layout, world), |group, (thing, gone)| match Sign::of(thing) {
@@ -67,7 +68,7 @@ pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
     })
 }
 
-/// Draws everything that moves, with its motion.
+/// Draws all moving objects, with their motion.
 pub(super) fn moving(layout: &Layout, world: &World, trail: &Trail, film: &Film<'_>) -> Group {
     let things = world.things.iter().zip(&trail.things).enumerate();
     things.fold(ways(layout, world), |group, (number, (thing, end))| {
@@ -98,7 +99,7 @@ fn pixels(layout: &Layout, thing: &Thing, gone: Place) -> impl Iterator<Item = P
     thing.corners(gone).map(|place| layout.at(place))
 }
 
-/// The ways of all that has one.
+/// Draws the ways of all objects that have one.
 fn ways(layout: &Layout, world: &World) -> Group {
     let moving = world.things.iter().filter(|thing| Sign::of(thing) == Sign::Moves);
     moving.fold(Group::new(), |group, thing| group.add(way(thing.way().map(|place| layout.at(place)))))
@@ -116,7 +117,7 @@ fn outline(pixels: impl IntoIterator<Item = Pixel>) -> Path {
     polyline(pixels).set("class", "ink solid").set("stroke-width", 1.5)
 }
 
-/// Values without those between two that are as they are.
+/// Returns the values without those whose two neighbours have the same value.
 fn bends<T>(values: impl Iterator<Item = (T, String)>) -> impl Iterator<Item = (T, String)> {
     let mut values = values.peekable();
     let mut last: Option<String> = None;

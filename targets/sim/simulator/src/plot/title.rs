@@ -7,12 +7,12 @@ use super::shapes::text;
 use super::sizes::{LEFT, LETTER, MARGIN};
 use crate::trail::About;
 
-/// The sizes of letters of the plan's name and of the lines below it.
+/// Sizes of the letters of the plan's name and of the lines below it, in pixels.
 const NAME: u32 = 18;
 const REST: u32 = 14;
 /// Maximum number of letters of the whole title, which a viewer shows as the picture's name.
 const WHOLE: usize = 400;
-/// Maximum number of lines that one text is broken into.
+/// Maximum number of lines into which a text is broken.
 const LINES: usize = 3;
 
 /// The lines of a title.
@@ -25,7 +25,7 @@ pub(super) struct Title {
 }
 
 impl Title {
-    /// The title of a run, in lines of at most this many pixels.
+    /// Returns the title of a run, in lines of at most this many pixels.
     pub(super) fn of(about: &About, width: f64) -> Self {
         let About { setup, plan, end } = about;
         let all = [(NAME, plan), (REST, end), (REST, setup)].map(|(size, text)| (size, Printable(text).to_string()));
@@ -39,7 +39,7 @@ impl Title {
         Self { lines: lines.collect(), whole: if whole.is_empty() { "A run".to_owned() } else { whole } }
     }
 
-    /// The height of all lines, with the space below them.
+    /// Returns the height of all lines, with the space below them.
     pub(super) fn height(&self) -> f64 {
         let lines = self.lines.iter().map(|(size, _)| height(*size)).sum::<f64>();
         if self.lines.is_empty() { 0.0 } else { lines + MARGIN / 2.0 }

@@ -1,5 +1,5 @@
-//! The picture of the trips of several robots: a floor for each robot with a line for each trip, as Fig. 12 of the
-//! paper.
+//! The picture of the trips of several robots: a floor for each robot with a line for each trip, as in Fig. 12
+//! of the paper.
 
 use mdle_runtime::Pose;
 use svg::Document;
@@ -14,24 +14,24 @@ use crate::place::Place;
 
 /// Width of a picture, in pixels.
 const WIDTH: f64 = 960.0;
-/// Width of the numbers at the left of a floor, and of the list of trips at its right.
+/// Width of the numbers at the left of a floor, and of the list of trips at its right, in pixels.
 const SIDES: (f64, f64) = (40.0, 230.0);
 /// Maximum height of a floor, in pixels.
 const HIGH: f64 = 420.0;
-/// Height of the numbers below a floor.
+/// Height of the numbers below a floor, in pixels.
 const BELOW: f64 = 34.0;
-/// Height of a line of text.
+/// Height of a line of text, in pixels.
 const LINE: f64 = 20.0;
 /// Maximum number of trips that are listed.
 const LISTED: usize = 16;
 /// Distance between two circles on the first trip, in pixels.
 const CIRCLES: f64 = 14.0;
-/// A shorter way is no trip, in metres.
+/// Minimum length of a trip, in metres; a shorter way is not listed.
 const SHORTEST: f64 = 0.2;
 /// Minimum distance between two numbers of an axis, in pixels.
 const APART: f64 = 50.0;
 
-/// The trips of several robots: ways that the laws `path` and `Follow` drove.
+/// The trips of several robots: the ways driven under the laws `path` and `Follow`.
 #[derive(Debug, Clone)]
 pub struct TripDrawing {
     title: String,
@@ -43,11 +43,12 @@ pub struct TripDrawing {
 struct RobotTrips {
     name: String,
     trips: Vec<Vec<Place>>,
-    /// `true` while such a law runs.
+    /// `true` while `path` or `Follow` runs.
     is_on_trip: bool,
 }
 
-/// Length of a way, in metres, and by how much it is longer than the distance of its ends, in percent.
+/// Returns the length of a way, in metres, and the percentage by which it is longer than the distance between
+/// its ends.
 fn figures(way: &[Place]) -> (f64, f64) {
     let apart = |one: &Place, other: &Place| libm::hypot(one.x - other.x, one.y - other.y);
     let length: f64 = way.windows(2).map(|pair| apart(&pair[0], &pair[1])).sum();
@@ -62,7 +63,8 @@ impl TripDrawing {
         Self { title: title.to_owned(), robots: Vec::new() }
     }
 
-    /// Records that the robot of this name is at `pose` while this law runs, which has just begun if `begins`.
+    /// Records that the robot of this name is at `pose` while this law runs; `begins` is `true` if the law has
+    /// just begun.
     pub fn went(&mut self, name: &str, pose: &Pose, law: &str, begins: bool) {
         let number = self.robots.iter().position(|robot| robot.name == name).unwrap_or_else(|| {
             self.robots.push(RobotTrips { name: name.to_owned(), trips: Vec::new(), is_on_trip: false });
@@ -120,7 +122,7 @@ impl Floor {
         Self { x, y, scale, height: ((y.1 - y.0) * scale).max(LINE * LISTED as f64 / 2.0) }
     }
 
-    /// The pixel of a place, on the floor whose upper edge is at `top`.
+    /// Returns the pixel of a place, on the floor whose upper edge is at `top`.
     fn at(&self, place: &Place, top: f64) -> Pixel {
         (MARGIN + SIDES.0 + (place.x - self.x.0) * self.scale, top + (self.y.1 - place.y) * self.scale)
     }
@@ -179,7 +181,7 @@ fn circles(pixels: &[Pixel]) -> Group {
     })
 }
 
-/// The line of a trip in the list.
+/// Returns the line of a trip in the list.
 fn listed(number: usize, trip: &[Place], (x, y): Pixel) -> Group {
     let (length, excess) = figures(trip);
     let words = format!("trip {}: {length:.2} m, {excess:.1} % longer", number + 1);

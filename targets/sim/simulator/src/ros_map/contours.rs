@@ -1,24 +1,24 @@
-//! Contours of the occupied pixels of a map, without the steps that pixels make of slanted lines.
+//! Contours of the occupied pixels of a map, without the pixel steps of slanted lines.
 
-/// Maximum distance, in pixels, between a line and the corners of pixels that it replaces. The steps of a slanted line
-/// lie up to 1 off it, and a little more where it begins at the wrong one.
+/// Maximum distance, in pixels, between a line and the pixel corners that it replaces. The steps of a slanted
+/// line deviate by up to 1, and by a little more where the line begins at an unfavourable corner.
 const TOLERANCE: f64 = 1.25;
-/// Maximum number of sides of pixels between occupied and free: 200 km of walls at 5 cm.
+/// Maximum number of pixel sides between occupied and free: 200 km of walls at 5 cm.
 const SIDES_MOST: usize = 4_000_000;
-/// Maximum number of corners that are smoothed together: the time for these grows with their square.
+/// Maximum number of corners that are smoothed together, since the time grows with the square of this number.
 const TOGETHER: usize = 1024;
 
-/// A corner of pixels: column and row of lines between them.
+/// A corner of pixels, by its column and row of grid lines.
 type Corner = (i32, i32);
 
-/// The steps from a corner, in the order in which one is taken where two lead on: that of the upper pixel first.
+/// The steps from a corner, in order of preference where two steps continue: first the step of the upper pixel.
 const STEPS: [Corner; 4] = [(0, -1), (1, 0), (0, 1), (-1, 0)];
 
 /// Returns closed lines around the occupied pixels, each ending where it began, in an order that depends only on the
 /// image.
 ///
 /// # Errors
-/// The image has more sides than `SIDES_MOST`.
+/// Fails if the image has more sides than `SIDES_MOST`.
 pub(super) fn contours(
     width: usize,
     height: usize,
@@ -46,12 +46,12 @@ pub(super) fn contours(
     Ok(loops)
 }
 
-/// The sides of pixels that are occupied on the left only, as steps from each corner.
+/// The pixel sides with an occupied pixel only on their left, as steps from each corner.
 struct Sides {
     /// Steps from each corner, as bits; column by column.
     steps: Vec<u8>,
     rows: usize,
-    /// The corners before this one have no steps left.
+    /// Corner before which no corner has steps left.
     next: usize,
 }
 
@@ -89,7 +89,7 @@ impl Sides {
         Ok(Self { steps, rows, next: 0 })
     }
 
-    /// The first corner that has steps left, by its column and then by its row.
+    /// Returns the first corner that has steps left, by its column and then by its row.
     fn first(&mut self) -> Option<Corner> {
         let ahead = self.steps.get(self.next..)?.iter().position(|steps| *steps != 0)?;
         self.next += ahead;
@@ -97,7 +97,8 @@ impl Sides {
         Some(((self.next / self.rows) as i32, (self.next % self.rows) as i32))
     }
 
-    /// Takes the step that goes on from `here`; where two pixels touch at a corner, the step that stays with its pixel.
+    /// Takes the step that continues from `here`; where two pixels touch at a corner, takes the step along the
+    /// same pixel.
     fn taken(&mut self, here: Corner, came: Corner) -> Option<Corner> {
         let steps = self.steps.get_mut(here.0 as usize * self.rows + here.1 as usize)?;
         let turns = |step: Corner| came.0 * step.1 - came.1 * step.0;
@@ -155,7 +156,7 @@ fn keep(line: &[Corner], from: usize, to: usize, kept: &mut [bool]) {
     }
 }
 
-/// The distance of a corner from the line between two others.
+/// Returns the distance of a corner from the line between two others.
 fn distance(from: Corner, to: Corner) -> impl Fn(Corner) -> f64 {
     let number = |value: i32| f64::from(value);
     let (dx, dy) = (number(to.0 - from.0), number(to.1 - from.1));

@@ -1,4 +1,4 @@
-//! The YAML file of a map: lines `key: value`, of which it has seven at most.
+//! The YAML file of a map: lines of the form `key: value`, with at most seven keys.
 
 use crate::world_error::WorldError;
 
@@ -10,7 +10,7 @@ const RESOLUTIONS: std::ops::RangeInclusive<f64> = 1e-4..=100.0;
 pub struct Header {
     /// The path of the image, from the folder of the file.
     pub image: String,
-    /// Metres for each pixel.
+    /// Size of a pixel, in metres.
     pub(crate) resolution: f64,
     /// Position of the lower left corner of the image, and its rotation, in metres and radians.
     pub(crate) x: f64,
@@ -33,7 +33,7 @@ impl Header {
     /// Reads the text of the file, which errors call `file`.
     ///
     /// # Errors
-    /// The text lacks an image or a resolution, or has a value that is no number or out of range.
+    /// Fails if the text lacks an image or a resolution, or has a value that is no number or out of range.
     pub fn parse(file: &str, text: &str) -> Result<Self, WorldError> {
         let missing = |what: &str| WorldError::new(file, None, what.to_owned());
         let image = value(text, "image").ok_or_else(|| missing("no `image`: expected as in `image: map.pgm`"))?;
@@ -75,13 +75,13 @@ impl Value<'_> {
     }
 }
 
-/// The value of a key, without quotes.
+/// Returns the value of a key, without quotes.
 fn value<'t>(text: &'t str, key: &str) -> Option<Value<'t>> {
     let (number, line) = line(text, key)?;
     Some(trimmed(number, line, key.len() + 1, line.get(key.len() + 1..)?))
 }
 
-/// The values of a key that has several: `[1, 2]`, or a line `- 1` for each.
+/// Returns the values of a key with several values: `[1, 2]`, or a line `- 1` for each.
 fn numbers<'t>(text: &'t str, key: &str) -> Vec<Value<'t>> {
     let Some((number, line)) = line(text, key) else { return Vec::new() };
     let Some(begins) = line.find('[') else {

@@ -1,4 +1,4 @@
-//! The image of a map: a portable grey map, in text (P2) or bytes (P5).
+//! The image of a map: a portable grey map in text form (P2) or binary form (P5).
 
 /// Maximum number of pixels: a floor of 500 m by 500 m at 5 cm.
 const PIXELS_MOST: usize = 100_000_000;
@@ -41,7 +41,8 @@ impl Image {
         Ok(Self { width, height, white, grey })
     }
 
-    /// Returns for each pixel `true` if it is darker than this part of black; brighter with `negate`.
+    /// Returns, for each pixel, `true` if it is darker than this fraction of black, or brighter if `negate` is
+    /// `true`.
     pub(super) fn darker(&self, than: f64, negate: bool) -> Vec<bool> {
         let is_dark = |grey: u16| {
             let bright = f64::from(grey) / f64::from(self.white);
@@ -79,7 +80,7 @@ impl<'b> Words<'b> {
         numbers.take(count).collect()
     }
 
-    /// Reads one byte a pixel, or two, the more significant first, after one space.
+    /// Reads one byte per pixel, or two bytes with the more significant first, after one white space.
     fn bytes(&mut self, count: usize, white: u16) -> Vec<u16> {
         let bytes = self.0.get(1..).unwrap_or_default();
         if white < 256 {

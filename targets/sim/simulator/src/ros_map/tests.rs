@@ -1,4 +1,4 @@
-//! Maps as mapping robots save them, and broken ones.
+//! Tests of maps as mapping robots save them, and of broken maps.
 
 use mdle_runtime::{Meters, Radians};
 

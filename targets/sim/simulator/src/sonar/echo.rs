@@ -1,12 +1,13 @@
-//! The echo of one ping: which of the rays of a sonar's cone come back loud enough, and which of these first.
+//! The echo of one ping: determines which rays of a sonar's cone return loud enough, and which of these returns
+//! first.
 //!
-//! A ray at angle α off the axis that meets a surface at angle β off its normal is heard when
-//! (α / lobe)² + (β / facing)² is at most what the distance leaves of 1. Near an edge sound goes everywhere, but little
-//! of it: there β counts as a fixed loss. A rough surface scatters too: of what β costs, the part `rough` of the
-//! surface is left out. A right-angled corner sends everything back where it came from.
+//! A ray at angle α off the axis that meets a surface at angle β off its normal is heard when (α / lobe)² + (β
+//! / facing)² is at most 1 minus the loss over the distance. Near an edge, a small part of the sound is
+//! scattered in all directions: there, β counts as a fixed loss. A rough surface scatters too: the loss due to
+//! β is reduced by the fraction `rough`. A right-angled corner reflects all sound back to its source.
 //!
-//! The rays of a cone lie so far apart that a person 4 m away may be between two of them. One more ray is therefore
-//! aimed at each moving object and each other robot, of which there are few.
+//! The rays of a cone lie so far apart that a person 4 m away may be between two rays. One additional ray is
+//! therefore aimed at each moving object and each other robot, of which there are few.
 
 use mdle_runtime::Radians;
 
@@ -16,26 +17,26 @@ use crate::place::Place;
 use crate::surfaces::{Surface, dot};
 use crate::walls::Walls;
 
-/// The rays of a cone, evenly spread.
+/// Number of rays of a cone, which are evenly spread.
 const RAYS: u8 = 7;
 /// Maximum distance from an edge, in metres, at which the edge scatters a ray.
 const SCATTERS: f64 = 0.08;
-/// Loss at an edge: an edge is heard up to 0.6 of the lobe, so 12.5° of 21°.
+/// Loss at an edge. An edge is heard up to 0.6 of the lobe, that is 12.5° of 21°.
 const EDGE_COSTS: f64 = 0.65;
 /// Distance, in metres, up to which the receiver's growing gain compensates the loss.
 const GAIN_LASTS: f64 = 2.0;
-/// Loss for each metre beyond: at 6.5 m a wall is heard up to 26° off its normal.
+/// Loss for each metre beyond that distance: at 6.5 m, a wall is heard up to 26° off its normal.
 const METRE_COSTS: f64 = 0.13;
-/// Maximum distance between the two bounces of a ray in a corner, for each metre of range, at which the sound comes
-/// back to the sonar: as for a ray that is one beside that into the corner itself.
+/// Maximum distance between the two bounces of a ray in a corner, per metre of range, at which the sound
+/// returns to the sonar, as for a ray beside the one into the corner itself.
 const CORNER: f64 = 0.35;
 /// Maximum angle, as a cosine, between the opposite direction and a ray that leaves a corner: 15°.
 const BACK: f64 = -0.966;
 /// Distance from a surface, in metres, at which a reflected ray begins, so that it does not meet the surface again.
 const OFF: f64 = 1e-6;
 
-/// The distance from a transducer to the nearest object heard in its cone, in metres. `fade` is how much better or
-/// worse than usual it hears.
+/// Returns the distance, in metres, from a transducer to the nearest object that it hears in its cone. `fade`
+/// is the amount by which it hears better or worse than usual.
 pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing, fade: f64) -> Option<f64> {
     let spread = (0..RAYS).map(|ray| hearing.half_cone.0 * (2.0 * f64::from(ray) / f64::from(RAYS - 1) - 1.0));
     let others = walls.others_in(from, axis, hearing.half_cone);
@@ -61,7 +62,8 @@ pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing,
     best
 }
 
-/// The range at which this surface is heard, if it is, by a ray of which so much is lost already.
+/// Returns the range at which this surface is heard by a ray with the loss `lost` so far; `None` if it is not
+/// heard.
 fn heard(walls: &Walls, from: Place, way: Place, surface: &Surface, hearing: &Hearing, lost: f64) -> Option<f64> {
     let left = 1.0 - METRE_COSTS * (surface.range - GAIN_LASTS).max(0.0) - lost;
     let Some(facing) = hearing.facing else { return (left >= 0.0).then_some(surface.range) };
@@ -77,7 +79,7 @@ fn heard(walls: &Walls, from: Place, way: Place, surface: &Surface, hearing: &He
     corner(walls, from, way, surface).filter(|range| *range < hearing.most)
 }
 
-/// The range of the corner in which this surface lies, if it sends the ray back.
+/// Returns the range of the corner in which this surface lies, if the corner reflects the ray back.
 fn corner(walls: &Walls, from: Place, way: Place, first: &Surface) -> Option<f64> {
     let on = reflected(way, first.normal);
     let bounce = Place {

@@ -10,7 +10,7 @@ fn walls(text: &str) -> Walls {
     Walls::of(&World::parse("walls", text).expect("good walls"))
 }
 
-/// A ring without errors that has pinged once, or in order, at the origin.
+/// Returns a ring without errors that has pinged at the origin, once or in its firing order.
 fn pinged(body: Body, without: &[Part], text: &str) -> Ring {
     let mut ring = Ring::new(Model::of(body, without).hearing, None);
     let walls = walls(text);
@@ -25,12 +25,13 @@ fn range(ring: &Ring, sonar: u8) -> Option<f64> {
     ring.pings[SonarId::new(sonar).number()].nearest(1).map(|range| range.0)
 }
 
-/// The range of an ideal sonar that looks ahead.
+/// Returns the range of an ideal sonar that looks ahead.
 fn ahead(text: &str) -> Option<f64> {
     range(&pinged(Body::Ideal, &[], text), 0)
 }
 
-/// A wall at this distance along the first axis, turned by this many degrees round the place there.
+/// Returns the text of a wall at this distance along the first axis, turned by this many degrees around that
+/// point.
 fn turned(distance: f64, degrees: f64) -> String {
     let (sin, cos) = libm::sincos(degrees.to_radians());
     let (x, y) = (9.0 * sin, 9.0 * cos);

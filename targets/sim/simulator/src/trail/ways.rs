@@ -1,4 +1,5 @@
-//! The way of a robot by the atoms that drove it: a bounded number of places, each pass of an atom apart.
+//! The way of a robot, divided by the atoms that drove it: a bounded number of places, separate for each pass
+//! of an atom.
 
 use std::collections::BTreeMap;
 
@@ -6,11 +7,11 @@ use mdle_runtime::Nanos;
 
 use crate::place::Place;
 
-/// Places nearer to the last than this, in metres, are not kept: less than a pixel.
+/// Distance, in metres, below which a place is not kept, as it is less than a pixel from the last place.
 const APART: f64 = 0.01;
-/// Maximum number of places of the way that are kept; above it every second one is removed.
+/// Maximum number of places of the way that are kept; above this number, every second place is removed.
 const PLACES_MOST: usize = 100_000;
-/// Maximum number of passes whose ways are kept apart, and of atoms that are counted.
+/// Maximum number of passes whose ways are kept separately, and of atoms that are counted.
 const MARKS_MOST: usize = 10_000;
 
 /// The way driven, and the atoms that drove it.
@@ -22,15 +23,15 @@ pub(crate) struct Ways {
     pub(crate) marks: Vec<Mark>,
     /// The atoms as written, in the order in which they first began.
     pub(crate) atoms: Vec<Atom>,
-    /// Number of times that an atom began which is not among `atoms`.
+    /// Number of beginnings of atoms that are not among `atoms`.
     pub(crate) uncounted: usize,
-    /// Positions of atoms by number and law: plans that replace each other may have the same numbers.
+    /// Positions of atoms by number and law, as plans that replace each other may have the same numbers.
     by_number: BTreeMap<(u64, String), usize>,
-    /// The atom that runs, and the time from which its total is to be counted on.
+    /// The running atom, and the time from which its total still has to be counted.
     running: Option<(usize, Nanos)>,
     /// Number of recorded places.
     count: usize,
-    /// Minimum distance between two places kept, in metres.
+    /// Minimum distance between two places that are kept, in metres.
     apart: f64,
 }
 
@@ -40,18 +41,18 @@ pub(crate) struct Atom {
     /// Number of the atom's state in the first pass of the enclosing loops.
     pub(crate) number: u64,
     pub(crate) law: String,
-    /// The place where it first began.
+    /// Place where the atom first began.
     pub(crate) place: Place,
-    /// Number of times that it began.
+    /// Number of times that the atom began.
     pub(crate) times: u64,
-    /// The time for which it ran in all.
+    /// Total time for which the atom ran.
     pub(crate) total: Nanos,
 }
 
-/// A pass of an atom, and the way driven in it.
+/// A pass of an atom, with the way driven in it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Mark {
-    /// Position of the atom in [`Ways::atoms`]; `None` for the rest of a run of too many passes.
+    /// Position of the atom in [`Ways::atoms`]; `None` for the remainder of a run with too many passes.
     pub(crate) atom: Option<usize>,
     pub(crate) t: Nanos,
     /// The way, from the place where the pass began.
@@ -59,7 +60,7 @@ pub(crate) struct Mark {
 }
 
 impl Ways {
-    /// A way that begins here.
+    /// Returns a way that begins here.
     pub(super) fn from(place: Place) -> Self {
         Self {
             before: vec![place],
@@ -86,7 +87,7 @@ impl Ways {
         }
     }
 
-    /// Adds the way that a robot of a fleet drove, until this time.
+    /// Includes the way that a robot of a fleet drove, until this time.
     pub(crate) fn drove(&mut self, number: u64, name: &str, way: &[Place], until: Nanos) {
         let Some(place) = way.first().copied() else { return };
         self.marks.push(Mark { atom: Some(self.atoms.len()), t: Nanos::ZERO, way: way.to_vec() });
@@ -98,7 +99,7 @@ impl Ways {
         self.marks.last_mut().map_or(&mut self.before, |mark| &mut mark.way)
     }
 
-    /// Leaves out every second place, but for those where an atom began or ended.
+    /// Removes every second place, except places where an atom began or ended.
     fn thin(&mut self) {
         self.apart *= 2.0;
         self.count = 0;
@@ -113,7 +114,7 @@ impl Ways {
         }
     }
 
-    /// An atom begins at this place.
+    /// Records that an atom begins at this place.
     pub(super) fn began(&mut self, number: u64, law: &str, t: Nanos, place: Place) {
         self.passed(t);
         let atom = self.atom(number, law, place);
@@ -136,7 +137,7 @@ impl Ways {
         self.marks.push(Mark { atom, t, way: vec![place] });
     }
 
-    /// The position of an atom in the list, which it enters if there is room for it.
+    /// Returns the position of an atom in the list, to which it is appended if there is room.
     fn atom(&mut self, number: u64, law: &str, place: Place) -> Option<usize> {
         let next = self.atoms.len();
         let key = (number, law.to_owned());
@@ -150,7 +151,7 @@ impl Ways {
         })
     }
 
-    /// Time has passed until `t`.
+    /// Records that time has passed until `t`.
     pub(crate) fn passed(&mut self, t: Nanos) {
         if let Some((atom, since)) = &mut self.running
             && let Some(atom) = self.atoms.get_mut(*atom)

@@ -14,7 +14,7 @@ fn uniform(random: &mut ChaCha8Rng) -> f64 {
     (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Walls scattered over 10 m × 10 m, boxes among them.
+/// Returns a world with walls scattered over 10 m × 10 m, some of which form boxes.
 fn scene(random: &mut ChaCha8Rng, walls: usize) -> World {
     let mut number = || 10.0 * uniform(random);
     let mut text = String::new();
@@ -29,14 +29,14 @@ fn scene(random: &mut ChaCha8Rng, walls: usize) -> World {
     World::parse("scene", &text).expect("a good scene")
 }
 
-/// A body without extent.
+/// Returns a body without extent.
 fn point(at: Place) -> Footprint {
     let pose = Pose { x: Meters(at.x), y: Meters(at.y), ..Pose::ORIGIN };
     Footprint { pose, form: Form::Disc { radius: 0.0 } }
 }
 
-/// Returns a random place in a scene or near it, and a random direction: every third runs along an axis, as most walls
-/// do.
+/// Returns a random place in or near a scene, and a random direction; every third direction is along an axis,
+/// as most walls are.
 fn look(random: &mut ChaCha8Rng) -> (Place, Radians) {
     let mut number = || uniform(random);
     let from = Place { x: 14.0 * number() - 2.0, y: 14.0 * number() - 2.0 };
@@ -117,7 +117,7 @@ fn edges_are_where_a_surface_ends_or_turns_away() {
     assert!((edge(1.0, 3.1, 180.0) - 2.9).abs() < 1e-9);
 }
 
-/// Parallel walls of 200 km, a millimetre from one to the next.
+/// Returns a world of parallel walls, 200 km long and a millimetre apart.
 fn bundle(count: usize) -> World {
     let outline = |number: usize| {
         let x = 5.0 + number as f64 / 1000.0;

@@ -11,11 +11,11 @@ use crate::moving::{Schedule, Stop, Thing};
 use crate::outline::Outline;
 use crate::place::Place;
 
-/// The furthest coordinate, in metres: beyond it millimetres would begin to blur.
+/// Maximum coordinate, in metres; beyond it, millimetres would be lost to rounding.
 const FURTHEST: f64 = 1e6;
-/// The corners of the polygon that a disc is taken for: at a radius of 1 m it is 2 mm off.
+/// Number of corners of the polygon that approximates a disc; at a radius of 1 m the error is 2 mm.
 const CORNERS: u32 = 48;
-/// The reach of a charger unless the file says otherwise, in metres.
+/// Default reach of a charger, in metres.
 const REACH: f64 = 0.1;
 /// Units of length, in metres.
 const UNITS: [(&str, f64); 5] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("in", 0.0254), ("ft", 0.3048)];
@@ -183,7 +183,7 @@ impl Unit {
         Ok(Thing { outline, schedule: Schedule::Open { times, every: every.map(|(_, value)| value) } })
     }
 
-    /// Returns the stops of a schedule; empty for a thing without one.
+    /// Returns the stops of a schedule; empty for an object without a schedule.
     fn schedule(self, written: Option<&Spanned<Vec<Numbers>>>) -> Result<Vec<Stop>, Wrong> {
         let Some(written) = written else { return Ok(Vec::new()) };
         if written.get_ref().is_empty() {
@@ -221,7 +221,7 @@ impl Unit {
     }
 }
 
-/// Returns the roughness that is written for the whole file or for one obstacle, or `whole` if none is written.
+/// Returns the roughness that is written for the whole file or for one obstacle; `whole` if none is written.
 pub(super) fn rough(written: Option<&Spanned<f64>>, whole: f64) -> Result<f64, Wrong> {
     let Some(written) = written else { return Ok(whole) };
     let value = *written.get_ref();

@@ -8,11 +8,11 @@ use super::outlines::Unit;
 use super::text::{SoundText, Table};
 use crate::place::Place;
 
-/// Level of a source unless the file says otherwise, in dB.
+/// Default level of a source, in dB.
 const LEVEL: f64 = 10.0;
 /// Least and greatest level, in dB.
 const LEVELS: (f64, f64) = (-40.0, 80.0);
-/// Greatest number of sources: each costs a convolution in each turn.
+/// Maximum number of sources, since each costs a convolution in each turn.
 const MOST: usize = 8;
 /// Kinds of sound.
 const KINDS: [(&str, SoundKind); 2] = [("white", SoundKind::White), ("speech", SoundKind::Speech)];

@@ -1,4 +1,4 @@
-//! A world file as it is written.
+//! A world file as written.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -8,7 +8,7 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
-/// Numbers in a row: a place, a size, a time and a place.
+/// A list of numbers: a place, a size, or a time with a place.
 pub(super) type Numbers = Spanned<Vec<Spanned<f64>>>;
 
 /// Content of a world file.
@@ -111,7 +111,7 @@ pub(super) struct DoorText {
     pub(super) every: Option<Spanned<f64>>,
 }
 
-/// A table and nothing else: serde would take an array for one too, and let its last values go unread.
+/// A value that must be a table: serde would also accept an array, and ignore its last values.
 #[derive(Default)]
 pub(super) struct Table<T>(pub(super) T);
 
