@@ -1,4 +1,4 @@
-//! The lab tour on the simulated robot without mdlec, with a robot that can be told to break down.
+//! The lab tour on the simulated robot without mdlec, with a robot that breaks down if an option asks for it.
 //!
 //! `cargo run -p mdle-sim --example tour -- --watch --speed 10`. The tests of this package run it as a program.
 
@@ -19,7 +19,7 @@ fn main() -> ExitCode {
     run::<Fragile, _>("LabTour", plan::Tour::new)
 }
 
-/// The simulated robot as a target, with one more option.
+/// The simulated robot as a target, with an additional option.
 struct Fragile;
 
 /// A robot, and the number of exchanges before it breaks down.
@@ -31,7 +31,7 @@ struct Breaking {
 /// Runs of the tour on the simulator.
 const SIM: Option<Observation<Observed>> = Sim::OBSERVATION;
 
-/// The runs of the simulator, each with a robot that may break down.
+/// Returns the runs of the simulator, each with a robot that may break down.
 fn batch(matches: &ArgMatches, period: Duration) -> SeveralRuns<Breaking> {
     let batch = SIM.map_or(Ok(None), |sim| (sim.batch)(matches, period))?;
     let left = matches.get_one("panic-at").copied();

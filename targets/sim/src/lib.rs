@@ -1,7 +1,8 @@
 //! The simulated robot as a target: a differential drive with bumper, odometry and sixteen sonars in a flat world.
 //!
-//! For generated code: [`Target`], which the host runs a plan on, and [`alphabet`], the quarks this robot has.
-//! For tests and tools: [`Observed`], and what `mdle-simulator` has: [`World`], [`Simulated`], [`Make`] and [`Sensed`].
+//! For generated code: [`Target`], on which the host runs a plan, and [`alphabet`], the quarks of this robot.
+//! For tests and tools: [`Observed`], and the items of `mdle-simulator`: [`World`], [`Simulated`], [`Make`] and
+//! [`Sensed`].
 #![forbid(unsafe_code)]
 
 mod observed;
@@ -16,5 +17,5 @@ pub use mdle_simulator::{
 };
 pub use observed::Observed;
 pub use target::Sim;
-/// The target that the host runs a plan on.
+/// The target on which the host runs a plan.
 pub use target::Sim as Target;

@@ -9,7 +9,7 @@ use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, PathStore, Pose, Robot, Sensed, Twist};
 use mdle_simulator::{Charger, Drawing, Fault, Goal, RobotEars, Simulated, World};
 
-/// A simulated robot and the observers of its run; it drives as it would unobserved.
+/// A simulated robot with the observers of its run, which do not change how it drives.
 pub struct Observed {
     robot: Simulated,
     goal: Option<Goal>,
@@ -18,7 +18,7 @@ pub struct Observed {
     pictures: Option<Pictures>,
     table: Option<Table>,
     watch: Option<Watch>,
-    /// World whose sound can be heard, and the seed of the sound.
+    /// Sounds of the world, and the random seed of the sounds.
     sounds: Option<Sounds>,
     ears: Option<(RobotEars, Microphones)>,
 }
@@ -56,7 +56,7 @@ impl Table {
 }
 
 impl From<Simulated> for Observed {
-    /// A robot whose run is neither drawn nor recorded.
+    /// Returns a robot whose run is neither drawn nor recorded.
     fn from(robot: Simulated) -> Self {
         Self {
             robot,
@@ -102,7 +102,7 @@ impl Observed {
         self.robot.supply(charge, charger);
     }
 
-    /// Lets the robot hear these sounds, once it has ears.
+    /// Sets the sounds that the robot hears, once it has ears.
     pub(crate) fn among(self, sounds: Sounds) -> Self {
         Self { sounds: Some(sounds), ..self }
     }
@@ -110,7 +110,7 @@ impl Observed {
     /// Gives the robot ears on a head of this radius, in metres.
     ///
     /// # Errors
-    /// The world has no source of sound: a sentence.
+    /// Fails with a sentence if the world has no source of sound.
     pub(crate) fn take_ears(&mut self, microphones: Microphones, radius: f64) -> Result<(), String> {
         let ears = self.sounds.as_ref().and_then(|Sounds { world, seed }| RobotEars::new(world, radius, *seed));
         let silent = "--ears robot: the world has no source of sound\n\
@@ -124,7 +124,7 @@ impl Observed {
         self.robot.paths = paths;
     }
 
-    /// Lets `goal` judge the end of the run.
+    /// Sets the goal that judges the end of the run.
     pub(crate) fn judged_by(self, goal: Option<Goal>) -> Self {
         Self { goal, ..self }
     }
@@ -144,7 +144,7 @@ impl Observed {
         self
     }
 
-    /// Shows the run on `watch` as it goes.
+    /// Shows the run on `watch` while it runs.
     pub(crate) fn watched(self, watch: Option<Watch>) -> Self {
         Self { watch, ..self }
     }

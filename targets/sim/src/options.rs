@@ -112,18 +112,18 @@ fn of_runs(command: Command) -> Command {
         )
 }
 
-/// The options that show or record a single run.
+/// Options that show or record a single run.
 const ONE_RUN: [&str; 4] = ["watch", "plot", "record", "trail"];
 
-/// The options of several runs that are left out of the command that repeats one of them.
+/// Options of several runs that are omitted from the command that repeats one of them.
 const OF_SEVERAL: [&str; 5] = ["runs", "jobs", "json", "seed", "speed"];
 
-/// A long option with a value.
+/// Returns a long option with a value.
 fn option(name: &'static str, value: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value)
 }
 
-/// The speed at which time passes.
+/// Returns the speed at which time passes.
 pub(crate) fn time(matches: &ArgMatches) -> Result<Time, String> {
     let text = matches.get_one::<String>("speed").map_or("real", String::as_str);
     pace(text)
@@ -139,7 +139,8 @@ fn pace(text: &str) -> Option<Pace> {
     }
 }
 
-/// The world of `--world`, or the office floor. A file goes before a world of ours with that name.
+/// Returns the world of `--world`, or the office floor by default. A file has priority over a built-in world of
+/// the same name.
 pub(crate) fn world(matches: &ArgMatches) -> Result<World, String> {
     let Some(path) = matches.get_one::<PathBuf>("world") else {
         return World::office().map_err(|error| error.to_string());
@@ -161,7 +162,7 @@ pub(crate) fn goal(matches: &ArgMatches, world: &World) -> Result<Option<Goal>, 
     Goal::read(text).map(Some).map_err(|sentence| format!("--goal {text}: {sentence}"))
 }
 
-/// The name of the world of `--world`, without the folders of a file.
+/// Returns the name of the world of `--world`, without the folders of a file.
 pub(crate) fn world_name(matches: &ArgMatches) -> String {
     let name = file(matches, "world").map(|path| path.file_name().unwrap_or(path.as_os_str()));
     name.map_or_else(|| "office".to_owned(), |name| name.display().to_string())
@@ -187,14 +188,14 @@ fn bytes(path: &Path) -> Result<Vec<u8>, String> {
     read_file(path, LARGEST).map_err(|error| format!("--world {}: the file cannot be read: {error}", path.display()))
 }
 
-/// The pose of `--start`, as text and read.
+/// Returns the pose of `--start`, as text and parsed.
 pub(crate) fn start(matches: &ArgMatches) -> Result<Option<(&str, Start)>, String> {
     let Some(text) = matches.get_one::<String>("start") else { return Ok(None) };
     let start = text.parse().map_err(|error| format!("--start {text}: {error}"))?;
     Ok(Some((text, start)))
 }
 
-/// The simulated body, as `--body`, `--without` and `--seed` give it.
+/// Returns the simulated body, as `--body`, `--without` and `--seed` give it.
 pub(crate) fn make(matches: &ArgMatches) -> Result<Make, String> {
     let name = matches.get_one::<String>("body").map_or("ideal", String::as_str);
     let body = [Body::Ideal, Body::Scout, Body::Atrv].into_iter().find(|body| body.to_string() == name);
@@ -211,23 +212,23 @@ pub(crate) fn make(matches: &ArgMatches) -> Result<Make, String> {
     Ok(Make { body, without: without.collect::<Result<_, _>>()?, seed: matches.get_one("seed").copied() })
 }
 
-/// The charge of `--battery`, from 0 to 1.
+/// Returns the charge of `--battery`, from 0 to 1.
 pub(crate) fn battery(matches: &ArgMatches) -> f64 {
     matches.get_one("battery").map_or(1.0, |percent: &u64| *percent as f64 / 100.0)
 }
 
-/// The start noise of `--start-noise`.
+/// Returns the start noise of `--start-noise`.
 pub(crate) fn start_noise(matches: &ArgMatches) -> Result<Option<StartNoise>, String> {
     let Some(text) = matches.get_one::<String>("start-noise") else { return Ok(None) };
     StartNoise::read(text).map(Some).map_err(|sentence| format!("--start-noise {text}: {sentence}"))
 }
 
-/// The number of `--runs`.
+/// Returns the number of `--runs`.
 pub(crate) fn runs(matches: &ArgMatches) -> Option<NonZeroU64> {
     matches.get_one("runs").copied().and_then(NonZeroU64::new)
 }
 
-/// The number of `--jobs`.
+/// Returns the number of `--jobs`.
 pub(crate) fn jobs(matches: &ArgMatches) -> Option<NonZeroUsize> {
     let jobs: u64 = matches.get_one("jobs").copied()?;
     usize::try_from(jobs).ok().and_then(NonZeroUsize::new)
@@ -243,7 +244,7 @@ pub(crate) fn agree(matches: &ArgMatches) -> Result<(), String> {
     }
 }
 
-/// The options given that any one of several runs is made with, as words.
+/// Returns the given options that apply to each one of several runs, as words.
 pub(crate) fn given(matches: &ArgMatches) -> Vec<String> {
     let names = matches.ids().map(|id| id.as_str()).filter(|name| !OF_SEVERAL.contains(name));
     let given = names.filter(|name| matches.value_source(name) == Some(ValueSource::CommandLine));
@@ -260,12 +261,12 @@ pub(crate) fn given(matches: &ArgMatches) -> Vec<String> {
     words.collect()
 }
 
-/// The path of `--plot`, `--record` or `--trail`.
+/// Returns the path of `--plot`, `--record` or `--trail`.
 pub(crate) fn file<'m>(matches: &'m ArgMatches, option: &str) -> Option<&'m Path> {
     matches.get_one::<PathBuf>(option).map(PathBuf::as_path)
 }
 
-/// The files that the options of the simulator name.
+/// Returns the files that the options of the simulator name.
 pub(crate) fn files(matches: &ArgMatches) -> Vec<NamedFile> {
     let world = file(matches, "world");
     world.map(|path| NamedFile { option: "--world", path: path.to_owned(), is_written: false }).into_iter().collect()

@@ -1,5 +1,5 @@
-//! The setup of a run, from options that are read and checked before anything moves: one run, or several that differ by
-//! a seed.
+//! The setup of a run, from options that are read and checked before anything moves: a single run, or several
+//! runs with different seeds.
 
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -28,7 +28,7 @@ struct Setup {
     period: Duration,
 }
 
-/// The robot that the options describe; everything that can be refused is refused here, before anything moves.
+/// Returns the robot that the options describe. All errors are found at this point, before anything moves.
 pub(crate) fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, String> {
     let setup = Setup::of(matches, period)?;
     let robot = setup.robot(setup.make.seed)?;
@@ -38,7 +38,7 @@ pub(crate) fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, 
     Ok(robot.drawn((file("plot")?, file("record")?), &setup.world, setup.in_words(&options::world_name(matches))))
 }
 
-/// The runs that the options ask for, if they ask for several.
+/// Returns the runs that the options request; `None` if they do not request several.
 pub(crate) fn batch(matches: &ArgMatches, period: Duration) -> Result<Option<Batch<Observed>>, String> {
     let Some(runs) = options::runs(matches) else { return Ok(None) };
     options::agree(matches)?;
@@ -82,7 +82,7 @@ impl Setup {
         Ok(Self { world, walls, make, start, noise, goal, charge, period })
     }
 
-    /// World, body and seed, as a title names them.
+    /// Returns a description of the world, the body and the seed for titles.
     fn in_words(&self, world: &str) -> String {
         let Make { body, without, seed } = &self.make;
         let names =
@@ -93,7 +93,7 @@ impl Setup {
         format!("world {world}, body {body}{without}, {seed}")
     }
 
-    /// The robot whose errors and start are drawn by this seed.
+    /// Returns the robot whose errors and start pose are drawn with this seed.
     fn robot(&self, seed: Option<u64>) -> Result<Observed, String> {
         let make = Make { seed, ..self.make.clone() };
         let start = match (self.noise, seed) {
@@ -108,7 +108,7 @@ impl Setup {
     }
 }
 
-/// Returns the text that can be typed instead.
+/// Returns a text to type instead.
 fn hint(start: &Pose) -> String {
     // Degrees that were read from a file come back with a last digit of their own.
     let degrees = libm::round(start.theta.degrees() * 1e6) / 1e6;

@@ -12,18 +12,18 @@ use mdle_sim::{Body, Make, Simulated, World};
 /// A path that was driven, in metres by odometry and seconds.
 #[derive(Debug)]
 struct Driven {
-    /// Ahead, and to the left.
+    /// Distance ahead, in metres; `left` is the distance to the left.
     ahead: f64,
     aside: f64,
-    /// Maximum distance on the intended side.
+    /// Maximum distance on the intended side, in metres.
     furthest: f64,
-    /// Number of changes between ahead and back.
+    /// Number of changes between forward and backward.
     hunts: u32,
     seconds: f64,
 }
 
-/// Runs `advance` on a body without anything around it, in turns of this many milliseconds; two seconds more in which
-/// the robot is to stand still.
+/// Runs `advance` on a body in an empty world, with turns of this many milliseconds, and for two more seconds
+/// in which the robot should stand still.
 fn driven(distance: f64, speed: f64, make: &Make, period: u64) -> Driven {
     let world = World::parse("an empty floor", "").expect("a good world");
     let mut robot = Simulated::with(make, &world, Pose::ORIGIN, Duration::from_millis(period)).expect("a start");
@@ -49,7 +49,7 @@ fn driven(distance: f64, speed: f64, make: &Make, period: u64) -> Driven {
     way
 }
 
-/// Every body, with its errors and without.
+/// Returns all bodies, with and without their errors.
 fn bodies() -> Vec<Make> {
     let of = |body| [None, Some(1), Some(7), Some(42)].map(|seed| Make { body, seed, ..Make::default() });
     [Body::Ideal, Body::Scout, Body::Atrv].into_iter().flat_map(of).collect()

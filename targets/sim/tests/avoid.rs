@@ -1,4 +1,4 @@
-//! `goAvoid` on the simulated body: round boxes and through doorways, without contact.
+//! Tests of `goAvoid` on the simulated body: around boxes and through doorways, without contact.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use mdle_runtime::{
@@ -36,7 +36,7 @@ fn reaches(world: &World, y: f64) -> bool {
     false
 }
 
-/// A hallway of this width along the first axis, with more walls in it.
+/// Returns a hallway of this width along the first axis, with more walls in it.
 fn hallway(width: f64, more: &str) -> String {
     let half = width / 2.0;
     format!("[[wall]]\npoints = [[-1, {half}], [8, {half}]]\n[[wall]]\npoints = [[-1, -{half}], [8, -{half}]]\n{more}")

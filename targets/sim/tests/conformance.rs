@@ -1,5 +1,5 @@
-//! The simulated robot conforms: the ideal body, and the bodies of both robots with exact sensors. With a fault in its
-//! driver it does not, and the report names the fault.
+//! Tests that the simulated robot conforms: the ideal body, and the bodies of both robots with exact sensors.
+//! With a fault in its driver it does not, and the report names the fault.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::time::Duration;
@@ -9,7 +9,7 @@ use mdle_host::Target as _;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, PathStore, Ping, Pings, Pose, Radians, Robot};
 use mdle_sim::{Body, Charger, Input, Make, Observed, Output, Simulated, Target, World, alphabet};
 
-/// A body in a world that the suite makes up.
+/// A body in a world that the suite creates.
 struct InWorld(Make);
 
 impl Stage for InWorld {
@@ -132,7 +132,7 @@ impl Stage for Fault {
     }
 }
 
-/// The pings of every sonar anew, newest first, as a driver might keep them.
+/// Returns the pings of every sonar after `change`, newest first, as a driver might keep them.
 fn repinged(y: &mut Output, change: impl Fn(usize, &Ping) -> Ping) {
     for pings in &mut y.pings {
         let kept: Vec<Ping> = pings.newest_first().enumerate().map(|(place, ping)| change(place, ping)).collect();

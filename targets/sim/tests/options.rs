@@ -1,4 +1,4 @@
-//! The options of the target: what they mean, and how a bad one is refused before anything moves.
+//! Tests of the target's options: their meaning, and the refusal of wrong options before anything moves.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -15,7 +15,7 @@ fn matches(options: &[&str]) -> ArgMatches {
         .expect("known options")
 }
 
-/// The sentence with which these options are refused.
+/// Returns the sentence with which these options are refused.
 fn refused(options: &[&str]) -> String {
     match Sim::connect(&matches(options), Sim::PERIOD, &StopRequest::default()) {
         Ok(_) => panic!("{options:?} were accepted"),
@@ -24,7 +24,7 @@ fn refused(options: &[&str]) -> String {
     }
 }
 
-/// A folder of this test's own, empty.
+/// Returns an empty folder for this test.
 fn folder(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = fs::remove_dir_all(&folder);

@@ -44,13 +44,13 @@ where
     Turned { by, furthest, seconds: f64::INFINITY }
 }
 
-/// Every body, with its errors and without.
+/// Returns all bodies, with and without their errors.
 fn bodies() -> Vec<Make> {
     let of = |body| [None, Some(7)].map(|seed| Make { body, seed, ..Make::default() });
     [Body::Ideal, Body::Scout, Body::Atrv].into_iter().flat_map(of).collect()
 }
 
-/// Checks that this turn by `angle` degrees ends within its 2 degrees, without ever being further past them.
+/// Checks that this turn by `angle` degrees ends within its 2 degrees, and never overshoots by more.
 fn ends_well(turned: &Turned, angle: f64, what: &str) {
     assert!((turned.by - angle).abs() <= 2.0, "{what}: {turned:?}");
     assert!(turned.furthest <= angle.abs() + 2.0, "{what}: {turned:?}");

@@ -1,4 +1,5 @@
-//! The paper's tour from lab 2 over lab 1 to the office, on the floor made for it (paper, section V, Fig. 10).
+//! Tests of the paper's tour from lab 2 through lab 1 to the office, on the floor made for it (paper, section
+//! V, Fig. 10).
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "a test fails by panicking, and tells how many arrived")]
 
 mod plan;
@@ -16,7 +17,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 const PERIOD: Duration = Duration::from_millis(100);
-/// Given up after this many turns: ten minutes.
+/// Number of turns after which a run is given up: ten minutes.
 const TURNS: u64 = 6000;
 
 /// An atom that ended.
@@ -48,7 +49,7 @@ impl Watch for Watched {
     }
 }
 
-/// Runs the tour; how each atom ended.
+/// Runs the tour; returns the end of each atom.
 fn run(robot: &mut Observed) -> Vec<End> {
     let mut input = Twist::default();
     let mut machine = None;
@@ -86,7 +87,7 @@ fn tour(start: Pose, seed: Option<u64>) -> Vec<End> {
     run(&mut Simulated::new(&world, start, seed, PERIOD).expect("a start on the floor").into())
 }
 
-/// The robot that an executable with these options drives.
+/// Returns the robot that an executable with these options drives.
 fn connected(options: &[&str]) -> Observed {
     let matches = Sim::arguments(view_options(Command::new("tour").no_binary_name(true))).get_matches_from(options);
     Sim::connect(&matches, PERIOD, &StopRequest::default()).expect("good options")
@@ -101,15 +102,15 @@ fn table(ends: &[End]) -> String {
     })
 }
 
-/// The zone in which the judge wants the robot when an atom ends.
+/// The zone in which the robot should be when an atom ends.
 struct Zone {
     x: [f64; 2],
     y: [f64; 2],
-    /// A heading and how far it may be off, in degrees.
+    /// A heading and its tolerance, in degrees.
     heading: Option<[f64; 2]>,
 }
 
-/// The zone of an atom; none for those that are not judged.
+/// Returns the zone of an atom; none for those that are not judged.
 fn zone(atom: u64) -> Option<Zone> {
     let (a_b, b_c) = (([-0.9, 0.9], [4.0, 5.5]), ([6.7, 8.3], [3.9, 5.6]));
     let (lab_1, corner) = (([6.7, 8.3], [-0.2, 0.8]), ([6.7, 8.3], [-0.9, 0.25]));
@@ -147,7 +148,7 @@ fn faults(ends: &[End]) -> Vec<String> {
     faults
 }
 
-/// A start off the ideal one by up to 10 cm and 5 degrees.
+/// Returns a start pose up to 10 cm and 5 degrees off the ideal one.
 fn off(seed: u64) -> Pose {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut within = |most: f64| most * ((random.next_u64() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0);

@@ -1,4 +1,4 @@
-//! The lab tour by hand, as `mdlec` would emit it: `Tour { Lab2ToLab1Plan FRAME 180deg Lab1ToOfficePlan }`.
+//! The handwritten lab tour, as `mdlec` would emit it: `Tour { Lab2ToLab1Plan FRAME 180deg Lab1ToOfficePlan }`.
 
 use mdle_runtime::fsm::{Atom, Bracket, Kind};
 use mdle_runtime::{
@@ -14,7 +14,7 @@ enum Until {
     Null,
 }
 
-/// An atom's law, angles in degrees, speeds in cm/s.
+/// An atom's law; angles are in degrees and speeds in cm/s.
 enum Does {
     GoAvoid(f64),
     Go,
@@ -41,7 +41,7 @@ const ATOMS: [(Until, Does); 13] = [
 /// The first atom of the second plan, whose frame is turned.
 const SECOND: u32 = 8;
 
-/// The law that runs.
+/// The running law.
 #[allow(clippy::large_enum_variant, reason = "one runs at a time, and goAvoid remembers what it heard")]
 enum Running {
     GoAvoid(<GoAvoid as Control<Output>>::Law),
@@ -50,7 +50,7 @@ enum Running {
     Rotate(<Rotate as Control<Output>>::Law),
 }
 
-/// The tour.
+/// The plan of the tour.
 pub(crate) struct Tour {
     brackets: Vec<Bracket>,
     atoms: Vec<Atom>,

@@ -1,4 +1,5 @@
-//! `goAvoid` where the way is narrow: doorways, boxes in hallways, corners, rooms, and somebody who walks across.
+//! Tests of `goAvoid` in narrow places: doorways, boxes in hallways, corners, rooms, and a person who walks
+//! across.
 //!
 //! Each test tries a few seeds. `MDLE_LONG=10 cargo test --release -p mdle-sim --test obstacles -- --nocapture` tries
 //! ten times as many and prints how they end; `MDLE_FIRST` is the first seed.
@@ -14,7 +15,7 @@ use mdle_sim::{Body, Make};
 use room::{Outcome, drive};
 use worlds::Crossing;
 
-/// A whole number in the environment.
+/// Returns a whole number in the environment.
 fn number(name: &str, usual: u64) -> u64 {
     std::env::var(name).map_or(usual, |text| text.parse().expect("a whole number"))
 }

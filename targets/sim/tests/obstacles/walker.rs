@@ -14,11 +14,12 @@ use crate::number;
 use crate::worlds::{Crossing, hall};
 
 const PERIOD: Duration = Duration::from_millis(100);
-/// Given up after this many turns: three minutes.
+/// Number of turns after which a run is given up: three minutes.
 const TURNS: u64 = 1800;
-/// A robot that stands is watched for this many turns after the moment of the contact: the walker has passed.
+/// Number of turns after the moment of the contact for which a robot at rest is watched; by then the walker has
+/// passed.
 const PASSED: u64 = 50;
-/// Where the walker begins, and his radius, in metres: those of the world.
+/// Start and radius of the walker, in metres, as in the world.
 const WALKER: (Place, f64) = (Place { x: 8.0, y: 1.0 }, 0.25);
 
 /// Returns `true` if the robot touches the walker, as the bumper says that it touches something.

@@ -11,7 +11,8 @@ pub(crate) struct Crossing {
     pub(crate) to: Place,
 }
 
-/// The width of a body, in metres, that ways are measured by: a Scout's diameter, the shorter side of an ATRV-mini.
+/// Returns the width, in metres, on which the width of ways is based: a Scout's diameter, or the shorter side
+/// of an ATRV-mini.
 pub(crate) fn width(body: Body) -> f64 {
     match body {
         Body::Ideal | Body::Scout => 0.41,
@@ -19,7 +20,7 @@ pub(crate) fn width(body: Body) -> f64 {
     }
 }
 
-/// A world of these outlines with a start near the origin, and a place `far` metres ahead.
+/// Returns a world of these outlines with a start near the origin, and a place `far` metres ahead.
 fn ahead(seed: u64, far: f64, outlines: &str) -> Crossing {
     let mut chance = Chance::new(seed);
     let (y, heading) = (chance.within(0.05), chance.within(5.0));
@@ -27,13 +28,13 @@ fn ahead(seed: u64, far: f64, outlines: &str) -> Crossing {
     Crossing { world: World::parse("a test's world", &text).expect("a good world"), to: Place { x: far, y } }
 }
 
-/// A hallway of this width along the first axis, closed at its ends.
+/// Returns a hallway of this width along the first axis, closed at its ends.
 fn hallway(width: f64) -> String {
     let half = width / 2.0;
     format!("[[wall]]\npoints = [[-1, {half}], [9, {half}], [9, -{half}], [-1, -{half}], [-1, {half}]]\n")
 }
 
-/// A doorway 15 cm wider than the body, up to 30 cm off the way, across a hallway.
+/// Returns a doorway 15 cm wider than the body, up to 30 cm off the way, across a hallway.
 pub(crate) fn doorway(body: Body, seed: u64) -> Crossing {
     let off = Chance::new(seed ^ 0xd00).within(0.3);
     let half = (width(body) + 0.15) / 2.0;
@@ -42,7 +43,7 @@ pub(crate) fn doorway(body: Body, seed: u64) -> Crossing {
     ahead(seed, 6.0, &[hallway(wide), jambs].concat())
 }
 
-/// A box in the middle of a hallway, with a gap of the body and 25 cm on both sides.
+/// Returns a box in the middle of a hallway, with a gap of the body and 25 cm on both sides.
 pub(crate) fn middle(body: Body, seed: u64) -> Crossing {
     let side = 0.3 + 0.2 * Chance::new(seed ^ 0xb0c).unit();
     let wide = side + 2.0 * (width(body) + 0.25);
@@ -50,7 +51,7 @@ pub(crate) fn middle(body: Body, seed: u64) -> Crossing {
     ahead(seed, 6.0, &[hallway(wide), block].concat())
 }
 
-/// A U across the way, open towards the start, up to 1.5 m deep.
+/// Returns a U across the way, open towards the start, up to 1.5 m deep.
 pub(crate) fn corner(body: Body, seed: u64) -> Crossing {
     let mut chance = Chance::new(seed ^ 0xc0);
     let (depth, half) = (0.5 + chance.unit(), width(body) / 2.0 + 0.5 + 0.4 * chance.unit());
@@ -60,7 +61,7 @@ pub(crate) fn corner(body: Body, seed: u64) -> Crossing {
     ahead(seed, 7.0, &[around, &pocket].concat())
 }
 
-/// The world `room`, and a point 7 m from the start along its heading.
+/// Returns the world `room`, and a point 7 m from the start along its heading.
 pub(crate) fn room(_: Body, seed: u64) -> Crossing {
     let mut world = World::named("room").expect("a world").expect("a good world");
     let mut chance = Chance::new(seed);
@@ -70,7 +71,7 @@ pub(crate) fn room(_: Body, seed: u64) -> Crossing {
     Crossing { world, to }
 }
 
-/// The world `hall`: from the start to the other end, past the walker.
+/// Returns the world `hall`: from the start to the other end, past the walker.
 pub(crate) fn hall(_: Body, seed: u64) -> Crossing {
     let mut world = World::named("hall").expect("a world").expect("a good world");
     let mut chance = Chance::new(seed);
@@ -79,13 +80,13 @@ pub(crate) fn hall(_: Body, seed: u64) -> Crossing {
     Crossing { to: Place { x: 14.5, y: world.start.y.0 }, world }
 }
 
-/// A random room whose gaps are 15 cm wider than the body.
+/// Returns a random room whose gaps are 15 cm wider than the body.
 pub(crate) fn random(body: Body, seed: u64) -> Crossing {
     let world = crate::room::room(seed, width(body) + 0.15);
     Crossing { world, to: Place { x: 7.0, y: 7.0 } }
 }
 
-/// The first passages of `maze`, from the start to its first corner.
+/// Returns the first passages of `maze`, from the start to its first corner.
 pub(crate) fn maze(_: Body, seed: u64) -> Crossing {
     let mut world = World::named("maze").expect("a world").expect("a good world");
     let mut chance = Chance::new(seed);

@@ -7,14 +7,14 @@ mod room;
 use mdle_sim::{Body, Make, Place, World};
 use room::{Outcome, drive, room};
 
-/// The least gap of a room: the body and 40 cm.
+/// Minimum gap of a room: the width of the body and 40 cm.
 const GAP: f64 = 0.81;
 
 fn ideal() -> Make {
     Make::default()
 }
 
-/// A Scout with all its errors.
+/// Returns a Scout with all its errors.
 fn scout(seed: u64) -> Make {
     Make { body: Body::Scout, seed: Some(seed), ..Make::default() }
 }

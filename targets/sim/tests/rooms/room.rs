@@ -14,7 +14,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 /// The side of a room, in metres.
 const SIDE: f64 = 8.0;
-/// Given up after this many turns: five minutes.
+/// Number of turns after which a run is given up: five minutes.
 const TURNS: u64 = 3000;
 
 /// The outcome of a run.
@@ -28,8 +28,8 @@ pub(crate) enum Outcome {
     TimedOut,
 }
 
-/// A room with a dozen boxes and discs between the start, lower left, and the upper right corner, at least `gap` metres
-/// apart from each other and from the walls.
+/// Returns a room with a dozen boxes and discs between the start, lower left, and the upper right corner, at
+/// least `gap` metres apart from each other and from the walls.
 pub(crate) fn room(seed: u64, gap: f64) -> World {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut uniform =
@@ -65,7 +65,7 @@ pub(crate) fn room(seed: u64, gap: f64) -> World {
     World::parse("a random room", &text).expect("a good room")
 }
 
-/// Drives to a place, given from the start, in `world`.
+/// Drives to a place, relative to the start, in `world`.
 pub(crate) fn drive(make: &Make, world: &World, to: Place) -> Outcome {
     let period = Duration::from_millis(100);
     let mut robot = Simulated::with(make, world, world.start, period).expect("a start on the floor");

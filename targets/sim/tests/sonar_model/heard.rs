@@ -6,11 +6,11 @@ use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Pose, Radians, Robot, SonarId, Twist};
 use mdle_sim::{Body, Make, Simulated, World};
 
-/// A ring of sixteen takes this long, in milliseconds.
+/// Duration of a ring of sixteen sonars, in milliseconds.
 const RING: u64 = 960;
 /// Distance of the transducer from the centre of the body, in metres.
 const TRANSDUCER: f64 = 0.19;
-/// Number of pings after which a new robot is made, and so another temperature of the air.
+/// Number of pings after which a new robot is created, and so another air temperature.
 const ONE_RUN: usize = 20;
 
 /// A long wall across the first axis at `{x}`.
@@ -28,7 +28,7 @@ pub(crate) struct Heard {
 }
 
 impl Heard {
-    /// The share of pings that were heard within 15 cm of where something is.
+    /// Returns the fraction of pings that were heard within 15 cm of the object.
     pub(crate) fn share(&self) -> f64 {
         let true_ones = self.errors.iter().filter(|error| error.abs() < 0.15).count();
         true_ones as f64 / (self.errors.len() + self.silent) as f64

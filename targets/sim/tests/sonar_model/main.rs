@@ -8,7 +8,7 @@ use std::path::Path;
 
 use heard::{COLUMN, Heard, WALL, heard};
 
-/// Number of pings for a share.
+/// Number of pings for a fraction.
 const PINGS: usize = 100;
 /// Number of pings for a histogram.
 const MANY: usize = 2000;

@@ -1,4 +1,5 @@
-//! The picture: the share of pings at which a wall and a column are heard, by their angle, and the errors of ranges.
+//! The picture: the fraction of pings at which a wall and a column are heard, by their angle, and the errors of
+//! ranges.
 
 use svg::Document;
 use svg::node::element::{Group, Line, Path, Rectangle, Text, Title};
@@ -18,10 +19,10 @@ const WIDTH: f64 = 360.0;
 const HEIGHT: f64 = 220.0;
 const TOP: f64 = 40.0;
 const LEFT: [f64; 2] = [60.0, 500.0];
-/// Degrees across the first chart, and between two of its places.
+/// Width of the first chart, in degrees.
 const DEGREES: f64 = 60.0;
 const EACH: usize = 3;
-/// Errors in the second chart: this many centimetres to either side, a bar for each.
+/// Largest error in the second chart, in centimetres to either side, with a bar for each centimetre.
 const CENTIMETRES: i32 = 8;
 
 pub(crate) fn svg() -> String {

@@ -1,4 +1,4 @@
-//! Output in a real pseudo-terminal: the live view, the line of progress, and that nothing of them stays.
+//! Tests of output in a real pseudo-terminal: the live view and the progress line, of which nothing remains.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod pseudo;
@@ -11,7 +11,7 @@ use rustix::process::Signal;
 const ENTER: &str = "\x1b[?1049h\x1b[?25l";
 const LEAVE: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
 
-/// The example `tour`, which `cargo test` builds before it runs this.
+/// Returns the command of the example `tour`, which `cargo test` builds before it runs this test.
 fn tour(options: &[&str]) -> Command {
     let mut path = std::env::current_exe().unwrap();
     path.pop();

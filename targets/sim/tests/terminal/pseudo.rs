@@ -10,7 +10,7 @@ use rustix::process::{Pid, Signal, kill_process};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{LocalModes, Winsize, tcgetattr, tcsetwinsize};
 
-/// A program and the terminal that it runs in.
+/// A program, with the terminal in which it runs.
 pub(crate) struct Terminal {
     child: Child,
     controller: File,
@@ -19,8 +19,8 @@ pub(crate) struct Terminal {
     pub(crate) seen: String,
 }
 
-/// Gives SIGHUP its default effect in the programs that this one starts, also under `nohup`, which has it ignored by
-/// all of them: a signal that is caught has it again in another program.
+/// Restores the default effect of SIGHUP in the programs that this one starts. Under `nohup` all of them would
+/// ignore the signal; a signal that is caught has its default effect in another program.
 fn catch_hang_up() {
     static CAUGHT: Once = Once::new();
     CAUGHT.call_once(|| {
@@ -52,14 +52,14 @@ impl Terminal {
         Self { child, controller, modes, seen: String::new() }
     }
 
-    /// Reads until this text has been written; it must be before the program ends.
+    /// Reads until this text has been written, which must happen before the program ends.
     pub(crate) fn wait_for(&mut self, text: &str) {
         while !self.seen.contains(text) {
             assert!(self.read(), "{text:?} never came: {:?}", self.seen);
         }
     }
 
-    /// Sends Ctrl-C's signal.
+    /// Sends the signal of Ctrl-C.
     pub(crate) fn interrupt(&self) {
         self.send(Signal::INT);
     }
@@ -88,12 +88,12 @@ impl Terminal {
         (self.seen, status)
     }
 
-    /// Returns `true` if keys are echoed, as they were at first.
+    /// Returns `true` if keys are echoed, as at the start.
     pub(crate) fn echoes(&self) -> bool {
         tcgetattr(&self.controller).unwrap().local_modes.contains(self.modes & (LocalModes::ECHO | LocalModes::ICANON))
     }
 
-    /// Reads some more; not when the program has ended and its terminal is closed.
+    /// Reads more output; returns `false` when the program has ended and its terminal is closed.
     fn read(&mut self) -> bool {
         let mut bytes = [0; 4096];
         match self.controller.read(&mut bytes) {
