@@ -1,22 +1,23 @@
-//! `advance D v`: drives straight ahead, or back, by a length of way; ours, next to the paper's `goAvoid` (section
-//! IV-A).
+//! `advance D v`: drives straight ahead, or back, by a length of path; a law of this project, beside the
+//! paper's `goAvoid` (section IV-A).
 
 use mdle_runtime::capability::{DiffDrive, Odometry};
 use mdle_runtime::{Begin, Completes, Control, Law, Meters, MetersPerSecond, Nanos, Pose, Radians, Twist};
 
 use crate::heading::turning;
 
-/// The speed, in m/s, for each metre that is left: a body at full speed begins to brake so that it never goes too far.
+/// Speed, in m/s, per metre that is left: a body at full speed begins to brake early enough not to overshoot.
 const GAIN: f64 = 1.0;
-/// The part of what is left that is driven at most until the law is asked again: an input acts a turn later, so that
-/// with more the robot would go to and fro.
+/// Maximum fraction of the remaining distance to drive before the law runs again. An input takes effect a turn
+/// later, so with a larger fraction the robot would oscillate.
 const AT_ONCE: f64 = 0.25;
-/// The distance, in metres, within which the robot has arrived; of a way shorter than twice that, half the way.
+/// Distance, in metres, within which the robot has arrived; half the distance if the whole distance is shorter
+/// than twice this.
 const NEAR: f64 = 0.01;
-/// The speed, in m/s, below which the robot is at rest.
+/// Speed, in m/s, below which the robot counts as at rest.
 const AT_REST: f64 = 0.02;
 
-/// `u_f = k(D − way so far)`, at most `v`, and `u_θ = k(θ_0 − θ)`.
+/// The control `advance`: `u_f = k(D − way so far)`, at most `v`, and `u_θ = k(θ_0 − θ)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Advance {
     distance: Meters,
@@ -24,15 +25,16 @@ pub struct Advance {
 }
 
 impl Advance {
-    /// The quark `advance distance speed`: along the heading at which the atom begins, backwards if the distance is
-    /// negative.
+    /// Returns the quark `advance distance speed`, which drives along the heading at which the atom begins,
+    /// backwards if the distance is negative.
     #[must_use]
     pub const fn new(distance: Meters, speed: MetersPerSecond) -> Self {
         Self { distance, speed }
     }
 }
 
-/// The law of [`Advance`]: done within 1 cm of its distance along the heading at which it began, and at rest.
+/// The law of [`Advance`], which is done within 1 cm of its distance along the heading at which it began, and
+/// at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Advancing {
     quark: Advance,
@@ -43,7 +45,8 @@ pub struct Advancing {
 }
 
 impl Advancing {
-    /// Returns the metres left along the heading at which the atom began; negative if the robot is to go back.
+    /// Returns the remaining distance, in metres, along the heading at which the atom began; negative if the
+    /// robot has to go back.
     fn left<Y: Odometry>(&self, y: &Y) -> f64 {
         let here = y.pose();
         let (sin, cos) = libm::sincos(self.from.theta.0);

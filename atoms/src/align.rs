@@ -10,20 +10,20 @@ use mdle_runtime::{Begin, Completes, Control, Law, Nanos, Ping, Radians, Radians
 
 use crate::gains::{Gains, fire_in_turn};
 
-/// Minimum turn rate, in rad/s: a lower one does not move the wheels.
+/// Minimum turn rate, in rad/s; a lower rate does not move the wheels.
 const SLOWEST: f64 = 0.08;
-/// Differences of opposite sign that lie no further apart than this, in metres, have equal ranges between them; further
-/// apart, one of the sonars looks past an edge, or has strayed.
+/// Maximum distance, in metres, between two differences of opposite sign with equal ranges between them. If
+/// they are further apart, one of the sonars points past an edge, or has measured a wrong range.
 const CONTINUOUS: f64 = 0.1;
-/// Number of changes of the difference's sign without equal ranges after which no heading with equal ranges is
+/// Number of sign changes of the difference without equal ranges, after which no heading with equal ranges is
 /// expected.
 const CHANGES: u8 = 5;
-/// A full circle at the slowest turn, in seconds: by then every heading has been tried.
+/// Duration of a full circle at the slowest turn, in seconds, after which every heading has been tried.
 const LONGEST: f64 = TAU / SLOWEST;
-/// Largest distance from the final heading at which the robot is brought to rest.
+/// Maximum angle to the final heading at which the robot is brought to rest.
 const NEAR: Radians = Radians::from_degrees(1.0);
 
-/// `u_θ = k(r_i − r_j)`, `u_f = 0`.
+/// The control `align`: `u_θ = k(r_i − r_j)`, `u_f = 0`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Align {
     first: SonarId,
@@ -31,23 +31,23 @@ pub struct Align {
 }
 
 impl Align {
-    /// The quark `align first second`.
+    /// Returns the quark `align first second`.
     #[must_use]
     pub const fn new(first: SonarId, second: SonarId) -> Self {
         Self { first, second }
     }
 }
 
-/// The law of [`Align`]: done when the ranges are equal, and where every turn brings a ping, when it stands at that
-/// heading.
+/// The law of [`Align`], which is done when the ranges are equal and, if every turn brings a ping, the robot is
+/// at rest at that heading.
 ///
-/// Beside a jamb, a corner or a door no heading may have equal ranges: one side of it the first range is longer, the
-/// other side the second one. Then the law is done at the heading at which the ranges differed least, and the
-/// difference that is left is that of the signals `r` of the two sonars.
+/// Beside a jamb, a corner or a door, there may be no heading with equal ranges: on one side of it the first
+/// range is longer, on the other side the second range. The law is then done at the heading at which the ranges
+/// differed least; the remaining difference is that of the signals `r` of the two sonars.
 ///
-/// A sonar that misses an echo now and then is waited for. While one sonar hears nothing for longer, the robot looks
-/// for the wall, once round at most. If it has heard none by the time of a slow full circle, it is done where it
-/// stands.
+/// The law waits for a sonar that occasionally misses an echo. If a sonar hears nothing for longer, the robot
+/// searches for the wall, at most once around. If it has heard no wall after the time of a slow full circle,
+/// the law is done at the current heading.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aligning {
     sonars: Align,
@@ -67,8 +67,8 @@ pub struct Aligning {
 struct Sample {
     /// Range of the first sonar minus that of the second, in metres.
     difference: f64,
-    /// Mean of the headings at which the sonars pinged: where the ranges change evenly, they have this difference at
-    /// this heading.
+    /// Mean of the headings at which the sonars pinged. Where the ranges change evenly, the difference belongs
+    /// to this heading.
     heading: Radians,
 }
 
@@ -81,7 +81,7 @@ struct End {
 }
 
 impl Aligning {
-    /// Returns the sample of the newest echoes, confirmed as in `atIsection`; `None` if either sonar hears nothing.
+    /// Returns the sample of the newest echoes, confirmed as in `atIsection`; `None` if a sonar hears nothing.
     fn sample<Y: SonarRing>(&self, y: &Y) -> Option<Sample> {
         let Align { first, second } = self.sonars;
         let ((first, near), (second, far)) = (nearest(y, first)?, nearest(y, second)?);
@@ -89,15 +89,15 @@ impl Aligning {
         Some(Sample { difference: near - far, heading: between(from, to, 0.5) })
     }
 
-    /// The range that both sonars heard, if their ranges are equal.
+    /// Returns the sample if the ranges of both sonars are equal; `None` otherwise.
     fn equal<Y: DiffDrive + SonarRing>(&self, y: &Y) -> Option<Sample> {
         self.sample(y).filter(|sample| sample.difference.abs() <= Gains::of(y).align_equal)
     }
 
-    /// Takes a measurement in, which ends the law at equal ranges that it has passed.
+    /// Includes a measurement, which ends the law at equal ranges that the robot has passed.
     ///
-    /// Pings that come in turn are of headings that lie degrees apart, and err by an inch: there a change of sign alone
-    /// has no equal ranges in it.
+    /// Pings of sonars that fire in turn belong to headings that are degrees apart, and err by an inch, so a
+    /// change of sign alone does not mean equal ranges.
     fn take(&mut self, sample: Sample, in_turn: bool) {
         let Some(last) = self.last.replace(sample).filter(|last| *last != sample) else {
             self.best = self.best.or(Some(sample));
@@ -142,27 +142,27 @@ impl Aligning {
         self.sense() * bounded(rate, Gains::of(y).align_fastest)
     }
 
-    /// 1 when the second sonar lies counter-clockwise of the first, as in all of the paper's plans; else -1, since the
-    /// paper's formula would then turn away from equal ranges.
+    /// Returns 1 if the second sonar is counter-clockwise of the first, as in all plans of the paper; otherwise
+    /// -1, since the paper's formula would then turn away from equal ranges.
     fn sense(&self) -> f64 {
         let way = (SONARS + self.sonars.second.number() - self.sonars.first.number()) % SONARS;
         if way <= SONARS / 2 { 1.0 } else { -1.0 }
     }
 }
 
-/// The ping of least range among those that confirm each other, and its range in metres.
+/// Returns the ping with the smallest range among those that confirm each other, and its range in metres.
 fn nearest<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<(&Ping, f64)> {
     let pings = y.pings(sonar).newest_first().take(y.confirmation());
     let heard = pings.filter_map(|ping| ping.range.map(|range| (ping, range.0)));
     heard.reduce(|one, other| if other.1 < one.1 { other } else { one })
 }
 
-/// The heading this part of the shorter way from one to another.
+/// Returns the heading at the fraction `part` of the shorter way from one heading to another.
 fn between(from: Radians, to: Radians, part: f64) -> Radians {
     Radians(from.0 + part * Radians(to.0 - from.0).wrapped().0)
 }
 
-/// A turn rate that gets the wheels moving, and is not too fast; nothing stays nothing.
+/// Returns a turn rate that is high enough to move the wheels and at most `fastest`; 0 stays 0.
 fn bounded(rate: f64, fastest: f64) -> f64 {
     if rate == 0.0 { 0.0 } else { rate.abs().clamp(SLOWEST, fastest) * rate.signum() }
 }

@@ -1,31 +1,31 @@
-//! Detects a person who approaches the robot: the echoes ahead get nearer faster than the robot drives.
+//! Detects a person who approaches the robot, because the echoes ahead get nearer faster than the robot drives.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
 
-/// A sonar listens for somebody if its axis is no further off the way ahead than this.
+/// Maximum angle between a sonar's axis and the driving direction at which the sonar is used to detect people.
 const AHEAD: Radians = Radians::from_degrees(14.0);
-/// Minimum time between two echoes that are compared: the difference of their ranges then exceeds their errors.
+/// Minimum time between two compared echoes, at which the difference of their ranges exceeds their errors.
 const APART: Nanos = Nanos(200_000_000);
 /// Minimum speed of a person who approaches, in m/s; the robot avoids anything slower as a fixed obstacle.
 const SLOWEST: f64 = 0.3;
 /// Maximum speed of a person, in m/s; faster echoes belong to two different objects.
 const FASTEST: f64 = 2.0;
-/// Minimum decrease, in metres, of the range of an object that approaches; less may be the error of a fixed
-/// obstacle's ranges, which is 1.5 cm and a step of an inch.
+/// Minimum decrease, in metres, of the range of an approaching object; a smaller decrease may be the error of a
+/// fixed obstacle's ranges, which is 1.5 cm and a step of an inch.
 const NEARER: f64 = 0.1;
 
 /// Number of echoes kept.
 const KEPT: usize = 5;
-/// Minimum number of echoes in a row that come nearer.
+/// Minimum number of consecutive echoes that get nearer.
 const AGREE: usize = 3;
-/// Minimum time for which they do where sonars fire in turn, whose wide cones hear rough walls beside the way, now one
-/// and now the other: three such ranges are in order by chance.
+/// Minimum time for which echoes get nearer, for sonars that fire in turn. Their wide cones hear different
+/// rough walls beside the way alternately, and three such ranges may be in descending order by chance.
 const LASTS: Nanos = Nanos(1_400_000_000);
-/// Maximum lateral distance, in metres, between two echoes of one object.
+/// Maximum lateral distance, in metres, between two echoes of the same object.
 const ACROSS: f64 = 0.25;
 
-/// Maximum turn rate of the robot, in rad/s, between echoes that are compared: a wall that the edge of a cone just
+/// Maximum turn rate of the robot, in rad/s, between compared echoes: a wall that the edge of a cone just
 /// touches appears and disappears as the robot turns.
 const TURNS: f64 = 0.02;
 
@@ -53,7 +53,7 @@ pub(crate) struct Approach {
 }
 
 impl Approach {
-    /// Takes in what the sonar that looks that way hears.
+    /// Includes the newest ping of the sonar that faces in the direction `way`.
     pub(crate) fn take<Y: SonarRing>(&mut self, y: &Y, here: Pose, way: Radians) {
         let Some(sonar) = looking(here, way) else { return };
         let Some(ping) = y.pings(sonar).newest_first().next() else { return };
@@ -71,8 +71,8 @@ impl Approach {
         self.heard[0] = Some(Echo { at: ping.at, place });
     }
 
-    /// Returns the seconds from the newest echo until a person who approaches reaches the robot; `None` if nobody
-    /// approaches.
+    /// Returns the time, in seconds, from the newest echo until an approaching person reaches the robot; `None`
+    /// if nobody approaches.
     ///
     /// Fixed obstacles stay at the same place.
     pub(crate) fn seconds(&self, here: Pose, way: Radians, in_turn: bool) -> Option<f64> {
@@ -98,7 +98,7 @@ impl Approach {
     }
 }
 
-/// The sonar that looks in this direction, given in the odometry's axes.
+/// Returns the sonar that faces in this direction, given in the odometry's axes; `None` if there is none.
 fn looking(here: Pose, way: Radians) -> Option<SonarId> {
     let off = |sonar: SonarId| Radians(here.theta.0 + sonar.bearing().0 - way.0).wrapped().0.abs();
     let sonars = (0..SONARS as u8).map(SonarId::new).map(|sonar| (sonar, off(sonar)));

@@ -1,32 +1,32 @@
-//! Detects that a robot whose sonars fire in turn is askew to the walls: a wall faces it between the front, the left,
-//! the back and the right.
+//! Detects that a robot whose sonars fire in turn is askew to the walls, because a wall faces it between the
+//! front, the left, the back and the right.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, Ping, Radians, SONARS, SonarId};
 
 use crate::directions::{CONE, DIRECTIONS, after, newest, off, towards};
 
-/// Multiple of the range below which a direction is blocked; up to it a wall faces a diagonal.
+/// Multiple of the range below which a direction is blocked, up to which a wall counts as facing a diagonal.
 const ALSO_FACES: f64 = 1.5;
-/// Ranges that differ by less, in metres, are alike.
+/// Difference, in metres, below which ranges count as equal.
 const ALIKE: f64 = 0.06;
-/// Minimum angle between a diagonal and the axis of a ping that tells a wall there from an edge.
+/// Minimum angle between a diagonal and the axis of a ping that distinguishes a wall there from an edge.
 const BESIDE: Radians = Radians::from_degrees(16.0);
-/// Greatest distance, in metres, of an echo beyond the line of a wall that faces a diagonal. Beside the edge of a way
-/// the walls that run off from there are heard further away, where they are rough.
+/// Maximum distance, in metres, of an echo beyond the line of a wall that faces a diagonal. Beside the edge of
+/// a way, rough walls that run away from the edge are heard further away.
 const OF_LINE: f64 = 0.04;
 
 /// Angles, in degrees, from one of the four directions to a smooth wall to which the robot is askew.
 const SMOOTH_AT: [f64; 7] = [26.0, 31.0, 38.0, 45.0, 52.0, 59.0, 64.0];
-/// Angle from the normal of a smooth wall within which it is heard.
+/// Angle from the normal of a smooth wall up to which the wall is heard.
 const WIDTH: Radians = Radians::from_degrees(31.0);
-/// Angle from the normal of a wall within which its range is its distance.
+/// Angle from the normal of a wall up to which the range equals the distance of the wall.
 const MIDDLE: Radians = Radians::from_degrees(14.0);
-/// Angles from the normal of a smooth wall between which it is not heard.
+/// Angles from the normal of a smooth wall between which the wall is not heard.
 const BEYOND: [Radians; 2] = [Radians::from_degrees(44.0), Radians::from_degrees(66.0)];
-/// Age from which a ping no longer counts for a smooth wall.
+/// Age from which a ping is no longer considered for a smooth wall.
 const LATELY: Nanos = Nanos(2_200_000_000);
-/// One ping for this many that hear the wall may have missed it or strayed.
+/// Number of pings that hear the wall per ping that may have missed it or measured a wrong range.
 const FEW: usize = 3;
 
 /// Returns `true` if a wall faces between two of the four directions.
@@ -42,8 +42,9 @@ fn after_by(direction: SonarId, degrees: f64) -> Radians {
     Radians(direction.bearing().0 + Radians::from_degrees(degrees).0)
 }
 
-/// Returns `true` if a wall faces the diagonal that comes counter-clockwise after `direction`: something near is heard
-/// there and to both sides, nothing nearer than there, and no edge. An edge is heard in one direction or two.
+/// Returns `true` if a wall faces the diagonal counter-clockwise after `direction`: a near object is heard
+/// there and on both sides, nothing nearer than there, and no edge. An edge is heard in only one or two
+/// directions.
 fn faces_between<Y: SonarRing>(y: &Y, direction: SonarId) -> bool {
     let near = |further: usize| towards(y, after(direction, further)).filter(|range| is_near(y, *range));
     let (Some(before), Some(diagonal), Some(behind)) = (near(1), near(2), near(3)) else { return false };
@@ -56,8 +57,8 @@ fn is_near<Y: SonarRing>(y: &Y, range: Meters) -> bool {
     range.0 < ALSO_FACES * y.blocked_within().0
 }
 
-/// Returns `true` if the two newest pings in the direction of `beside` heard only what is further away than a straight
-/// wall that faces `diagonal` at this range.
+/// Returns `true` if the two newest pings in the direction of `beside` heard only objects further away than a
+/// straight wall that faces `diagonal` at this range.
 fn runs_off<Y: SonarRing>(y: &Y, diagonal: SonarId, range: Meters, beside: SonarId) -> bool {
     let ring = y.ring_radius().0;
     let angle = |sonar: SonarId, ping: &Ping| off(y, diagonal, sonar, ping).0.abs();
@@ -73,7 +74,7 @@ fn runs_off<Y: SonarRing>(y: &Y, diagonal: SonarId, range: Meters, beside: Sonar
 struct Look {
     /// Angle of the ping's axis from the normal.
     off: Radians,
-    /// Distance, in metres, by which the robot was nearer to the wall then.
+    /// Distance, in metres, by which the robot was nearer to the wall at that time.
     nearer: f64,
     range: Option<Meters>,
 }
@@ -130,7 +131,8 @@ mod tests {
     use super::*;
     use crate::trial::Sensed;
 
-    /// A robot whose sonars fire in turn, with these ranges heard twice by the sonars from the front on.
+    /// Returns the output of a robot whose sonars fire in turn, with these ranges heard twice by each sonar,
+    /// from the front sonar on.
     fn in_turn(ranges: [f64; 16]) -> Sensed {
         let mut y = Sensed { confirmation: 2, ..Sensed::default() };
         for _ in 0..2 {
@@ -167,8 +169,8 @@ mod tests {
         assert!(!faces_between(&y, SonarId::new(8)), "an edge");
     }
 
-    /// A robot that has turned by 16 degrees, and before and after heard a smooth wall 1.1 m off, at this bearing in
-    /// degrees now, within `width` degrees of its normal.
+    /// Returns the output of a robot that has turned by 16 degrees, and that heard, before and after, a smooth
+    /// wall 1.1 m away at this bearing, in degrees now, within `width` degrees of its normal.
     fn beside_a_smooth_wall(bearing: f64, width: f64) -> Sensed {
         let mut y = Sensed { confirmation: 2, ..Sensed::default() };
         for turned in [-16.0, -8.0, 0.0] {

@@ -1,4 +1,5 @@
-//! `atIsection b`: fires where the ways front, left, back and right are as the bits say (paper, section IV-A).
+//! `atIsection b`: fires when the directions front, left, back and right are as the bits describe (paper,
+//! section IV-A).
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Bits, Interrupt, SonarId};
@@ -7,18 +8,19 @@ use crate::askew::is_askew;
 use crate::directions::{DIRECTIONS, towards};
 use crate::gains::fire_in_turn;
 
-/// Fires while all four directions are as the bits say: 1 where an obstacle is near, 0 where the way is free.
+/// The interrupt `atIsection`, which fires while all four directions match the bits: 1 for a near obstacle, 0
+/// for a free direction.
 ///
-/// Where sonars fire in turn, as on robots, it also needs walls to lie in the four directions and not between them: a
-/// wall is heard only by those sonars that it faces, and a robot that is turned between two directions hears nothing
-/// where a way seems free.
+/// On a robot whose sonars fire in turn, as on real robots, walls must also lie in the four directions and not
+/// between them: a wall is heard only by the sonars that it faces, so a robot that is turned between two
+/// directions hears nothing, and a blocked direction seems free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AtIsection {
     pattern: Bits<4>,
 }
 
 impl AtIsection {
-    /// The quark `atIsection pattern`, with the bits front, left, back, right.
+    /// Returns the quark `atIsection pattern`, with the bits front, left, back, right.
     #[must_use]
     pub const fn new(pattern: Bits<4>) -> Self {
         Self { pattern }
@@ -39,17 +41,18 @@ impl<Y: SonarRing> Interrupt<Y> for AtIsection {
 
 /// Returns `Some(true)` if an obstacle is near in the direction of this one sonar; `None` before its first ping.
 ///
-/// The smallest of the last pings decides, so "blocked" is believed at once and "free" only when they agree: a missed
-/// echo opens no way. Only the sonar in that direction counts: its neighbours see the walls along a corridor.
+/// The smallest of the last ranges decides, so "blocked" counts at once and "free" only if all pings agree: a
+/// missed echo does not free a direction. Only the sonar in that direction is considered, since its neighbours
+/// hear the walls along a corridor.
 fn blocked<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
     let pings = y.pings(sonar);
     pings.newest_first().next()?;
     Some(pings.nearest(y.confirmation()).is_some_and(|range| range < y.blocked_within()))
 }
 
-/// Returns `Some(true)` if an obstacle is near in the direction of `sonar`, on a robot whose sonars fire in turn. The
-/// pings of any sonar that looked in that direction of the room count: while the robot turns, the last pings of one
-/// sonar were in other directions.
+/// Returns `Some(true)` if an obstacle is near in the direction of `sonar`, on a robot whose sonars fire in
+/// turn. The pings of any sonar that faced in that direction of the room count, since a turning robot's last
+/// pings of one sonar were in other directions.
 fn blocked_in_turn<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
     let near = towards(y, sonar)?;
     Some(near < y.blocked_within())
@@ -66,7 +69,7 @@ mod tests {
     const NEAR: Option<f64> = Some(1.14);
     const FAR: Option<f64> = Some(1.15);
 
-    /// An output with these pings, oldest first, of the sonars front, left, back and right.
+    /// Returns an output with these pings, oldest first, of the sonars front, left, back and right.
     fn seen(pings: [&[Option<f64>]; 4]) -> Sensed {
         let mut y = Sensed::default();
         for (sonar, ranges) in DIRECTIONS.iter().zip(pings) {
@@ -120,8 +123,8 @@ mod tests {
         assert!(!fires("1000", &y));
     }
 
-    /// Returns whether the way to the left seems free, and whether it seems blocked, after `pings` of its sonar and the
-    /// last two pings of both neighbours, `beside`, all oldest first.
+    /// Returns `true` if the left seems free, and `true` if it seems blocked, after `pings` of its sonar and
+    /// the last two pings of both neighbours, `beside`, all oldest first.
     fn left(pings: [Option<f64>; 3], beside: [[Option<f64>; 2]; 2]) -> (bool, bool) {
         let mut y = in_turn([9.0; 16]);
         let [before, after] = &beside;
@@ -192,7 +195,8 @@ mod tests {
         assert!(fires("0000", &y) && !fires("0100", &y));
     }
 
-    /// A robot whose sonars fire in turn, with these ranges heard twice by the sonars from the front on.
+    /// Returns the output of a robot whose sonars fire in turn, with these ranges heard twice by each sonar,
+    /// from the front sonar on.
     fn in_turn(ranges: [f64; 16]) -> Sensed {
         let mut y = Sensed { confirmation: 2, ..Sensed::default() };
         for _ in 0..2 {

@@ -3,12 +3,12 @@
 use mdle_runtime::Interrupt;
 use mdle_runtime::capability::Bumpers;
 
-/// Fires while any bumper is in contact.
+/// The interrupt `bumper`, which fires while any bumper is in contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Bumper;
 
 impl Bumper {
-    /// The quark `bumper`.
+    /// Returns the quark `bumper`.
     #[must_use]
     pub const fn new() -> Self {
         Self

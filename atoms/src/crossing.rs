@@ -1,24 +1,27 @@
-//! Detects somebody who is about to cross the robot's way: the echoes of a sonar that looks to a side of the way get
-//! nearer faster than the robot drives.
+//! Detects a person who is about to cross the robot's way, because the echoes of a sonar that faces to the side
+//! get nearer faster than the robot drives.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
 
-/// Speeds, in m/s, of somebody who comes: anything slower is as good as fixed, faster echoes are of different things.
+/// Minimum and maximum speed, in m/s, of a person who crosses: anything slower counts as fixed, and faster
+/// echoes belong to different objects.
 const SPEEDS: [f64; 2] = [0.25, 2.0];
-/// Greatest turn rate of the robot, in rad/s, between echoes that are compared: as it turns, the echo of a wall moves
-/// along the wall.
+/// Maximum turn rate of the robot, in rad/s, between compared echoes: as the robot turns, the echo of a wall
+/// moves along the wall.
 const TURNS: f64 = 0.02;
-/// Least way, in metres, by which the echoes of somebody who comes get nearer; less may be the error of ranges.
+/// Minimum distance, in metres, by which the echoes of a crossing person get nearer; a smaller decrease may be
+/// the error of ranges.
 const NEARER: f64 = 0.075;
 /// The radius of a person, in metres.
 const PERSON: f64 = 0.25;
-/// Minimum distance, in metres, to the side of the way: a person nearer to it is an obstacle, or comes along the way.
+/// Minimum distance, in metres, to the side of the way; a person nearer to the way is an obstacle, or walks
+/// along the way.
 const ASIDE: f64 = 0.45;
-/// Greatest time, in seconds, in which somebody reaches the way.
+/// Maximum time, in seconds, in which a person reaches the way.
 const SOON: f64 = 5.0;
 
-/// An echo: its time in seconds, and its distance along the way and to the left of it.
+/// An echo: its time in seconds, and its distance along the way and to the left of it, in metres.
 struct Echo {
     at: f64,
     along: f64,
@@ -83,7 +86,7 @@ mod tests {
         crosses(&y, y.pose, 0.2)
     }
 
-    /// Returns `true` if it waits for him.
+    /// Returns `true` if the robot waits for the person.
     fn waits(ranges: [f64; 3]) -> bool {
         seconds(ranges).is_some()
     }

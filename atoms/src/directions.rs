@@ -1,29 +1,30 @@
-//! The echoes that sonars have heard in the four directions of a robot, whichever sonar looked there.
+//! The echoes that sonars have heard in the four directions of a robot, whichever sonar faced there.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Ping, Radians, SONARS, SonarId};
 
-/// The sonars that look front, left, back and right: the order in which the bits are written.
+/// The sonars front, left, back and right, in the order in which the bits are written.
 pub(crate) const DIRECTIONS: [SonarId; 4] = [SonarId::new(0), SonarId::new(4), SonarId::new(8), SonarId::new(12)];
 
-/// Maximum angle between a ping's axis and a direction for the ping to count there: half the angle between two sonars
-/// and a little more, so that a robot that turns slowly always has one sonar in each direction.
+/// Maximum angle between a ping's axis and a direction at which the ping counts there: half the angle between
+/// two sonars and a little more, so that a slowly turning robot always has a sonar in each direction.
 const WITHIN: Radians = Radians::from_degrees(14.0);
-/// Ranges of two pings of one sonar that differ by less, in metres, are of one thing, and not random.
+/// Difference, in metres, below which two ranges of one sonar belong to the same object and are not random.
 const SAME: f64 = 0.1;
 
 /// Half the angle of the cone in which a sonar hears a rough wall.
 pub(crate) const CONE: Radians = Radians::from_degrees(12.5);
-/// Greatest distance, in metres, from the edge of a cone to the wall that it reaches.
+/// Maximum distance, in metres, from the edge of a cone to the wall that it reaches.
 const OF_WALL: f64 = 0.08;
-/// Factor and step, in metres, by which the ranges of the neighbours of a sonar may exceed its own along a straight
-/// wall; an echo from beyond an opening is further.
+/// Factor and offset, in metres, by which the ranges of a sonar's neighbours may exceed its own range along a
+/// straight wall; an echo from beyond an opening is further away.
 const SLANT: (f64, f64) = (1.08, 0.02);
 
 /// Returns the minimum range of the two newest pings in the present direction of a sonar; infinite if both heard
 /// nothing.
 ///
-/// `None` where too few looked there: one ping that hears something near is believed, one that does not opens no way.
+/// `None` if there were too few pings there: a single ping with a near echo counts, but a single ping without
+/// one does not free the direction.
 pub(crate) fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters> {
     let newest = newest(y, direction, |sonar, ping| !is_of_side(y, direction, sonar, ping));
     let nearest = nearest(newest);
@@ -33,7 +34,7 @@ pub(crate) fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters>
     }
 }
 
-/// The two newest pings in the direction of a sonar now that count.
+/// Returns the two newest pings that count in the present direction of a sonar.
 pub(crate) fn newest<Y: SonarRing>(
     y: &Y,
     direction: SonarId,
@@ -91,7 +92,7 @@ pub(crate) fn after(sonar: SonarId, further: usize) -> SonarId {
     SonarId::new(((sonar.number() + further) % SONARS) as u8)
 }
 
-/// Returns the minimum range of these pings; `None` if none of them heard anything.
+/// Returns the minimum range of these pings; `None` if none of them had an echo.
 fn nearest(pings: [Option<(SonarId, &Ping)>; 2]) -> Option<Meters> {
     let heard = pings.into_iter().flatten().filter_map(|(_, ping)| ping.range);
     heard.reduce(|one, other| if other < one { other } else { one })

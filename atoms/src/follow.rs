@@ -5,19 +5,19 @@ use mdle_runtime::{
     Begin, Completes, Control, Law, MetersPerSecond, Nanos, PeerState, Pose, Radians, RadiansPerSecond, Twist,
 };
 
-/// Distance to keep between the centres, in metres: a larger one shortens the path more with each trip.
+/// Distance to keep between the centres, in metres; a larger distance shortens the path more with each trip.
 const GAP: f64 = 0.90;
 /// Maximum forward speed, in m/s.
 const SPEED: f64 = 0.5;
-/// Turn rate, in rad/s, for each radian by which the leader is not straight ahead.
+/// Turn rate, in rad/s, per radian by which the leader is not straight ahead.
 const TURNS: f64 = 3.0;
 /// Maximum turn rate, in rad/s.
 const FASTEST: f64 = 1.5;
-/// Speed beyond the leader's, in m/s, for each metre of gap too much.
+/// Speed in addition to the leader's, in m/s, per metre by which the gap is too large.
 const CLOSES: f64 = 1.0;
 /// Distance beyond [`GAP`], in metres, at which the follower has arrived.
 const NEAR: f64 = 0.05;
-/// Speed under which the leader is at rest, in m/s.
+/// Speed below which the leader counts as at rest, in m/s.
 const AT_REST: f64 = 0.02;
 
 /// `u_f = v_leader + k_v (ρ − d)`, at most `v` and less while the leader is not ahead; `u_θ = k(φ − θ)`, with the
@@ -27,28 +27,28 @@ const AT_REST: f64 = 0.02;
 pub struct Follow(&'static str);
 
 impl Follow {
-    /// The quark `Follow robot`.
+    /// Returns the quark `Follow robot`.
     #[must_use]
     pub const fn new(robot: &'static str) -> Self {
         Self(robot)
     }
 }
 
-/// The law of [`Follow`]: done when the leader is at rest near by, after one of the two has moved. The robot stands
-/// while the leader's state is not fresh.
+/// The law of [`Follow`], which is done when the leader is at rest nearby, after one of the two has moved. The
+/// robot stands still while the leader's state is stale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pursuing {
     robot: &'static str,
-    /// `true` if the leader has been seen moving since the law began.
+    /// `true` if the leader has moved since the law began.
     has_led: bool,
     /// Length of the path driven since the law began, in metres.
     way: f64,
-    /// Place in the turn before.
+    /// Pose in the turn before.
     last: Pose,
 }
 
 impl Pursuing {
-    /// Returns the leader's state while it is fresh.
+    /// Returns the leader's state while it is fresh; `None` otherwise.
     fn leader<'y, Y: StateLink>(&self, y: &'y Y) -> Option<&'y PeerState> {
         y.peer(self.robot)?.fresh()
     }
@@ -97,7 +97,7 @@ mod tests {
     use super::*;
     use crate::trial::{PERIOD, Sensed, begun};
 
-    /// Lets the robot know a leader at this place, with this speed, whose state is this old.
+    /// Sets the leader's state: its place, its speed, and the age of the state.
     fn see(y: &mut Sensed, (x, side): (f64, f64), v: f64, age: u64) {
         let pose = Pose { x: Meters(x), y: Meters(side), theta: Radians(0.0) };
         let velocity = Twist { v: MetersPerSecond(v), ..Twist::default() };
@@ -105,7 +105,7 @@ mod tests {
         y.link(Peer { name: "ada", rounds: 0, state: Some(state) });
     }
 
-    /// The input of the first turn with such a leader.
+    /// Returns the input of the first turn with such a leader.
     fn asked(place: (f64, f64), v: f64, age: u64) -> [f64; 2] {
         let mut y = Sensed::default();
         see(&mut y, place, v, age);

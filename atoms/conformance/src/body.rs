@@ -8,10 +8,10 @@ use mdle_runtime::capability::{DiffDrive, SonarRing};
 use super::trial::Trial;
 use super::{Out, Room, Stage, Verdict};
 
-/// The radius of the smallest and the largest body that is meant, in metres.
+/// Minimum and maximum radius of a body, in metres, beyond which a measure is an error.
 const RADIUS: (f64, f64) = (0.01, 5.0);
 
-/// A measure in metres that lies between two others.
+/// Checks that a measure, in metres, lies between two limits.
 fn between(what: &str, found: f64, (least, most): (f64, f64)) -> Result<(), String> {
     if (least..=most).contains(&found) {
         return Ok(());

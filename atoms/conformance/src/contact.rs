@@ -1,4 +1,4 @@
-//! The bumper: contact, and nothing else.
+//! The bumper, which must report contact and nothing else.
 
 use std::format;
 
@@ -43,7 +43,7 @@ where
     not_felt(&trial, wall - front, reach)
 }
 
-/// Checks that no contact is reported where there is none.
+/// Checks that no contact is reported without contact.
 fn not_felt<S: Stage>(trial: &Trial<'_, S>, wall: f64, reach: f64) -> Result<(), Verdict>
 where
     Out<S>: Bumpers,

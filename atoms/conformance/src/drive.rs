@@ -8,14 +8,14 @@ use super::measured::Measured;
 use super::trial::{Trial, Way, lasting, twist};
 use super::{Room, Stage, Verdict};
 
-/// Tolerance of the body's motion, as a part of the commanded motion.
+/// Tolerance of the body's motion, as a fraction of the commanded motion.
 pub(super) const PART: f64 = 0.06;
-/// Tolerance of the body's motion besides, in metres and in radians.
+/// Additional tolerance of the body's motion, in metres and in radians.
 pub(super) const METRES: f64 = 0.02;
 pub(super) const RADIANS: f64 = 0.03;
-/// Time, in seconds, after which a body has the commanded speed.
+/// Time, in seconds, after which a body must have the commanded speed.
 pub(super) const SETTLES: f64 = 0.8;
-/// Time for which the motion is then measured, in seconds.
+/// Time for which the motion is measured after that, in seconds.
 pub(super) const SECONDS: f64 = 2.0;
 /// Commanded speeds, in m/s and rad/s.
 pub(super) const V: f64 = 0.2;
@@ -24,7 +24,7 @@ pub(super) const OMEGA: f64 = 0.4;
 const STANDS: (f64, f64) = (0.01, 0.02);
 /// Minimum braking of a body that is stopped, in m/s² and rad/s².
 const BRAKES: (f64, f64) = (0.5, 1.5);
-/// Part of the speeds in the alphabet's limits that the body has to reach.
+/// Fraction of the speeds in the alphabet's limits that the body has to reach.
 const REACHED: f64 = 0.9;
 
 /// Checks that the body was at rest.
@@ -48,7 +48,7 @@ fn went(way: &Way, v: f64, omega: f64, seconds: f64) -> Result<(), String> {
     measured("went to its left by", "m", way.left, arc.left, METRES + PART * arc.far())
 }
 
-/// Drives, and looks at the body once it has its speed.
+/// Drives, and checks the motion of the body once it has the commanded speed.
 fn drives<S: Stage>(stage: &mut S, v: f64, omega: f64) -> Result<(), Verdict> {
     let mut trial = Trial::of(stage, &Room::open())?;
     trial.drive(v, omega, SETTLES)?;

@@ -1,8 +1,8 @@
 //! Conformance suite: the behaviour that an alphabet's capabilities require of any robot. A robot's author runs it on
 //! the robot itself or on a robot emulator.
 //!
-//! A [`Stage`] puts the robot into rooms that the suite makes up, and reports the true pose of its body, apart from the
-//! robot's own data. One test then checks every capability that the alphabet claims:
+//! A [`Stage`] puts the robot into rooms that the suite creates, and reports the true pose of its body,
+//! independently of the robot's own data. One test then checks every capability that the alphabet claims:
 //!
 //! ```text
 //! #[test]
@@ -12,7 +12,7 @@
 //! }
 //! ```
 //!
-//! It has std, as tests do; nothing of it is in a robot's executable.
+//! The suite uses std, as tests do; it is not part of a robot's executable.
 
 mod body;
 mod contact;
@@ -36,7 +36,7 @@ use mdle_runtime::{Alphabet, Nanos, PathStore, Pose, Robot, Twist};
 pub use report::{Checked, Report, Verdict};
 pub use room::{Room, Wall};
 
-/// The place of the trials: a stage builds a room round a robot and measures the true pose of its body.
+/// The place of the trials: a stage builds a room around a robot and measures the true pose of its body.
 pub trait Stage {
     /// The robot.
     type Robot: Robot<Input = Twist>;
@@ -52,8 +52,8 @@ pub trait Stage {
     /// A message if there is no robot to return.
     fn robot(&mut self, room: &Room, at: Pose) -> Result<Self::Robot, String>;
 
-    /// Hands the robot the paths that its plan replays, before its first exchange; for robots with the capability
-    /// `paths`.
+    /// Passes the paths that the robot's plan replays to the robot, before its first exchange; for robots with
+    /// the capability `paths`.
     fn take_paths(&mut self, _robot: &mut Self::Robot, _paths: PathStore) {}
 
     /// Sets the robot's power supply from now on; for robots with the capability `power`.
@@ -69,7 +69,7 @@ pub trait Stage {
 /// The power supply of a robot on a stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Supplied {
-    /// A battery that is charged, as it is when the robot has just been started.
+    /// A charged battery, as when the robot has just been started.
     Well,
     /// A battery that has to be charged.
     Low,
@@ -80,7 +80,7 @@ pub enum Supplied {
 /// The output of the robot on this stage.
 type Out<S> = <<S as Stage>::Robot as Robot>::Output;
 
-/// The checks, as they are asked for: one method for each capability.
+/// The requested checks, with a method for each capability.
 #[derive(Debug)]
 pub struct Suite<'s, S: Stage> {
     stage: &'s mut S,

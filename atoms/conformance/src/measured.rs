@@ -4,7 +4,7 @@ use std::format;
 
 use core::f64::consts::PI;
 
-/// Factors of the most common mistakes of units, with their names.
+/// Factors of the most common unit errors, with their names.
 const FACTORS: [(f64, &str); 10] = [
     (180.0 / PI, "degrees for radians"),
     (PI / 180.0, "radians for degrees"),
@@ -18,7 +18,7 @@ const FACTORS: [(f64, &str); 10] = [
     (0.5, "a radius for a diameter"),
 ];
 
-/// Part of the expected number below which a measured one counts as nothing.
+/// Fraction of the expected number below which a measured number counts as zero.
 const NOTHING: f64 = 0.01;
 
 /// A number that was measured.
@@ -28,7 +28,7 @@ pub(super) struct Measured<'a> {
     pub(super) what: &'a str,
     /// Unit of the quantity.
     pub(super) unit: &'a str,
-    /// Probable source of a mistake.
+    /// Probable source of an error.
     pub(super) whose: &'a str,
     pub(super) found: f64,
     pub(super) wanted: f64,
@@ -40,7 +40,7 @@ impl Measured<'_> {
     /// Checks that the measured number is within the tolerance.
     ///
     /// # Errors
-    /// A sentence with the difference and its probable cause.
+    /// Fails with a sentence about the difference and its probable cause.
     pub(super) fn check(&self) -> Result<(), String> {
         let Self { what, unit, whose, found, wanted, within } = *self;
         if (found - wanted).abs() <= within {

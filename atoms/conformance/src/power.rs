@@ -8,7 +8,7 @@ use mdle_runtime::{Alphabet, Interrupt as _, Signal as _};
 use super::trial::Trial;
 use super::{Out, Room, Stage, Supplied, Verdict};
 
-/// The lowest and the highest voltage that is meant, in volts.
+/// Minimum and maximum voltage, in volts, beyond which a voltage is an error.
 const VOLTS: (f64, f64) = (1.0, 1000.0);
 /// Time, in seconds, within which a robot must report a change of its supply.
 const TELLS: f64 = 5.0;
@@ -21,7 +21,7 @@ struct ReportedSupply {
     is_plugged: bool,
 }
 
-/// Returns the state that the robot reports `TELLS` seconds after it is supplied like this.
+/// Returns the state that the robot reports `TELLS` seconds after it gets this supply.
 fn reported<S: Stage>(stage: &mut S, supplied: Supplied) -> Result<ReportedSupply, Verdict>
 where
     Out<S>: Power,
@@ -54,7 +54,7 @@ fn agree<S: Stage>(y: &Out<S>, supply: ReportedSupply) -> Result<(), Verdict> {
     Ok(())
 }
 
-/// Checks that a state is reported where it holds, and not elsewhere.
+/// Checks that a state is reported only where it is true.
 fn only(what: &str, where_it_is: bool, where_not: [bool; 2]) -> Result<(), String> {
     match (where_it_is, where_not) {
         (true, [false, false]) => Ok(()),

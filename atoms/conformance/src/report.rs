@@ -7,18 +7,18 @@ use core::fmt;
 /// Capabilities for which there are checks.
 const KNOWN: [&str; 6] = ["diff_drive", "odometry", "bumper", "sonar[16]", "paths", "power"];
 
-/// The result of a check.
+/// Result of a check.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
     /// The robot passes the check.
     Holds,
-    /// The alphabet has no such quark or signal, so no plan can ask for it.
+    /// The alphabet has no such quark or signal, so no plan can use it.
     NotOffered,
     /// A defect, as a sentence for the author.
     Broken(String),
 }
 
-/// A sentence is a verdict.
+/// Conversion of a sentence to a verdict about a defect.
 impl From<String> for Verdict {
     fn from(sentence: String) -> Self {
         Self::Broken(sentence)
@@ -28,26 +28,27 @@ impl From<String> for Verdict {
 /// A check that was made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Checked {
-    /// The capability it belongs to.
+    /// Capability to which the check belongs.
     pub capability: &'static str,
-    /// The requirement, as its name in the report.
+    /// Name of the requirement in the report.
     pub name: &'static str,
     /// The result of the check.
     pub verdict: Verdict,
 }
 
-/// Results of all checks. Displayed, it has a line for each check, and the reason below each that fails.
+/// Results of all checks. Its text has a line for each check, and the reason below each check that fails.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Report {
     checked: Vec<Checked>,
     /// Defects of the alphabet's claims.
     claims: Vec<String>,
-    /// Capabilities that are claimed and for which there are no checks.
+    /// Claimed capabilities for which there are no checks.
     unknown: Vec<&'static str>,
 }
 
 impl Report {
-    /// The report of these checks, made for the capabilities `asked`, of a robot that claims these.
+    /// Returns the report of these checks, made for the capabilities `asked`, of a robot that claims the
+    /// capabilities `claimed`.
     pub(super) fn new(checked: Vec<Checked>, asked: &[&str], claimed: &[&'static str]) -> Self {
         let method = |capability: &str| format!(".{}()", capability.trim_end_matches("[16]"));
         let missing = claimed.iter().filter(|claim| KNOWN.contains(claim) && !asked.contains(claim));
@@ -72,7 +73,7 @@ impl Report {
         self.claims.is_empty() && !self.checked.iter().any(|checked| matches!(checked.verdict, Verdict::Broken(_)))
     }
 
-    /// The checks.
+    /// Returns the checks that were made.
     #[must_use]
     pub fn checked(&self) -> &[Checked] {
         &self.checked

@@ -1,4 +1,4 @@
-//! The sixteen sonars: where each looks, how far it hears, and when.
+//! The sixteen sonars: their directions, their ranges, and the times of their pings.
 
 use std::format;
 
@@ -11,15 +11,16 @@ use super::{Out, Room, Stage, Verdict};
 
 /// Time, in seconds, until every sonar has pinged three times, also on a robot whose sonars fire in turn.
 pub(super) const HEARD: f64 = 3.2;
-/// Tolerance of a range, in metres: that of a sonar with steps of an inch, which need not be mounted quite on the ring.
+/// Tolerance of a range, in metres: for a sonar with a resolution of an inch, which need not be mounted exactly
+/// on the ring.
 const RANGE: f64 = 0.05;
-/// Distances from the centre, in metres, of the walls at which the sonars look. No two are alike. Those of even numbers
-/// are nearer, since some robots listen to two sonars there, beside which the next walls are; and no order is any
-/// other's reversed or shifted.
+/// Distances from the centre, in metres, of the walls in front of the sonars, all different. Walls with even
+/// numbers are nearer, since some robots listen to two sonars there, beside which the next walls are. No order
+/// of the distances equals another one reversed or shifted.
 const WALLS: [f64; SONARS] =
     [1.08, 1.71, 0.75, 2.37, 1.41, 1.93, 0.86, 1.60, 1.19, 2.15, 0.97, 2.26, 1.52, 1.82, 1.30, 2.04];
-/// Half the width of a wall of an even number and of an odd one, for each metre of its distance: neighbours do not hear
-/// it.
+/// Half the width of a wall with an even and with an odd number, per metre of its distance, so that
+/// neighbouring sonars do not hear it.
 const HALF: [f64; 2] = [0.05, 0.08];
 /// Maximum age of a ping, in seconds: a full ring takes a second.
 const OLD: f64 = 2.0;
@@ -31,7 +32,8 @@ fn sonars() -> impl Iterator<Item = SonarId> {
     (0..SONARS as u8).map(SonarId::new)
 }
 
-/// Returns the last echo of a sonar, as the distance from the centre of the body in metres; `None` if it heard nothing.
+/// Returns the last echo of a sonar, as the distance from the centre of the body in metres; `None` if it heard
+/// no echo.
 fn heard<S: Stage>(trial: &Trial<'_, S>, sonar: SonarId) -> Result<Option<f64>, String>
 where
     Out<S>: SonarRing,
@@ -47,7 +49,7 @@ where
     Ok(range.map(|range| range.0 + trial.y.ring_radius().0))
 }
 
-/// The direction of a sonar, for a person.
+/// Returns the direction of a sonar, for messages.
 fn direction(sonar: SonarId) -> String {
     format!("{:.1} degrees counter-clockwise from the front", sonar.bearing().degrees())
 }

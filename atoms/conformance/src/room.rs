@@ -1,4 +1,4 @@
-//! The rooms that robots are tried in: straight walls round the place where the robot begins.
+//! The rooms in which robots are tested: straight walls around the place where the robot begins.
 
 use std::string::{String, ToString};
 
@@ -9,36 +9,36 @@ use mdle_runtime::{Meters, Pose, Radians};
 /// Distance of the outermost walls, in metres: further than any sonar hears.
 const FAR: f64 = 40.0;
 
-/// The pose at which robots begin: nowhere near the origin, and along no axis, so that the room's axes are not taken
-/// for the robot's.
+/// Pose at which robots begin: far from the origin and along no axis, so that a confusion of the room's axes
+/// with the robot's is found.
 pub(super) const AT: Pose = Pose { x: Meters(1.0), y: Meters(-0.5), theta: Radians::from_degrees(30.0) };
 
 /// A straight wall without thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wall {
-    /// One end: its `x` and `y`; the heading means nothing.
+    /// One end of the wall, by `x` and `y`; the heading is ignored.
     pub from: Pose,
-    /// The other end; the heading means nothing.
+    /// The other end of the wall; the heading is ignored.
     pub to: Pose,
 }
 
 /// A flat floor with walls.
 ///
-/// As text it is a file for the worlds of `mdle-sim`.
+/// Displayed as text, a room is a world file of `mdle-sim`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Room {
     walls: Vec<Wall>,
 }
 
 impl Room {
-    /// A hall whose walls no sonar hears.
+    /// Returns a hall whose walls no sonar hears.
     pub(super) fn open() -> Self {
         let sides = [0.0, 90.0, 180.0, 270.0];
         sides.into_iter().fold(Self { walls: Vec::new() }, |room, side| room.across(side, FAR, FAR))
     }
 
-    /// Adds a wall that is square to the direction `degrees` counter-clockwise of where the robot first looks,
-    /// `distance` metres from the robot's centre, and `half` metres long to both sides.
+    /// Places a wall that is square to the direction `degrees` counter-clockwise from the robot's first
+    /// heading, `distance` metres from the robot's centre, and `half` metres long to either side.
     pub(super) fn across(mut self, degrees: f64, distance: f64, half: f64) -> Self {
         let bearing = AT.theta.0 + Radians::from_degrees(degrees).0;
         let foot = AT.towards(Radians(bearing), Meters(distance));
@@ -47,7 +47,7 @@ impl Room {
         self
     }
 
-    /// The walls.
+    /// Returns the walls of the room.
     #[must_use]
     pub fn walls(&self) -> &[Wall] {
         &self.walls

@@ -8,7 +8,7 @@ use mdle_runtime::{Argument, Meters, MetersPerSecond, Pose, Radians};
 use super::trial::{Trial, Way};
 use super::{Out, Room, Stage, Verdict};
 
-/// Maximum distance from the goal at the end, in metres: 0.12 of the law's own, and the error of odometry.
+/// Maximum distance from the goal at the end, in metres: 0.12 m of the law's own, and the error of odometry.
 const ARRIVED: f64 = 0.2;
 /// Distance of the goal, in metres, and the speed, in m/s.
 const RANGE: f64 = 1.0;

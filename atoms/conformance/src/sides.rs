@@ -1,4 +1,4 @@
-//! `atIsection`: the four sides, and which bit is whose.
+//! `atIsection`: the four sides, and the bit of each side.
 
 use std::format;
 
@@ -9,8 +9,8 @@ use super::ring::HEARD;
 use super::trial::Trial;
 use super::{Out, Room, Stage, Verdict};
 
-/// Distances of a wall that blocks a side and of a wall that does not, as parts of the range below which a side is
-/// blocked.
+/// Distances of a wall that blocks a side and of a wall that does not, as fractions of the range below which a
+/// side is blocked.
 const NEAR: f64 = 0.6;
 const FREE: f64 = 1.4;
 /// Half the length of the walls, in metres.
@@ -26,17 +26,17 @@ where
     Ok(())
 }
 
-/// A wall on this side alone.
+/// Returns a wall on only this side.
 fn side(number: usize) -> [bool; 4] {
     core::array::from_fn(|other| other == number)
 }
 
-/// The word as plans write it.
+/// Returns the word of these bits as plans write it.
 fn word(bits: [bool; 4]) -> String {
     bits.iter().map(|bit| if *bit { '1' } else { '0' }).collect()
 }
 
-/// Checks that of all 16 patterns only the one of these walls fires.
+/// Checks that, of all 16 patterns, only the pattern of these walls fires.
 fn tells<S: Stage>(stage: &mut S, walls: [bool; 4]) -> Result<(), Verdict>
 where
     Out<S>: SonarRing + DiffDrive,

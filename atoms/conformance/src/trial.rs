@@ -10,7 +10,7 @@ use mdle_runtime::{
 use super::room::AT;
 use super::{Out, Room, Stage, Supplied, Verdict, stored_path};
 
-/// Maximum distance of a robot from where the stage was to put it, in metres and radians.
+/// Maximum distance of a robot from the pose at which the stage had to put it, in metres and radians.
 const PUT: (f64, f64) = (0.02, 0.02);
 
 /// A robot in a room.
@@ -19,13 +19,13 @@ pub(super) struct Trial<'s, S: Stage> {
     pub(super) robot: S::Robot,
     /// The robot's last output.
     pub(super) y: Out<S>,
-    /// The frame of a plan that began with its first output.
+    /// Frame of a plan that began with the robot's first output.
     frame: Frame,
     /// Number of exchanges so far.
     exchanges: u64,
 }
 
-/// The motion of a body between two poses, in the axes of the first.
+/// The motion of a body between two poses, in the axes of the first pose.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way {
     /// Way forward, in metres.
@@ -109,8 +109,9 @@ impl<'s, S: Stage> Trial<'s, S> {
         Way::between(from, self.truth())
     }
 
-    /// The law of this name with these arguments, begun now in the frame of a plan that began with the first exchange,
-    /// runs until it is done: after how many seconds, or that it was not done in `most`. `each` looks at every turn.
+    /// Runs the law of this name with these arguments, from now on, in the frame of a plan that began with the
+    /// first exchange, until the law is done. Returns the number of seconds, or reports that the law was not
+    /// done within `most` seconds. Calls `each` in every turn.
     pub(super) fn run(
         &mut self,
         name: &str,

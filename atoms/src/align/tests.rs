@@ -3,7 +3,7 @@
 use super::*;
 use crate::trial::{Sensed, begun};
 
-/// Numbers from 0 to 1 that look as if drawn by chance.
+/// Pseudo-random numbers from 0 to 1.
 struct Chance(u64);
 
 impl Chance {
@@ -13,14 +13,14 @@ impl Chance {
     }
 }
 
-/// A straight wall 0.8 m from the robot, and how well two sonars hear it.
+/// A straight wall 0.8 m from the robot, with the quality of its echoes for two sonars.
 #[derive(Clone, Copy)]
 struct Wall {
     first: u8,
     second: u8,
     /// Direction of the wall, in degrees.
     at: f64,
-    /// The share of pings of the first and of the second sonar that bring nothing.
+    /// Fractions of pings without an echo, for the first and the second sonar.
     misses: [f64; 2],
     /// Maximum error of a range, in metres.
     error: f64,
@@ -129,8 +129,8 @@ fn beside_a_dead_sonar_it_looks_round_once_and_is_done() {
     }
 }
 
-/// Runs `align` by the ranges that its two sonars return at a heading in degrees, for three minutes: when it is
-/// done, in seconds, and at which heading.
+/// Runs `align` for three minutes, with the ranges that its two sonars return at a heading in degrees. Returns
+/// the time at which the law is done, in seconds, and the heading; `None` if it is not done.
 fn done(sonars: [u8; 2], off: f64, ranges: impl Fn(f64) -> [f64; 2]) -> Option<(u64, f64)> {
     let sonars = sonars.map(SonarId::new);
     let mut y = Sensed::heading(off);
