@@ -1,10 +1,10 @@
-//! The gains of the laws that differ from body to body, in one place: a body of one's own is looked up by what it tells
-//! of itself. All other gains are constants beside their laws.
+//! The gains of the laws that differ from body to body, in one place. The gains for an unknown body are chosen
+//! by its own measures. All other gains are constants beside their laws.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, PINGS_KEPT};
 
-/// A body of this radius or more is wide: hallways leave it little room to turn aside in.
+/// Radius from which a body counts as wide: hallways leave it little room to give way.
 const WIDE: Meters = Meters(0.3);
 
 /// Parameters of the laws that differ from body to body.
@@ -12,16 +12,16 @@ const WIDE: Meters = Meters(0.3);
 pub(crate) struct Gains {
     /// `align`: the fastest turn, in rad/s. Where sonars fire in turn, the ranges are older.
     pub(crate) align_fastest: f64,
-    /// `align`: ranges that differ by this much or less, in metres, are equal. 8 mm are 2° in a hallway 1.5 m wide, to
-    /// sonars of 25°. Where sonars fire in turn it is an inch, the resolution of the paper's sonars: beside a corner, a
-    /// robot that wanted ranges closer would turn into the corner.
+    /// `align`: maximum difference, in metres, at which ranges count as equal. 8 mm correspond to 2° in a
+    /// hallway 1.5 m wide, for sonars of 25°. Where sonars fire in turn, it is an inch, the resolution of the
+    /// paper's sonars: beside a corner, a robot that required a smaller difference would turn into the corner.
     pub(crate) align_equal: f64,
-    /// `align`: time, in seconds, to wait for a sonar that has heard the wall and then does not: three of its pings
-    /// where every turn brings one, else two rings.
+    /// `align`: time, in seconds, to wait for a sonar that heard the wall and no longer does: three of its
+    /// pings if every turn brings one, otherwise two rings.
     pub(crate) align_waits: f64,
-    /// `goAvoid`: length of the way ahead that should be free. If it is longer, the robot turns off into a side way
-    /// before `atIsection` has confirmed it; where sonars fire in turn, ranges are a second old, and obstacles nearer
-    /// by now.
+    /// `goAvoid`: length of the way ahead that should be free. If it is longer, the robot turns into a side way
+    /// before `atIsection` has confirmed it. Where sonars fire in turn, ranges are up to a second old, and
+    /// obstacles may be nearer meanwhile.
     pub(crate) look_ahead: Meters,
     /// `goAvoid`: distance between the body and an obstacle, in metres, at which a way still counts as free. A doorway
     /// 15 cm wider than the body leaves 7.5 cm on both sides, of which errors of ranges of 1.5 cm and drift take some.
@@ -29,8 +29,8 @@ pub(crate) struct Gains {
     /// `goAvoid`: range, in metres, below which an obstacle may be nearer than it is heard: a Scout reports 6 inches
     /// for anything nearer, so that a wall into which it drifts looks parallel.
     pub(crate) least_range: f64,
-    /// `goAvoid`: kept around the body where there is room, in metres. Where sonars fire in turn odometry drifts too,
-    /// and the middle of a hallway must be kept by what is heard.
+    /// `goAvoid`: distance to keep around the body where there is room, in metres. Where sonars fire in turn,
+    /// odometry drifts too, so the robot must keep to the middle of a hallway by its ranges.
     pub(crate) soft_margin: f64,
     /// `goAvoid`: distance along a way, in metres, at which the room beside it is measured. Beside a wall, only the
     /// room ahead distinguishes a way that leads off the wall from one that keeps as close: with the room measured
@@ -43,7 +43,7 @@ pub(crate) struct Gains {
     pub(crate) beyond: f64,
 }
 
-/// A body whose sonars all ping in every turn.
+/// Gains of a body whose sonars all ping in every turn.
 const RING: Gains = Gains {
     align_fastest: 0.3,
     align_equal: 0.008,
@@ -56,7 +56,7 @@ const RING: Gains = Gains {
     beyond: 0.0,
 };
 
-/// A Scout, whose sonars fire one after the other.
+/// Gains of a Scout, whose sonars fire one after the other.
 const SCOUT: Gains = Gains {
     align_fastest: 0.12,
     align_equal: 0.026,
@@ -69,8 +69,8 @@ const SCOUT: Gains = Gains {
     beyond: 0.0,
 };
 
-/// An ATRV-mini, twice as wide. Its corners take what a smaller margin would leave, and what it hears at 6 inches is
-/// within its margin anyhow.
+/// Gains of an ATRV-mini, which is twice as wide. Its corners need the room that a smaller margin would leave,
+/// and what it hears at 6 inches is within its margin anyway.
 const ATRV: Gains =
     Gains { look_ahead: Meters(0.5), hard_margin: 0.06, least_range: 0.0, room_at: 0.3, beyond: 0.3, ..SCOUT };
 

@@ -3,14 +3,14 @@
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Begin, Control, Law, MetersPerSecond, Nanos, RadiansPerSecond, Twist};
 
-/// `u = (v, ω)`; it has no state, so it is its own law.
+/// The control `go`: `u = (v, ω)`. It has no state, so it is its own law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Go {
     input: Twist,
 }
 
 impl Go {
-    /// The quark `go v omega`: forward speed, and turn rate, counter-clockwise positive.
+    /// Returns the quark `go v omega`: forward speed, and turn rate, counter-clockwise positive.
     #[must_use]
     pub const fn new(v: MetersPerSecond, omega: RadiansPerSecond) -> Self {
         Self { input: Twist { v, omega } }

@@ -14,30 +14,33 @@ use crate::stuck::Progress;
 use crate::tangent::{Obstacles, Side, Wish};
 use crate::way::Ahead;
 
-/// Distance from the goal below which it is reached.
+/// Distance from the goal below which the goal is reached.
 const ARRIVED: Meters = Meters(0.12);
-/// Distance between the body and the goal, in metres, below which the robot is near enough if something keeps it from
-/// coming nearer: odometry drifts, so a goal near a wall comes to lie in the wall.
+/// Distance between the body and the goal, in metres, below which the robot is near enough if an obstacle keeps
+/// it from coming nearer: odometry drifts, so a goal near a wall may end up inside the wall.
 const NEAR: f64 = 0.1;
-/// Time for which something must have kept the robot from coming nearer.
+/// Time for which an obstacle must have kept the robot from coming nearer.
 const KEPT_OFF: Nanos = Nanos(1_000_000_000);
 /// Maximum turn rate, in rad/s.
 const FASTEST: f64 = 0.9;
 /// Angle off the chosen direction from which the robot turns on the spot.
 const ON_THE_SPOT: Radians = Radians::from_degrees(50.0);
-/// A detour further than this from the goal's direction is kept up.
+/// Angle between a detour and the goal's direction above which the detour is kept up.
 const DETOUR: Radians = Radians::from_degrees(60.0);
-/// A detour that has lasted this long goes along its obstacle: the goal's direction would lead back to where it began.
+/// Time after which a detour follows its obstacle: the goal's direction would lead back to where the detour
+/// began.
 const ALONG_AFTER: Nanos = Nanos(8_000_000_000);
-/// Angle by which a detour is turned towards the obstacle along which it goes.
+/// Angle by which a detour is turned towards the obstacle that it follows.
 const ALONG: Radians = Radians::from_degrees(40.0);
-/// A detour is over only when it has brought the robot nearer to the goal by this much...
+/// Distance that the robot must have gained towards the goal before a detour is over; `DETOUR_LEAST` must have
+/// passed as well.
 const GAINED: Meters = Meters(0.1);
-/// ... and has lasted this long.
+/// Minimum duration of a detour.
 const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
-/// Time for which a detour to a goal that is renewed lasts: its distance need not be known, so nothing is gained by it.
+/// Duration of a detour to a goal that is renewed: its distance need not be known, so the gain cannot be
+/// measured.
 const DETOUR_RENEWED: Nanos = Nanos(4_000_000_000);
-/// Angle from the goal's direction in which the robot gives way to a person who approaches.
+/// Angle from the goal's direction at which the robot gives way to an approaching person.
 const ASIDE: Radians = Radians::from_degrees(60.0);
 /// Time without progress for which the robot follows ways on its map, which is too small to show a way out of a large
 /// corner, and for which it then goes round obstacles without the map, in turns.
@@ -50,7 +53,7 @@ const HELD_UP: Nanos = Nanos(1_200_000_000);
 const DRIFTS_AFTER: Nanos = Nanos(10_000_000_000);
 const DRIFTS: f64 = 0.02;
 
-/// Drives to the point at a bearing and range from where the atom begins.
+/// The control `goAvoid`, which drives to the point at a bearing and range from where the atom begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoAvoid {
     bearing: Radians,
@@ -59,8 +62,8 @@ pub struct GoAvoid {
 }
 
 impl GoAvoid {
-    /// The quark `goAvoid bearing range speed`: the bearing in the frame in which the atom begins, the range from
-    /// where the robot then is, the speed where the way is free.
+    /// Returns the quark `goAvoid bearing range speed`: the bearing in the frame in which the atom begins, the
+    /// range from the robot's place at that time, and the speed where the way is free.
     #[must_use]
     pub const fn new(bearing: Radians, range: Meters, speed: MetersPerSecond) -> Self {
         Self { bearing, range, speed }
@@ -104,20 +107,21 @@ pub struct GoingRound {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Detour {
     side: Side,
-    /// Distance of the goal when the detour began.
+    /// Distance from the goal when the detour began.
     from: Meters,
     since: Nanos,
 }
 
 impl GoingRound {
-    /// Returns this law on its way to the goal of another, which is made at this place.
+    /// Returns this law, on its way to the goal of another law, which is created at this place.
     pub(crate) fn with_goal_of(self, other: &Self, here: Pose) -> Self {
         // A goal that moves off with the robot takes away nothing of the progress towards it.
         let progress = self.progress.moved(Meters(here.distance(&other.goal).0 - here.distance(&self.goal).0));
         Self { goal: other.goal, is_renewed: true, progress, axis: other.axis, drift: other.drift, ..self }
     }
 
-    /// Turns the goal by what the drift has changed since it was last measured, around the place where that was.
+    /// Turns the goal by the change of the drift since its last measurement, around the place of that
+    /// measurement.
     fn turn_goal(&mut self, drift: Radians, here: Pose) {
         let (before, at) = self.drift;
         if drift == before {
@@ -130,7 +134,7 @@ impl GoingRound {
         self.drift = (drift, here);
     }
 
-    /// The direction of the goal.
+    /// Returns the direction of the goal.
     fn direction(&self, here: Pose) -> Radians {
         Radians(libm::atan2(self.goal.y.0 - here.y.0, self.goal.x.0 - here.x.0))
     }
@@ -154,7 +158,8 @@ impl GoingRound {
         self.detour.is_some_and(|detour| t.since(detour.since) > ALONG_AFTER)
     }
 
-    /// The direction in which to give way, along the wall on that side once it is reached.
+    /// Returns the direction in which to give way, which runs along the wall on that side once the robot is
+    /// there.
     fn aside(&mut self, side: Side, goal: Radians, obstacles: &Obstacles, look_ahead: Meters) -> Radians {
         let aside = match side {
             Side::Left => Radians(goal.0 + ASIDE.0),
@@ -166,7 +171,7 @@ impl GoingRound {
         chosen
     }
 
-    /// The direction to drive in, in the odometry's axes.
+    /// Returns the direction in which to drive, in the odometry's axes.
     fn choose(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) -> Radians {
         let Meters(distance) = here.distance(&self.goal);
         let goal = self.direction(here);
@@ -203,20 +208,21 @@ impl GoingRound {
     }
 }
 
-/// The direction that the tangent rule has chosen, and the ways that are free.
+/// The direction that the tangent rule has chosen, and the free lengths of ways.
 struct Chosen {
     direction: Radians,
-    /// Length of the way that is free where the robot heads.
+    /// Free length of the way in the robot's heading.
     ahead: Meters,
-    /// Length of the way to the goal that is free; `None` on a detour.
+    /// Free length of the way to the goal; `None` on a detour.
     to_goal: Option<Meters>,
 }
 
 impl GoingRound {
-    /// Looks at what the sonars see, and chooses a direction; `None` while the robot stands, since somebody crosses its
-    /// way.
+    /// Chooses a direction from the pings of the sonars; `None` while the robot stands still because a person
+    /// crosses its way.
     ///
-    /// Not inlined: the obstacles have left the stack before [`Self::squeeze`] puts a map there.
+    /// The function is not inlined, so that the obstacles have left the stack before [`Self::squeeze`] puts a
+    /// map there.
     #[inline(never)]
     fn look<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose, t: Nanos) -> Option<Chosen> {
         let mut obstacles = Obstacles::seen(y, here);
@@ -237,7 +243,7 @@ impl GoingRound {
         Some(Chosen { direction, ahead: obstacles.free(here.theta), to_goal })
     }
 
-    /// The input in a narrow place, or before one; `None` elsewhere.
+    /// Returns the input in or before a narrow place; `None` elsewhere.
     fn squeeze<Y: DiffDrive>(&mut self, y: &Y, here: Pose, t: Nanos, chosen: &Chosen) -> Option<Twist> {
         let off = Radians(chosen.direction.0 - here.theta.0).wrapped().0.abs();
         self.headed = self.headed.or((off < ON_THE_SPOT.0).then_some(t));

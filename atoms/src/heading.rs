@@ -5,15 +5,15 @@ use mdle_runtime::{Nanos, Radians, RadiansPerSecond, Twist};
 
 /// Maximum turn rate, in rad/s.
 const FASTEST: f64 = 0.8;
-/// Maximum fraction of the remaining angle to turn before the law runs again: a larger one overshoots.
+/// Maximum fraction of the remaining angle to turn before the law runs again; a larger fraction overshoots.
 const AT_ONCE: f64 = 0.5;
 /// Tolerance of the final heading.
 const NEAR: Radians = Radians::from_degrees(2.0);
-/// Below this difference of the wheels' speeds, in m/s, the robot no longer turns.
+/// Difference of the wheels' speeds, in m/s, below which the robot no longer turns.
 const AT_REST: f64 = 0.02;
 
-/// The input that turns on the spot, with `left` still to turn by `gain`, that is `k`; the law was last asked `before`,
-/// if it was.
+/// Returns the input that turns on the spot by the remaining angle `left` with the gain `gain`, which is `k`;
+/// `before` is the time of the law's previous input.
 pub(crate) fn turning(left: Radians, gain: f64, before: Option<Nanos>, t: Nanos) -> Twist {
     let period = before.map_or(0.0, |before| t.since(before).seconds());
     let gain = if gain * period > AT_ONCE { AT_ONCE / period } else { gain };

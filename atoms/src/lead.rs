@@ -1,5 +1,5 @@
-//! `lead`: drives as `goAvoid` does, for a robot beside which others keep slots (paper, sections II-C and III-G: group
-//! atoms).
+//! `lead`: drives as `goAvoid` does, for a robot beside which other robots keep slots (paper, sections II-C and
+//! III-G: group atoms).
 
 use mdle_runtime::capability::{DiffDrive, Odometry, SonarRing, StateLink, Steering};
 use mdle_runtime::{
@@ -11,14 +11,15 @@ use crate::go_avoid::{GoAvoid, GoingRound};
 
 /// Room that the group keeps beside the body of its outermost robot, in metres: the robots drift apart on the way.
 const DRIFTS: f64 = 0.1;
-/// Distance from another robot within which an echo is that robot's, in metres.
+/// Distance from another robot, in metres, within which an echo is from that robot.
 const MEMBER: f64 = 0.3;
 /// Half of the angle within which a sonar hears.
 const CONE: Radians = Radians::from_degrees(15.0);
 /// Maximum turn rate, in rad/s: the outermost robots go on a larger circle.
 const FASTEST: f64 = 0.3;
 
-/// `goAvoid` of a body that is wider to both sides, deaf to the other robots that the plan names.
+/// The control `lead`: `goAvoid` for a body that is wider to both sides, which ignores echoes of the other
+/// robots that the plan names.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lead {
     width: Meters,
@@ -26,14 +27,14 @@ pub struct Lead {
 }
 
 impl Lead {
-    /// The quark `lead width bearing range speed`.
+    /// Returns the quark `lead width bearing range speed`.
     #[must_use]
     pub const fn new(width: Meters, bearing: Radians, range: Meters, speed: MetersPerSecond) -> Self {
         Self { width, goal: GoAvoid::new(bearing, range, speed) }
     }
 }
 
-/// The law of [`Lead`]: done when `goAvoid` is.
+/// The law of [`Lead`], which is done when `goAvoid` is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Leading {
     width: Meters,
@@ -44,7 +45,7 @@ pub struct Leading {
     law: GoingRound,
 }
 
-/// The output of a group as that of one wide robot.
+/// The output of a group, presented as that of one wide robot.
 struct Group<'g, Y> {
     y: &'g Y,
     width: Meters,
@@ -118,7 +119,7 @@ fn is_of(ping: &Ping, sonar: SonarId, ring: Meters, place: &Pose) -> bool {
     transducer.towards(Radians(axis.theta.0 + off), range).distance(place).0 < MEMBER
 }
 
-/// Adds the pings that are new since the turn before, and are no echoes of other robots.
+/// Collects the pings that are new since the turn before, and are no echoes of other robots.
 fn take<Y: SonarRing + StateLink>(heard: &mut [Pings; SONARS], y: &Y, since: Option<Nanos>) {
     let ring = y.ring_radius();
     for (sonar, heard) in (0..SONARS as u8).map(SonarId::new).zip(heard) {
@@ -180,7 +181,8 @@ mod tests {
         Lead::new(Meters(width), Radians(0.0), Meters(5.0), MetersPerSecond(0.2))
     }
 
-    /// A robot at the origin to which its front sonar says this, and that knows another robot at this place.
+    /// Returns a robot at the origin whose front sonar measures this range, and that knows another robot at
+    /// this place.
     fn beside(range: f64, (x, side): (f64, f64)) -> Sensed {
         let mut y = Sensed::default();
         (0..3).for_each(|_| y.ping(SonarId::new(0), Some(range)));

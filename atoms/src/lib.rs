@@ -1,10 +1,10 @@
-//! The paper's quarks (section IV-A), for any robot whose output has what they need.
+//! The paper's quarks (section IV-A), for any robot whose output has the capabilities that they need.
 //!
-//! A quark is a type that holds its arguments, in the order of `alphabet.mdle`, and asks for the capabilities that the
-//! alphabet names. `wait` is no type here: time is the machine's business.
+//! A quark is a type that holds its arguments, in the order of `alphabet.mdle`, and requires the capabilities
+//! that the alphabet names. `wait` is not a type of this crate, since the machine handles time.
 //!
-//! No allocation, no unsafe code, no path that panics; trigonometry from `libm`, so a law computes the same bits on
-//! every machine.
+//! The crate does not allocate, has no unsafe code and cannot panic; its trigonometry is from `libm`, so that a
+//! law computes the same bits on every machine.
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(clippy::indexing_slicing)]

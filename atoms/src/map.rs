@@ -10,16 +10,16 @@ use crate::gains::{Gains, fire_in_turn};
 pub(crate) const CELLS: i32 = 64;
 /// Side of a cell, in metres.
 pub(crate) const CELL: f64 = 0.05;
-/// Bytes of a map: two cells each.
+/// Size of a map, in bytes; a byte contains two cells.
 const BYTES: usize = (CELLS * CELLS / 2) as usize;
-/// Evidence of a cell of which nothing is known.
+/// Evidence of an unknown cell.
 const UNKNOWN: u8 = 4;
 /// Evidence from which a cell is occupied.
 const OCCUPIED: u8 = 8;
-/// Evidence that an echo adds, and maximum evidence.
+/// Evidence that an echo adds; `MOST` is the maximum evidence.
 const HIT: u8 = 4;
 const MOST: u8 = 13;
-/// Evidence that a ping which passes takes away.
+/// Evidence that a passing ping removes.
 const MISS: u8 = 2;
 /// Angles off a sonar's axis, in degrees, of the places of an echo.
 const ARC: [f64; 9] = [-12.0, -9.0, -6.0, -3.0, 0.0, 3.0, 6.0, 9.0, 12.0];
@@ -57,7 +57,7 @@ impl Cell {
     }
 }
 
-/// Returns the greatest whole number that is not greater than `number`. A ping passes many cells: `floor` of `libm`
+/// Returns the largest whole number that is at most `number`. A ping passes many cells, so `floor` of `libm`
 /// would take most of the turn's time.
 fn below(number: f64) -> i32 {
     let towards_zero = number as i32;
@@ -118,7 +118,7 @@ impl Map {
         }
     }
 
-    /// Notes that a ping passed from this place in the direction of `axis`.
+    /// Records that a ping passed from this place in the direction of `axis`.
     fn pass(&mut self, from: Pose, axis: Radians, free: f64) {
         let steps = libm::floor(free / CELL).max(0.0) as i32;
         for (degrees, begin) in RAYS {
@@ -132,7 +132,7 @@ impl Map {
         }
     }
 
-    /// Returns `true` if something is known to be nearer than `least`.
+    /// Returns `true` if an object is known to be nearer than `least`.
     fn explains(&self, from: Pose, axis: Radians, least: f64) -> bool {
         ARC.iter().any(|degrees| {
             let (sin, cos) = libm::sincos(axis.0 + 2.0 * degrees.to_radians());
@@ -144,7 +144,7 @@ impl Map {
         })
     }
 
-    /// Notes that an echo came back: from where most is known of something, or from anywhere on its arc.
+    /// Records an echo: at the place where the map knows most of an object, or anywhere on its arc.
     fn hit(&mut self, from: Pose, axis: Radians, range: f64) {
         let cells = ARC.map(|degrees| {
             let (sin, cos) = libm::sincos(axis.0 + degrees.to_radians());
@@ -159,7 +159,7 @@ impl Map {
         });
     }
 
-    /// Evidence for something in a cell; that of unknown cells off the map.
+    /// Returns the evidence for an object in a cell; that of an unknown cell off the map.
     fn evidence(&self, cell: Cell) -> u8 {
         let (place, shift) = place(cell);
         self.evidence.get(place).filter(|_| self.contains(cell)).map_or(UNKNOWN, |byte| byte >> shift & 15)
@@ -213,7 +213,7 @@ impl Map {
         }
     }
 
-    /// Returns `true` if something is in the cell; `false` off the map.
+    /// Returns `true` if the cell is occupied; `false` off the map.
     pub(crate) fn is_occupied(&self, cell: Cell) -> bool {
         self.evidence(cell) >= OCCUPIED
     }
@@ -250,8 +250,8 @@ impl Map {
     }
 }
 
-/// The place of a cell's evidence, which stays the same while the map moves, and the number of bits by which it is
-/// shifted there.
+/// Returns the position of a cell's evidence, which stays the same while the map moves, and the number of bits
+/// by which it is shifted there.
 fn place(Cell { x, y }: Cell) -> (usize, u8) {
     const { assert!(CELLS.count_ones() == 1) };
     let (x, y) = (x & (CELLS - 1), y & (CELLS - 1));
@@ -260,7 +260,7 @@ fn place(Cell { x, y }: Cell) -> (usize, u8) {
 
 #[cfg(test)]
 impl Map {
-    /// Puts something into every cell along a line between two places, in metres, around a robot at the origin.
+    /// Marks every cell along a line between two places, in metres, around a robot at the origin, as occupied.
     pub(crate) fn occupy(&mut self, from: (f64, f64), to: (f64, f64)) {
         self.move_to(Pose::ORIGIN);
         let steps = libm::ceil(libm::hypot(to.0 - from.0, to.1 - from.1) / CELL) as i32;
@@ -295,7 +295,7 @@ mod tests {
         (map, y)
     }
 
-    /// Returns `true` if something is at this distance ahead of the origin.
+    /// Returns `true` if an object is at this distance ahead of the origin.
     fn is_ahead(map: &Map, distance: f64) -> bool {
         map.is_occupied(Cell::of(distance, 0.0))
     }

@@ -1,18 +1,19 @@
-//! The places of the echoes of the last seconds: on a detour out of a corner the sonars do not see all of it at once.
+//! The places of echoes in the last seconds, since the sonars do not hear all of a corner at once on a detour
+//! out of it.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
 
 /// Maximum number of places kept.
 pub(crate) const PLACES: usize = 96;
-/// Echoes from nearer to each other than this, in metres, are one place.
+/// Distance, in metres, below which echoes count as one place.
 const ONE_PLACE: f64 = 0.1;
-/// A place is forgotten after this long, so that what went away does not stay.
+/// Time after which a place is forgotten, so that an object that has left does not remain.
 const KEPT: Nanos = Nanos(15_000_000_000);
-/// Echoes from further away than this, in metres, are not kept.
+/// Range, in metres, beyond which echoes are not kept.
 const NEAR: f64 = 1.2;
 
-/// A place, in the odometry's axes, and when an echo was last heard there.
+/// A place of an echo, in the odometry's axes, with the time of the last echo there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Echo {
     x: f64,
@@ -45,7 +46,7 @@ impl Memory {
         }
     }
 
-    /// Keeps a place in the stead of the same one, of a free one, or of the oldest.
+    /// Stores a place instead of the same place, a free place, or the oldest place.
     fn keep(&mut self, heard: Echo) {
         let same = |place: &Echo| {
             let (x, y) = (place.x - heard.x, place.y - heard.y);
@@ -62,7 +63,7 @@ impl Memory {
         }
     }
 
-    /// The places not yet forgotten at this time, from `here`, in the odometry's axes.
+    /// Returns the places that are not forgotten at this time, relative to `here`, in the odometry's axes.
     pub(crate) fn around(&self, here: Pose, now: Nanos) -> impl Iterator<Item = (f64, f64)> {
         let kept = self.echoes.iter().take(self.count).filter(move |place| now.since(place.at) < KEPT);
         kept.map(move |place| (place.x - here.x.0, place.y - here.y.0))

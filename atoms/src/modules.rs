@@ -5,15 +5,15 @@ use mdle_runtime::{Begin, Control, Law, Meters, MetersPerSecond, Nanos, Radians,
 
 use crate::go_avoid::{GoAvoid, GoingRound};
 
-/// Attribute of a module with the direction to something, in radians, from where the robot heads.
+/// Attribute of a module with the direction to a point, in radians, relative to the robot's heading.
 const BEARING: &str = "bearing";
-/// Attribute of a module with the distance to something, in metres.
+/// Attribute of a module with the distance to a point, in metres.
 const RANGE: &str = "range";
 /// Number that every module has: the time since it published what the plan reads of it, in seconds.
 const AGE: &str = "age";
-/// Age from which a direction counts no more.
+/// Age from which a direction is stale.
 const STALE: Nanos = Nanos(2_000_000_000);
-/// Distance to a goal whose module publishes no range.
+/// Assumed distance to a goal whose module publishes no range.
 const FAR: Meters = Meters(5.0);
 /// Speed where the way is free.
 const SPEED: MetersPerSecond = MetersPerSecond(0.2);
@@ -26,7 +26,7 @@ macro_rules! signals {
         pub struct $name(&'static str);
 
         impl $name {
-            /// The signal of this module.
+            /// Returns the signal of this module.
             #[must_use]
             pub const fn new(of: &'static str) -> Self {
                 Self(of)
@@ -52,25 +52,26 @@ signals! {
         |y, module| y.published(module, AGE).map_or(f64::INFINITY, |number| number.value);
 }
 
-/// Drives towards the goal that a module publishes, wherever it moves to, round obstacles.
+/// The control `goAvoid` that drives around obstacles towards the goal that a module publishes, wherever it
+/// moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct GoAvoid2(&'static str);
 
 impl GoAvoid2 {
-    /// The quark `goAvoid target`: the module of this name publishes `bearing` and `range`.
+    /// Returns the quark `goAvoid target`, for the module of this name, which publishes `bearing` and `range`.
     #[must_use]
     pub const fn new(target: &'static str) -> Self {
         Self(target)
     }
 }
 
-/// The law of [`GoAvoid2`]: `goAvoid` to the goal as it was published last. The robot stands while the bearing is more
-/// than two seconds old.
+/// The law of [`GoAvoid2`]: `goAvoid` to the latest published goal. The robot stands still while the bearing is
+/// more than two seconds old.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Following {
     module: &'static str,
     begin: Begin,
-    /// The way to the goal that was published at this time.
+    /// The law that drives to the goal, and the time at which the goal was published.
     towards: Option<(Nanos, GoingRound)>,
 }
 

@@ -1,4 +1,4 @@
-//! The movements of `goAvoid` in narrow places: along the shortest way on a map of what was heard, by movements in
+//! The movements of `goAvoid` in narrow places: along the shortest way on a map of echoes, by movements in
 //! which the body, a disc or a rectangle, touches nothing on the map.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
@@ -10,29 +10,30 @@ use crate::way::{Ahead, Next, way};
 
 /// Room around the body, in metres, below which a place is narrow.
 const ROOM: f64 = 0.1;
-/// Distance by which the way ahead must be free beyond the look-ahead before the robot leaves the way on the map.
+/// Distance by which the free way ahead must exceed the look-ahead before the robot leaves the way on the map.
 const LEAVES: Meters = Meters(0.4);
 /// Time between two searches for a way.
 const SEARCHES: Nanos = Nanos(500_000_000);
-/// Time for which the last way counts when none is found: single pings close and open gaps on the map.
+/// Time for which the last way remains valid when none is found, since single pings close and open gaps on the
+/// map.
 const COUNTS: Nanos = Nanos(2_000_000_000);
 /// Maximum speed, in m/s.
 const FASTEST: f64 = 0.12;
 /// Distance, in metres, of the place that a rectangle drives to where there is no way.
 const AHEAD: Meters = Meters(0.4);
-/// Time for which the robot may stand and turn; then it goes on with less room, as cells are coarse.
+/// Maximum time for which the robot stands and turns; then it continues with less room, as cells are coarse.
 const STANDS: Nanos = Nanos(4_000_000_000);
 
 /// The map, and the way on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Narrow {
     map: Map,
-    /// Place on the way that is driven to.
+    /// Next place on the way; `None` if the robot follows no way.
     way: Option<Next>,
     /// Time of the last search, and of the last one that found a way.
     searched: Nanos,
     found: Nanos,
-    /// Time since when the robot has stood.
+    /// Time since which the robot has stood still.
     stands: Option<Nanos>,
 }
 
@@ -45,7 +46,7 @@ impl Narrow {
         self.map.take(y, here);
     }
 
-    /// Returns `true` if the robot stands, since nothing brings it nearer.
+    /// Returns `true` if the robot stands still, since no movement brings it nearer.
     pub(crate) fn stands(&self) -> bool {
         self.stands.is_some()
     }
@@ -60,8 +61,8 @@ impl Narrow {
         (self.way, self.stands) = (None, None);
     }
 
-    /// The input that keeps a robot off what it no longer hears, as it goes round obstacles in this direction; `None`
-    /// where there is room.
+    /// Returns the input that keeps a robot away from obstacles that it no longer hears, as it drives around
+    /// them in this direction; `None` if there is enough room.
     pub(crate) fn round<Y: DiffDrive>(
         &self,
         y: &Y,
@@ -76,7 +77,7 @@ impl Narrow {
         self.towards(y, here, Next { x: there.x.0, y: there.y.0, is_straight: false }, speed, false)
     }
 
-    /// The input of a robot at `here`; `None` where the tangent rule is enough.
+    /// Returns the input of a robot at `here`; `None` if the tangent rule suffices.
     pub(crate) fn input<Y: DiffDrive>(&mut self, y: &Y, here: Pose, t: Nanos, mut ahead: Ahead) -> Option<Twist> {
         let more = if self.way.is_some() { LEAVES } else { Meters(0.0) };
         let is_free = ahead.free.is_some_and(|(free, asked)| free.0 >= asked.0 + more.0);
@@ -102,9 +103,10 @@ impl Narrow {
         Some(twist)
     }
 
-    /// The input that brings the body nearest to a place; `None` if every movement would touch.
+    /// Returns the input that brings the body nearest to a place; `None` if every movement would touch.
     ///
-    /// Not inlined, like [`Self::has_room`]: the surroundings are not on the stack beside the map of [`way`].
+    /// The function is not inlined, like [`Self::has_room`], so that the surroundings are not on the stack
+    /// together with the map of [`way`].
     #[inline(never)]
     fn towards<Y: DiffDrive>(
         &self,

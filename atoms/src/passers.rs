@@ -1,4 +1,5 @@
-//! The people whom a robot hears on its way: it gives way to one who approaches, and stands before one who crosses.
+//! The people whom a robot hears on its way: it gives way to an approaching person, and stops for a crossing
+//! person.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians};
@@ -15,7 +16,8 @@ const ROOM: Meters = Meters(0.4);
 const PASSES: f64 = 1.0;
 /// Maximum time, in seconds, for which the robot avoids a person who no longer approaches.
 const PASSES_MOST: f64 = 8.0;
-/// Number of turns in a row in which somebody must be heard: the edge of a cone that touches a wall is heard in fewer.
+/// Number of consecutive turns in which a person must be heard; the edge of a cone that touches a wall is heard
+/// in fewer.
 const SURE: u32 = 5;
 /// Least time, in seconds, for which the robot stands after it has heard somebody come who is about to cross its way;
 /// it stands until he should have passed.
@@ -46,7 +48,7 @@ impl Default for Passers {
 }
 
 impl Passers {
-    /// Takes in what the sonars hear of people, on the way in the direction `goal` at this speed.
+    /// Includes the pings of people on the way in the direction `goal` at this speed.
     pub(crate) fn take<Y: DiffDrive + SonarRing>(
         &mut self,
         y: &Y,
@@ -92,12 +94,12 @@ impl Passers {
     }
 }
 
-/// The time this many seconds after another.
+/// Returns the time this many seconds after `t`.
 fn after(t: Nanos, seconds: f64) -> Nanos {
     Nanos(t.0.saturating_add((seconds * 1e9) as u64))
 }
 
-/// The side to which to give way.
+/// Returns the side to which to give way.
 fn freer(obstacles: &Obstacles, goal: Radians) -> Side {
     let [left, right] = [90.0, -90.0].map(|side| obstacles.free(Radians(goal.0 + Radians::from_degrees(side).0)));
     if right >= ROOM || right >= left { Side::Right } else { Side::Left }

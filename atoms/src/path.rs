@@ -19,7 +19,7 @@ pub struct Path {
 }
 
 impl Path {
-    /// The quark `path file`: headings are meant in the frame in which the atom begins.
+    /// Returns the quark `path file`: headings are meant in the frame in which the atom begins.
     #[must_use]
     pub const fn new(file: &'static str) -> Self {
         Self { file }
@@ -38,7 +38,7 @@ pub struct Replaying {
     before: Option<Nanos>,
 }
 
-/// The heading, turn rate and speed that a path asks for at one time.
+/// The heading, turn rate and speed of a path at a certain time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Asked {
     heading: Radians,
@@ -116,7 +116,8 @@ mod tests {
         Sensed { paths: PathStore::new(&PATHS), ..Sensed::heading(degrees) }
     }
 
-    /// An atom of this path that begins so late, and the law's turns until it is done, at most a thousand.
+    /// Returns the number of the law's turns until it is done, at most a thousand, in an atom with this path
+    /// that begins at time `from`.
     fn replayed(file: &'static str, y: &mut Sensed, mut begin: Begin, from: u64) -> u64 {
         let millis = |number: u64| Nanos((from + number * 100) * 1_000_000);
         begin.now = millis(0);

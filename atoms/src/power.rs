@@ -3,12 +3,12 @@
 use mdle_runtime::capability::Power;
 use mdle_runtime::{Interrupt, Signal};
 
-/// Fires while the battery is low, by what is low on this robot.
+/// The interrupt `lowBattery`, which fires while the robot reports a low battery, by its own limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LowBattery;
 
 impl LowBattery {
-    /// The quark `lowBattery`.
+    /// Returns the quark `lowBattery`.
     #[must_use]
     pub const fn new() -> Self {
         Self
@@ -21,12 +21,12 @@ impl<Y: Power> Interrupt<Y> for LowBattery {
     }
 }
 
-/// Fires while the robot is on its charger.
+/// The interrupt `charger`, which fires while the robot is on its charger.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Charger;
 
 impl Charger {
-    /// The quark `charger`.
+    /// Returns the quark `charger`.
     #[must_use]
     pub const fn new() -> Self {
         Self
@@ -44,7 +44,7 @@ impl<Y: Power> Interrupt<Y> for Charger {
 pub struct Battery;
 
 impl Battery {
-    /// The signal `battery`.
+    /// Returns the signal `battery`.
     #[must_use]
     pub const fn new() -> Self {
         Self

@@ -5,21 +5,21 @@ use mdle_runtime::{Begin, Completes, Control, Law, Nanos, Radians, Twist};
 
 use crate::heading::{turned, turning};
 
-/// `u_θ = k(α − θ)`, `u_f = 0`.
+/// The control `rotate`: `u_θ = k(α − θ)`, `u_f = 0`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotate {
     heading: Radians,
 }
 
 impl Rotate {
-    /// The quark `rotate heading`: a heading in the frame in which the atom begins.
+    /// Returns the quark `rotate heading`, for a heading in the frame in which the atom begins.
     #[must_use]
     pub const fn new(heading: Radians) -> Self {
         Self { heading }
     }
 }
 
-/// The law of [`Rotate`]: done within 2° of the heading and at rest.
+/// The law of [`Rotate`], which is done within 2° of the heading and at rest.
 ///
 /// A robot that measures the drift of its heading at a wall corrects it when the atom begins.
 #[derive(Debug, Clone, Copy, PartialEq)]

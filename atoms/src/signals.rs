@@ -3,12 +3,12 @@
 use mdle_runtime::capability::{Odometry, SonarRing};
 use mdle_runtime::{Signal, SonarId};
 
-/// The range that a sonar returned last, in metres; infinite where no echo came back, or none was asked for yet.
+/// The signal `r`: the last range of a sonar, in metres; infinite without an echo, or before the first ping.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct R(SonarId);
 
 impl R {
-    /// The signal of this sonar.
+    /// Returns the signal of this sonar.
     #[must_use]
     pub const fn new(which: SonarId) -> Self {
         Self(which)
@@ -22,12 +22,12 @@ impl<Y: SonarRing> Signal<Y> for R {
     }
 }
 
-/// Age of a sonar's last ping, in seconds; infinite before its first.
+/// The signal `age`: the age of a sonar's last ping, in seconds; infinite before its first ping.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Age(SonarId);
 
 impl Age {
-    /// The signal of this sonar.
+    /// Returns the signal of this sonar.
     #[must_use]
     pub const fn new(which: SonarId) -> Self {
         Self(which)
@@ -49,7 +49,7 @@ macro_rules! signals {
         pub struct $name;
 
         impl $name {
-            /// The signal.
+            /// Returns the signal.
             #[must_use]
             #[allow(clippy::new_without_default, reason = "as bound alphabets have it")]
             pub const fn new() -> Self {

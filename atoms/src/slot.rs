@@ -11,7 +11,7 @@ const CORRECTS: f64 = 1.0;
 const AHEAD: f64 = 0.1;
 /// Time constant with which the formation turns after its leader, in seconds: its outer places would be too fast.
 const TURNS_IN: f64 = 1.5;
-/// Age from which the leader's state counts no more.
+/// Age from which the leader's state is stale.
 const SILENT: Nanos = Nanos(1_000_000_000);
 /// Speed below which a place has no direction of its own, in m/s.
 const AT_REST: f64 = 0.02;
@@ -31,7 +31,7 @@ pub struct Slot {
 }
 
 impl Slot {
-    /// The quark `slot leader ahead left`.
+    /// Returns the quark `slot leader ahead left`.
     #[must_use]
     pub const fn new(leader: &'static str, ahead: Meters, left: Meters) -> Self {
         Self { leader, ahead, left }
@@ -42,7 +42,8 @@ impl Slot {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Keeping {
     slot: Slot,
-    /// Direction of the formation, in radians, and the time for which it holds; `None` before the leader is known.
+    /// Direction of the formation, in radians, and the time for which it is valid; `None` before the leader is
+    /// known.
     direction: Option<(f64, Nanos)>,
 }
 
@@ -117,7 +118,7 @@ mod tests {
 
     const TURN: u64 = 100_000_000;
 
-    /// Lets the robot know a leader in this state, in place of any other.
+    /// Sets the state of the leader, which is the only other robot.
     fn see(y: &mut Sensed, (x, side, degrees): (f64, f64, f64), (v, omega): (f64, f64), age: u64) {
         let pose = Pose { x: Meters(x), y: Meters(side), theta: Radians::from_degrees(degrees) };
         let velocity = Twist { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) };

@@ -3,12 +3,12 @@
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Begin, Control, Law, Nanos, Twist};
 
-/// `u = 0`; it has no state, so it is its own law.
+/// The control `stop`: `u = 0`. It has no state, so it is its own law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Stop;
 
 impl Stop {
-    /// The quark `stop`.
+    /// Returns the quark `stop`.
     #[must_use]
     pub const fn new() -> Self {
         Self

@@ -7,14 +7,14 @@ use mdle_runtime::{Interrupt, Meters, Nanos, Pose};
 /// Length, in metres, by which a law must come nearer to its goal to have made progress.
 const NEARER: f64 = 0.1;
 
-/// Fires once the law of the turn before has made no progress for this long.
+/// The interrupt `stuck`, which fires once the law of the turn before has made no progress for this long.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stuck {
     duration: Nanos,
 }
 
 impl Stuck {
-    /// The quark `stuck duration`.
+    /// Returns the quark `stuck duration`.
     #[must_use]
     pub const fn new(duration: Nanos) -> Self {
         Self { duration }
@@ -22,7 +22,7 @@ impl Stuck {
 }
 
 impl<Y: Odometry> Interrupt<Y> for Stuck {
-    /// Returns `false`: nothing in the output itself is about a goal.
+    /// Returns `false`, as the output alone does not show progress towards a goal.
     fn fired(&self, _: &Y) -> bool {
         false
     }
@@ -35,14 +35,14 @@ impl<Y: Odometry> Interrupt<Y> for Stuck {
 /// The progress of a law towards a place, by odometry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Progress {
-    /// Distance of the goal when progress was last made; at the beginning, that of the start.
+    /// Distance from the goal when progress was last made; initially, the distance from the start.
     from: Meters,
-    /// Time at which it was made.
+    /// Time at which progress was last made.
     at: Nanos,
 }
 
 impl Progress {
-    /// A law that begins at this time and place.
+    /// Returns the progress of a law that begins at this time and place.
     pub(crate) fn begin(here: Pose, goal: &Pose, now: Nanos) -> Self {
         Self { from: here.distance(goal), at: now }
     }
@@ -52,7 +52,7 @@ impl Progress {
         Self { from: Meters(self.from.0 + further.0), ..self }
     }
 
-    /// Takes the place of a turn.
+    /// Includes the pose of a turn.
     pub(crate) fn take(&mut self, here: Pose, goal: &Pose, now: Nanos) {
         let distance = here.distance(goal);
         if self.is_made(distance) {
@@ -60,7 +60,7 @@ impl Progress {
         }
     }
 
-    /// Returns how long the robot, now at `here`, has made no progress.
+    /// Returns the time for which the robot, now at `here`, has made no progress.
     pub(crate) fn stalled(&self, here: Pose, goal: &Pose, now: Nanos) -> Nanos {
         if self.is_made(here.distance(goal)) { Nanos::ZERO } else { now.since(self.at) }
     }

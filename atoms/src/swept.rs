@@ -1,30 +1,30 @@
-//! The speed and turn rate that bring a body nearest to a place without touching what is on the map: the body is tried,
-//! as the disc or rectangle that it is, along the arc of each (a dynamic window).
+//! Chooses the speed and turn rate that bring a body nearest to a place without touching anything on the map:
+//! the body, as a disc or rectangle, is tried along the arc of each (a dynamic window).
 
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
 
 use crate::map::Map;
 
-/// Occupied cells that are looked at, from the nearest rows on.
+/// Maximum number of occupied cells that are considered, from the nearest rows on.
 const POINTS: usize = 64;
-/// Distance around the smallest circle around the body, in metres, within which cells are looked at.
+/// Distance beyond the smallest circle around the body, in metres, within which cells are considered.
 const WITHIN: f64 = 0.18;
 /// Turn rates that are tried, in rad/s.
 const RATES: [f64; 7] = [0.0, 0.15, -0.15, 0.35, -0.35, 0.7, -0.7];
 /// Factors by which the given speed is multiplied for the trials.
 const SPEEDS: [f64; 4] = [1.0, 0.5, 0.0, -0.5];
-/// Times, in seconds, at which the body is tried.
+/// Times, in seconds, at which the position of the body is checked.
 const TIMES: [f64; 3] = [0.3, 0.6, 1.0];
 /// Distance, in metres, by which an obstacle may be further away than the centre of its cell.
 const COARSE: f64 = 0.015;
-/// Radius of a rectangle's corners, in metres: overlaps up to it are measured.
+/// Radius of a rectangle's corners, in metres, up to which overlaps are measured.
 const ROUNDED: f64 = 0.03;
-/// Distance that is kept where it costs nothing.
+/// Distance, in metres, from which an obstacle has no cost.
 const ROOM: f64 = 0.12;
-/// Distance from which it costs five times as much.
+/// Distance, in metres, below which an obstacle costs five times as much.
 const CLOSE: f64 = 0.08;
-/// Cost of turning on the spot, in metres: a turn is to bring the robot further than that.
+/// Cost of turning on the spot, in metres, so that a turn must bring the robot further than that.
 const STANDING_COSTS: f64 = 0.06;
 /// Cost of a radian off the place, in metres, and where the body cannot turn on the way there.
 const OFF_COSTS: f64 = 0.15;
@@ -34,14 +34,14 @@ const OFF_COSTS_STRAIGHT: f64 = 1.0;
 pub(crate) struct Surroundings {
     points: [(f64, f64); POINTS],
     count: usize,
-    /// Half of the length and of the width of the rectangle around which the body reaches by `radius`; 0 of a disc.
+    /// Half of the length and of the width of a rectangle that `radius` surrounds; 0 for a disc.
     half_length: f64,
     half_width: f64,
     radius: f64,
 }
 
 impl Surroundings {
-    /// The surroundings of the body at `here`.
+    /// Returns the surroundings of the body at `here`.
     pub(crate) fn of<Y: DiffDrive>(y: &Y, map: &Map, here: Pose) -> Self {
         let (half_length, half_width) = (y.half_length().0, y.half_width().0);
         let is_disc = y.body_radius().0 <= half_length;
@@ -66,12 +66,12 @@ impl Surroundings {
         near
     }
 
-    /// The distance between the body and the nearest point.
+    /// Returns the distance between the body and the nearest point.
     pub(crate) fn now(&self) -> f64 {
         self.room(0.0, 0.0, 0.0)
     }
 
-    /// The distance between the body, moved to this pose from where it is, and the nearest point.
+    /// Returns the distance between the body, moved by this pose, and the nearest point.
     fn room(&self, x: f64, y: f64, theta: f64) -> f64 {
         let (sin, cos) = libm::sincos(theta);
         let points = self.points.iter().take(self.count);
@@ -84,9 +84,9 @@ impl Surroundings {
         libm::sqrt(square) - self.radius
     }
 
-    /// The input that brings the body nearest to the place at this distance ahead and to the left, at most at this
-    /// speed; `None` if every movement would touch. A bold robot goes where room is scarce; one that has to go straight
-    /// first turns to the place.
+    /// Returns the input that brings the body nearest to the place at this distance ahead and to the left, at
+    /// most at this speed; `None` if every movement would touch something. A bold robot drives where there is
+    /// little room; a robot that has to go straight first turns to the place.
     pub(crate) fn towards(
         &self,
         ahead: f64,
@@ -148,7 +148,8 @@ mod tests {
 
     const SPEED: MetersPerSecond = MetersPerSecond(0.12);
 
-    /// The input of this body towards a place 0.4 m ahead and `left`, beside walls along its way at these distances.
+    /// Returns the input of this body towards a place 0.4 m ahead and `left`, beside walls along its way at
+    /// these distances.
     fn towards(y: &Sensed, left: f64, walls: &[f64]) -> Option<Twist> {
         let mut map = Map::EMPTY;
         for wall in walls {

@@ -3,12 +3,13 @@
 use mdle_runtime::Interrupt;
 use mdle_runtime::capability::StateLink;
 
-/// Fires while the state link to the robot is up: while its newest state is fresh.
+/// The interrupt `sync`, which fires while the newest state of the robot is fresh, so that the state link to it
+/// is up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sync(&'static str);
 
 impl Sync {
-    /// The quark `sync robot`.
+    /// Returns the quark `sync robot`.
     #[must_use]
     pub const fn new(robot: &'static str) -> Self {
         Self(robot)
@@ -21,13 +22,14 @@ impl<Y: StateLink> Interrupt<Y> for Sync {
     }
 }
 
-/// Fires once the robot has entered as many scopes with a `rendezvous` with this one as this one has with it
-/// (docs/src/reference/semantics.md, 2.6). Neither loss nor delay can undo it, since both only count up.
+/// The interrupt `rendezvous`, which fires once the robot has entered at least as many scopes with a
+/// `rendezvous` with this robot as this robot has with it (docs/src/reference/semantics.md, 2.6). Neither loss
+/// nor delay can undo it, since both numbers only increase.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rendezvous(&'static str);
 
 impl Rendezvous {
-    /// The quark `rendezvous robot`.
+    /// Returns the quark `rendezvous robot`.
     #[must_use]
     pub const fn new(robot: &'static str) -> Self {
         Self(robot)
@@ -40,8 +42,8 @@ impl<Y: StateLink> Interrupt<Y> for Rendezvous {
     }
 }
 
-/// Fires while the robot's plan has come to an atom, the first of its text being number 1, or beyond: while the atom
-/// that it runs is this one or a later one, or its plan is over.
+/// The interrupt `past`, which fires while the robot's plan has reached an atom, counted from 1 in the order of
+/// its text: while the plan runs this atom or a later one, or is over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Past {
     robot: &'static str,
@@ -49,7 +51,7 @@ pub struct Past {
 }
 
 impl Past {
-    /// The quark `past robot atom`.
+    /// Returns the quark `past robot atom`.
     #[must_use]
     pub const fn new(robot: &'static str, atom: u64) -> Self {
         Self { robot, atom }
@@ -70,7 +72,8 @@ mod tests {
     use super::*;
     use crate::trial::Sensed;
 
-    /// The output of a robot that has entered `own` rounds with `ada`, whose state has this age and the count `theirs`.
+    /// Returns the output of a robot that has entered `own` rounds with `ada`, whose state has this age and the
+    /// count `theirs`.
     fn linked(own: u64, age: u64, theirs: u64) -> Sensed {
         let state =
             PeerState { pose: Pose::ORIGIN, velocity: Twist::default(), age: Nanos(age), rounds: theirs, atom: 1 };

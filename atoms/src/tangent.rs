@@ -7,24 +7,25 @@ use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pose, Radians, SONARS, Sonar
 use crate::gains::{Gains, fire_in_turn};
 use crate::memory::{Memory, PLACES};
 
-/// Directions tried all round, 5° apart.
+/// Number of directions that are tried around the robot, 5° apart.
 const DIRECTIONS: i32 = 72;
-/// Pings from further away than this, in metres, are not looked at.
+/// Range, in metres, beyond which pings are ignored.
 const SEEN_WITHIN: f64 = 2.0;
-/// The points taken of a ping's arc, from its axis.
+/// Angles from the axis of the points that represent a ping's arc.
 const ARC: [Radians; 3] = [Radians::from_degrees(-8.0), Radians(0.0), Radians::from_degrees(8.0)];
-/// Distances, in metres, by which a wall is assumed to go on beyond where it was last heard.
+/// Distances, in metres, by which a wall is assumed to continue beyond its last echo.
 const EXTENDS: [f64; 3] = [0.25, 0.5, 0.75];
-/// Echoes of one wall are this far apart at least, in metres: those of an edge are not.
+/// Minimum distance, in metres, between echoes of a wall; echoes of an edge are closer.
 const APART: f64 = 0.15;
-/// The cosine of the angle from a sonar's axis at which a wall is heard at least: 60°.
+/// Cosine of the angle from a sonar's axis at which a wall must at least be heard: 60°.
 const ACROSS: f64 = 0.5;
-/// The points taken of what is heard, and those of what was heard before.
+/// Maximum number of points: those of present echoes, and those of earlier echoes.
 const POINTS: usize = SONARS * (ARC.len() + EXTENDS.len()) + PLACES;
-/// Distance between the body and an obstacle, in metres, at which a way costs `CLOSE_COSTS`; nearer it costs more.
+/// Distance between the body and an obstacle, in metres, at which a way costs `CLOSE_COSTS`; a smaller distance
+/// costs more.
 const MARGIN: f64 = 0.06;
-/// Distance from the body, in metres, at which the law takes an obstacle to be that may be nearer than it is heard:
-/// near enough that the robot steers away from it, and further than what blocks a gap.
+/// Distance from the body, in metres, at which the law assumes an obstacle that may be nearer than its range:
+/// near enough that the robot steers away from it, and further than a distance that blocks a gap.
 const AT_LEAST_RANGE: f64 = 0.08;
 /// Cost of a way that lacks free length, in radians of detour for the whole look-ahead.
 const BLOCKED_COSTS: f64 = 6.0;
@@ -38,9 +39,9 @@ const CHANGE_COSTS: f64 = 0.15;
 const CHANGE_COSTS_ON_A_DETOUR: f64 = 0.6;
 /// Maximum angle of a detour from the goal's direction: beyond it the robot would go in circles.
 const TURNED_MOST: Radians = Radians::from_degrees(215.0);
-/// Costs differ by less than this through the order in which they are added up.
+/// Difference below which costs count as equal, since it may come from the order of additions.
 const ROUNDING: f64 = 1e-9;
-/// Free way is not counted beyond this, in metres.
+/// Maximum length of free way that counts, in metres.
 const FREE_MOST: f64 = 3.0;
 /// Limits of the distance behind and ahead of the robot, in metres, at which points count as beside its way.
 const BESIDE: (f64, f64) = (-0.05, 0.9);
@@ -69,23 +70,23 @@ pub(crate) struct Obstacles {
 /// The direction in which a law wants to go.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Wish {
-    /// The direction of the goal.
+    /// Direction of the goal.
     pub(crate) goal: Radians,
     /// Length of the way ahead that should be free.
     pub(crate) look_ahead: Meters,
-    /// The direction chosen in the turn before.
+    /// Direction chosen in the turn before.
     pub(crate) previous: Option<Radians>,
-    /// The side of an obstacle to which the law keeps.
+    /// Side of an obstacle to which the law keeps.
     pub(crate) side: Option<Side>,
-    /// `true` if the law goes along an obstacle rather than to the goal.
+    /// `true` if the law follows an obstacle instead of driving to the goal.
     pub(crate) along: bool,
-    /// `true` if the robot may go along walls as close as it can.
+    /// `true` if the robot may drive as close to walls as it can.
     pub(crate) close: bool,
 }
 
 impl Wish {
-    /// The cost of another direction than that of the turn before, so that two ways that are equally good do not take
-    /// turns.
+    /// Returns the cost of a direction other than that of the turn before, which keeps the robot from
+    /// alternating between two equally good ways.
     fn turns(&self, offset: f64) -> f64 {
         let costs = if self.along { CHANGE_COSTS_ON_A_DETOUR } else { CHANGE_COSTS };
         let change = |previous: Radians| Radians(self.goal.0 + offset - previous.0).wrapped().0.abs();
@@ -93,17 +94,18 @@ impl Wish {
     }
 }
 
-/// A side on which to pass.
+/// A side on which the robot passes an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Side {
-    /// Counter-clockwise of the goal's direction.
+    /// Counter-clockwise from the goal's direction.
     Left,
-    /// Clockwise of it.
+    /// Clockwise from the goal's direction.
     Right,
 }
 
 impl Side {
-    /// An angle from the goal's direction, counted round this side only: 0..2π to the left, -2π..0 to the right.
+    /// Returns an angle from the goal's direction, counted only towards this side: 0..2π to the left, -2π..0 to
+    /// the right.
     fn counted(self, offset: f64) -> f64 {
         match self {
             Self::Left if offset < 0.0 => offset + core::f64::consts::TAU,
@@ -114,7 +116,7 @@ impl Side {
 }
 
 impl Obstacles {
-    /// The points that the sonars of `y` saw, around the body at `here`.
+    /// Returns the obstacles that the sonars of `y` heard around the body at `here`.
     #[inline(never)]
     pub(crate) fn seen<Y: DiffDrive + SonarRing>(y: &Y, here: Pose) -> Self {
         let (half_length, half_width) = (y.half_length().0, y.half_width().0);
@@ -147,20 +149,20 @@ impl Obstacles {
         }
     }
 
-    /// Adds the places that `memory` keeps; returns the number of points before.
+    /// Includes the places that `memory` keeps; returns the number of points before.
     pub(crate) fn remember(&mut self, memory: &Memory, here: Pose, now: Nanos) -> usize {
         let seen = self.count;
         memory.around(here, now).for_each(|(x, y)| self.push(Point { x, y }));
         seen
     }
 
-    /// Removes all points but the first `seen`.
+    /// Removes all points except the first `seen`.
     pub(crate) fn forget(&mut self, seen: usize) {
         self.count = self.count.min(seen);
     }
 
-    /// Returns the distance in metres, at most 3, that the body, with its margin, can go in this direction before it
-    /// meets a point; negative when a point is already inside the margin.
+    /// Returns the distance, in metres and at most 3, that the body with its margin can drive in this direction
+    /// before it reaches a point; negative if a point is already inside the margin.
     pub(crate) fn free(&self, direction: Radians) -> Meters {
         self.free_along(Axis::of(direction))
     }
@@ -176,9 +178,11 @@ impl Obstacles {
         Meters(free)
     }
 
-    /// The distance of the nearest point beside the way in this direction, from a place along it; infinite without any.
+    /// Returns the distance of the nearest point beside the way in this direction, from a place along it;
+    /// infinite without any.
     ///
-    /// What the way ends at after its `free` length is not beside it, but on a wide body.
+    /// A point at which the way ends, after its `free` length, does not count as beside it, except for a wide
+    /// body.
     fn beside(&self, axis: Axis, free: Meters) -> f64 {
         let (back, ahead) = (BESIDE.0, BESIDE.1.min(free.0 + self.gains.beyond));
         let place = self.gains.room_at.min(free.0).max(0.0);
@@ -192,7 +196,8 @@ impl Obstacles {
         least
     }
 
-    /// The direction of least cost, as an angle from the goal's direction counted round the side to keep to.
+    /// Returns the direction of least cost, as an angle from the goal's direction counted towards the side to
+    /// which the robot keeps.
     pub(crate) fn best(&self, wish: &Wish) -> Radians {
         let mut best = (f64::INFINITY, 0, 0.0);
         for number in 0..DIRECTIONS {
@@ -214,8 +219,8 @@ impl Obstacles {
         Radians(best.2)
     }
 
-    /// The cost of a direction, of which `turns` is what the change from the turn before costs; `None` if a part of it
-    /// is more than `best`.
+    /// Returns the cost of a direction, where `turns` is the cost of the change from the turn before; `None` if
+    /// a part of the cost exceeds `best`.
     fn cost(&self, offset: f64, turns: f64, wish: &Wish, best: f64) -> Option<f64> {
         let axis = Axis::of(Radians(wish.goal.0 + offset));
         let mut cost = offset.abs();
@@ -235,7 +240,7 @@ impl Obstacles {
         Some(cost + turns)
     }
 
-    /// Every point as its distance along an axis and its distance to the left of it.
+    /// Returns every point as its distance along an axis and its distance to the left of the axis.
     fn along(&self, Axis { sin, cos }: Axis) -> impl Iterator<Item = (f64, f64)> {
         let points = self.points.get(..self.count).unwrap_or(&self.points);
         points.iter().map(move |point| (point.x * cos + point.y * sin, point.y * cos - point.x * sin))
@@ -256,8 +261,8 @@ impl Axis {
     }
 }
 
-/// Returns points where the wall goes on that a sonar heard in all the pings kept. The sonars do not hear the surface
-/// ahead, since it does not face them.
+/// Returns points where a wall is assumed to continue that a sonar heard in all its pings. The sonars do not
+/// hear the surface ahead, since it does not face them.
 fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose) -> Option<[Point; EXTENDS.len()]> {
     let mut echoes = y.pings(sonar).newest_first().map(|ping| {
         let range = ping.range.filter(|range| range.0 < SEEN_WITHIN)?;
@@ -275,15 +280,16 @@ fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose) -> Opti
     Some(EXTENDS.map(|further| Point { x: new.x + further * along / length, y: new.y + further * up / length }))
 }
 
-/// The newest ping of a sonar, or the one before if that heard nothing, when it is near enough to matter.
+/// Returns the newest ping of a sonar, or the ping before if the newest heard nothing, if it is near enough to
+/// matter.
 fn heard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<(Ping, Meters)> {
     const { assert!(PINGS_KEPT >= 2) };
     let (ping, range) = y.pings(sonar).newest_first().take(2).find_map(|ping| Some((*ping, ping.range?)))?;
     (range.0 < SEEN_WITHIN).then_some((ping, range))
 }
 
-/// Points of a ping's arc, at these angles off its axis, seen from `here`: the arc lies around the transducer, where
-/// that was at the time.
+/// Returns points of a ping's arc, at these angles off its axis, as seen from `here`. The arc lies around the
+/// transducer's place at the time of the ping.
 fn on_arc<const N: usize>(
     ping: &Ping,
     range: Meters,
@@ -351,7 +357,7 @@ mod tests {
         assert!((-40.0..=-10.0).contains(&chosen.degrees()), "{}", chosen.degrees());
     }
 
-    /// The distance, beside a place 60 cm ahead, of a wall that sonar 4 heard there at this range.
+    /// Returns the distance, beside a place 60 cm ahead, of a wall that sonar 4 heard there at this range.
     fn beside_a_wall_at(range: f64, confirmation: usize) -> f64 {
         let mut y = Sensed { confirmation, ..Sensed::default() };
         y.pose.x = Meters(0.6);
@@ -367,8 +373,8 @@ mod tests {
         assert!((beside_a_wall_at(0.1778, 2) - 0.19 - 0.1778).abs() < 0.002);
     }
 
-    /// Returns `true` if a robot 1 m before two posts, whose edges leave its body 5.5 cm on both sides, takes the way
-    /// between them for free.
+    /// Returns `true` if a robot 1 m before two posts, whose edges leave 5.5 cm on both sides of its body,
+    /// considers the way between them free.
     fn passes(confirmation: usize) -> bool {
         let mut y = Sensed { confirmation, ..Sensed::default() };
         for (sonar, side) in [(4, 1.0), (12, -1.0)] {

@@ -1,4 +1,4 @@
-//! A robot's output made up by hand, for trying quarks on.
+//! Handwritten outputs of a robot, for tests of quarks.
 
 use core::f64::consts::PI;
 
@@ -23,7 +23,7 @@ pub(crate) struct Sensed {
     pub(crate) supply: Supply,
     pub(crate) paths: PathStore,
     pub(crate) published: Published,
-    /// Half of the body's length and of its width, in metres; a disc if they are equal.
+    /// Half of the body's length and of its width, in metres; equal for a disc.
     pub(crate) halves: [f64; 2],
 }
 
@@ -50,18 +50,18 @@ impl Sensed {
         Self { pose: Pose { theta: Radians::from_degrees(degrees), ..Pose::ORIGIN }, ..Self::default() }
     }
 
-    /// Takes in a ping, made where the robot is.
+    /// Includes a ping from the robot's current pose.
     pub(crate) fn ping(&mut self, sonar: SonarId, range: Option<f64>) {
         self.ping_at(sonar, range, Nanos::ZERO);
     }
 
-    /// Takes in a ping of this time, made where the robot is.
+    /// Includes a ping at this time from the robot's current pose.
     pub(crate) fn ping_at(&mut self, sonar: SonarId, range: Option<f64>, at: Nanos) {
         let ping = Ping { range: range.map(Meters), at, pose: self.pose, mount: Mount::default() };
         self.pings.get_mut(sonar.number()).expect("one of the sixteen").push(ping);
     }
 
-    /// Makes this robot the only other one that the state link knows.
+    /// Makes this robot the only other robot that the state link knows.
     pub(crate) fn link(&mut self, peer: Peer) {
         let mut links = Links::NONE;
         assert!(links.add(peer));
@@ -169,22 +169,23 @@ impl Paths for Sensed {
     }
 }
 
-/// A robot of this half length and half width, in metres.
+/// Returns a robot of this half length and half width, in metres.
 pub(crate) fn sized(half_length: f64, half_width: f64) -> Sensed {
     Sensed { halves: [half_length, half_width], ..Sensed::default() }
 }
 
-/// An atom that begins at time 0 in the odometry's own axes.
+/// Returns an atom that begins at time 0 in the odometry's own axes.
 pub(crate) fn begun() -> Begin {
     framed(0.0)
 }
 
-/// An atom that begins at time 0 in a frame turned by this many degrees.
+/// Returns an atom that begins at time 0 in a frame turned by this many degrees.
 pub(crate) fn framed(degrees: f64) -> Begin {
     Begin { now: Nanos::ZERO, frame: Frame::default().turned(Radians::from_degrees(degrees)) }
 }
 
-/// Runs a law until it is done; how far the robot turned, in degrees, full circles counted.
+/// Runs a law until it is done; returns the angle by which the robot turned, in degrees, including full
+/// circles.
 pub(crate) fn until_completed<L>(law: &mut L, y: &mut Sensed) -> f64
 where
     L: Completes<Sensed> + Law<Sensed, Input = Twist>,

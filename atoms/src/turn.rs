@@ -1,25 +1,26 @@
-//! `turn α`: turns by an angle from the heading at which it begins; ours, next to the paper's `rotate` (section IV-A).
+//! `turn α`: turns by an angle from the heading at which it begins; a law of this project, beside the paper's
+//! `rotate` (section IV-A).
 
 use mdle_runtime::capability::{DiffDrive, Odometry};
 use mdle_runtime::{Begin, Completes, Control, Law, Nanos, Radians, Twist};
 
 use crate::heading::{turned, turning};
 
-/// `u_θ = k(α − what was turned so far)`, `u_f = 0`.
+/// The control `turn`: `u_θ = k(α − angle turned so far)`, `u_f = 0`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
     angle: Radians,
 }
 
 impl Turn {
-    /// The quark `turn angle`: counter-clockwise positive, also by more than a full circle.
+    /// Returns the quark `turn angle`: counter-clockwise positive, also for more than a full circle.
     #[must_use]
     pub const fn new(angle: Radians) -> Self {
         Self { angle }
     }
 }
 
-/// The law of [`Turn`]: done within 2° of the angle and at rest.
+/// The law of [`Turn`], which is done within 2° of the angle and at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turning {
     angle: Radians,

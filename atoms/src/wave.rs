@@ -1,33 +1,33 @@
-//! A wave over a map, which starts at the goal, or at the edge of the map on the way to it, and costs more beside
-//! obstacles.
+//! A wave over a map, which starts at the goal, or at the edge of the map on the way to the goal, and has
+//! higher costs beside obstacles.
 
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Meters, Pose};
 
 use crate::map::{CELLS, Cell, Map};
 
-/// Cells along a side of the wave: those of the map, and one around them.
+/// Number of cells along a side of the wave: those of the map, and one more on each side.
 pub(crate) const SIDE: usize = CELLS as usize + 2;
-/// Distances are whole centimetres: a step to a cell beside, and to one across.
+/// Cost of a step to an adjacent cell, in centimetres. All distances are whole centimetres.
 const STRAIGHT: u16 = 5;
 const ACROSS: u16 = 7;
-/// The bits of a cell that hold the distance; the others hold its class.
+/// Bits of a cell that contain the distance; the other bits contain the class.
 const DISTANCE: u16 = 0x1fff;
 /// Room beside the body, in centimetres, below which a cell is of a class, and the factor of its cost. A body does not
 /// pass a cell of the first class. From `AROUND` on, room counts beside the smallest circle around the body, in which
 /// a rectangle turns.
 const CLASSES: [(i32, u16); 8] = [(2, 0), (4, 10), (6, 6), (8, 5), (2, 4), (10, 4), (16, 2), (i32::MAX, 1)];
 const AROUND: usize = 4;
-/// Class from which on a body turns as it likes; a disc turns in those below too.
+/// Class from which a body can turn freely; a disc can also turn in lower classes.
 const TURNS: usize = 5;
 /// Rooms in centimetres, below which classes are looked up in a table, and that of a map without obstacles.
 const SMALL: usize = 64;
 const LARGE: i32 = DISTANCE as i32;
 /// Class of cells of which nothing is known.
 const UNKNOWN: usize = 5;
-/// Maximum number of passes over the map, to and fro.
+/// Maximum number of passes over the map, forwards and backwards.
 const PASSES: u32 = 12;
-/// A way ends where the goal is nearer by this, in metres.
+/// Distance, in metres, by which the goal must be nearer at the end of a way.
 const GAINS: f64 = 0.5;
 /// Distance of the far edge of the map, in metres, from which distances count.
 pub(crate) const EDGE: f64 = 2.4;
@@ -79,7 +79,7 @@ pub(crate) fn index(x: i32, y: i32) -> usize {
     (y + 1) as usize * SIDE + (x + 1) as usize
 }
 
-/// The cells of the map, row by row.
+/// Returns the cells of the map, row by row.
 fn all() -> impl Iterator<Item = (i32, i32, usize)> {
     (0..CELLS).flat_map(|y| (0..CELLS).map(move |x| (x, y, index(x, y))))
 }
@@ -103,24 +103,24 @@ impl Wave {
         self.spread(rows);
     }
 
-    /// Returns the centimetres, by cost, from a cell to the goal, less those from which distances count; `None` if no
-    /// way leads from there.
+    /// Returns the cost from a cell to the goal, in centimetres, minus the distance from which costs count;
+    /// `None` if no way leads to the goal.
     pub(crate) fn left(&self, cell: usize) -> Option<i32> {
         let left = self.at(cell) & DISTANCE;
         (left < DISTANCE).then_some(left.into())
     }
 
-    /// Returns the centimetres that a way of this many cells costs which is like this cell.
+    /// Returns the cost, in centimetres, of a way of this many cells that are like this cell.
     pub(crate) fn cost(&self, cell: usize, cells: f64) -> i32 {
         libm::round(f64::from(STRAIGHT * factor(self.at(cell))) * cells) as i32
     }
 
-    /// Returns `true` if the body passes the cell.
+    /// Returns `true` if the body can pass the cell.
     pub(crate) fn is_free(&self, cell: usize) -> bool {
         factor(self.at(cell)) > 0
     }
 
-    /// Returns `true` if the body cannot turn in the cell as it likes.
+    /// Returns `true` if the body cannot turn freely in the cell.
     pub(crate) fn is_tight(&self, cell: usize) -> bool {
         class(self.at(cell)) < TURNS
     }
@@ -135,7 +135,7 @@ impl Wave {
         }
     }
 
-    /// Measures the distance of every cell from the nearest occupied one, and notes its class.
+    /// Measures the distance of every cell from the nearest occupied cell, and stores the cell's class.
     fn measure<Y: DiffDrive>(&mut self, map: &Map, y: &Y) {
         let (corner, mut rows) = (map.corner, Rows::NONE);
         for Cell { x, y } in map.occupied() {

@@ -8,20 +8,20 @@ use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians};
 use crate::map::{CELLS, Cell, Map};
 use crate::wave::{EDGE, Ends, SIDE, Wave, index};
 
-/// Most centimetres, by cost, that a way may be longer than the straight one.
+/// Maximum cost, in centimetres, by which a way may exceed the straight way.
 const LONGER: i32 = 600;
-/// Number of cells along the way to the place that a disc drives to.
+/// Number of cells along the way to the place to which a disc drives.
 const AHEAD: u32 = 7;
-/// Distance, in cells, of the place that a rectangle drives to where it can turn.
+/// Distance, in cells, of the place to which a rectangle drives where it can turn.
 const NEAR: f64 = 7.0;
-/// Distance along the way, in cells, up to which a rectangle goes straight where it cannot turn.
+/// Maximum distance along the way, in cells, over which a rectangle drives straight where it cannot turn.
 const STRAIGHT_MOST: u32 = 24;
-/// Number of cells beyond a narrow stretch to the place that a rectangle goes straight to.
+/// Number of cells beyond a narrow stretch to the place to which a rectangle drives straight.
 const BEYOND: u32 = 3;
 /// Number of cells before a narrow stretch within which a rectangle begins to go straight.
 const BEFORE: f64 = 1.5;
-/// Most centimetres, by cost, that the way chosen before may be longer than the best one, which changes with what
-/// single pings hear.
+/// Maximum cost, in centimetres, by which the way chosen before may exceed the best way, which changes with
+/// single pings.
 const KEEPS: i32 = 80;
 
 /// The state of the tangent rule in this turn.
@@ -34,11 +34,11 @@ pub(crate) struct Ahead {
     pub(crate) from: Meters,
     /// Direction that the rule has chosen.
     pub(crate) chosen: Radians,
-    /// Length of the way to the goal that is free, and that is asked for; `None` on a detour.
+    /// Free length of the way to the goal, and the length that is required; `None` on a detour.
     pub(crate) free: Option<(Meters, Meters)>,
     /// Speed where the way is free.
     pub(crate) speed: MetersPerSecond,
-    /// Place that the last way led to.
+    /// Place to which the last way led.
     pub(crate) before: Option<Next>,
 }
 
@@ -47,14 +47,15 @@ pub(crate) struct Ahead {
 pub(crate) struct Next {
     pub(crate) x: f64,
     pub(crate) y: f64,
-    /// `true` if the body cannot turn on the way there, and so has to go straight.
+    /// `true` if the body cannot turn on the way to the place, and so has to drive straight.
     pub(crate) is_straight: bool,
 }
 
 /// Returns the place at which the body of `y`, at `here`, next has to be on its way to the goal; `None` if the map has
 /// no way that leads nearer.
 ///
-/// Not inlined: the wave is the largest thing that a law puts on the stack, and leaves it with the result.
+/// The function is not inlined: the wave is the largest value that a law puts on the stack, and must leave the
+/// stack when the function returns.
 #[inline(never)]
 pub(crate) fn way<Y: DiffDrive>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> Option<Next> {
     let (goal, straight) = (&ahead.goal, here.distance(&ahead.goal).0);
@@ -78,14 +79,14 @@ pub(crate) fn way<Y: DiffDrive>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> 
     Some(Next { x, y, is_straight })
 }
 
-/// The wave, and the cell of the robot.
+/// The wave, with the cell of the robot.
 struct Way<'w> {
     wave: &'w Wave,
     here: usize,
 }
 
 impl Way<'_> {
-    /// Returns the cell of the place that the last way led to, if that way is still good.
+    /// Returns the cell of the place to which the last way led, if that way is still good.
     fn kept(&self, map: &Map, before: &Next) -> Option<usize> {
         let at = Cell::of(before.x, before.y);
         let cell = map.contains(at).then(|| index(at.x - map.corner.x, at.y - map.corner.y))?;
@@ -98,8 +99,8 @@ impl Way<'_> {
         (0..AHEAD).fold(self.here, |cell, _| self.wave.next(cell).unwrap_or(cell))
     }
 
-    /// Returns the cell that a rectangle drives to, and `true` if it has to go straight: the last cell in which it can
-    /// turn, and from there the first one beyond, as far as a straight line leads.
+    /// Returns the cell to which a rectangle drives, and `true` if it has to drive straight: the last cell in
+    /// which it can turn, and from there the first such cell beyond, as far as a straight line leads.
     fn beyond(&self, map: &Map, before: Option<Next>) -> (usize, bool) {
         let before = before.and_then(|before| Some((self.kept(map, &before)?, before.is_straight)));
         let is_tight = |cell: usize| self.wave.is_tight(cell);
@@ -132,18 +133,18 @@ impl Way<'_> {
     }
 }
 
-/// The distance between two cells, in cells.
+/// Returns the distance between two cells, in cells.
 fn apart(from: usize, to: usize) -> f64 {
     let ((x, y), (to_x, to_y)) = (place(from), place(to));
     libm::hypot(to_x - x, to_y - y)
 }
 
-/// The column and the row of a cell.
+/// Returns the column and the row of a cell.
 fn place(cell: usize) -> (f64, f64) {
     ((cell % SIDE) as f64, (cell / SIDE) as f64)
 }
 
-/// The cells on the line between two.
+/// Returns the cells on the line between two cells.
 fn line(from: usize, to: usize) -> impl Iterator<Item = usize> {
     let ((x, y), (to_x, to_y)) = (place(from), place(to));
     let steps = libm::ceil(2.0 * apart(from, to)).max(1.0);

@@ -1,10 +1,10 @@
-//! Links the module for a browser with a stack as large as that of a program, and with a limit on its memory.
+//! Links the module for a browser with a stack of the size that programs have, and with a limit on its memory.
 
 #![allow(clippy::disallowed_methods, reason = "cargo tells a build script the target by its environment")]
 
-/// Size of the stack in bytes: plans may be nested deeply.
+/// Size of the stack, in bytes, for deeply nested plans.
 const STACK: u32 = 8 << 20;
-/// Maximum size of the memory in bytes: a page that exceeds it gets an error, and goes on.
+/// Maximum size of the memory, in bytes; a page that exceeds it gets an error and continues.
 const MEMORY: u32 = 1 << 30;
 
 fn main() {

@@ -10,75 +10,75 @@ use crate::run::Run;
 use crate::setup::Setup;
 use crate::{editing, export, floor, tools, trial};
 
-/// A request.
+/// A request of a page.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "ask", rename_all = "snake_case")]
 enum Request {
-    /// Messages of `mdlec check --message-format json`.
+    /// Return the messages of `mdlec check --message-format json`.
     Check(Draft),
-    /// Text of `mdlec fmt`.
+    /// Return the text of `mdlec fmt`.
     Fmt(Draft),
-    /// Text of `mdlec explain`.
+    /// Return the text of `mdlec explain`.
     Explain { code: String },
-    /// List of `mdlec quarks`.
+    /// Return the list of `mdlec quarks`.
     Quarks {
         #[serde(default)]
         robot: String,
     },
-    /// Report of `mdlec analyze`.
+    /// Return the report of `mdlec analyze`.
     Analyze {
         #[serde(flatten)]
         draft: Draft,
         plan: Option<String>,
     },
-    /// Picture of `mdlec draw`.
+    /// Return the picture of `mdlec draw`.
     Draw {
         #[serde(flatten)]
         draft: Draft,
         plan: Option<String>,
     },
-    /// Lines of `mdlec trace`.
+    /// Return the lines of `mdlec trace`.
     Trace {
         #[serde(flatten)]
         draft: Draft,
         plan: Option<String>,
         script: String,
     },
-    /// Diagnostics with their fixes, the names of plans, and colours by meaning.
+    /// Return diagnostics with their fixes, the names of plans, and colours by meaning.
     Diagnose(Draft),
-    /// Proposals at a place.
+    /// Return proposals at a place.
     Complete {
         #[serde(flatten)]
         draft: Draft,
         at: At,
     },
-    /// Text about a place.
+    /// Return the text about a place.
     Hover {
         #[serde(flatten)]
         draft: Draft,
         at: At,
     },
-    /// Signature of the call around a place.
+    /// Return the signature of the call around a place.
     Signature {
         #[serde(flatten)]
         draft: Draft,
         at: At,
     },
-    /// Edits that format the text of one file.
+    /// Return edits that format the text of one file.
     Format { text: String },
-    /// Floor of a world.
+    /// Return the floor of a world.
     Floor { world: String },
-    /// Checks world, body and start of a run.
+    /// Check world, body and start of a run.
     Ready(Setup),
-    /// Begins a run.
+    /// Begin a run.
     Begin(Setup),
-    /// Makes turns of the run.
+    /// Make turns of the run.
     Step { turns: u64 },
-    /// Explains a turn of the run.
+    /// Explain a turn of the run.
     Why { turn: usize },
-    /// Makes a whole run, and reports its end.
+    /// Make a complete run, and return its end.
     Trial(Setup),
-    /// Makes a whole run, and returns a file of it.
+    /// Make a complete run, and return a file of it.
     Export {
         what: export::Kind,
         #[serde(flatten)]
@@ -86,7 +86,7 @@ enum Request {
     },
 }
 
-/// A place in a text, as `{"line":…,"character":…}`, both from 0, characters in UTF-16 code units.
+/// A place in a text, as `{"line":…,"character":…}`: both count from 0, and characters are UTF-16 code units.
 #[derive(Debug, Clone, Copy, Deserialize)]
 struct At {
     line: u32,
@@ -99,7 +99,7 @@ impl From<At> for Position {
     }
 }
 
-/// The requests of one page, and the run that is being made for it.
+/// The requests of one page, and its current run.
 #[derive(Default)]
 pub struct Session {
     run: Option<Run>,

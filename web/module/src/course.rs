@@ -13,7 +13,7 @@ use crate::setup::{PERIOD, Ready};
 pub(crate) struct Course {
     pub(crate) robot: Simulated,
     pub(crate) machine: Option<Machine<LoadedPlan<Alphabet>>>,
-    /// The plan, until the first turn begins it.
+    /// The plan before its first turn; `None` afterwards.
     waiting: Option<LoadedPlan<Alphabet>>,
     input: Twist,
     /// Number of turns made.
@@ -25,7 +25,7 @@ pub(crate) struct Course {
     pub(crate) contacts: u64,
     /// The transitions of the last turn.
     pub(crate) seen: Seen,
-    /// `true` if the current atom was entered since a law was applied last.
+    /// `true` if no law has been applied since the current atom was entered.
     fresh: bool,
     /// Cause of the end, once the run has ended.
     pub(crate) end: Option<End>,
@@ -34,7 +34,7 @@ pub(crate) struct Course {
 /// The way in which a run ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum End {
-    /// The plan is over, by the last transition.
+    /// The plan is over, with the last transition.
     Over,
     /// The time limit was reached.
     Limit,
@@ -49,21 +49,21 @@ pub(crate) struct Exchange {
     pub(crate) t: Nanos,
     /// Output of the robot.
     pub(crate) y: Sensed,
-    /// `true` if a contact begins with it.
+    /// `true` if a contact begins with this exchange.
     pub(crate) hits: bool,
 }
 
-/// A turn.
+/// A turn that was made.
 pub(crate) struct Made {
     /// Number of the turn, from 0.
     pub(crate) number: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,
-    /// Input that is sent next.
+    /// Result of the turn, with the next input.
     pub(crate) turn: Turn<Twist>,
-    /// The current atom if its law was applied for the first time since it was entered.
+    /// Number of the current atom, if its law was applied for the first time since the atom was entered.
     pub(crate) began: Option<u32>,
-    /// The plan before each transition, and at the end of the turn.
+    /// The state of the plan before each transition, and at the end of the turn.
     pub(crate) moments: Vec<Moment>,
 }
 
@@ -85,7 +85,7 @@ impl Watch for Seen {
 }
 
 impl Course {
-    /// Puts the robot at its start; `looks` decides whether moments are kept.
+    /// Puts the robot at its start; moments are kept if `looks` is `true`.
     pub(crate) fn new(plan: &Plan, ready: &Ready, looks: bool) -> Result<Self, String> {
         let waiting = if looks { plan.looked_at() } else { plan.looked_at().unobserved() };
         Ok(Self {
@@ -156,7 +156,7 @@ impl Course {
         let _ = self.robot.stop();
     }
 
-    /// Returns how `mdle run --goal` judges the pose of the robot; `None` without a goal.
+    /// Returns the judgement of the robot's pose, as by `mdle run --goal`; `None` without a goal.
     pub(crate) fn judged(&self, goal: Option<&Goal>) -> Option<&'static str> {
         let arrives = goal?.holds(&self.robot.pose());
         Some(match (self.touches, arrives) {

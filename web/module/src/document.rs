@@ -13,9 +13,9 @@ use crate::robot::robot;
 
 /// The file that is run, with the files that it uses and those of its robot's alphabet.
 pub(crate) struct Document<'d> {
-    /// All these files.
+    /// The texts of these files, for messages.
     pub(crate) sources: Sources,
-    /// The file that is run.
+    /// Identifier of the file that is run.
     pub(crate) source: SourceId,
     /// Alphabet of the robot.
     pub(crate) alphabet: &'static Alphabet,
@@ -43,18 +43,18 @@ impl Loader for Document<'_> {
 }
 
 impl<'d> Document<'d> {
-    /// Makes the document of a page's files.
+    /// Returns the document for a page's files.
     ///
     /// # Errors
-    /// The text is too long, or there is no such robot: a sentence.
+    /// Fails with a sentence if the text is too long, or if there is no such robot.
     pub(crate) fn of(draft: &'d Draft) -> Result<Self, String> {
         Self::for_robot(&draft.robot, draft)
     }
 
-    /// Makes the document of a page's files for another robot than theirs.
+    /// Returns the document for a page's files, with another robot than the page's.
     ///
     /// # Errors
-    /// The text is too long, or there is no such robot: a sentence.
+    /// Fails with a sentence if the text is too long, or if there is no such robot.
     pub(crate) fn for_robot(name: &str, draft: &'d Draft) -> Result<Self, String> {
         let robot = robot(name)?;
         let mut sources = Sources::default();
@@ -91,7 +91,7 @@ impl<'d> Document<'d> {
     /// Returns the file in the editor, and `true` if it was read for the file that is run.
     ///
     /// # Errors
-    /// There is no such file, or it is too long: a sentence.
+    /// Fails with a sentence if there is no such file, or if it is too long.
     pub(crate) fn shown(&mut self) -> Result<(SourceId, bool), String> {
         let place = if self.draft.file.is_empty() { FILE } else { &self.draft.file };
         if let Some(source) = self.read.get(place) {
@@ -120,7 +120,7 @@ impl<'d> Document<'d> {
     /// Compiles the plan `wanted`, or the only plan that no other plan uses.
     ///
     /// # Errors
-    /// Messages as `mdlec` prints them.
+    /// Fails with messages as `mdlec` prints them.
     pub(crate) fn compile(&mut self, wanted: Option<&str>, limit: Limit) -> Result<Compiled, String> {
         let text = self.text().to_owned();
         let (mut compiled, found) = compile_within(self.source, &text, self.alphabet, wanted, self, limit);

@@ -8,7 +8,7 @@ use serde::Deserialize;
 /// Name of the file that is run.
 pub(crate) const FILE: &str = "plan.mdle";
 
-/// The plan files of a page, as they are typed.
+/// The plan files of a page, as typed.
 #[derive(Debug, Clone, Default, Deserialize)]
 pub(crate) struct Draft {
     /// Text of the file that is run, [`FILE`].
@@ -30,14 +30,14 @@ impl Draft {
         if place == FILE { Some(&self.text) } else { self.files.get(place).map(String::as_str) }
     }
 
-    /// Names of all files.
+    /// Returns the names of all files.
     pub(crate) fn names(&self) -> Vec<&str> {
         std::iter::once(FILE).chain(self.files.keys().map(String::as_str)).collect()
     }
 }
 
-/// Returns the path that `path` means in the folder of the file `from`, and its place: the path without `.` and `..`.
-/// A place outside the page's folder is `None`.
+/// Returns the path that `path` means in the folder of the file `from`, and its place, which is the path
+/// without `.` and `..`; the place is `None` outside the page's folder.
 pub(crate) fn looked_up(from: &str, path: &str) -> (String, Option<String>) {
     let whole = Path::new(from).parent().unwrap_or(Path::new("")).join(path);
     let mut parts = Vec::new();

@@ -30,7 +30,7 @@ pub(crate) enum Kind {
     Record,
 }
 
-/// Makes a run again, and returns a file of it.
+/// Repeats a run, and returns a file of it.
 pub(crate) fn export(kind: Kind, setup: &Setup) -> Result<Value, String> {
     let plan = Plan::of(&setup.draft, setup.plan.as_deref())?;
     let ready = setup.ready()?;
@@ -68,7 +68,7 @@ pub(crate) fn export(kind: Kind, setup: &Setup) -> Result<Value, String> {
     Ok(json!({ "output": files.finished() }))
 }
 
-/// A file that is being made.
+/// The files that are being written.
 struct Files {
     kind: Kind,
     text: String,

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::setup::Ready;
 
-/// Maximum number of corners that a page is given to draw.
+/// Maximum number of corners that a page gets to draw.
 const CORNERS_MOST: usize = 200_000;
 
 /// Returns the floor of a world in TOML: outlines, moving things, start, goal and charger, in metres.
@@ -29,7 +29,7 @@ fn robot(ready: &Ready) -> Value {
 /// Returns the floor before a run, with the robot.
 ///
 /// # Errors
-/// The world is too large to be drawn: a sentence.
+/// Fails with a sentence if the world is too large to be drawn.
 pub(crate) fn ready(ready: &Ready) -> Result<Value, String> {
     Ok(json!({ "floor": drawn(&ready.world, ready.goal)?, "robot": robot(ready) }))
 }
@@ -37,7 +37,7 @@ pub(crate) fn ready(ready: &Ready) -> Result<Value, String> {
 /// Returns the floor of a world, with the goal of a run.
 ///
 /// # Errors
-/// The world is too large to be drawn: a sentence.
+/// Fails with a sentence if the world is too large to be drawn.
 fn drawn(world: &World, goal: Option<Goal>) -> Result<Value, String> {
     let corners: usize = world.outlines.iter().map(|outline| outline.points.len()).sum();
     if corners > CORNERS_MOST {

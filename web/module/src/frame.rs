@@ -1,4 +1,4 @@
-//! A turn as a page draws it. Numbers are rounded: a page draws them, and files of a run have all their digits.
+//! A turn as a page draws it. Numbers are rounded for drawing; the files of a run have all digits.
 
 use std::collections::BTreeMap;
 
@@ -11,10 +11,10 @@ use serde_json::{Value, json};
 use crate::causes::cause;
 use crate::course::{Course, Exchange, Made};
 
-/// Maximum number of transitions of a turn that a page is given.
+/// Maximum number of transitions of a turn that a page gets.
 const TRANSITIONS_MOST: usize = 40;
 
-/// Returns a turn; `before` is the time of the exchange before.
+/// Returns a turn as JSON; `before` is the time of the exchange before.
 pub(crate) fn frame(course: &Course, exchange: &Exchange, made: &Made, before: Option<Nanos>) -> Value {
     let Exchange { t, y, .. } = exchange;
     let pose = course.robot.pose();
@@ -64,8 +64,8 @@ fn skipped(moments: &[Moment]) -> Value {
     times.into_iter().map(|(atom, times)| json!([atom, times])).collect()
 }
 
-/// Returns the transitions: the scope that ended, the cause, and the atom that followed. Of very many the last are left
-/// out, except the very last.
+/// Returns the transitions: the scope that ended, the cause, and the atom that followed. If there are too many,
+/// the later ones are left out, except the last.
 fn fired(course: &Course) -> Value {
     let Some(machine) = &course.machine else { return json!([]) };
     let all = &course.seen.transitions;

@@ -17,7 +17,7 @@ pub(crate) struct Plan {
     pub(crate) machine: Arc<fsm::Machine>,
     /// Texts of the plan.
     pub(crate) sources: Sources,
-    /// Places of its files.
+    /// Places of the plan's files.
     pub(crate) files: BTreeMap<SourceId, String>,
     loaded: Arc<Loaded<Alphabet>>,
 }
@@ -26,7 +26,7 @@ impl Plan {
     /// Compiles and loads a plan for the robot `sim`, whichever robot its files are written for.
     ///
     /// # Errors
-    /// Messages as `mdlec` prints them.
+    /// Fails with messages as `mdlec` prints them.
     pub(crate) fn of(draft: &Draft, name: Option<&str>) -> Result<Self, String> {
         let mut document = Document::for_robot(NAME, draft)?;
         let machine = Arc::new(document.compile(name, |_| Ok(()))?.machine);
@@ -36,7 +36,7 @@ impl Plan {
         Ok(Self { machine, sources: document.sources, files, loaded })
     }
 
-    /// Returns the plan before it begins, looked at while it makes turns.
+    /// Returns the plan before it begins; it is observed while it makes turns.
     pub(crate) fn looked_at(&self) -> LoadedPlan<Alphabet> {
         self.loaded.plan()
     }

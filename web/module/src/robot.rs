@@ -6,13 +6,13 @@ use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::builtin::{self, ReadAlphabet};
 use mdle_simulator::alphabet::NAME;
 
-/// An alphabet that is read once, when it is needed first.
+/// An alphabet that is read once, when it is first needed.
 type Once = OnceLock<Result<ReadAlphabet, String>>;
 
 /// Returns the alphabet of a robot that is part of mdlec, or that of `sim` for an empty name.
 ///
 /// # Errors
-/// There is no such robot: a sentence.
+/// Fails with a sentence if there is no such robot.
 pub(crate) fn robot(name: &str) -> Result<&'static ReadAlphabet, String> {
     static ROBOTS: OnceLock<Vec<(&builtin::Alphabet, Once)>> = OnceLock::new();
     let name = if name.is_empty() { NAME } else { name };

@@ -16,25 +16,26 @@ const MOMENTS_MOST: usize = 40;
 /// Maximum number of transitions in one answer: a turn can make 4,096.
 const TRANSITIONS_MOST: usize = 20_000;
 
-/// Limits on what is kept of a run.
+/// Limits on the data that are kept of a run.
 #[derive(Debug, Clone, Copy)]
 struct Limits {
-    /// Maximum size of all moments in bytes; a turn whose moments are not kept is explained by making the run again.
+    /// Maximum size of all moments, in bytes; a turn whose moments are not kept is explained by repeating the
+    /// run.
     moments: usize,
-    /// Maximum size of all turns in bytes, as a page receives and keeps them; the run ends when it is reached.
+    /// Maximum size of all turns, in bytes, as a page receives and keeps them; the run ends when it is reached.
     turns: usize,
 }
 
 const LIMITS: Limits = Limits { moments: 128 << 20, turns: 64 << 20 };
 
-/// A run, with what is needed to explain each of its turns.
+/// A run, with the data that explain each of its turns.
 pub(crate) struct Run {
     plan: Plan,
     ready: Ready,
     course: Course,
     /// Moments of the first turns, up to the limit.
     moments: Vec<Vec<Moment>>,
-    /// What the limits still leave.
+    /// Remaining size within the limits.
     left: Limits,
     /// `true` once the turns have reached their limit.
     is_full: bool,
@@ -46,7 +47,7 @@ impl Run {
     /// Puts the robot at its start.
     ///
     /// # Errors
-    /// Messages about the plan, or a sentence about the setup.
+    /// Fails with messages about the plan, or with a sentence about the setup.
     pub(crate) fn begin(setup: &Setup) -> Result<Self, String> {
         Self::within(LIMITS, setup)
     }
@@ -61,7 +62,7 @@ impl Run {
     /// Returns the plan's elements, and the floor with the robot's form.
     ///
     /// # Errors
-    /// The world is too large to be drawn: a sentence.
+    /// Fails with a sentence if the world is too large to be drawn.
     pub(crate) fn description(&self) -> Result<Value, String> {
         let elements: Vec<_> = self.plan.machine.elements().map(|element| self.element(element)).collect();
         let mut description = floor::ready(&self.ready)?;
@@ -121,7 +122,7 @@ impl Run {
         self.left.turns = self.left.turns.saturating_sub(size);
     }
 
-    /// Keeps the moments of a turn if those of all turns before are kept, and the limit allows it.
+    /// Keeps the moments of a turn, if those of all earlier turns are kept and the limit allows it.
     fn keep(&mut self, turn: u64, moments: Vec<Moment>) {
         let size: usize = moments.iter().map(size).sum();
         if self.moments.len() as u64 == turn && size <= self.left.moments {
@@ -130,7 +131,7 @@ impl Run {
         }
     }
 
-    /// Returns how the run has ended, and how its goal judges it; null before that.
+    /// Returns the end of the run, with the judgement of its goal; null before the end.
     fn end(&self) -> Value {
         let judged = self.course.judged(self.ready.goal.as_ref());
         match &self.course.end {
@@ -148,7 +149,7 @@ impl Run {
     /// Explains a turn.
     ///
     /// # Errors
-    /// The turn was not made.
+    /// Fails if the turn was not made.
     pub(crate) fn why(&self, turn: usize) -> Result<Value, String> {
         if turn as u64 >= self.course.turns {
             return Err(format!("turn {turn} was not made"));
@@ -165,7 +166,7 @@ impl Run {
         Ok(json!({ "moments": why::moments(&self.plan.machine, machine.plan().source(), moments) }))
     }
 
-    /// Makes the run again up to a turn, and returns the moments of that turn.
+    /// Repeats the run up to a turn, and returns the moments of that turn.
     fn made_again(&self, turn: u64) -> Result<Vec<Moment>, String> {
         let mut course = Course::new(&self.plan, &self.ready, true)?;
         loop {
@@ -178,7 +179,7 @@ impl Run {
     }
 }
 
-/// Leaves of very many moments the first and the very last.
+/// Returns the first moments and the last one, if there are too many to show.
 fn shown(mut moments: Vec<Moment>) -> Vec<Moment> {
     if moments.len() > MOMENTS_MOST {
         let last = moments.pop();
@@ -190,7 +191,7 @@ fn shown(mut moments: Vec<Moment>) -> Vec<Moment> {
     moments
 }
 
-/// Size of a moment in bytes.
+/// Returns the size of a moment, in bytes.
 fn size(moment: &Moment) -> usize {
     let scope = |scope: &ScopeMoment| size_of::<ScopeMoment>() + size_of_val(scope.parts.as_slice());
     size_of::<Moment>() + moment.scopes.iter().map(scope).sum::<usize>()

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use crate::draft::Draft;
 
-/// Longest run, in seconds of its own time.
+/// Maximum duration of a run, in seconds of its own time.
 const LONGEST: f64 = 3600.0;
 
 /// A plan, and the world, the robot and the start of a run.
@@ -17,25 +17,25 @@ pub(crate) struct Setup {
     /// Files of the plan.
     #[serde(flatten)]
     pub(crate) draft: Draft,
-    /// Name of the plan to run; the only one without a name.
+    /// Name of the plan to run; `None` for the only plan.
     pub(crate) plan: Option<String>,
     /// World as TOML.
     pub(crate) world: String,
     /// Name of the world in titles.
     pub(crate) world_name: String,
-    /// `ideal`, `scout` or `atrv`; empty for `ideal`.
+    /// Body of the robot: `ideal`, `scout` or `atrv`; empty for `ideal`.
     pub(crate) body: String,
     /// Names of the body's errors to leave out, separated by commas.
     pub(crate) without: String,
-    /// Start pose as `x,y,deg`; empty for that of the world.
+    /// Start pose as `x,y,deg`; empty for the start pose of the world.
     pub(crate) start: String,
     /// Maximum random offset of the start as `m,deg`; empty for none.
     pub(crate) start_noise: String,
-    /// Random seed; without one there are no random errors.
+    /// Random seed; `None` for a run without random errors.
     pub(crate) seed: Option<u64>,
     /// Charge of the battery at the start, in percent.
     pub(crate) battery: Option<u64>,
-    /// Place in which the robot is to end, as `x,y,radius`; empty for the goal of the world.
+    /// Zone in which the robot should end, as `x,y,radius`; empty for the goal of the world.
     pub(crate) goal: String,
     /// Time at which the run ends, in seconds.
     pub(crate) limit: Option<f64>,
@@ -60,7 +60,7 @@ impl Setup {
     /// Reads world, body and start.
     ///
     /// # Errors
-    /// A sentence that names the field at fault.
+    /// Fails with a sentence that names the invalid field.
     pub(crate) fn ready(&self) -> Result<Ready, String> {
         let make = self.make()?;
         let world = World::parse("world", &self.world).map_err(|error| error.to_string())?;
@@ -112,7 +112,7 @@ impl Setup {
         Ok(Make { body, without: without.collect::<Result<_, _>>()?, seed: self.seed })
     }
 
-    /// World, body and seed, as a title of `mdle run --plot` names them.
+    /// Returns a description of the world, the body and the seed, as in titles of `mdle run --plot`.
     pub(crate) fn in_words(&self, make: &Make) -> String {
         let parts = make.without.iter().filter_map(|part| PARTS.iter().find(|(_, known)| known == part));
         let names: Vec<&str> = parts.map(|(name, _)| *name).collect();
@@ -126,7 +126,7 @@ impl Ready {
     /// Returns the robot at its start.
     ///
     /// # Errors
-    /// A sentence about the start.
+    /// Fails with a sentence about the start.
     pub(crate) fn robot(&self) -> Result<Simulated, String> {
         let period = Duration::from_nanos(PERIOD.0);
         let robot = Simulated::with(&self.make, &self.world, self.begins, period);

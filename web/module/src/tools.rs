@@ -1,4 +1,4 @@
-//! Answers of the commands of `mdlec`, with the bytes that it prints.
+//! Answers of the commands of `mdlec`, identical to the bytes that it prints.
 
 use mdle_compiler::Compiled;
 use mdle_compiler::alphabet::{Declaration, DeclarationKind};
@@ -20,7 +20,7 @@ fn output(text: impl Into<String>) -> Value {
     json!({ "output": text.into() })
 }
 
-/// Returns the messages as JSON, one a line.
+/// Returns the messages as JSON, one per line.
 pub(crate) fn check(document: &mut Document<'_>) -> Value {
     let found = document.check();
     output(messages(document, &found))

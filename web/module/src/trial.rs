@@ -1,4 +1,4 @@
-//! A whole run at once, of which only the end is reported: one of a batch.
+//! A complete run of which only the end is reported, as one of a batch.
 
 use mdle_runtime::{Nanos, Turn};
 use serde_json::{Value, json};
@@ -7,8 +7,8 @@ use crate::course::{Course, End};
 use crate::plan::Plan;
 use crate::setup::Setup;
 
-/// Makes a run, and returns how it ended: `over`, `limit` or `fault`; and, if there is a goal, whether the robot is
-/// `arrived`, `bumped` or `astray`, as `mdle run --goal` judges it.
+/// Makes a run, and returns its end: `over`, `limit` or `fault`; and, if there is a goal, `arrived`, `bumped`
+/// or `astray`, as `mdle run --goal` judges it.
 pub(crate) fn trial(setup: &Setup) -> Result<Value, String> {
     let plan = Plan::of(&setup.draft, setup.plan.as_deref())?;
     let ready = setup.ready()?;

@@ -1,4 +1,5 @@
-//! The explanation of a turn: the conditions around the atom before each transition, and at the end of the turn.
+//! The explanation of a turn: the conditions of the scopes that enclose the atom, before each transition and at
+//! the end of the turn.
 
 use mdle_compiler::fsm::Machine;
 use mdle_compiler::load::{Moment, ScopeMoment};
@@ -39,7 +40,7 @@ fn scope(machine: &Machine, words: &dyn Words, moment: &ScopeMoment) -> Value {
 }
 
 /// Collects the parts that AND and OR join, each with the value of the comparison that it shows. The parts of a
-/// condition come before those of its operands.
+/// condition come before the parts of its operands.
 fn operands(condition: &Condition, parts: &mut std::slice::Iter<'_, Examined>, joined: &mut Vec<(Examined, bool)>) {
     let Some(part) = parts.next().copied() else { return };
     if condition.lasting().is_some() {
@@ -61,7 +62,7 @@ fn operands(condition: &Condition, parts: &mut std::slice::Iter<'_, Examined>, j
     }
 }
 
-/// Takes the parts of a condition inside NOT or RISING, and returns the value of the comparison that is innermost.
+/// Takes the parts of a condition inside NOT or RISING, and returns the value of the innermost comparison.
 fn innermost(condition: &Condition, parts: &mut std::slice::Iter<'_, Examined>) -> Option<bool> {
     let part = parts.next()?;
     let inside = if condition.lasting().is_some() { &[] } else { condition.children() };
