@@ -46,7 +46,7 @@ fn a_signal_ends_a_crowd_in_order() {
         assert!(err.ends_with("stopped by SIGINT\n") || err.ends_with("stopped by SIGTERM\n"), "{err}");
         assert!(out.starts_with("9 robots for ") && out.contains("plans that are over: 0\n"), "{out}");
         let poses = fs::read_to_string(&trail).unwrap();
-        assert!(poses.ends_with('\n') && (poses.lines().count() - 1) % 9 == 0, "the last turn is whole");
+        assert!(poses.ends_with('\n') && (poses.lines().count() - 1).is_multiple_of(9), "the last turn is whole");
         fs::remove_file(trail).unwrap();
     }
 }

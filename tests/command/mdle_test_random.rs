@@ -51,9 +51,13 @@ fn test(compiled: &Compiled, number: usize, script: &str) -> Option<(String, usi
 /// Returns a line of a script as TOML, with those texts alone that the plan has.
 fn turn(compiled: &Compiled, line: &str) -> String {
     let line: Value = serde_json::from_str(line).unwrap();
-    let known = |text: &&Value| compiled.machine.quarks().iter().any(|quark| quark.text == text.as_str().unwrap());
     let [fired, completed] = ["fired", "completed"].map(|key| {
-        let texts = line[key].as_array().unwrap().iter().filter(known).map(Value::to_string);
+        // A law that never completes is an error in `completed`.
+        let is_known = |text: &&Value| {
+            let mut quarks = compiled.machine.quarks().iter().filter(|quark| quark.text == text.as_str().unwrap());
+            quarks.any(|quark| key == "fired" || quark.completes)
+        };
+        let texts = line[key].as_array().unwrap().iter().filter(is_known).map(Value::to_string);
         texts.collect::<Vec<_>>().join(", ")
     });
     let [t, way, heading] = ["t", "way", "heading"].map(|key| line[key].to_string());

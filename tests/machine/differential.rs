@@ -91,12 +91,15 @@ fn every_machine_prints_the_same_trace() {
 
 /// Units of which no parameter of the robot's quarks is.
 const UNMET_UNITS: &[&str] = &["Hz"];
+/// Parts of the head of a group's plan, which is not run itself: the plans of its robots are (`robots formation::`).
+const GROUPS: &[&str] = &["Head = \"Group\" \"[\" ArgList? \"]\" Name Params? HeadCondition?", "Head … ArgList?"];
 
 /// Asserts that every production, every optional part, and every unit occurs in some plan.
 fn assert_every_production_is_met(counts: &Productions) {
     let grammar = grammar::productions().into_iter().filter(|production| !production.recovers);
     let productions = grammar.flat_map(|production| [production.options(), vec![production.text]].concat());
     let units = Unit::ALL.iter().map(|unit| unit.name).filter(|unit| !UNMET_UNITS.contains(unit));
+    let productions = productions.filter(|production| !GROUPS.contains(&production.as_str()));
     let mut all: Vec<_> = productions.chain(units.map(str::to_owned)).collect();
     all.sort();
     all.dedup();

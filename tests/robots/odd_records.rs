@@ -19,8 +19,9 @@ const PLAN: &str = "{ Square (wait 5min)
 
 /// Runs a command line in which `mdle` is the program of this workspace.
 fn shell(folder: &Path, line: &str) -> (String, String, i32) {
-    let line = format!("mdle() {{ '{}' \"$@\"; }}\n{line}", mdle().display());
-    let output = Command::new("bash").args(["-c", &line]).current_dir(folder).output().unwrap();
+    let programs = std::env::var("PATH").unwrap();
+    let programs = format!("{}:{programs}", mdle().parent().unwrap().display());
+    let output = Command::new("bash").args(["-c", line]).env("PATH", programs).current_dir(folder).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     (out, err, output.status.code().unwrap())
 }

@@ -98,7 +98,7 @@ fn a_robot_that_is_lost_in_mid_swap_ends_the_session() {
     drop(port);
     input.write_all(b"step\nget /usr/mdle/main\n").unwrap();
     drop(input);
-    assert_eq!(answers.collect::<Vec<_>>(), ["> step"]);
+    assert_eq!(answers.collect::<Vec<_>>(), ["> step", "> get /usr/mdle/main", "Go"]);
     let output = child.wait_with_output().unwrap();
     let err = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(3), "{err}");

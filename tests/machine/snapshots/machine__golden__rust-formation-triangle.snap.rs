@@ -77,6 +77,24 @@ mod machine {
         Atom3(<robot::Stop as runtime::Control<Output>>::Law),
     }
 
+    impl Running {
+        /// Becomes the law of an atom that begins.
+        #[cfg_attr(target_os = "none", inline(never))]
+        #[cfg_attr(not(target_os = "none"), inline(always))]
+        fn start(&mut self, atom: u32, y: &Output, begin: Begin) {
+            match atom {
+                0 => *self = Running::Atom1(runtime::Control::begin(&STOP, y, begin)),
+                1 => {
+                    *self = Running::Atom2(
+                        runtime::Control::begin(&LEAD_0_5_0_7_20, y, begin),
+                    );
+                }
+                2 => *self = Running::Atom3(runtime::Control::begin(&STOP, y, begin)),
+                _ => *self = Running::Idle,
+            }
+        }
+    }
+
     impl runtime::Plan for TriangleRobot1 {
         type Output = Output;
         type Input = Input;
@@ -88,25 +106,14 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             ([Nanos::ZERO; 2], [0; 0])
         }
-        #[cfg_attr(target_os = "none", inline(never))]
+        #[inline(always)]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-            match atom {
-                0 => {
-                    self.running = Running::Atom1(
-                        runtime::Control::begin(&STOP, y, begin),
-                    );
-                }
-                1 => {
-                    self.running = Running::Atom2(
-                        runtime::Control::begin(&LEAD_0_5_0_7_20, y, begin),
-                    );
-                }
-                2 => {
-                    self.running = Running::Atom3(
-                        runtime::Control::begin(&STOP, y, begin),
-                    );
-                }
-                _ => self.running = Running::Idle,
+            if cfg!(target_os = "none") {
+                self.running.start(atom, y, begin);
+            } else {
+                let mut running = Running::Idle;
+                running.start(atom, y, begin);
+                self.running = running;
             }
         }
         #[inline(always)]
@@ -383,6 +390,24 @@ mod machine {
         Atom3(<robot::Stop as runtime::Control<Output>>::Law),
     }
 
+    impl Running {
+        /// Becomes the law of an atom that begins.
+        #[cfg_attr(target_os = "none", inline(never))]
+        #[cfg_attr(not(target_os = "none"), inline(always))]
+        fn start(&mut self, atom: u32, y: &Output, begin: Begin) {
+            match atom {
+                0 => *self = Running::Atom1(runtime::Control::begin(&STOP, y, begin)),
+                1 => {
+                    *self = Running::Atom2(
+                        runtime::Control::begin(&SLOT_ROBOT1_MINUS_0_866_0_5, y, begin),
+                    );
+                }
+                2 => *self = Running::Atom3(runtime::Control::begin(&STOP, y, begin)),
+                _ => *self = Running::Idle,
+            }
+        }
+    }
+
     impl runtime::Plan for TriangleRobot2 {
         type Output = Output;
         type Input = Input;
@@ -394,25 +419,14 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             ([Nanos::ZERO; 2], [0; 0])
         }
-        #[cfg_attr(target_os = "none", inline(never))]
+        #[inline(always)]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-            match atom {
-                0 => {
-                    self.running = Running::Atom1(
-                        runtime::Control::begin(&STOP, y, begin),
-                    );
-                }
-                1 => {
-                    self.running = Running::Atom2(
-                        runtime::Control::begin(&SLOT_ROBOT1_MINUS_0_866_0_5, y, begin),
-                    );
-                }
-                2 => {
-                    self.running = Running::Atom3(
-                        runtime::Control::begin(&STOP, y, begin),
-                    );
-                }
-                _ => self.running = Running::Idle,
+            if cfg!(target_os = "none") {
+                self.running.start(atom, y, begin);
+            } else {
+                let mut running = Running::Idle;
+                running.start(atom, y, begin);
+                self.running = running;
             }
         }
         #[inline(always)]
@@ -649,6 +663,28 @@ mod machine {
         Atom3(<robot::Stop as runtime::Control<Output>>::Law),
     }
 
+    impl Running {
+        /// Becomes the law of an atom that begins.
+        #[cfg_attr(target_os = "none", inline(never))]
+        #[cfg_attr(not(target_os = "none"), inline(always))]
+        fn start(&mut self, atom: u32, y: &Output, begin: Begin) {
+            match atom {
+                0 => *self = Running::Atom1(runtime::Control::begin(&STOP, y, begin)),
+                1 => {
+                    *self = Running::Atom2(
+                        runtime::Control::begin(
+                            &SLOT_ROBOT1_MINUS_0_866_MINUS_0_5,
+                            y,
+                            begin,
+                        ),
+                    );
+                }
+                2 => *self = Running::Atom3(runtime::Control::begin(&STOP, y, begin)),
+                _ => *self = Running::Idle,
+            }
+        }
+    }
+
     impl runtime::Plan for TriangleRobot3 {
         type Output = Output;
         type Input = Input;
@@ -660,29 +696,14 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             ([Nanos::ZERO; 2], [0; 0])
         }
-        #[cfg_attr(target_os = "none", inline(never))]
+        #[inline(always)]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-            match atom {
-                0 => {
-                    self.running = Running::Atom1(
-                        runtime::Control::begin(&STOP, y, begin),
-                    );
-                }
-                1 => {
-                    self.running = Running::Atom2(
-                        runtime::Control::begin(
-                            &SLOT_ROBOT1_MINUS_0_866_MINUS_0_5,
-                            y,
-                            begin,
-                        ),
-                    );
-                }
-                2 => {
-                    self.running = Running::Atom3(
-                        runtime::Control::begin(&STOP, y, begin),
-                    );
-                }
-                _ => self.running = Running::Idle,
+            if cfg!(target_os = "none") {
+                self.running.start(atom, y, begin);
+            } else {
+                let mut running = Running::Idle;
+                running.start(atom, y, begin);
+                self.running = running;
             }
         }
         #[inline(always)]

@@ -53,7 +53,7 @@ impl Look {
     }
 }
 
-/// What a robot hears while it turns at a landmark.
+/// Echoes that a robot hears while it turns at a landmark.
 pub(super) struct Heard {
     /// Name of the landmark at which the robot should be.
     expected: String,

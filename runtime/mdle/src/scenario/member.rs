@@ -31,7 +31,7 @@ pub(super) struct Runner {
     recorder: Option<WayRecorder>,
     /// The path that was replaced in the turn before.
     replaced: Option<StoredPath>,
-    /// Its ears, and the way from them to the module `heading`.
+    /// Ears of the robot, and the way from them to the module `heading`.
     ears: Option<(RobotEars, Microphones)>,
 }
 

@@ -56,7 +56,7 @@ pub(super) struct Member {
     pub(super) records: Option<&'static str>,
     /// Time at which the robot's program is killed.
     pub(super) killed: Option<Nanos>,
-    /// Its ears, and the radius of the head between them, in metres.
+    /// Ears of the robot, and the radius of the head between them, in metres.
     pub(super) ears: Option<(RobotEars, f64)>,
 }
 

@@ -272,7 +272,7 @@ fn a_start_that_is_asked_to_end_stops_the_robot() {
             report
         });
         let config = mdle_scout::Config { answer: LONG, ..config };
-        let started = Scout::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::made());
+        let started = Scout::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::at_once());
         assert_eq!(started.map(|_| ()), Err(Fault::Ended(None)));
         over.store(true, Ordering::Relaxed);
         robot.join().unwrap()
