@@ -78,7 +78,8 @@ fn stand_in(number: usize) -> TokenStream {
 
 /// Returns the number of the list whose placeholder is on a line; `None` for a line without a placeholder.
 fn list(line: &str) -> Option<usize> {
-    line.trim_start().strip_prefix(STAND_IN)?.strip_suffix(',')?.parse().ok()
+    // prettyplease writes no comma after the last argument of a macro.
+    line.trim_start().strip_prefix(STAND_IN)?.trim_end_matches(',').parse().ok()
 }
 
 /// Writes the elements of a list in the place of the line with its placeholder.
@@ -261,6 +262,16 @@ mod tests {
                 assert!(pieces == whole, "{length}:\n{pieces}\n{whole}");
             }
         }
+    }
+
+    #[test]
+    fn texts_of_a_macro_are_written_in_pieces() {
+        let texts = (0..PIECE + 1).map(|number| Literal::string(&format!("go {number} 0")));
+        let text = file_text(quote!(
+            const TEXTS: &str = concat![#(#texts),*];
+        ));
+        assert_eq!(text.matches("go ").count(), PIECE + 1, "{text}");
+        assert!(syn::parse_file(&text).is_ok() && !text.contains(super::STAND_IN), "{text}");
     }
 
     #[test]
