@@ -12,7 +12,7 @@ use std::{env, process};
 use etcetera::BaseStrategy;
 
 use super::access::{self, Private};
-use super::{LinkError, Progress, orphan};
+use super::{LinkError, Progress};
 
 /// The cache, a folder that mdlec keeps between runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -102,7 +102,6 @@ impl Cache {
         }
         // For those who wait; on a full disk they learn no number.
         let _ = file.set_len(0).and_then(|()| writeln!(file, "{}", process::id()));
-        orphan::end(&self.folder);
         Ok(file)
     }
 }

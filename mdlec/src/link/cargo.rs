@@ -5,12 +5,13 @@ use std::env;
 use std::ffi::OsString;
 use std::process::{Command, Stdio};
 
+use super::guard::Guard;
 use super::machine::Machine;
 use super::messages::{self, Run};
 use super::plan_package::PlanPackage;
 use super::seal::Seal;
 use super::toolchain::{self, cargo_home, output, unusable};
-use super::{Cache, LinkError, Progress, cleanup, orphan};
+use super::{Cache, LinkError, Progress, cleanup};
 
 /// Settings of the profile for cargo's `--config`, which neither a configuration file nor the environment can
 /// override. Executables rely on these settings.
@@ -63,8 +64,8 @@ impl Job<'_> {
             command.arg("--offline");
         }
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        let (child, _watched) = cleanup::spawn(&mut command).map_err(|error| unusable("cargo", &error))?;
-        let _noted = orphan::note(self.cache.folder(), &child);
+        let guard = Guard::start().map_err(|error| unusable("sh", &error))?;
+        let (child, _watched) = cleanup::spawn(&mut command, &guard).map_err(|error| unusable("cargo", &error))?;
         messages::follow(child, online, &self.plan.manifest(), seal, progress)
             .map_err(|error| unusable("cargo", &error))
     }

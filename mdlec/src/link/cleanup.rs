@@ -12,14 +12,16 @@ use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, wa
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator::Signals;
 
+use super::guard::Guard;
+
 /// Processes and files of this process that a signal must clean up.
 static UNFINISHED: Mutex<Vec<Unfinished>> = Mutex::new(Vec::new());
 
 /// A process to kill, or a file to remove, when a signal arrives.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Unfinished {
-    /// A child process that leads a process group of its own.
-    Child(Pid),
+    /// A child process in a process group of its own.
+    Child { process: Pid, group: Pid },
     /// A file that is not complete yet.
     File(PathBuf),
 }
@@ -50,9 +52,9 @@ fn end(signal: i32, farewell: impl FnOnce()) {
     for what in unfinished.iter() {
         match what {
             // What cannot be ended or removed has ended, or has gone, by itself.
-            Unfinished::Child(leader) => {
-                let _ = kill_process_group(*leader, Signal::TERM);
-                let _ = waitid(WaitId::Pid(*leader), WaitIdOptions::EXITED | WaitIdOptions::NOWAIT);
+            Unfinished::Child { process, group } => {
+                let _ = kill_process_group(*group, Signal::TERM);
+                let _ = waitid(WaitId::Pid(*process), WaitIdOptions::EXITED | WaitIdOptions::NOWAIT);
             }
             Unfinished::File(path) => {
                 let _ = fs::remove_file(path);
@@ -73,13 +75,14 @@ impl Drop for Watched {
     }
 }
 
-/// Starts a child process that a signal ends together with all its children.
-pub(super) fn spawn(command: &mut Command) -> io::Result<(Child, Watched)> {
+/// Starts a child process in the group of `guard`; a signal ends it together with all its children.
+pub(super) fn spawn(command: &mut Command, guard: &Guard) -> io::Result<(Child, Watched)> {
     let mut unfinished = list();
-    let child = command.process_group(0).spawn()?;
-    let leader = Unfinished::Child(Pid::from_child(&child));
-    unfinished.push(leader.clone());
-    Ok((child, Watched(leader)))
+    let group = guard.group();
+    let child = command.process_group(group.as_raw_nonzero().get()).spawn()?;
+    let entry = Unfinished::Child { process: Pid::from_child(&child), group };
+    unfinished.push(entry.clone());
+    Ok((child, Watched(entry)))
 }
 
 /// Creates a file that a signal removes.

@@ -15,7 +15,7 @@ use super::{Cache, LinkError, Progress, sources};
 const LOCK: &str = "lock";
 
 /// Names of the other files and folders of a cache, without the unpacked sources.
-const OWN: [&str; 7] = ["cargo", "cargo.new", "compiled", "compiled.new", "target", "tmp", "plans"];
+const OWN: [&str; 5] = ["compiled", "compiled.new", "target", "tmp", "plans"];
 
 /// Removes the contents of the cache in `folder`, once no other mdlec uses it, and returns the number of bytes freed.
 /// The folder stays, with its lock file.

@@ -5,7 +5,6 @@
 //!
 //! ```text
 //! lock                    locked while an mdlec works; contains the number of its process
-//! cargo                   the note of a running cargo: one whose mdlec was killed is ended
 //! compiled                the hashes of the files in target/
 //! src-VERSION-HASH/       the unpacked sources; those of versions that are no longer used are removed
 //! target/                 the build results of cargo, for all plans
@@ -33,11 +32,11 @@ mod cargo;
 mod cleanup;
 mod clear;
 mod error;
+mod guard;
 mod hash;
 mod ignored;
 mod machine;
 mod messages;
-mod orphan;
 mod output;
 mod package;
 mod plan_package;

@@ -1,0 +1,70 @@
+//! Ends a cargo whose mdlec was killed, which would otherwise delay the next build until it is done.
+
+use std::io;
+use std::os::unix::process::CommandExt;
+use std::process::{Child, Command, Stdio};
+
+use rustix::process::Pid;
+
+const SHELL: &str = "/bin/sh";
+
+/// Program of the guarding shell. Its input ends when this process has ended, however that happened; signals that end
+/// the group leave the shell alive.
+const PROGRAM: &str = "trap '' HUP INT QUIT TERM; read line; kill -KILL 0";
+
+/// A shell that leads a process group, and kills the group when this process ends before the guard is dropped.
+#[derive(Debug)]
+pub(super) struct Guard(Child);
+
+impl Guard {
+    /// Starts the shell in a process group of its own.
+    pub(super) fn start() -> io::Result<Self> {
+        let mut shell = Command::new(SHELL);
+        shell.args(["-c", PROGRAM]).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
+        shell.process_group(0).spawn().map(Self)
+    }
+
+    /// Returns the process group. It exists until the guard is dropped.
+    pub(super) fn group(&self) -> Pid {
+        Pid::from_child(&self.0)
+    }
+}
+
+impl Drop for Guard {
+    fn drop(&mut self) {
+        // The shell alone: children that cargo left running on purpose, such as a cache of compilers, go on.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::os::unix::process::{CommandExt, ExitStatusExt};
+    use std::process::{Child, Command};
+
+    use super::Guard;
+
+    fn sleep(guard: &Guard) -> Child {
+        Command::new("sleep").arg("600").process_group(guard.group().as_raw_nonzero().get()).spawn().unwrap()
+    }
+
+    #[test]
+    fn the_group_ends_with_the_input_of_its_guard() {
+        let mut guard = Guard::start().unwrap();
+        let mut child = sleep(&guard);
+        // As when this process is killed: the system closes what it held.
+        drop(guard.0.stdin.take());
+        assert_eq!(child.wait().unwrap().signal(), Some(9));
+    }
+
+    #[test]
+    fn the_group_goes_on_when_the_guard_is_dropped() {
+        let guard = Guard::start().unwrap();
+        let mut child = sleep(&guard);
+        drop(guard);
+        assert_eq!(child.try_wait().unwrap(), None);
+        child.kill().unwrap();
+        assert_eq!(child.wait().unwrap().signal(), Some(9));
+    }
+}
