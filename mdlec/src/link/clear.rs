@@ -14,8 +14,9 @@ use super::{Cache, LinkError, Progress, sources};
 /// same file.
 const LOCK: &str = "lock";
 
-/// Names of the other files and folders of a cache, without the unpacked sources.
-const OWN: [&str; 5] = ["compiled", "compiled.new", "target", "tmp", "plans"];
+/// Names of the other files and folders of a cache, without the unpacked sources; `cargo` is a note that earlier
+/// versions left where they were killed.
+const OWN: [&str; 6] = ["cargo", "compiled", "compiled.new", "target", "tmp", "plans"];
 
 /// Removes the contents of the cache in `folder`, once no other mdlec uses it, and returns the number of bytes freed.
 /// The folder stays, with its lock file.
@@ -96,6 +97,7 @@ mod tests {
         fs::hard_link(cache.folder().join("target/release/file"), cache.folder().join("target/second")).unwrap();
         symlink(&outside, cache.folder().join("target/link")).unwrap();
         fs::write(cache.folder().join("lock"), "").unwrap();
+        fs::write(cache.folder().join("cargo"), "4711 1\n").unwrap();
         let freed = clear(cache.folder(), &mut |_| {}).unwrap();
         assert!((30_000..90_000).contains(&freed), "{freed}");
         assert_eq!(fs::read_dir(cache.folder()).unwrap().count(), 1, "the lock stays");
