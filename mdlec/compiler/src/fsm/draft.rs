@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use mdle_runtime::Here;
 use mdle_runtime::fsm::{Atom, Bracket};
+use mdle_runtime::{Fsm, Here};
 
 use crate::diagnostic::Span;
 use crate::plan::{Interrupt, Mark, Quark, QuarkId, RecordId};
@@ -34,6 +34,18 @@ pub struct Draft {
     pub quarks: Vec<Quark>,
     /// Sizes of the state that a machine keeps between turns.
     pub sizes: Sizes,
+}
+
+impl Draft {
+    /// Returns the tables as the run-time system takes them.
+    pub(super) fn tables(&self) -> Fsm<'_> {
+        Fsm { brackets: &self.brackets, atoms: &self.atoms, termination: self.termination }
+    }
+
+    /// Returns the quark with this id.
+    pub(super) fn quark(&self, id: QuarkId) -> &Quark {
+        &self.quarks[id.0 as usize]
+    }
 }
 
 /// The meaning of a scope.

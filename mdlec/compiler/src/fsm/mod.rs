@@ -2,6 +2,7 @@
 //! other code reads it by its elements.
 
 mod draft;
+mod element;
 mod expand;
 mod file;
 mod lower;
@@ -17,10 +18,11 @@ mod validation;
 mod words;
 
 pub use draft::{Draft, LawMeaning, RecordPlace, ScopeMeaning, Sizes};
+pub use element::{Atom, Element, ElementKind, Exit};
 pub use expand::{expand, expanded_states, expands};
 pub use file::{FsmFile, InterruptEntry, Moves, ScopeEntry, fsm_file};
 pub use lower::{STATES, lower};
-pub use machine::{Atom, Element, ElementKind, Exit, Machine, Visit};
+pub use machine::{Machine, Visit};
 pub use matrices::{Matrices, Matrix, Transition, UnitVector, matrices};
 pub use observation::observation1;
 pub use reads::{AttributeRead, module_reads};
