@@ -8,7 +8,8 @@ use std::time::Duration;
 use mdle_runtime::Nanos;
 
 use crate::Pace;
-use crate::clock::{Clock, Instants, nanos};
+use crate::clock::Clock;
+use crate::instants::{Instants, nanos};
 use crate::run_end::RunEnd;
 use crate::signals::Signals;
 use crate::timing::Timing;

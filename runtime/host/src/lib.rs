@@ -10,6 +10,7 @@
 //! is reached.
 #![forbid(unsafe_code)]
 
+mod answer;
 mod arguments;
 mod background_writer;
 mod batch;
@@ -22,6 +23,7 @@ mod executable;
 mod files;
 mod held_report;
 mod helm;
+mod instants;
 mod interruption;
 mod log;
 mod microphones;
@@ -215,7 +217,7 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
     let elapsed = shows_progress.then(|| Box::new(move || begun.elapsed()) as Box<dyn FnMut() -> _>);
     let out = || Box::new(out) as Box<dyn Write>;
     let surroundings =
-        session::Surroundings { instants: clock::SinceBoot, signals, watch, out, err: &mut err, elapsed };
+        session::Surroundings { instants: instants::SinceBoot, signals, watch, out, err: &mut err, elapsed };
     ExitCode::from(session::session(program, call, executable, surroundings))
 }
 

@@ -12,9 +12,10 @@ use std::time::Duration;
 
 use mdle_runtime::{Nanos, PrintableLines};
 
-use crate::clock::{Clock, Instants};
+use crate::clock::Clock;
 use crate::cycle::Limits;
 use crate::drive::Drive;
+use crate::instants::Instants;
 use crate::outcome::{EndedRun, Outcome};
 use crate::progress::Progress;
 use crate::report::Report;

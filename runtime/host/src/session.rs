@@ -5,22 +5,23 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use clap::ArgMatches;
-use clap::error::{ContextKind, ContextValue};
 use mdle_record::Begin;
-use mdle_runtime::{Nanos, PathStore, PrintableLines};
+use mdle_runtime::{Nanos, PathStore};
 
+use crate::answer::{print_answer, unparsed};
 use crate::arguments::{self, Options};
 use crate::call::Call;
-use crate::clock::{Clock, Instants, nanos};
+use crate::clock::Clock;
 use crate::cycle::Limits;
 use crate::executable::Executable;
 use crate::held_report::HeldReport;
+use crate::instants::{Instants, nanos};
 use crate::paths::{self, Recorder};
 use crate::progress::Progress;
 use crate::ready::{KnownFiles, Ready, bug_before, is_watched, ready};
 use crate::report::Report;
 use crate::required::{Required, scopes};
-use crate::run_end::{self, RunEnd, RunFault, say};
+use crate::run_end::{RunEnd, RunFault, say};
 use crate::runs::{self, Runs, Terms};
 use crate::safety::shielded;
 use crate::signals::Signals;
@@ -60,7 +61,7 @@ where
     let target = executable.target();
     let matches = match arguments::command(&target, program, &call).try_get_matches_from(call.arguments()) {
         Ok(matches) => matches,
-        Err(error) => return unparsed(&with_near_option(error), out, err),
+        Err(error) => return unparsed(error, out, err),
     };
     let options = arguments::options(&target, &matches);
     let limits = Limits { timeout: options.timeout, turns: options.turns };
@@ -241,36 +242,6 @@ fn several<'e>(
         say(err, format_args!("warning: standard output could not be written: {error}"));
     }
     status
-}
-
-/// Removes clap's proposal for an unknown option unless at most a third of the letters differ: `--period`, for example,
-/// is no help for `--speed`, which only simulated robots have.
-fn with_near_option(mut error: clap::Error) -> clap::Error {
-    let text = |kind| match error.get(kind) {
-        Some(ContextValue::String(text)) => text.trim_start_matches('-').split('=').next().unwrap_or_default(),
-        Some(_) | None => "",
-    };
-    let (given, proposed) = (text(ContextKind::InvalidArg), text(ContextKind::SuggestedArg));
-    if !proposed.is_empty() && strsim::damerau_levenshtein(given, proposed) > (given.chars().count() / 3).max(1) {
-        let _ = error.remove(ContextKind::SuggestedArg);
-        let _ = error.remove(ContextKind::Usage);
-    }
-    error
-}
-
-/// Prints help, or the error in the arguments; returns the exit status.
-fn unparsed<'o>(error: &clap::Error, out: impl FnOnce() -> Box<dyn Write + 'o>, err: &mut dyn Write) -> u8 {
-    if error.use_stderr() {
-        say(err, format_args!("{}", error.render().to_string().trim_end()));
-        return run_end::USAGE;
-    }
-    print_answer(&error.render().to_string(), &mut *out())
-}
-
-/// Prints the answer that an option asks for instead of a run. Its reader may go before the end.
-fn print_answer(answer: &str, out: &mut dyn Write) -> u8 {
-    let _ = write!(out, "{}", PrintableLines(answer)).and_then(|()| out.flush());
-    run_end::OVER
 }
 
 /// Reports that a signal ended the run while the robot was being opened; returns the exit status.

@@ -4,9 +4,10 @@ use std::io::{self, Write};
 
 use mdle_runtime::{Nanos, Turn};
 
-use crate::clock::{Clock, Instants};
+use crate::clock::Clock;
 use crate::cycle::{Limits, Step, Turns, cycle};
 use crate::drive::Drive;
+use crate::instants::Instants;
 use crate::log::Entry;
 use crate::paths::Recorder;
 use crate::position::Position;

@@ -13,8 +13,8 @@ use mdle_runtime::{Cause, Nanos, Output, Robot};
 
 use super::plan::ToyPlan;
 use crate::call::Call;
-use crate::clock::Instants;
 use crate::executable::PlanOnTarget;
+use crate::instants::Instants;
 use crate::pilot::PlanAlone;
 use crate::session::{Surroundings, session};
 use crate::signals::{Signal, Signals};

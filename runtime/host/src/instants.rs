@@ -1,0 +1,46 @@
+//! Source of real time.
+
+use std::time::Duration;
+
+use rustix::time::{ClockId, clock_gettime};
+
+use crate::scheduling;
+
+/// Source of real time, which a test can control.
+pub(crate) trait Instants {
+    /// Returns the time since a moment before the first turn; it never goes back.
+    fn now(&mut self) -> Duration;
+    /// Sleeps for approximately `time`.
+    fn sleep(&mut self, time: Duration);
+    /// Requests from the system that it wakes this thread on time.
+    ///
+    /// # Errors
+    /// Returns a sentence if the system does not permit that.
+    fn keep_time(&mut self) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// Clock of the time since the computer was started, including suspensions.
+#[derive(Debug)]
+pub(crate) struct SinceBoot;
+
+impl Instants for SinceBoot {
+    fn now(&mut self) -> Duration {
+        let now = clock_gettime(ClockId::Boottime);
+        Duration::new(now.tv_sec.try_into().unwrap_or(0), now.tv_nsec.try_into().unwrap_or(0))
+    }
+
+    fn sleep(&mut self, time: Duration) {
+        std::thread::sleep(time);
+    }
+
+    fn keep_time(&mut self) -> Result<(), String> {
+        scheduling::claim()
+    }
+}
+
+/// Converts a duration to nanoseconds; saturates at `u64::MAX`, which is 584 years.
+pub(crate) fn nanos(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}
