@@ -189,8 +189,7 @@ fn busy(robot: &Robot) -> Row {
     robot.without(port.path())
 }
 
-#[test]
-fn each_fault_stops_the_robot_or_is_borne() {
+pub(crate) fn each_fault_stops_the_robot_or_is_borne() {
     let [on_scout, on_atrv] = Robot::both();
     let mut of_scout = cases(on_scout, scout, |scout| scout.with(atrv, IN_LOCKSTEP, None, Happening::Nothing).0);
     let count = of_scout.len();
@@ -257,8 +256,7 @@ fn assert_ends<R: Emulated>(robot: &Robot, made: MakeRobot<R>, (fault, happening
     panic!("after {} s, {} m further than in lockstep: {}", least.0, least.1, in_lockstep.message);
 }
 
-#[test]
-fn by_the_clock_a_fault_ends_the_program_in_time() {
+pub(crate) fn by_the_clock_a_fault_ends_the_program_in_time() {
     let [on_scout, on_atrv] = Robot::both();
     thread::scope(|scope| {
         for end in ENDS {

@@ -22,8 +22,7 @@ fn alone<R: Robot>(faults: &[&str]) -> Ran<R> {
     ran(faults, &[], Way::Terminal, |_, _| {})
 }
 
-#[test]
-fn robots_stand_at_every_end_of_a_run() {
+pub(crate) fn robots_stand_at_every_end_of_a_run() {
     at_once(&[
         a_robot_without_a_fault_ends_as_the_plan_says,
         an_atrv_that_receives_nothing_ends_the_plan,

@@ -58,14 +58,21 @@ fn a_panic_stops_the_cart() {
     );
 }
 
+/// Each takes ten seconds, so they do beside each other.
 #[test]
+fn a_program_that_hangs_ends() {
+    std::thread::scope(|scope| {
+        scope.spawn(a_law_that_never_returns_ends_the_program);
+        scope.spawn(signals::the_second_signal_ends_a_cart_that_hangs);
+    });
+}
+
 fn a_law_that_never_returns_ends_the_program() {
     let listed = |arguments: &[&str]| {
         let Output { status, stderr, .. } = cart(arguments).output().unwrap();
         let listed: Vec<_> = text(&stderr).lines().filter(|line| is_no_refusal(line)).map(str::to_owned).collect();
         (status.code(), listed.join("\n"))
     };
-    // Each takes ten seconds, so they do beside each other.
     let (stepped, real) = std::thread::scope(|scope| {
         let stepped = scope.spawn(|| listed(&["--tell", "--speed", "max", "--hang-law-at", "1"]));
         let real = listed(&["--tell", "--period", "0.02", "--hang-law-at", "1"]);

