@@ -9,6 +9,8 @@ use mcap::{MAGIC, McapError};
 
 /// Maximum size of a part of the file, in bytes: more than a robot's data of a second.
 const LARGEST: usize = 64_000_000;
+/// Maximum number of bytes that are read at a time: a length that was changed asks for no more memory.
+const STEP: usize = 1 << 18;
 
 /// A part of an MCAP file.
 #[derive(Debug)]
@@ -83,7 +85,7 @@ impl<R: Read> Parts<R> {
             }
             match self.reader.next_event() {
                 Some(Ok(LinearReadEvent::ReadRequest(wanted))) => {
-                    let into = self.reader.insert(wanted);
+                    let into = self.reader.insert(wanted.min(STEP));
                     let read = self.source.read(into).map_err(Unreadable::System)?;
                     for byte in into.get(..read).unwrap_or_default().iter().rev().take(MAGIC.len()).rev() {
                         self.last.rotate_left(1);
