@@ -6,6 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use mdle_tests::book::{fences, name, pages};
 use mdle_tests::chance::sized;
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::outside;
@@ -143,6 +144,25 @@ fn a_new_target_conforms_until_a_sign_is_wrong() {
     let (passed, message) = conformance(&robot);
     let sentence = "the body turned counter-clockwise by -0.800 rad instead of 0.800 rad: a sign in the input";
     assert!(!passed && message.contains(sentence), "{message}");
+}
+
+#[test]
+fn the_robot_of_the_book_conforms() {
+    let folder = folder("robot_of_the_book");
+    assert_eq!(run_mdlec(&folder, &["new-target", "wheels"]).status.code(), Some(0));
+    let page = pages().into_iter().find(|page| name(page) == "own_robot.md").unwrap();
+    let fences = fences(&page);
+    let written: Vec<_> = fences.iter().filter(|fence| fence.words[0] == "rust").collect();
+    assert!(!written.is_empty(), "the driver and its test are gone");
+    for fence in written {
+        fs::write(folder.join(fence.file().unwrap()), &fence.text).unwrap();
+    }
+    outside::patch(&folder.join("wheels"));
+    let command = fences.iter().find(|fence| fence.words == ["sh"]).unwrap();
+    let words: Vec<_> = command.text.split_whitespace().skip(1).collect();
+    let output = outside::cargo(&folder, &words).output().unwrap();
+    let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    assert!(output.status.success() && out.contains("test the_robot_conforms ... ok"), "{out}{err}");
 }
 
 #[test]

@@ -5,10 +5,11 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
 use mdle_tests::book::{Fence, anchors, fences, leads_to, links, messages, name, pages};
 use mdle_tests::executable::{folder, mdle, run_mdlec};
-use mdle_tests::outside;
 use mdle_tests::repository::{TextFile, root};
 use serde_json::Value;
 
@@ -83,8 +84,7 @@ impl Walk<'_> {
             "diff" => self.patch(fence),
             "console" => fence.text.split("$ ").skip(1).for_each(|command| self.run(command)),
             "text" => self.compare(fence),
-            // Later commands of the page use these files; those of the two pages on applications,
-            // tests/compiled/embed.rs builds.
+            // Later commands of the page use these files; tests/compiled builds the packages of a page.
             "commands" | "csv" | "json" | "python" | "rust" | "toml" => drop(self.write(fence.file().unwrap(), fence)),
             "sh" => {}
             other => panic!("{}: what is `{other}`?", self.page.path),
@@ -142,12 +142,6 @@ impl Walk<'_> {
         let output = match words[0] {
             "mdlec" => run_mdlec(&self.folder, &words[1..]),
             "mdle" => Command::new(mdle()).args(&words[1..]).current_dir(&self.folder).output().unwrap(),
-            "cargo" => {
-                // In the package of a robot, which its manifest has to lead to this checkout.
-                let manifest = Path::new(words.last().unwrap());
-                outside::patch(&self.folder.join(manifest.parent().unwrap()));
-                outside::cargo(&self.folder, &words[1..]).output().unwrap()
-            }
             // By the name that is typed, which the program may print.
             program => Command::new(program).args(&words[1..]).current_dir(&self.folder).output().unwrap(),
         };
@@ -200,18 +194,31 @@ fn is_alike(answer: &str, shown: &str) -> bool {
 
 #[test]
 fn examples_do_what_the_book_says() {
-    let mut traces = 0;
-    for page in &pages() {
-        let folder = folder(&format!("book_{}", name(page)));
-        let mut walk = Walk { page, folder, plan: String::new(), script: String::new() };
-        let fences = fences(page);
-        fences.iter().for_each(|fence| walk.step(fence));
-        walk.pictures();
-        let count = |word: &str| fences.iter().filter(|fence| fence.words[0] == word).count();
-        assert_eq!(count("script"), count("trace") + usize::from(name(page) == "first_plan.md"), "{}", page.path);
-        traces += count("trace");
-    }
+    let (pages, next, traces) = (pages(), AtomicUsize::new(0), AtomicUsize::new(0));
+    // Most commands use one processor.
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while let Some(page) = pages.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    traces.fetch_add(walked(page), Ordering::Relaxed);
+                }
+            });
+        }
+    });
+    let traces = traces.into_inner();
     assert!(traces >= 20, "the book has {traces} traces");
+}
+
+/// Asserts that the examples of a page do what it says; returns the number of its traces.
+fn walked(page: &TextFile) -> usize {
+    let folder = folder(&format!("book_{}", name(page)));
+    let mut walk = Walk { page, folder, plan: String::new(), script: String::new() };
+    let fences = fences(page);
+    fences.iter().for_each(|fence| walk.step(fence));
+    walk.pictures();
+    let count = |word: &str| fences.iter().filter(|fence| fence.words[0] == word).count();
+    assert_eq!(count("script"), count("trace") + usize::from(name(page) == "first_plan.md"), "{}", page.path);
+    count("trace")
 }
 
 #[test]
