@@ -7,3 +7,4 @@ mod embed;
 mod machines;
 mod own_module;
 mod own_target;
+mod random_runs;

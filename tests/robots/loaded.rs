@@ -2,50 +2,15 @@
 //! exit status.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
-mod random;
-
-use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread;
-use std::time::Duration;
+use std::process::Command;
 
-use mdle_atrv_emulator::atrv::{Atrv, step};
-use mdle_emulator::{Emulated, Pace, Port, serve};
-use mdle_scout_emulator::scout::Scout;
-use mdle_sim::{Body, Make, Simulated, World};
-use mdle_tests::chance::Chance;
-use mdle_tests::executable::{folder, mdle, run_mdlec};
+use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::root;
-
-const PERIOD: Duration = Duration::from_millis(100);
-const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
-
-/// The files that a run writes.
-const FILES: [&str; 2] = ["run.jsonl", "trail.csv"];
-
-/// All that a run leaves: report, messages, exit status, and the files that it writes.
-#[derive(Debug, PartialEq, Eq)]
-struct RunOutput {
-    out: String,
-    err: String,
-    status: Option<i32>,
-    files: Vec<Option<String>>,
-}
-
-/// Takes what a run in `folder` left; `called` are the words of its command before the options, for messages.
-fn left(folder: &Path, called: &str, output: Output) -> RunOutput {
-    let files = FILES.map(|file| {
-        let text = fs::read_to_string(folder.join(file)).ok();
-        let _ = fs::remove_file(folder.join(file));
-        text
-    });
-    let text = |bytes| String::from_utf8(bytes).unwrap().replace(called, "PROGRAM");
-    let [out, err] = [output.stdout, output.stderr].map(text);
-    RunOutput { out, err, status: output.status.code(), files: files.into() }
-}
+use mdle_tests::run_output::{
+    FILES, RunOutput, called, emulated_run, in_simulator, left, loaded, simulated_run, warnings,
+};
 
 /// Runs the plan of a file both ways with the same options, and compares what the runs leave. Warnings about the plan,
 /// which `mdlec` prints when it builds, come before the run.
@@ -56,30 +21,6 @@ fn compare(folder: &Path, file: &str, target: &str, options: &[&str]) -> RunOutp
     let loaded = run(loaded(file, target));
     assert_eq!(loaded, executable, "{file} {target} {options:?}");
     loaded
-}
-
-/// Runs a command with these options in the simulator.
-fn simulated_run(folder: &Path, mut command: Command, options: &[&str]) -> RunOutput {
-    let called = called(&command);
-    left(folder, &called, command.args(options).current_dir(folder).output().unwrap())
-}
-
-/// The warnings about a plan.
-fn warnings(folder: &Path, file: &str, target: &str) -> String {
-    String::from_utf8(run_mdlec(folder, &["check", file, "--target", target]).stderr).unwrap()
-}
-
-/// Returns the program and the arguments of a command, as a shell takes them.
-fn called(command: &Command) -> String {
-    let words = [command.get_program()].into_iter().chain(command.get_args());
-    words.map(|word| word.to_str().unwrap()).collect::<Vec<_>>().join(" ")
-}
-
-/// `mdle run FILE --target TARGET`.
-fn loaded(file: &str, target: &str) -> Command {
-    let mut command = Command::new(mdle());
-    command.args(["run", file, "--target", target]);
-    command
 }
 
 /// Builds the executable of the plan in this file.
@@ -95,14 +36,6 @@ fn plans() -> Vec<PathBuf> {
     let mut plans: Vec<_> = files.filter(|file| file.extension().is_some_and(|ending| ending == "mdle")).collect();
     plans.sort();
     plans
-}
-
-/// The options of a run in the simulator with this body.
-fn in_simulator<'a>(body: &'a str, seed: &'a str) -> Vec<&'a str> {
-    let [log, trail] = FILES;
-    let mut options = vec!["--body", body, "--speed", "max", "--timeout", "200", "--log", log, "--trail", trail];
-    options.extend(["--seed", seed]);
-    options
 }
 
 #[test]
@@ -163,91 +96,5 @@ fn a_run_on_an_emulated_robot_is_that_of_the_executable() {
         let executable = run(Command::new(folder.join("executable")));
         assert_eq!(run(loaded(file, target)), executable, "{target}");
         assert_eq!(executable.status, Some(0), "{executable:?}");
-    }
-}
-
-/// A robot in the office, at the start of the tour.
-pub(crate) fn simulated(body: Body, step: Duration) -> Simulated {
-    let world = World::office().unwrap();
-    let make = Make { body, without: Vec::new(), seed: None };
-    Simulated::with(&make, &world, world.start, step).unwrap()
-}
-
-/// Runs a command on the emulated robot of a target in lockstep, for at most this many seconds.
-fn emulated_run(folder: &Path, target: &str, command: Command, timeout: &str) -> RunOutput {
-    if target == "scout" {
-        return emulated(folder, Scout::new(simulated(Body::Scout, PERIOD)).unwrap(), command, timeout);
-    }
-    let step = step(IN_LOCKSTEP);
-    emulated(folder, Atrv::new(simulated(Body::Atrv, step), step, false).unwrap(), command, timeout)
-}
-
-fn emulated<R: Emulated + Send>(folder: &Path, mut robot: R, mut command: Command, timeout: &str) -> RunOutput {
-    let called = called(&command);
-    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
-    let output = thread::scope(|scope| {
-        let serving = scope.spawn(|| serve(&mut robot, &port, IN_LOCKSTEP, &|| !over.load(Ordering::Relaxed)));
-        let options = ["--lockstep", "--timeout", timeout, "--log", FILES[0]];
-        let output = command.arg("--device").arg(port.path()).args(options).current_dir(folder).output();
-        over.store(true, Ordering::Relaxed);
-        serving.join().unwrap().unwrap();
-        output.unwrap()
-    });
-    left(folder, &called, output)
-}
-
-/// A plan of the simulated robot: behaviors in behaviors, loops, frames, memories, and laws that drive it about.
-pub(crate) fn random_plan(chance: &mut Chance) -> String {
-    let mut text = String::from("{ Main (wait 90)\n");
-    let mut labels = 0;
-    strings(chance, &mut text, 3, &mut labels);
-    text + "}\n"
-}
-
-/// Some elements of a behavior that is `depth` levels above the deepest.
-fn strings(chance: &mut Chance, text: &mut String, depth: usize, labels: &mut usize) {
-    for _ in 0..1 + chance.below(4) {
-        let frame = chance.pick(&["", "", "FRAME 45 ", "FRAME here "]);
-        let times = chance.pick(&["", "", "^2", "^3"]);
-        if depth > 0 && chance.percent(45) {
-            *labels += 1;
-            let (name, condition) = (*labels, condition(chance, 2));
-            let _ = writeln!(text, "{{ Part{name} ({condition}) ");
-            strings(chance, text, depth - 1, labels);
-            let _ = writeln!(text, "}}");
-        } else {
-            let law = chance.pick(&[
-                "go 20 0",
-                "go 30cm/s 10deg/s",
-                "go 0 -1",
-                "rotate 90",
-                "rotate -45",
-                "goAvoid 90 40 20",
-                "goAvoid 0 30 30",
-                "stop",
-                "align 3 5",
-            ]);
-            let condition = condition(chance, 2);
-            let _ = writeln!(text, "{frame}(Atom ({condition} OR wait {}) {law}){times}", 1 + chance.below(6));
-        }
-    }
-}
-
-/// A condition with operators in operators.
-fn condition(chance: &mut Chance, depth: usize) -> String {
-    if depth > 0 && chance.percent(40) {
-        let (one, other) = (condition(chance, depth - 1), condition(chance, depth - 1));
-        return match chance.below(4) {
-            0 => format!("({one}) AND ({other})"),
-            1 => format!("({one}) OR ({other})"),
-            2 => format!("NOT ({one})"),
-            _ => format!("RISING ({one})"),
-        };
-    }
-    let simple = ["bumper", "r0 < 60cm", "r3 < r5", "r12 > 1.5m", "x > 3m", "theta > 30deg", "atIsection 0100"];
-    match chance.below(3) {
-        0 => format!("wait {}", 1 + chance.below(9)),
-        1 => format!("way > {}cm", 10 + chance.below(200)),
-        _ => chance.pick(&simple).to_owned(),
     }
 }

@@ -16,10 +16,10 @@ use mdle_record::{ReadError, Records};
 use mdle_scout_emulator::scout::Scout;
 use mdle_sim::Body;
 use mdle_tests::chance::{Chance, repeated};
+use mdle_tests::driving_plan::random_plan;
 use mdle_tests::executable::{folder, mdle, run_mdlec};
 use mdle_tests::repository::root;
-
-use crate::loaded::{random_plan, simulated};
+use mdle_tests::run_output::simulated;
 
 const PERIOD: Duration = Duration::from_millis(100);
 const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);

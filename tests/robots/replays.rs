@@ -18,9 +18,8 @@ use mdle_record::{RecordFile, RecordedTurn, Records, TurnMade};
 use mdle_scout_emulator::scout::Scout;
 use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::chance::{Chance, repeated};
+use mdle_tests::driving_plan::random_plan;
 use mdle_tests::executable::{folder, mdle};
-
-use crate::loaded::random_plan;
 
 const PERIOD: Duration = Duration::from_millis(100);
 const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);

@@ -1,5 +1,6 @@
 //! Random plans on the simulated robot with each body and on both emulated robots. The emitted plans of a target are
 //! one program, which is built once.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
 use std::fs;
@@ -10,12 +11,12 @@ use std::thread;
 
 use mdle_compiler::rust::{Header, emit, plan_type};
 use mdle_tests::chance::{Chance, repeated};
+use mdle_tests::driving_plan::random_plan;
 use mdle_tests::executable::{folder, target};
 use mdle_tests::golden;
 use mdle_tests::outside::{adopt, cargo};
 use mdle_tests::repository::{TextFile, root};
-
-use super::{emulated_run, in_simulator, loaded, random_plan, simulated_run, warnings};
+use mdle_tests::run_output::{emulated_run, in_simulator, loaded, simulated_run, warnings};
 
 /// Number of random plans.
 const PLANS: u64 = 5;

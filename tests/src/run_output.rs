@@ -1,0 +1,116 @@
+//! Runs of a plan from its text and as its executable, in the simulator and on emulated robots: all that they leave.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use mdle_atrv_emulator::atrv::{Atrv, step};
+use mdle_emulator::{Emulated, Pace, Port, serve};
+use mdle_scout_emulator::scout::Scout;
+use mdle_sim::{Body, Make, Simulated, World};
+
+use crate::executable::{mdle, run_mdlec};
+
+const PERIOD: Duration = Duration::from_millis(100);
+const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
+
+/// The files that a run writes.
+pub const FILES: [&str; 2] = ["run.jsonl", "trail.csv"];
+
+/// All that a run leaves: report, messages, exit status, and the files that it writes.
+#[derive(Debug, PartialEq, Eq)]
+pub struct RunOutput {
+    /// The report.
+    pub out: String,
+    /// The messages.
+    pub err: String,
+    /// The exit status; `None` after a signal.
+    pub status: Option<i32>,
+    /// The texts of [`FILES`]; `None` for one that was not written.
+    pub files: Vec<Option<String>>,
+}
+
+/// Takes what a run in `folder` left; `called` are the words of its command before the options, for messages.
+#[must_use]
+pub fn left(folder: &Path, called: &str, output: Output) -> RunOutput {
+    let files = FILES.map(|file| {
+        let text = fs::read_to_string(folder.join(file)).ok();
+        let _ = fs::remove_file(folder.join(file));
+        text
+    });
+    let text = |bytes| String::from_utf8(bytes).unwrap().replace(called, "PROGRAM");
+    let [out, err] = [output.stdout, output.stderr].map(text);
+    RunOutput { out, err, status: output.status.code(), files: files.into() }
+}
+
+/// Runs a command with these options in the simulator.
+#[must_use]
+pub fn simulated_run(folder: &Path, mut command: Command, options: &[&str]) -> RunOutput {
+    let called = called(&command);
+    left(folder, &called, command.args(options).current_dir(folder).output().unwrap())
+}
+
+/// The warnings about a plan.
+#[must_use]
+pub fn warnings(folder: &Path, file: &str, target: &str) -> String {
+    String::from_utf8(run_mdlec(folder, &["check", file, "--target", target]).stderr).unwrap()
+}
+
+/// Returns the program and the arguments of a command, as a shell takes them.
+#[must_use]
+pub fn called(command: &Command) -> String {
+    let words = [command.get_program()].into_iter().chain(command.get_args());
+    words.map(|word| word.to_str().unwrap()).collect::<Vec<_>>().join(" ")
+}
+
+/// `mdle run FILE --target TARGET`.
+#[must_use]
+pub fn loaded(file: &str, target: &str) -> Command {
+    let mut command = Command::new(mdle());
+    command.args(["run", file, "--target", target]);
+    command
+}
+
+/// The options of a run in the simulator with this body.
+#[must_use]
+pub fn in_simulator<'a>(body: &'a str, seed: &'a str) -> Vec<&'a str> {
+    let [log, trail] = FILES;
+    let mut options = vec!["--body", body, "--speed", "max", "--timeout", "200", "--log", log, "--trail", trail];
+    options.extend(["--seed", seed]);
+    options
+}
+
+/// A robot in the office, at the start of the tour.
+#[must_use]
+pub fn simulated(body: Body, step: Duration) -> Simulated {
+    let world = World::office().unwrap();
+    let make = Make { body, without: Vec::new(), seed: None };
+    Simulated::with(&make, &world, world.start, step).unwrap()
+}
+
+/// Runs a command on the emulated robot of a target in lockstep, for at most this many seconds.
+#[must_use]
+pub fn emulated_run(folder: &Path, target: &str, command: Command, timeout: &str) -> RunOutput {
+    if target == "scout" {
+        return emulated(folder, Scout::new(simulated(Body::Scout, PERIOD)).unwrap(), command, timeout);
+    }
+    let step = step(IN_LOCKSTEP);
+    emulated(folder, Atrv::new(simulated(Body::Atrv, step), step, false).unwrap(), command, timeout)
+}
+
+fn emulated<R: Emulated + Send>(folder: &Path, mut robot: R, mut command: Command, timeout: &str) -> RunOutput {
+    let called = called(&command);
+    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
+    let output = thread::scope(|scope| {
+        let serving = scope.spawn(|| serve(&mut robot, &port, IN_LOCKSTEP, &|| !over.load(Ordering::Relaxed)));
+        let options = ["--lockstep", "--timeout", timeout, "--log", FILES[0]];
+        let output = command.arg("--device").arg(port.path()).args(options).current_dir(folder).output();
+        over.store(true, Ordering::Relaxed);
+        serving.join().unwrap().unwrap();
+        output.unwrap()
+    });
+    left(folder, &called, output)
+}
