@@ -125,6 +125,19 @@ fn a_plan_can_be_replaced_in_every_turn() {
 }
 
 #[test]
+fn the_time_of_a_plan_needs_no_timer() {
+    let folder = with_plans("shell_time");
+    fs::write(folder.join("plan.mdle"), "{ Ahead (x > 45cm) (Atom (null) (go 30 0)) }\n").unwrap();
+    let commands = "step 5\nget /usr/mdle/t\nstep 30\nget /usr/mdle/t\nget /clock/now\n";
+    let Left { out, status, .. } = piped(&folder, &[], commands.as_bytes());
+    let lines: Vec<_> = out.lines().collect();
+    let &[_, t, end, last, now] = lines.as_slice() else { panic!("{out}") };
+    assert!(end.ends_with(", and the plan is over"), "{out}");
+    assert_eq!((t, last, status), ("0.4s", now, Some(0)), "{out}");
+    assert_ne!(last, "0s");
+}
+
+#[test]
 fn at_most_64_plans_are_stored() {
     let folder = with_plans("shell_many_plans");
     let many: String = (0..64).map(|number| format!("{{ P{number} (wait 1s) (Atom (null) stop) }}\n")).collect();

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use mdle_host::{Break, PlanPosition};
+use mdle_host::{Break, Pilot as _, PlanPosition};
 use mdle_quantity::Quantity;
 use mdle_runtime::Nanos;
 
@@ -138,7 +138,7 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
             Some(Value::Quantity(plans.trial().seconds(), "s")),
         ]);
         match moment.position() {
-            Some(place) => to.extend(standing(&place).map(Some)),
+            Some(place) => to.extend(standing(&place, moment.t.since(moment.pilot.zero())).map(Some)),
             None => to.extend([const { None }; 6]),
         }
         to.extend([const { None }; 3]);
@@ -220,10 +220,9 @@ fn set_trial<A: EngineAlphabet>(plans: &mut Plans<A>, text: &str) -> Result<(), 
     Ok(())
 }
 
-/// Returns the values that describe the position in a plan.
-fn standing(place: &PlanPosition<'_>) -> [Value; 6] {
+/// Returns the values that describe the position in a plan that began this time ago.
+fn standing(place: &PlanPosition<'_>, t: Nanos) -> [Value; 6] {
     let conditions: Vec<_> = place.scopes.iter().map(|scope| scope.condition).collect();
-    let t = place.scopes.first().map_or(place.t, |plan| plan.since);
     [
         Value::text(place.law),
         Value::text(&place.place),
