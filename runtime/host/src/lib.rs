@@ -23,6 +23,7 @@ mod executable;
 mod files;
 mod held_report;
 mod helm;
+mod holds;
 mod instants;
 mod interruption;
 mod log;

@@ -8,6 +8,7 @@ use mdle_runtime::{Cause, Measured, Nanos, Printable, Transition};
 
 use crate::Clocked;
 use crate::cause::{CauseText, place};
+use crate::holds::Holds;
 use crate::position::Texts;
 use crate::standing::Course;
 use crate::supervised::Supervised;
@@ -29,6 +30,8 @@ pub(crate) struct Report<'a> {
     last_verdict: Option<(Verdict, String)>,
     /// The rules that have limited an input.
     limiting: Vec<String>,
+    /// The holds of each rule.
+    holds: Holds,
 }
 
 /// End of a plan.
@@ -65,6 +68,7 @@ impl<'a> Report<'a> {
             over: None,
             last_verdict: None,
             limiting: Vec::new(),
+            holds: Holds::default(),
         }
     }
 
@@ -115,7 +119,8 @@ impl<'a> Report<'a> {
     }
 
     /// Reports the supervisor's part in the turn at time `t`, unless it equals that in the previous turn. A rule that
-    /// limits inputs is reported only once, because it may start and stop with every turn.
+    /// limits inputs is reported only once, because it may start and stop with every turn, and a rule that holds the
+    /// robot again and again only at first.
     pub(crate) fn supervised(&mut self, t: Nanos, supervised: &Supervised) {
         let intervention = supervised.intervention();
         if let Some(limit) = intervention.filter(|it| it.verdict == Verdict::Limited)
@@ -129,10 +134,16 @@ impl<'a> Report<'a> {
         if intervention.map(|it| (it.verdict, it.rule)) == last_verdict {
             return;
         }
+        let is_followed = self.holds.is_followed();
         self.last_verdict = intervention.map(|it| (it.verdict, it.rule.to_owned()));
         match intervention {
+            Some(held) if held.verdict == Verdict::Held => {
+                if let Some(repeats) = self.holds.begins(held.rule, t) {
+                    self.line(t, &format!("safety: {held}{repeats}"));
+                }
+            }
             Some(intervention) => self.line(t, &format!("safety: {intervention}")),
-            None if supervised.begins.is_some() || self.over.is_some() => {}
+            None if supervised.begins.is_some() || self.over.is_some() || !is_followed => {}
             None => self.line(t, "safety: the plan goes on"),
         }
     }

@@ -76,6 +76,44 @@ fn a_hold_is_reported_when_it_begins_and_ends() {
     ");
 }
 
+/// A supervisor that holds the robot in these turns.
+struct Flickers {
+    turns: &'static [u64],
+    turn: u64,
+}
+
+impl Supervisor<Alone> for Flickers {
+    fn filter(&mut self, asked: u32, _: &Sensed, t: Nanos) -> u32 {
+        self.turn = t.0 / 100_000_000;
+        asked
+    }
+
+    fn intervention(&self) -> Option<Intervention<'_>> {
+        let is_held = self.turns.contains(&self.turn);
+        is_held.then_some(Intervention { verdict: Verdict::Held, rule: "rule", limited: None })
+    }
+}
+
+#[test]
+fn a_rule_that_holds_again_and_again_is_reported_thrice() {
+    let supervisor = |_: &RunTerms| -> Box<dyn Supervisor<Alone>> {
+        Box::new(Flickers { turns: &[1, 3, 5, 6, 8, 10, 12, 112], turn: 0 })
+    };
+    let quiet = (0..114).map(|_| Act::Senses(vec![]));
+    let script = quiet.chain([Act::Senses(vec![(0, Fired(0))])]);
+    let run = Stage { supervisor: Some(supervisor), ..Stage::script(script) }.run(&[]);
+    insta::assert_snapshot!(run.out, @"
+    0.1 s  safety: rule holds the robot
+    0.2 s  safety: the plan goes on
+    0.3 s  safety: rule holds the robot
+    0.4 s  safety: the plan goes on
+    0.5 s  safety: rule holds the robot, again and again: reported anew once it has paused for 10 s
+    11.2 s  safety: rule holds the robot
+    11.3 s  safety: the plan goes on
+    11.4 s  plan over: bumper (Lab)
+    ");
+}
+
 #[test]
 fn a_plan_that_is_over_does_not_go_on() {
     let held = |_: &RunTerms| -> Box<dyn Supervisor<Alone>> {
