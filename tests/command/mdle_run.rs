@@ -174,6 +174,24 @@ fn the_settings_beside_a_plan_name_its_modules() {
 }
 
 #[test]
+fn the_settings_beside_a_plan_name_its_safety_rules() {
+    let folder = with_plan("settings_safety");
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+    let settings = "target = \"sim\"\nworld = \"hall\"\nsafety = \"rules.toml\"\n\n[options]\nspeed = \"max\"\n";
+    write("mdle.toml", settings);
+    let missing = report(&folder, "run plan.mdle");
+    write("rules.toml", "[guards.far]\nwhen = \"x > 20cm\"\nthen = \"end\"\n");
+    write("none.toml", "# no rules\n");
+    let own = report(&folder, "run plan.mdle --log run.mcap");
+    let info = report(&folder, "log info run.mcap");
+    assert!(info.contains("--safety rules.toml"), "{info}");
+    let replaced = report(&folder, "run plan.mdle --safety none.toml");
+    assert!(replaced.ends_with("[0]\n"), "{replaced}");
+    let navigated = report(&folder, "navigate plan.mdle A B");
+    insta::assert_snapshot!([missing, own, navigated].join("\n"));
+}
+
+#[test]
 fn safety_rules_stand_between_plan_and_robot() {
     let folder = with_plan("safety");
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
@@ -191,7 +209,11 @@ fn safety_rules_stand_between_plan_and_robot() {
     let plain = report(&folder, &format!("run plan.mdle {fast}"));
     let unruled = report(&folder, &format!("run plan.mdle {fast} --safety none.toml"));
     assert_eq!(unruled.split_once('\n').unwrap().1, plain.split_once('\n').unwrap().1);
-    let files = ["end", "back", "wrong", "condition", "memory", "lost", "latin", "missing"];
+    write("broken.toml", "\n[contact]\nthen = \"plans/broken.mdle\"\n");
+    write("plans/broken.mdle", "{ Broken (wiat 1s) (Atom (null) stop) }\n");
+    write("path.toml", "\n[contact]\nthen = \"plans/path.mdle\"\n");
+    write("plans/path.mdle", "{ Path (null) (Atom (null) path(hall)) }\n");
+    let files = ["end", "back", "wrong", "condition", "memory", "lost", "broken", "path", "latin", "missing"];
     let runs = files.map(|file| report(&folder, &format!("run plan.mdle {fast} --safety {file}.toml")));
     let written = report(&folder, &format!("run plan.mdle {fast} --safety back.toml --log plans/back.mdle"));
     insta::assert_snapshot!(format!("{}\n{written}", runs.join("\n")));

@@ -170,6 +170,18 @@ fn a_check_names_a_world_that_is_none() {
 }
 
 #[test]
+fn an_executable_has_no_safety_rules() {
+    let folder = home("settings_safety", "target = \"sim\"\nsafety = \"rules.toml\"\n");
+    let refused = "error: home/mdle.toml:2: `mdlec run` has no safety rules\nhelp: use `mdle run home/plan.mdle`\n";
+    for arguments in [&["run", "home/plan.mdle"][..], &["home/plan.mdle", "--run"]] {
+        let run = message(&folder, arguments);
+        assert!(run.ends_with(&format!("{refused}exit status 2\n")), "{run}");
+    }
+    assert!(!folder.join("plan").exists(), "nothing is built");
+    assert!(message(&folder, &["check", "home/plan.mdle"]).ends_with("exit status 0\n"));
+}
+
+#[test]
 fn the_file_is_a_regular_one_of_text() {
     let folder = home("settings_files", "");
     let file = folder.join("home/mdle.toml");

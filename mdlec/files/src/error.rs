@@ -15,11 +15,11 @@ pub enum InputError {
     NoTarget,
     /// There is no target of this name.
     UnknownTarget(String),
-    /// An `mdle.toml` names a target that cannot be read.
-    InSettings {
+    /// A file, such as an `mdle.toml`, names a target or a plan that cannot be read.
+    NamedAt {
         /// Line of the file, as in `plans/mdle.toml:3`.
         place: String,
-        /// Reason why the target cannot be read.
+        /// Reason why the target or the plan cannot be read.
         error: Box<InputError>,
     },
     /// A file has errors.
@@ -84,13 +84,13 @@ impl Spelling {
 }
 
 impl InputError {
-    /// Returns the file with errors, if that is the reason, also if the file is named by a line of an
-    /// `mdle.toml`.
+    /// Returns the file with errors, if that is the reason, also if the file is named by a line of
+    /// another file.
     #[must_use]
     pub fn faulty_file(self) -> Option<FaultyFile> {
         match self {
             Self::Faulty(file) => Some(file),
-            Self::InSettings { error, .. } => error.faulty_file(),
+            Self::NamedAt { error, .. } => error.faulty_file(),
             Self::Unusable(_)
             | Self::NoTarget
             | Self::UnknownTarget(_)
@@ -111,7 +111,7 @@ impl InputError {
                 format!("for which robot? Name it, as in `{option}`; `mdlec targets` lists them")
             }
             Self::UnknownTarget(name) => unknown_target(name, spelling),
-            Self::InSettings { place, error } => match error.message(spelling) {
+            Self::NamedAt { place, error } => match error.message(spelling) {
                 message if message.is_empty() => message,
                 message => format!("{place}: {message}"),
             },

@@ -46,6 +46,15 @@ pub struct NamedProcess<'s> {
     pub command: &'s str,
 }
 
+/// The safety file that an `mdle.toml` names.
+#[derive(Debug)]
+pub struct SafetyEntry {
+    /// Place of the entry, as in `plans/mdle.toml:3`.
+    pub place: String,
+    /// Path of the safety file.
+    pub file: PathBuf,
+}
+
 /// An option that a run gets from an `mdle.toml`.
 #[derive(Debug)]
 pub struct RunOption {
@@ -94,7 +103,7 @@ impl Settings {
         let mut target = match (option, &self.text.target) {
             (Some(_), _) | (None, None) => target(option),
             (None, Some(own)) => {
-                let named = |error| InputError::InSettings { place: self.place(own.line), error: Box::new(error) };
+                let named = |error| InputError::NamedAt { place: self.place(own.line), error: Box::new(error) };
                 target(Some(&self.target_name(&own.value))).map_err(named)
             }
         }?;
@@ -122,6 +131,13 @@ impl Settings {
             name,
             command: &command.value,
         })
+    }
+
+    /// Returns the file of the safety rules that a run of `mdle` puts between plan and robot.
+    #[must_use]
+    pub fn safety(&self) -> Option<SafetyEntry> {
+        let own = self.text.safety.as_ref()?;
+        Some(SafetyEntry { place: self.place(own.line), file: self.in_folder(&own.value) })
     }
 
     /// Returns the options of the file for a run, except those that are also in `given`, the arguments of the

@@ -14,7 +14,7 @@ use super::version::version;
 use super::{EmitKind, Executable, Failure, Run, endings, report};
 use crate::link::{self, Cache, Package, Progress, TargetCrate};
 use mdle_compiler::rust;
-use mdle_files::{RunOption, Settings, Target};
+use mdle_files::{RunOption, SafetyEntry, Settings, Target};
 
 /// Builds the executable of a plan and becomes it.
 pub(super) fn run(options: &Run) -> Result<(), Failure> {
@@ -27,10 +27,15 @@ pub(super) fn run(options: &Run) -> Result<(), Failure> {
     build(&options.executable, path, output, None)?.become_it(options.executable.target.as_deref(), &options.args)
 }
 
-/// Checks, before the build, the options that a run with the arguments `args` takes from an `mdle.toml`.
+/// Checks, before the build, the options that a run with the arguments `args` takes from an `mdle.toml`, which may name
+/// no safety rules: an executable has none.
 pub(super) fn settings_fit(options: &Executable, args: &[String]) -> Result<(), Failure> {
     let Some(path) = &options.plan else { return Ok(()) };
     let settings = Settings::beside(path)?;
+    if let Some(SafetyEntry { place, .. }) = settings.safety() {
+        let sentence = format!("{place}: `mdlec run` has no safety rules\nhelp: use `mdle run {}`", path.display());
+        return Err(Failure::usage(sentence));
+    }
     settings.run_options(options.target.as_deref(), args, link::known)?;
     Ok(())
 }

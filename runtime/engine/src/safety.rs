@@ -22,4 +22,4 @@ pub use error::RulesError;
 pub use fence::Fence;
 pub use guardian::Guardian;
 pub use read::read;
-pub use rules::{Condition, Guard, Limits, Measure, Rules, Then};
+pub use rules::{Condition, Guard, Limits, Measure, PlanEntry, Rules, Then};

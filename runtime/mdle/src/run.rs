@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use mdle_compiler::diagnostic::judged;
 use mdle_engine::Library;
-use mdle_files::{Input, InputError, Known, Settings, Target, read_plan};
+use mdle_files::{Input, InputError, Known, SafetyEntry, Settings, Target, read_plan};
 use mdle_host::{Call, Program, RecordedPlan};
 use mdle_runtime::Sensed;
 
@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
     let name = settings.name_of_target(arguments.target.as_deref()).ok_or(InputError::NoTarget)?;
     let linked = targets::linked(&name).map_err(Failure::Usage)?;
     let target = Arc::new(settings.target(arguments.target.as_deref())?);
-    let safety = arguments.safety.as_deref().map(SafetyFile::read).transpose()?;
+    let safety = safety_file(&arguments, &settings)?;
     let link = arguments.link.as_deref().map(LinkFile::read).transpose()?;
     let mut input = read_plan(&arguments.file, &target)?;
     let named = arguments.plan.as_deref();
@@ -84,18 +84,33 @@ impl Run {
     }
 }
 
+/// Returns the safety file that the settings name, unless the arguments name one.
+fn safety_entry(arguments: &Run, settings: &Settings) -> Option<SafetyEntry> {
+    settings.safety().filter(|_| arguments.safety.is_none())
+}
+
+/// Reads the safety file of a run, if it has one.
+fn safety_file(arguments: &Run, settings: &Settings) -> Result<Option<SafetyFile>, Failure> {
+    if let Some(SafetyEntry { place, file }) = safety_entry(arguments, settings) {
+        return SafetyFile::read(&file, &format!("{place}: ")).map(Some);
+    }
+    arguments.safety.as_deref().map(|file| SafetyFile::read(file, "")).transpose()
+}
+
 /// Returns the words that settings give a run with these arguments on the target of this name, besides its options.
 fn determining(arguments: &Run, settings: &Settings, target: &str) -> Vec<String> {
     let target = arguments.target.is_none().then(|| ["--target".to_owned(), target.to_owned()]);
     let modules = modules::only_of_settings(settings, arguments);
     let modules = modules.flat_map(|module| ["--module".to_owned(), format!("{}={}", module.name, module.command)]);
-    target.into_iter().flatten().chain(modules).collect()
+    let safety = safety_entry(arguments, settings);
+    let safety = safety.map(|entry| ["--safety".to_owned(), entry.file.display().to_string()]);
+    target.into_iter().flatten().chain(modules).chain(safety.into_iter().flatten()).collect()
 }
 
 /// Names the causes of inputs besides the plan and the robot's outputs; empty if there are none.
 fn beside(arguments: &Run, ready: &dyn Ready) -> String {
     let parts: [(bool, &str); 5] = [
-        (arguments.safety.is_some(), "safety rules"),
+        (ready.safety().is_some(), "safety rules"),
         (arguments.session.is_some(), "the commands of a session"),
         (ready.reads_modules(), "modules"),
         (arguments.link.is_some(), "the state link"),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use mdle_compiler::diagnostic::{Sources, judged};
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::safety::{Conditions, GuardError, Guardian, Rules, read};
-use mdle_files::{Target, read_plan};
+use mdle_files::{InputError, Target, read_plan};
 use mdle_record::SafetyTexts;
 use mdle_runtime::{Alphabet, ModuleRead, Plan as _};
 
@@ -36,13 +36,14 @@ pub(crate) struct Guarded<A: Alphabet> {
 }
 
 impl SafetyFile {
-    /// Reads the file.
+    /// Reads the file. `named` is the beginning of the message that there is no such file: empty, or the place of its
+    /// name.
     ///
     /// # Errors
     /// Fails if the file cannot be read, or is no safety file.
-    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
+    pub(crate) fn read(path: &Path, named: &str) -> Result<Self, Failure> {
         let name = path.display();
-        let unread = |error| Failure::Usage(format!("the safety file {name} cannot be read: {error}"));
+        let unread = |error| Failure::Usage(format!("{named}the safety file {name} cannot be read: {error}"));
         let text = mdle_host::read_text(path, LARGEST).map_err(unread)?;
         Self::of_text(path, text, None)
     }
@@ -63,7 +64,7 @@ impl SafetyFile {
     /// Returns the paths of the safety file itself and of the plans to which rules divert.
     pub(crate) fn files(&self) -> impl Iterator<Item = PathBuf> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
-        let plans = self.rules.plans.iter().map(|plan| folder.join(plan));
+        let plans = self.rules.plans.iter().map(|plan| folder.join(&plan.file));
         [self.path.clone()].into_iter().chain(plans)
     }
 
@@ -81,9 +82,11 @@ impl SafetyFile {
             failure::print(&sources, conditions.warnings());
         }
         let (mut diversions, mut texts) = (Vec::new(), Vec::new());
-        for (number, plan) in self.files().skip(1).enumerate() {
+        let plans = self.files().skip(1).zip(&self.rules.plans);
+        for (number, (file, plan)) in plans.enumerate() {
             let recorded = self.recorded.as_ref().map(|plans| plans.get(number).map_or(&[][..], Vec::as_slice));
-            let (loaded, files) = diversion(&plan, recorded, target, looks)?;
+            let named = NamedPlan { place: format!("{name}:{}", plan.line), file };
+            let (loaded, files) = diversion(&named, recorded, target, looks)?;
             diversions.push(loaded);
             texts.push(files);
         }
@@ -107,9 +110,24 @@ fn refused(error: GuardError, name: &str, sources: &Sources) -> Failure {
 /// A plan to which a rule diverts, with the names and texts of its files.
 type Diversion<A> = (Arc<Loaded<A>>, Vec<(String, String)>);
 
+/// A plan to which a rule diverts.
+struct NamedPlan {
+    /// Place of its name in the safety file, as in `rules.toml:3`.
+    place: String,
+    /// The plan's file.
+    file: PathBuf,
+}
+
+impl NamedPlan {
+    /// Returns an error of the plan's file with the place of its name.
+    fn refused(&self, error: InputError) -> InputError {
+        InputError::NamedAt { place: self.place.clone(), error: Box::new(error) }
+    }
+}
+
 /// Compiles and loads a plan to which a rule diverts, from a file or from the texts of a record.
 fn diversion<A: Alphabet>(
-    file: &Path,
+    named: &NamedPlan,
     recorded: Option<&[(String, String)]>,
     target: &Target,
     looks: bool,
@@ -120,7 +138,7 @@ fn diversion<A: Alphabet>(
             (machine, sources, files.to_vec())
         }
         None => {
-            let mut input = read_plan(file, target)?;
+            let mut input = read_plan(&named.file, target).map_err(|error| named.refused(error))?;
             let (plans, diagnostics) = input.compile(&target.alphabet, None);
             failure::print(&input.sources, &diagnostics);
             if let Err(sentence) = judged(&diagnostics, false) {
@@ -128,7 +146,7 @@ fn diversion<A: Alphabet>(
                 return Err(Failure::Plan);
             }
             let machines = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine));
-            let machine = input.only(machines.collect())?;
+            let machine = input.only(machines.collect()).map_err(|error| named.refused(error))?;
             let files = texts(&input);
             (machine, input.sources, files)
         }
@@ -138,7 +156,11 @@ fn diversion<A: Alphabet>(
     if loaded.plan().paths().is_empty() {
         return Ok((loaded, files));
     }
-    Err(Failure::Usage(format!("the plan {} replays paths, which a plan of a safety rule cannot", file.display())))
+    let NamedPlan { place, file } = named;
+    Err(Failure::Usage(format!(
+        "{place}: the plan {} replays paths, which a plan of a safety rule cannot",
+        file.display()
+    )))
 }
 
 impl<A: Alphabet> Guarded<A> {

@@ -9,13 +9,15 @@ use toml::de::{DeTable, DeValue};
 use mdle_compiler::alphabet::did_you_mean;
 
 /// The keys outside the tables.
-const KEYS: [&str; 4] = ["target", "world", "options", "modules"];
+const KEYS: [&str; 5] = ["target", "world", "safety", "options", "modules"];
 
 /// The values of an `mdle.toml`.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct SettingsText {
     pub(super) target: Option<Setting>,
     pub(super) world: Option<Setting>,
+    /// File of the safety rules of a run of `mdle`.
+    pub(super) safety: Option<Setting>,
     pub(super) options: Vec<OptionText>,
     /// Names and command lines of child processes that a run of `mdle` loads as modules.
     pub(super) modules: Vec<(String, Setting)>,
@@ -85,6 +87,7 @@ pub(super) fn read(text: &str) -> Result<SettingsText, SettingsError> {
         match &**key.get_ref() {
             "target" => settings.target = Some(reading.text(key, value, "target = \"sim\"")?),
             "world" => settings.world = Some(reading.text(key, value, "world = \"hall\"")?),
+            "safety" => settings.safety = Some(reading.text(key, value, "safety = \"rules.toml\"")?),
             "options" => settings.options = reading.options(key, value)?,
             "modules" => settings.modules = reading.modules(key, value)?,
             unknown => {
@@ -258,7 +261,8 @@ mod tests {
 
     #[test]
     fn unknown_keys_are_refused_with_the_nearest() {
-        let keys = "help: the keys are target, world, options, modules; options of runs are in the table `options`";
+        let keys =
+            "help: the keys are target, world, safety, options, modules; options of runs are in the table `options`";
         assert_eq!(
             refused("\ntagret = \"sim\""),
             format!("2: there is no key `tagret`; did you mean `target`?\n{keys}")
@@ -278,6 +282,10 @@ mod tests {
     #[test]
     fn wrong_types_are_refused_with_their_line() {
         assert_eq!(refused("target = 7"), "1: `target` has to be text, as in `target = \"sim\"`; found: number");
+        assert_eq!(
+            refused("safety = true"),
+            "1: `safety` has to be text, as in `safety = \"rules.toml\"`; found: true"
+        );
         assert_eq!(refused("world = [\"hall\"]"), "1: `world` has to be text, as in `world = \"hall\"`; found: list");
         let table = "`options` has to be a table, as in `options = { speed = \"max\" }`; found";
         assert_eq!(refused("\noptions = \"--speed max\""), format!("2: {table}: text"));

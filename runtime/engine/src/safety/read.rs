@@ -6,7 +6,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::error::RulesError;
 use super::section::{Section, Value, kind, line};
-use super::{Condition, Fence, Guard, Limits, Measure, Rules, Then};
+use super::{Condition, Fence, Guard, Limits, Measure, PlanEntry, Rules, Then};
 
 /// The tables of a safety file.
 const TABLES: [&str; 6] = ["limits", "fence", "contact", "stale", "overrun", "guards"];
@@ -135,9 +135,10 @@ impl<'t, 'i> Reading<'t, 'i> {
             "end" => Ok(Then::End),
             "hold forward" if words.contains(&text) => Ok(Then::HoldForward),
             plan if plan.ends_with(".mdle") && words.len() == ALL.len() => {
-                let known = self.rules.plans.iter().position(|known| known == plan);
+                let known = self.rules.plans.iter().position(|known| known.file == plan);
                 Ok(Then::Divert(known.unwrap_or_else(|| {
-                    self.rules.plans.push(plan.to_owned());
+                    let (line, _) = section.place(&value.span(), plan);
+                    self.rules.plans.push(PlanEntry { file: plan.to_owned(), line });
                     self.rules.plans.len() - 1
                 })))
             }

@@ -24,8 +24,17 @@ pub struct Rules {
     pub overrun: Option<(u64, Then)>,
     /// Guards, whose conditions are in the plan language, in the order of the file.
     pub guards: Vec<Guard>,
-    /// Files of the plans to which rules divert, as the safety file names them, each once.
-    pub plans: Vec<String>,
+    /// Plans to which rules divert, each once.
+    pub plans: Vec<PlanEntry>,
+}
+
+/// A plan to which rules divert.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlanEntry {
+    /// File of the plan, as the safety file names it.
+    pub file: String,
+    /// Line of the safety file that names it first, from 1.
+    pub line: usize,
 }
 
 /// Limits of inputs. A limit that is absent is infinite.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_engine::Library;
-use mdle_files::{InputError, Known, Settings, Target, read_plan};
+use mdle_files::{InputError, Known, SafetyEntry, Settings, Target, read_plan};
 use mdle_host::{Call, Program, RecordedPlan};
 use mdle_runtime::{Printable, Sensed};
 
@@ -28,6 +28,9 @@ const LANDMARKS: &str = "landmarks.toml";
 /// Fails if there is no route, or if a plan on it cannot be run.
 pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Result<ExitCode, Failure> {
     let settings = Settings::beside(&arguments.graph)?;
+    if let Some(SafetyEntry { place, .. }) = settings.safety() {
+        return Err(Failure::Usage(format!("{place}: `mdle navigate` has no safety rules")));
+    }
     let name = settings.name_of_target(arguments.target.as_deref()).ok_or(InputError::NoTarget)?;
     let linked = targets::linked(&name).map_err(Failure::Usage)?;
     let target = Arc::new(settings.target(arguments.target.as_deref())?);
