@@ -57,6 +57,15 @@ fn a_child_process_is_loaded_as_a_module() {
 }
 
 #[test]
+fn a_module_that_never_returns_ends_the_program() {
+    let commands = "step 3\nset /usr/heading/name for ever\nstep 2\nget /clock/turns\n";
+    let dialogue = dialogue("modules_hang", &[], commands);
+    let sentence =
+        "a fault stopped the robot: turn 3 has not ended after 10 s: code of the plan or of a module never returns";
+    assert!(dialogue.ends_with(&format!("---\nerror: {sentence}\n[3]\n")), "{dialogue}");
+}
+
+#[test]
 fn a_role_decides_what_may_be_done_with_modules() {
     let commands = "step\nset /usr/heading/ahead 4m\ncall /usr/heading/.stop\ncall /lib/heading\n";
     let all = ["view", "tune", "swap"].map(|role| dialogue(&format!("modules_{role}"), &["--role", role], commands));

@@ -2,9 +2,14 @@
 
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::thread;
+use std::time::Duration;
 
 use mdle::engine::{Background, Declare, Exchange, Fault, In, Module, Out, Turn};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, Sensed};
+
+/// Name with which a module never returns from its turn.
+const HANGS: &str = "for ever";
 
 /// Publishes the way to a point ahead, and copies what it is set to.
 struct Heading {
@@ -51,6 +56,9 @@ impl Module<Sensed> for Heading {
         let (x, y) = (ahead - here.x.0, -here.y.0);
         turn.publish(self.bearing, Radians(libm::atan2(y, x) - here.theta.0).wrapped());
         turn.publish(self.range, Meters(libm::hypot(x, y)));
+        while turn.get(self.name).is_some_and(|name| &*name == HANGS) {
+            thread::park_timeout(Duration::from_secs(1));
+        }
         let copy = (turn.get(self.gain), turn.get(self.is_on), turn.get(self.count), turn.get(self.name));
         let more = (turn.get(self.place), turn.get(self.delay), turn.get(self.weights), turn.get(self.key));
         turn.publish(self.copy, format!("{copy:?} {more:?}").into());
