@@ -86,7 +86,10 @@ impl<P: Plan> Machine<P> {
     /// Makes a turn with output `y` at time `t`: transitions until no enclosing interrupt fires, then the current
     /// atom's law.
     pub fn turn<W: Watch>(&mut self, y: &P::Output, t: Nanos, watch: &mut W) -> Turn<P::Input> {
-        self.cursor.observe(y, self.plan.stalled(y, t));
+        let observes = self.plan.observes();
+        if observes {
+            self.cursor.observe(y, self.plan.stalled(y, t));
+        }
         let mut transitions: u32 = 0;
         while !self.is_over() {
             match self.plan.next(&self.cursor, y, t) {
@@ -95,11 +98,15 @@ impl<P: Plan> Machine<P> {
                     transitions = transitions.saturating_add(1);
                 }
                 Some(_) => {
-                    self.plan.settle(&self.cursor, y, t);
+                    if observes {
+                        self.plan.settle(&self.cursor, y, t);
+                    }
                     return Turn::Cut;
                 }
                 None => {
-                    self.plan.settle(&self.cursor, y, t);
+                    if observes {
+                        self.plan.settle(&self.cursor, y, t);
+                    }
                     return Turn::Law(self.plan.input(y, t));
                 }
             }

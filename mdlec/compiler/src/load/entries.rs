@@ -6,93 +6,88 @@ use crate::fsm::Machine;
 
 /// Storage for the entries of scopes.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Entered {
-    /// Times only.
-    Times(Box<[Nanos]>),
+pub struct Entered {
+    /// Time of the entry of each level.
+    times: Box<[Nanos]>,
     /// Odometer, heading and progress as well, for a plan with `way`, `FRAME here` or `stuck`.
-    Stamps(Stamps<Box<[Stamp]>, Box<[Option<Here>]>>),
+    stamps: Option<Box<LevelStamps>>,
 }
+
+type LevelStamps = Stamps<Box<[Stamp]>, Box<[Option<Here>]>>;
 
 impl Entered {
     /// Returns the storage that a machine needs.
     pub(super) fn of(machine: &Machine) -> Self {
-        let levels = machine.sizes().levels;
-        if machine.sizes().stamps {
-            return Self::Stamps(Stamps::new(vec![Stamp::START; levels].into(), machine.frames().into()));
-        }
-        Self::Times(vec![Nanos::ZERO; levels].into())
+        let sizes = machine.sizes();
+        Self::new(sizes.levels, sizes.stamps.then_some(machine))
+    }
+
+    /// Returns storage for everything about each level of a machine, including levels without timers.
+    pub(super) fn observed(machine: &Machine) -> Self {
+        Self::new(machine.depth(), Some(machine))
+    }
+
+    fn new(levels: usize, has_stamps: Option<&Machine>) -> Self {
+        let stamps = |machine: &Machine| Stamps::new(vec![Stamp::START; levels].into(), machine.frames().into());
+        Self { times: vec![Nanos::ZERO; levels].into(), stamps: has_stamps.map(stamps).map(Box::new) }
+    }
+
+    /// Returns `true` if odometer, heading and progress are stored.
+    pub(super) fn has_stamps(&self) -> bool {
+        self.stamps.is_some()
     }
 }
 
 impl Entries for Entered {
     #[inline(always)]
     fn is_empty(&self) -> bool {
-        match self {
-            Self::Times(times) => Entries::is_empty(times),
-            Self::Stamps(stamps) => stamps.is_empty(),
-        }
+        self.times.is_empty()
     }
 
     #[inline(always)]
     fn time(&self, level: u16) -> Option<Nanos> {
-        match self {
-            Self::Times(times) => times.time(level),
-            Self::Stamps(stamps) => stamps.time(level),
-        }
+        self.times.time(level)
     }
 
     #[inline(always)]
     fn note(&mut self, level: u16, t: Nanos) {
-        match self {
-            Self::Times(times) => times.note(level, t),
-            Self::Stamps(stamps) => stamps.note(level, t),
+        self.times.note(level, t);
+        if let Some(stamps) = &mut self.stamps {
+            stamps.note(level, t);
         }
     }
 
-    #[inline(always)]
+    // Not inlined: the turn of a plan without stamps, which does not call it, would be longer.
+    #[inline(never)]
     fn observe<Y: Output>(&mut self, y: &Y, stalled: Option<Nanos>) {
-        match self {
-            Self::Times(_) => {}
-            Self::Stamps(stamps) => stamps.observe(y, stalled),
+        if let Some(stamps) = &mut self.stamps {
+            stamps.observe(y, stalled);
         }
     }
 
     #[inline(always)]
     fn stalled(&self) -> Option<Nanos> {
-        match self {
-            Self::Times(_) => None,
-            Self::Stamps(stamps) => stamps.stalled(),
-        }
+        self.stamps.as_ref().and_then(|stamps| stamps.stalled())
     }
 
     fn resume<Y: Output>(&mut self, y: &Y) {
-        match self {
-            Self::Times(_) => {}
-            Self::Stamps(stamps) => stamps.resume(y),
+        if let Some(stamps) = &mut self.stamps {
+            stamps.resume(y);
         }
     }
 
     #[inline(always)]
     fn way(&self, level: u16) -> Nanometers {
-        match self {
-            Self::Times(times) => times.way(level),
-            Self::Stamps(stamps) => stamps.way(level),
-        }
+        self.stamps.as_ref().map_or(Nanometers::ZERO, |stamps| stamps.way(level))
     }
 
     #[inline(always)]
     fn here(&self, atom: u32) -> Option<Here> {
-        match self {
-            Self::Times(_) => None,
-            Self::Stamps(stamps) => stamps.here(atom),
-        }
+        self.stamps.as_ref().and_then(|stamps| stamps.here(atom))
     }
 
     #[inline(always)]
     fn heading(&self, level: u16) -> Radians {
-        match self {
-            Self::Times(times) => times.heading(level),
-            Self::Stamps(stamps) => stamps.heading(level),
-        }
+        self.stamps.as_ref().map_or(Radians(0.0), |stamps| stamps.heading(level))
     }
 }

@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use mdle_runtime::{
-    Alphabet, Begin, Cause, Ending, Fsm, Measured, Meeting, ModuleRead, Nanos, Plan, Stamp, Stamps, Words,
-};
+use mdle_runtime::{Alphabet, Begin, Cause, Ending, Fsm, Measured, Meeting, ModuleRead, Nanos, Plan, Words};
 
 use super::moments::{Moment, Position, moment};
 use super::table::LoadedRows;
@@ -16,6 +14,8 @@ pub struct LoadedPlan<A: Alphabet> {
     rows: LoadedRows<A>,
     /// The observed moments; `None` if the plan is not observed.
     looked_at: Option<Box<LookedAt<A>>>,
+    /// `true` if the plan is observed, or keeps odometry, progress or memories.
+    observes: bool,
 }
 
 /// The observed moments of a plan.
@@ -45,11 +45,11 @@ impl<A: Alphabet> LoadedPlan<A> {
     fn new(rows: LoadedRows<A>, loaded: &Arc<Loaded<A>>, machine: Option<Arc<Machine>>) -> Self {
         let looked_at = machine.map(|machine| {
             let loaded = Arc::clone(loaded);
-            let stamps = vec![Stamp::START; machine.depth()].into();
-            let entered = Entered::Stamps(Stamps::new(stamps, machine.frames().into()));
+            let entered = Entered::observed(&machine);
             Box::new(LookedAt { loaded, machine, entered, atom: 0, t: None, moments: Vec::new() })
         });
-        Self { rows, looked_at }
+        let observes = looked_at.is_some() || loaded.observes();
+        Self { rows, looked_at, observes }
     }
 
     /// Returns the plan, which no longer records the moments of its turns.
@@ -69,6 +69,13 @@ impl<A: Alphabet> LoadedPlan<A> {
     #[must_use]
     pub fn again(&self) -> Option<Self> {
         self.looked_at.as_ref().map(|looked_at| looked_at.loaded.plan())
+    }
+
+    /// Records the end of a scope.
+    #[inline(never)]
+    fn leave_observed(&mut self, cursor: &Position, cause: Cause, y: &A::Output, t: Nanos) {
+        self.note(cursor, Some(cause), y, t);
+        self.rows.leave(cursor, cause, y, t);
     }
 
     fn note(&mut self, cursor: &Position, cause: Option<Cause>, y: &A::Output, t: Nanos) {
@@ -112,23 +119,26 @@ impl<A: Alphabet> Plan for LoadedPlan<A> {
     }
 
     #[inline(always)]
+    fn observes(&self) -> bool {
+        self.observes
+    }
+
+    // Neither this nor `settle` is inlined: the turn of a plan that calls neither would be longer.
+    #[inline(never)]
     fn stalled(&self, y: &A::Output, t: Nanos) -> Option<Nanos> {
         self.rows.stalled(y, t)
     }
 
     #[inline(always)]
     fn leave(&mut self, cursor: &Position, cause: Cause, y: &A::Output, t: Nanos) {
-        if self.looked_at.is_some() {
-            self.note(cursor, Some(cause), y, t);
+        if self.observes {
+            self.leave_observed(cursor, cause, y, t);
         }
-        self.rows.leave(cursor, cause, y, t);
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn settle(&mut self, cursor: &Position, y: &A::Output, t: Nanos) {
-        if self.looked_at.is_some() {
-            self.note(cursor, None, y, t);
-        }
+        self.note(cursor, None, y, t);
         self.rows.settle(cursor, y, t);
     }
 

@@ -74,6 +74,11 @@ impl<A: Alphabet> Loaded<A> {
         width.saturating_mul(levels)
     }
 
+    /// Returns `true` if a run keeps odometry, progress or memories.
+    pub(super) fn observes(&self) -> bool {
+        self.entered.has_stamps() || self.memories() > 0
+    }
+
     /// Returns the machine of the plan; `None` if the plan is not observed.
     pub(super) fn machine(&self) -> Option<Arc<Machine>> {
         self.machine.clone()
