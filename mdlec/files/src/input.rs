@@ -29,6 +29,8 @@ pub struct Input {
     unsaved: Unsaved,
     /// Parts of groups among the plans that were compiled last.
     parts: Vec<Part>,
+    /// `true` if no other file is read.
+    is_alone: bool,
 }
 
 /// A group of robots: the name of its plan, and its robots in order.
@@ -59,6 +61,12 @@ impl Input {
     #[must_use]
     pub fn path(&self, source: SourceId) -> Option<&Path> {
         self.paths.get(&source).map(PathBuf::as_path)
+    }
+
+    /// Refuses all files that the plan uses, for a text whose author must not read files here.
+    #[must_use]
+    pub fn alone(self) -> Self {
+        Self { is_alone: true, ..self }
     }
 
     /// Compiles the plans of the file, or only its plan `wanted`.
@@ -189,6 +197,9 @@ impl Input {
 
 impl syntax::Loader for Input {
     fn find(&mut self, from: SourceId, path: &str) -> Result<SourceId, String> {
+        if self.is_alone {
+            return Err(format!("the plan comes without other files, so `{path}` is not read"));
+        }
         let folder = self.paths.get(&from).and_then(|path| path.parent()).unwrap_or(Path::new(""));
         let file = folder.join(path);
         let name = file.display().to_string();
@@ -239,7 +250,7 @@ pub fn plan(path: &Path, text: String, target: &Target) -> Result<Input, InputEr
     let source = add(&mut sources, path, text)?;
     let paths = BTreeMap::from([(source, path.to_owned())]);
     let read = unsaved::place(path).map(|place| (place, source)).into_iter().collect();
-    Ok(Input { sources, source, paths, read, unsaved: Unsaved::default(), parts: Vec::new() })
+    Ok(Input { sources, source, paths, read, unsaved: Unsaved::default(), parts: Vec::new(), is_alone: false })
 }
 
 /// Names of the robots of a group's plan; `None` for the plan of one robot.

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use mdle_compiler::alphabet::Kind;
 use mdle_runtime::{ModuleRead, Nanos};
 
 use crate::attribute::{AGE, AttributeKind, AttributeName, Reading, Value};
@@ -88,10 +89,12 @@ impl Board {
         self.posts.iter().position(|post| &*post.name.module == module).unwrap_or(self.posts.len())
     }
 
-    /// Includes an attribute of a module that is not loaded, as in the recorded run that is repeated.
+    /// Includes an attribute of a module that is not loaded, but is in the recorded run that is repeated, or on another
+    /// robot.
     pub(crate) fn restore(&mut self, name: AttributeName, kind: AttributeKind) {
         self.forget(&name);
-        let about = About { name: Arc::clone(&name.attribute), kind, unit: None, doc: "" };
+        let unit = kind.quantity().and_then(Kind::base_unit);
+        let about = About { name: Arc::clone(&name.attribute), kind, unit, doc: "" };
         self.posts.push(Post { name, about, reading: None, latency: Nanos::ZERO, refused: 0 });
     }
 

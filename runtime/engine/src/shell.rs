@@ -7,6 +7,7 @@ mod clock;
 mod command;
 mod converse;
 mod lines;
+mod link;
 mod modules;
 mod parts;
 mod plans;

@@ -135,7 +135,7 @@ fn read(text: &str) -> Result<(TcpSettings, Pose), String> {
     }
     let start = start.map_or(Ok(Start(Pose::ORIGIN)), |start| start.parse());
     let Start(start) = start.map_err(|error| format!("start: {error}"))?;
-    Ok((TcpSettings { name, listen, peers, key }, start))
+    Ok((TcpSettings { name, listen, peers, key, plans: Vec::new() }, start))
 }
 
 /// Reads a literal address. A host name is refused, as its lookup may take long.

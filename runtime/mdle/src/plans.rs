@@ -37,6 +37,9 @@ fn compiled<A: EngineAlphabet>(source: &PlanSource, target: &Target) -> Result<C
     let input = match source {
         PlanSource::File(path) => read_plan(path, target),
         PlanSource::Text(text) => plan(Path::new(TYPED), text.clone(), target),
+        PlanSource::Peer { robot, text } => {
+            plan(Path::new(&format!("plan of {robot}")), text.clone(), target).map(Input::alone)
+        }
     };
     let mut input = input.map_err(unread)?;
     let (machines, diagnostics) = input.compile(&target.alphabet, None);

@@ -162,7 +162,7 @@ impl<T, A: EngineAlphabet<Output = Sensed>> PlanFor<T, A> {
             None => Engine::new(self.loaded.plan(), library, terms)?,
         };
         let engine = match &self.link {
-            Some(link) => engine.linked(link.open()?),
+            Some(link) => engine.linked(link.open()?)?,
             None => engine,
         };
         let engine = match self.records {

@@ -1,6 +1,7 @@
 //! The engine: modules with their turns and turn breaks.
 
 mod event;
+mod foreign;
 mod janitor;
 mod loaded;
 mod loading;

@@ -118,7 +118,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// expects.
     pub fn load(&mut self, candidate: Candidate<Y>) -> Result<(), Refusal> {
         let name = Arc::clone(&candidate.name);
-        if &*name == ROBOT || self.loaded.iter().any(|module| module.name == name) {
+        if &*name == ROBOT || self.names().any(|(known, _)| known == &*name) || self.board.of(&name).next().is_some() {
             return Err(Refusal::NameTaken(name.to_string()));
         }
         self.board.add(&name, &candidate.declared);
@@ -199,11 +199,11 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         number.ok_or_else(|| Refusal::Unknown(name.to_owned()))
     }
 
-    fn rewired(&self, module: &Loaded<Y>) -> Result<crate::board::Wires, Refusal> {
+    pub(super) fn rewired(&self, module: &Loaded<Y>) -> Result<crate::board::Wires, Refusal> {
         self.board.wires(&module.name, &module.declared)
     }
 
-    fn rewire(&mut self) {
+    pub(super) fn rewire(&mut self) {
         let Self { board, loaded, .. } = self;
         for module in loaded.iter_mut() {
             module.first = board.first(&module.name);

@@ -7,7 +7,7 @@ use std::time::Duration;
 use mdle_compiler::load::LoadedPlan;
 use mdle_host::{RunTerms, Time, claim_for_worker};
 use mdle_record::Change;
-use mdle_runtime::ModuleRead;
+use mdle_runtime::{ModuleRead, Nanos};
 
 use super::loading::{Loading, NewModule};
 use super::modules::{Modules, Service};
@@ -15,7 +15,7 @@ use crate::fork::Threads;
 use crate::library::Library;
 use crate::link::StateLink;
 use crate::module::{Candidate, Declare, PLAN, Refusal};
-use crate::plans::{EngineAlphabet, NoTrial, Plans, reads};
+use crate::plans::{EngineAlphabet, NoTrial, Plans, When, reads};
 use crate::recorder::Recorder;
 use crate::replay::{History, Repeats};
 
@@ -85,7 +85,7 @@ impl<A: EngineAlphabet> Engine<A> {
         }
         reads::check_kinds(engine.plans.reads(), engine.modules.board()).map_err(mdle_host::Refusal::Usage)?;
         engine.messages.extend(engine.modules.unpublished().map(|(_, sentence)| format!("warning: {sentence}")));
-        engine.modules.plan_reads(engine.plans.reads());
+        engine.read_modules();
         engine.modules.prepare();
         Ok(engine)
     }
@@ -98,7 +98,7 @@ impl<A: EngineAlphabet> Engine<A> {
     pub fn under_rules(self, reads: &'static [ModuleRead]) -> Result<Self, mdle_host::Refusal> {
         reads::check(reads, self.modules.board()).map_err(mdle_host::Refusal::Usage)?;
         let mut engine = Self { rules_read: Some(reads), ..self };
-        engine.modules.plan_reads(engine.plans.reads().chain(reads));
+        engine.read_modules();
         engine.modules.prepare();
         Ok(engine)
     }
@@ -138,9 +138,42 @@ impl<A: EngineAlphabet> Engine<A> {
     }
 
     /// Attaches a state link, by which the robot sends its state to other robots, and plans read their states.
-    #[must_use]
-    pub fn linked(self, link: StateLink) -> Self {
-        Self { link: Some(link), ..self }
+    ///
+    /// # Errors
+    /// No module is loaded whose attributes the robot is to share (exit status 2).
+    pub fn linked(self, link: StateLink) -> Result<Self, mdle_host::Refusal> {
+        let checked = self.modules.check_loaded(link.shares());
+        checked.map_err(|refusal| {
+            mdle_host::Refusal::Usage(format!("the state link is to share attributes of a module: {refusal}"))
+        })?;
+        let mut engine = Self { link: Some(link), ..self };
+        engine.read_modules();
+        engine.modules.prepare();
+        Ok(engine)
+    }
+
+    /// Returns the names of the other robots to which plans can be sent.
+    pub fn recipients(&self) -> &[String] {
+        self.link.as_ref().map_or(&[], StateLink::recipients)
+    }
+
+    /// Sends the text of a plan, which is to take over at the robot `to`; its answer becomes a message.
+    ///
+    /// # Errors
+    /// The plan cannot be sent: a sentence.
+    pub fn send_plan(&mut self, to: &str, text: &str, when: When, now: Nanos) -> Result<(), String> {
+        match &mut self.link {
+            Some(link) => link.send_plan(to, text, when, now),
+            None => Err("this robot has no state link".to_owned()),
+        }
+    }
+
+    /// Updates the attributes that modules are kept at work for: those that plans and rules read, and those that the
+    /// robot shares.
+    fn read_modules(&mut self) {
+        let Self { plans, modules, rules_read, link, .. } = self;
+        let shares = link.as_ref().map_or(&[][..], StateLink::shares);
+        modules.plan_reads(plans.reads().chain(rules_read.unwrap_or_default()).chain(shares));
     }
 
     /// Attaches a recorder, which turns the path driven under some laws into a path that plans replay.
@@ -213,7 +246,7 @@ impl<A: EngineAlphabet> Engine<A> {
         let loaded =
             made.map(|(number, candidate)| (number, candidate.and_then(|candidate| self.load_made(candidate))));
         self.modules.drop_later(self.plans.take_spent());
-        self.modules.plan_reads(self.plans.reads().chain(self.rules_read.unwrap_or_default()));
+        self.read_modules();
         self.modules.prepare();
         loaded
     }

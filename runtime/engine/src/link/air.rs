@@ -1,5 +1,5 @@
 //! The link between robots of one process, by which states arrive late, are lost or are duplicated, depending
-//! on a random seed.
+//! on a random seed. Letters arrive late only, since a sender would send them again.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -7,7 +7,8 @@ use mdle_runtime::Nanos;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::{Link, State};
+use super::letter;
+use super::{Letter, Link, State};
 
 /// Maximum number of states on their way to one robot; a robot that makes no more turns reads none.
 const UNREAD: usize = 4096;
@@ -32,21 +33,33 @@ pub struct Air {
     faults: Faults,
     /// Random numbers for the states to each robot.
     randoms: Vec<ChaCha8Rng>,
-    mail: Arc<[Mutex<Vec<Letter>>]>,
+    /// Random numbers for the letters.
+    random: ChaCha8Rng,
+    mail: Arc<[Mail]>,
 }
 
-/// A state on its way.
-struct Letter {
-    state: State,
+/// States and letters on their way to a robot.
+struct Mail {
+    /// Name of the robot.
+    robot: String,
+    states: Mutex<Vec<Sent<State>>>,
+    letters: Mutex<Vec<Sent<Letter>>>,
+}
+
+/// A state or a letter on its way.
+struct Sent<T> {
+    content: T,
     sent: Nanos,
     due: Nanos,
 }
 
 impl Air {
-    /// Returns the ends of a link between this number of robots.
+    /// Returns the ends of a link between robots of these names.
     #[must_use]
-    pub fn new(robots: usize, faults: Faults, seed: u64) -> Vec<Self> {
-        let mail: Arc<[Mutex<Vec<Letter>>]> = (0..robots).map(|_| Mutex::default()).collect();
+    pub fn new(names: &[&str], faults: Faults, seed: u64) -> Vec<Self> {
+        let empty =
+            |name: &&str| Mail { robot: (*name).to_owned(), states: Mutex::default(), letters: Mutex::default() };
+        let (robots, mail) = (names.len(), names.iter().map(empty).collect::<Arc<[Mail]>>());
         let stream = |own: usize, other: usize| {
             let mut random = ChaCha8Rng::seed_from_u64(seed);
             random.set_stream((own.wrapping_mul(robots).wrapping_add(other)) as u64);
@@ -54,7 +67,8 @@ impl Air {
         };
         let end = |own| {
             let randoms = (0..robots).map(|other| stream(own, other)).collect();
-            Self { own, faults, randoms, mail: Arc::clone(&mail) }
+            let random = stream(robots, own);
+            Self { own, faults, randoms, random, mail: Arc::clone(&mail) }
         };
         (0..robots).map(end).collect()
     }
@@ -73,14 +87,25 @@ fn unit(random: &mut ChaCha8Rng) -> f64 {
     (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64
 }
 
-fn lock(letters: &Mutex<Vec<Letter>>) -> MutexGuard<'_, Vec<Letter>> {
-    letters.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock<T>(sent: &Mutex<Vec<Sent<T>>>) -> MutexGuard<'_, Vec<Sent<T>>> {
+    sent.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Calls `take` with all that has arrived by `now`.
+fn arrive<T: Clone>(sent: &Mutex<Vec<Sent<T>>>, now: Nanos, take: &mut dyn FnMut(T)) {
+    lock(sent).retain(|sent| {
+        let arrives = sent.sent < now && sent.due <= now;
+        if arrives {
+            take(sent.content.clone());
+        }
+        !arrives
+    });
 }
 
 impl Link for Air {
     fn send(&mut self, state: &State, now: Nanos) {
-        let Self { own, faults, randoms, mail } = self;
-        for ((other, letters), random) in mail.iter().enumerate().zip(randoms) {
+        let Self { own, faults, randoms, mail, .. } = self;
+        for ((other, mail), random) in mail.iter().enumerate().zip(randoms) {
             if other == *own {
                 continue;
             }
@@ -90,23 +115,35 @@ impl Link for Air {
             let copies = if is_lost { 0 } else { 1 + usize::from(is_doubled) };
             for delay in delays.into_iter().take(copies) {
                 let due = Nanos(now.0.saturating_add(delay));
-                let mut letters = lock(letters);
-                if letters.len() < UNREAD {
-                    letters.push(Letter { state: state.clone(), sent: now, due });
+                let mut states = lock(&mail.states);
+                if states.len() < UNREAD {
+                    states.push(Sent { content: state.clone(), sent: now, due });
                 }
             }
         }
     }
 
     fn receive(&mut self, now: Nanos, take: &mut dyn FnMut(State)) {
-        let Some(letters) = self.mail.get(self.own) else { return };
-        lock(letters).retain(|letter| {
-            let arrives = letter.sent < now && letter.due <= now;
-            if arrives {
-                take(letter.state.clone());
-            }
-            !arrives
-        });
+        if let Some(mail) = self.mail.get(self.own) {
+            arrive(&mail.states, now, take);
+        }
+    }
+
+    fn post(&mut self, to: &str, letter: &Letter, now: Nanos) -> Result<(), String> {
+        let due = Nanos(now.0.saturating_add(self.faults.delay(&mut self.random)));
+        let mail = self.mail.iter().find(|mail| mail.robot == to).ok_or_else(|| format!("there is no robot `{to}`"))?;
+        let mut letters = lock(&mail.letters);
+        if letters.len() >= letter::UNREAD {
+            return Err(format!("{} letters wait for {to} already", letters.len()));
+        }
+        letters.push(Sent { content: letter.clone(), sent: now, due });
+        Ok(())
+    }
+
+    fn letters(&mut self, now: Nanos, take: &mut dyn FnMut(Letter)) {
+        if let Some(mail) = self.mail.get(self.own) {
+            arrive(&mail.letters, now, take);
+        }
     }
 }
 
@@ -121,17 +158,19 @@ mod tests {
     fn state(number: u64) -> State {
         State {
             name: "ada".to_owned(),
+            session: 0,
             number,
             pose: Pose::ORIGIN,
             velocity: Twist::default(),
             rounds: Vec::new(),
             atom: 1,
+            attributes: Vec::new(),
         }
     }
 
     /// Returns the numbers of the states that arrive in each turn, if one state is sent in each turn.
     fn heard(faults: Faults, turns: u64, seed: u64) -> Vec<Vec<u64>> {
-        let [mut ada, mut bob] = Air::new(2, faults, seed).try_into().ok().unwrap();
+        let [mut ada, mut bob] = Air::new(&["ada", "bob"], faults, seed).try_into().ok().unwrap();
         let turn = |number| {
             let now = Nanos(number * TURN);
             ada.send(&state(number), now);
@@ -147,6 +186,25 @@ mod tests {
         assert_eq!(heard(Faults::default(), 4, 1), [vec![], vec![0], vec![1], vec![2]]);
         let late = Faults { latency: (Nanos(2 * TURN), Nanos(2 * TURN)), ..Faults::default() };
         assert_eq!(heard(late, 4, 1), [vec![], vec![], vec![0], vec![1]]);
+    }
+
+    #[test]
+    fn a_letter_arrives_after_its_latency_and_is_not_lost() {
+        let faults = Faults { latency: (Nanos(2 * TURN), Nanos(2 * TURN)), loss: 1.0, duplication: 1.0 };
+        let [mut ada, mut bob] = Air::new(&["ada", "bob"], faults, 1).try_into().ok().unwrap();
+        let content = crate::link::Content::Answer { of: 1, is_accepted: true, sentence: String::new() };
+        let letter = Letter { from: "ada".to_owned(), number: 1, content };
+        assert_eq!(ada.post("bob", &letter, Nanos::ZERO), Ok(()));
+        assert_eq!(ada.post("eve", &letter, Nanos::ZERO), Err("there is no robot `eve`".to_owned()));
+        for (turn, expected) in [(1, vec![]), (2, vec![letter.clone()]), (3, vec![])] {
+            let mut letters = Vec::new();
+            bob.letters(Nanos(turn * TURN), &mut |letter| letters.push(letter));
+            assert_eq!(letters, expected, "turn {turn}");
+        }
+        for _ in 0..letter::UNREAD {
+            assert_eq!(ada.post("bob", &letter, Nanos::ZERO), Ok(()));
+        }
+        assert_eq!(ada.post("bob", &letter, Nanos::ZERO), Err("8 letters wait for bob already".to_owned()));
     }
 
     #[test]

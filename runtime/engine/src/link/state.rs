@@ -1,13 +1,19 @@
 //! The state that a robot sends each turn.
 
-use mdle_runtime::{Pose, Twist};
+use std::sync::Arc;
+
+use mdle_runtime::{Nanos, Pose, Twist};
+
+use crate::attribute::{AttributeName, Value};
 
 /// State of a robot after a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     /// Name of the robot.
     pub name: String,
-    /// Number of the state, from 1: a state with a higher number was sent later.
+    /// Session of the robot: a random number for its run, 0 if all robots run in one process.
+    pub session: u64,
+    /// Number of the state, from 1: of two states of a session, that with the higher number was sent later.
     pub number: u64,
     /// Pose by odometry, in the axes that all robots share.
     pub pose: Pose,
@@ -17,9 +23,37 @@ pub struct State {
     pub rounds: Vec<(String, u64)>,
     /// Number of the atom that the robot's plan runs, as in [`PeerState::atom`](mdle_runtime::PeerState::atom).
     pub atom: u64,
+    /// Values of the attributes that the robot shares.
+    pub attributes: Vec<SharedValue>,
+}
+
+/// Value of an attribute that a robot shares with other robots.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SharedValue {
+    /// Name of the attribute on the robot that publishes it.
+    pub name: AttributeName,
+    /// The value, of a kind that plans read as a number.
+    pub value: Value,
+    /// Time since the value was published, when the state was sent.
+    pub age: Nanos,
+}
+
+impl SharedValue {
+    /// Returns the name that the attribute has on other robots: that of its module begins with the robot's name.
+    #[must_use]
+    pub fn name_from(&self, robot: &str) -> AttributeName {
+        let AttributeName { module, attribute } = &self.name;
+        AttributeName { module: format!("{robot}_{module}").into(), attribute: Arc::clone(attribute) }
+    }
 }
 
 impl State {
+    /// Returns `true` if this state replaces one of the same robot that arrived before.
+    pub(super) fn replaces(&self, known: &Self) -> bool {
+        // A program that was started again counts from 1.
+        self.session != known.session || self.number > known.number
+    }
+
     /// Returns the number of entered scopes with a `rendezvous` with this robot.
     #[must_use]
     pub fn rounds_with(&self, robot: &str) -> u64 {

@@ -82,6 +82,11 @@ pub enum Refusal {
         /// Kind of the attribute as published.
         published: AttributeKind,
     },
+    /// Another robot publishes an attribute as another kind than before: the path of the attribute, the kind
+    /// before, and the kind now.
+    ChangedKind(AttributeName, AttributeKind, AttributeKind),
+    /// Other robots share too many attributes: the maximum.
+    TooMany(usize),
     /// The system could not create a thread for the module: the name of the module, and the system's message.
     NoThread(String, String),
     /// The child process of the module breaks the protocol: the name of the module, and a sentence.
@@ -184,6 +189,10 @@ impl fmt::Display for Refusal {
                 read.words(),
                 published.words()
             ),
+            Self::ChangedKind(name, before, now) => {
+                write!(f, "{name} was {} before, and is {} now", before.words(), now.words())
+            }
+            Self::TooMany(most) => write!(f, "other robots share {most} attributes already, which is the most"),
             Self::NoThread(name, message) => write!(f, "the system gives no thread for module `{name}`: {message}"),
             Self::Process(name, sentence) => write!(f, "module `{name}` cannot be loaded: {sentence}"),
             Self::Ended => f.write_str("the run was asked to end while its modules were made"),

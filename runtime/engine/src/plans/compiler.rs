@@ -22,6 +22,13 @@ pub enum PlanSource {
     File(PathBuf),
     /// A typed text.
     Text(String),
+    /// A text that another robot has sent.
+    Peer {
+        /// Name of the robot.
+        robot: String,
+        /// Text of the plan.
+        text: String,
+    },
 }
 
 /// The result of compiling a text: its plans and warnings.
@@ -75,8 +82,16 @@ pub(crate) struct Next<A: EngineAlphabet> {
     pub(crate) when: When,
 }
 
+/// The compiler of an engine.
+pub(crate) enum Compiler<A: EngineAlphabet> {
+    /// A thread, which ends when this value is dropped.
+    Thread(CompilerThread<A>),
+    /// A function that an order waits for, so that every run with the same inputs is the same; and the outcomes.
+    AtOnce(Box<Compile<A>>, VecDeque<Outcome<A>>),
+}
+
 /// The compiler's thread, which ends when this value is dropped.
-pub(crate) struct Compiler<A: EngineAlphabet>(Arc<Counter<A>>);
+pub(crate) struct CompilerThread<A: EngineAlphabet>(Arc<Counter<A>>);
 
 /// Meeting point of the control thread and the compiler.
 struct Counter<A: EngineAlphabet> {
@@ -91,6 +106,39 @@ struct State<A: EngineAlphabet> {
 }
 
 impl<A: EngineAlphabet> Compiler<A> {
+    /// Gives an order. If a plan is to take over, an earlier order of this kind that still waits is cancelled
+    /// and returned.
+    ///
+    /// # Errors
+    /// Fails with a sentence if too many orders wait.
+    pub(crate) fn order(&mut self, order: Order<A>) -> Result<Option<Order<A>>, String> {
+        match self {
+            Self::Thread(thread) => thread.order(order),
+            Self::AtOnce(compile, done) => {
+                done.push_back(order.carry_out(compile));
+                Ok(None)
+            }
+        }
+    }
+
+    /// Takes back the waiting order for a plan to take over.
+    pub(crate) fn take_back(&self) -> Option<Order<A>> {
+        match self {
+            Self::Thread(thread) => thread.0.lock().take_back(),
+            Self::AtOnce(..) => None,
+        }
+    }
+
+    /// Returns the outcome of the next order that was carried out; `None` if there is none. Never waits.
+    pub(crate) fn done(&mut self) -> Option<Outcome<A>> {
+        match self {
+            Self::Thread(thread) => thread.done(),
+            Self::AtOnce(_, done) => done.pop_front(),
+        }
+    }
+}
+
+impl<A: EngineAlphabet> CompilerThread<A> {
     /// Starts the thread.
     ///
     /// # Errors
@@ -103,12 +151,7 @@ impl<A: EngineAlphabet> Compiler<A> {
         Ok(Self(counter))
     }
 
-    /// Gives an order. If a plan is to take over, an earlier order of this kind that still waits is cancelled
-    /// and returned.
-    ///
-    /// # Errors
-    /// Fails with a sentence if too many orders wait.
-    pub(crate) fn order(&self, order: Order<A>) -> Result<Option<Order<A>>, String> {
+    fn order(&self, order: Order<A>) -> Result<Option<Order<A>>, String> {
         let mut state = self.0.lock();
         let superseded = if order.task.takes_over() { state.take_back() } else { None };
         if state.waiting.len() >= WAITING {
@@ -119,18 +162,12 @@ impl<A: EngineAlphabet> Compiler<A> {
         Ok(superseded)
     }
 
-    /// Takes back the waiting order for a plan to take over.
-    pub(crate) fn take_back(&self) -> Option<Order<A>> {
-        self.0.lock().take_back()
-    }
-
-    /// Returns the outcome of the next order that was carried out; `None` if there is none. Never waits.
-    pub(crate) fn done(&self) -> Option<Outcome<A>> {
+    fn done(&self) -> Option<Outcome<A>> {
         self.0.state.try_lock().ok()?.done.pop_front()
     }
 }
 
-impl<A: EngineAlphabet> Drop for Compiler<A> {
+impl<A: EngineAlphabet> Drop for CompilerThread<A> {
     fn drop(&mut self) {
         self.0.lock().quits = true;
         self.0.changed.notify_all();
@@ -156,17 +193,25 @@ impl<A: EngineAlphabet> Counter<A> {
             if state.quits {
                 return;
             }
-            let Some(Order { ticket, task }) = state.waiting.pop_front() else {
+            let Some(order) = state.waiting.pop_front() else {
                 state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
                 continue;
             };
             drop(state);
-            let product = catch_unwind(AssertUnwindSafe(|| task.carry_out(compile)));
-            let product = product
-                .unwrap_or_else(|payload| Err(format!("the compiler panicked, which is a bug: {}", panicked(payload))));
+            let outcome = order.carry_out(compile);
             state = self.lock();
-            state.done.push_back(Outcome { ticket, product });
+            state.done.push_back(outcome);
         }
+    }
+}
+
+impl<A: EngineAlphabet> Order<A> {
+    fn carry_out(self, compile: &Compile<A>) -> Outcome<A> {
+        let Self { ticket, task } = self;
+        let product = catch_unwind(AssertUnwindSafe(|| task.carry_out(compile)));
+        let product = product
+            .unwrap_or_else(|payload| Err(format!("the compiler panicked, which is a bug: {}", panicked(payload))));
+        Outcome { ticket, product }
     }
 }
 

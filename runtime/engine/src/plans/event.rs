@@ -74,6 +74,25 @@ pub enum PlanEvent {
     },
 }
 
+impl PlanEvent {
+    /// Returns the number of a request for a plan to take over, and the decision about it, if the event is one; `armed`
+    /// says when the plan that is armed takes over.
+    pub(crate) fn decision(&self, armed: &str) -> Option<(u32, Result<String, String>)> {
+        match self {
+            Self::Refused(ticket, sentence) => Some((*ticket, Err(sentence.clone()))),
+            Self::Armed(ticket) => Some((*ticket, Ok(armed.to_owned()))),
+            Self::Superseded(ticket) => Some((*ticket, Err("a later request replaces this one".to_owned()))),
+            Self::Cancelled(ticket) => Some((*ticket, Err("the request was cancelled".to_owned()))),
+            Self::Warned(..)
+            | Self::Stored(..)
+            | Self::Replaced(..)
+            | Self::Began(_)
+            | Self::Accepted(_)
+            | Self::RolledBack { .. } => None,
+        }
+    }
+}
+
 /// Error of a rollback when no plan is on trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoTrial;

@@ -8,7 +8,7 @@ use mdle_compiler::load::LoadedPlan;
 use mdle_record::Change;
 use mdle_runtime::Plan as _;
 
-use super::compiler::{Compile, Compiler, Next, Order, PlanSource, Task};
+use super::compiler::{Compile, Compiler, CompilerThread, Next, Order, PlanSource, Task};
 use super::event::{PlanEvent, When};
 use super::running::{EngineAlphabet, Running};
 use super::stored::{MOST_STORED, StoredPlan};
@@ -20,8 +20,23 @@ impl<A: EngineAlphabet> Plans<A> {
     /// # Errors
     /// Fails if the system cannot create the thread.
     pub fn compile_with(&mut self, compile: Box<Compile<A>>) -> io::Result<()> {
-        self.compiler = Some(Compiler::new(compile)?);
+        self.compiler = Some(Compiler::Thread(CompilerThread::new(compile)?));
         Ok(())
+    }
+
+    /// Enables plans to be loaded and replaced as texts, for which turns wait, in simulated time.
+    pub fn compile_at_once_with(&mut self, compile: Box<Compile<A>>) {
+        self.compiler = Some(Compiler::AtOnce(compile, std::collections::VecDeque::new()));
+    }
+
+    /// Takes the decision about the request of this number for a plan to take over: the moment, or why it does not;
+    /// `None` before it is decided.
+    pub(crate) fn take_decision(&mut self, number: u32) -> Option<Result<String, String>> {
+        let armed = self.armed().map_or_else(String::new, |(name, when)| format!("{name} takes over {when}"));
+        let decision = |event: &PlanEvent| event.decision(&armed).filter(|(ticket, _)| *ticket == number);
+        let place = self.events.iter().position(|event| decision(event).is_some())?;
+        let (_, decided) = decision(&self.events.remove(place))?;
+        Some(decided)
     }
 
     /// Stores a plan under its name; an earlier plan of this name is replaced, and continues if it is active.
@@ -36,6 +51,14 @@ impl<A: EngineAlphabet> Plans<A> {
     /// Returns the stored plans in the order of their names.
     pub fn stored(&self) -> impl Iterator<Item = &StoredPlan<A>> {
         self.stored.iter()
+    }
+
+    /// Returns the stored plan of this name.
+    ///
+    /// # Errors
+    /// Fails with a sentence if there is no plan of this name.
+    pub fn stored_plan(&self, name: &str) -> Result<StoredPlan<A>, String> {
+        self.stored.get(name).cloned().ok_or_else(|| self.no_plan(name))
     }
 
     /// Deletes a stored plan; a plan that is active continues.
@@ -67,7 +90,7 @@ impl<A: EngineAlphabet> Plans<A> {
     /// # Errors
     /// Fails with a sentence if there is no plan of this name.
     pub fn run(&mut self, name: &str, when: When) -> Result<u32, String> {
-        let plan = self.stored.get(name).cloned().ok_or_else(|| self.no_plan(name))?;
+        let plan = self.stored_plan(name)?;
         Ok(self.order(Task::Begin(plan, when)))
     }
 
@@ -128,7 +151,7 @@ impl<A: EngineAlphabet> Plans<A> {
     fn order(&mut self, task: Task<A>) -> u32 {
         self.last = self.last.saturating_add(1);
         let ticket = self.last;
-        let given = match &self.compiler {
+        let given = match &mut self.compiler {
             Some(compiler) => compiler.order(Order { ticket, task }),
             None => Err("this engine has no compiler".to_owned()),
         };

@@ -12,6 +12,9 @@ use super::running::Running;
 use super::{Driving, EngineAlphabet, NoTrial, PlanEvent, Plans, When};
 use crate::board::Board;
 
+/// Maximum number of events that are kept.
+const MOST_EVENTS: usize = 256;
+
 /// Result of the plan's turn.
 pub(crate) enum PlanTurn<U> {
     /// The plan has made its turn.
@@ -97,7 +100,10 @@ impl<A: EngineAlphabet> Plans<A> {
 
     /// Collects, at a break, the outcome of one order of the compiler.
     pub(crate) fn arm(&mut self) {
-        let Some(Outcome { ticket, product }) = self.compiler.as_ref().and_then(Compiler::done) else { return };
+        // Nobody takes them from a run without a session.
+        let old = self.events.len().saturating_sub(MOST_EVENTS);
+        self.events.drain(..old);
+        let Some(Outcome { ticket, product }) = self.compiler.as_mut().and_then(Compiler::done) else { return };
         let product = product.and_then(|Product { compiled, next }| {
             if !compiled.warnings.is_empty() {
                 self.events.push(PlanEvent::Warned(ticket, compiled.warnings));

@@ -8,6 +8,7 @@ use mdle_quantity::Quantity;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Volts};
 
 use crate::attribute::{self, AttributeKind};
+use crate::board::Post;
 use crate::engine::{Engine, ModuleState};
 use crate::module::{About, PLAN, Refusal};
 use crate::plans::EngineAlphabet;
@@ -61,6 +62,9 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for ModulesPart {
             }
             OWN.into_iter().for_each(|(own, node)| add(own, node));
         }
+        for Post { name, about, .. } in modules.foreign() {
+            nodes.push((name.to_string(), Node::reading(kind(about), "attribute that another robot shares")));
+        }
         let load = Node::method(Role::Admin, "loads the module, which is then in /usr");
         nodes.extend(moment.pilot.library().map(|name| (format!("/lib/{name}"), load)));
         if !moment.pilot.library().any(|name| name == PROCESS) {
@@ -78,6 +82,7 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for ModulesPart {
             to.extend(modules.settings(name).map(|(about, reading)| Some(shown(about, &reading.value))));
             to.extend([Some(Value::text(state_text(state))), None, None, None]);
         }
+        to.extend(modules.foreign().map(|post| Some(shown(&post.about, &post.reading.as_ref()?.value))));
         to.extend(moment.pilot.library().map(|_| None));
         to.extend((!moment.pilot.library().any(|name| name == PROCESS)).then_some(None));
     }

@@ -198,7 +198,7 @@ fn call<A: EngineAlphabet>(path: &str, arguments: &[String], engine: &mut Engine
 }
 
 /// Returns the moment that arguments name: the next turn if there are no arguments.
-fn when(arguments: &[String]) -> Result<When, String> {
+pub(super) fn when(arguments: &[String]) -> Result<When, String> {
     let words = || When::ALL.map(|(word, _)| word).join(", ");
     match arguments {
         [] => Ok(When::Now),

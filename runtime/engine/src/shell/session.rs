@@ -8,6 +8,7 @@ use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{Alphabet, Nanos, Twist};
 
 use super::clock::SessionClock;
+use super::link::LinkPart;
 use super::modules::ModulesPart;
 use super::parts::{EnginePart, RobotPart, SafetyPart};
 use super::plans::PlansPart;
@@ -40,6 +41,7 @@ struct Parts<A: Alphabet> {
     engine: EnginePart,
     safety: SafetyPart<A>,
     recorder: RecorderPart,
+    link: LinkPart,
 }
 
 impl<A: Alphabet> Session<A> {
@@ -55,6 +57,7 @@ impl<A: Alphabet> Session<A> {
             engine: EnginePart::default(),
             safety: SafetyPart(guardian),
             recorder: RecorderPart::new(terms, A::NAME),
+            link: LinkPart,
         };
         Self { desk, parts, request: terms.request.clone(), recorded: None }
     }
@@ -129,9 +132,9 @@ where
     A: EngineAlphabet<Input = Twist>,
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
 {
-    fn all<'b>(&mut self) -> [&mut dyn Served<Break<'b, Engine<A>>>; 7] {
-        let Self { robot, plans, modules, clock, engine, safety, recorder } = self;
-        [robot, plans, modules, clock, engine, safety, recorder]
+    fn all<'b>(&mut self) -> [&mut dyn Served<Break<'b, Engine<A>>>; 8] {
+        let Self { robot, plans, modules, clock, engine, safety, recorder, link } = self;
+        [robot, plans, modules, clock, engine, safety, recorder, link]
     }
 
     /// Continues requests that take longer than a break, and answers those that are decided.

@@ -33,7 +33,8 @@ impl Fleet {
     /// A module is refused: a sentence.
     pub(super) fn new(mut scenario: Scenario, library: &Library<Sensed>, are_recorded: bool) -> Result<Self, String> {
         let members = std::mem::take(&mut scenario.members);
-        let ends = Air::new(members.len(), scenario.faults, scenario.seed.unwrap_or_default());
+        let names: Vec<&str> = members.iter().map(|member| member.name.as_str()).collect();
+        let ends = Air::new(&names, scenario.faults, scenario.seed.unwrap_or_default());
         let runners = members.into_iter().zip(ends);
         let runners = runners.map(|(member, air)| Runner::new(member, air, &scenario, library, are_recorded));
         Ok(Self { runners: runners.collect::<Result<_, _>>()?, period: scenario.period, nearest: None })

@@ -87,7 +87,8 @@ impl Runner {
         let added = hearing.map(|hearing| hearing.added(library, &microphones));
         let engine =
             Engine::new(plan, added.as_ref().unwrap_or(library), &terms).map_err(|refusal| format!("{refusal:?}"))?;
-        let mut engine = engine.linked(StateLink::new(Box::new(air), &name, start));
+        let link = StateLink::new(Box::new(air), &name, start);
+        let mut engine = engine.linked(link).map_err(|refusal| format!("{refusal:?}"))?;
         if is_recorded {
             engine.record();
         }

@@ -17,6 +17,9 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
     type Plan = LoadedPlan<A>;
 
     fn complete(&mut self, y: &mut A::Output, now: Nanos) {
+        if let Some(link) = &mut self.link {
+            self.messages.extend(link.receive(now, &mut self.modules));
+        }
         if let Some(history) = &mut self.history {
             let reads = self.plans.reads().chain(self.rules_read.unwrap_or_default());
             let reads: Vec<_> = reads.collect();
@@ -34,7 +37,7 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
         transitions: &mut Transitions,
     ) -> Result<Turn<A::Input>, PilotFault> {
         let mut complete = y.clone();
-        if let Some(link) = &mut self.link {
+        if let Some(link) = &self.link {
             let links = link.sense(self.plans.robots(), t);
             self.history.iter_mut().for_each(|history| history.heard(&links));
             complete.take_links(links);
@@ -59,20 +62,26 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
         if let Some(repeats) = &mut self.repeats {
             repeats.end_turn();
         }
-        if let Some(link) = &mut self.link {
-            let plan = self.plans.machine().map(|machine| (self.plans.number().into(), machine));
-            link.tell(y, plan, transitions, t);
-        }
         if let Some(recorder) = &mut self.recorder {
             let machine = self.plans.machine();
             let law = machine.and_then(|machine| machine.atom().map(|atom| machine.plan().law(atom)));
             self.messages.extend(recorder.turn(y, law, !transitions.is_empty()));
         }
         self.modules.settle();
+        if let Some(link) = &mut self.link {
+            let plan = self.plans.machine().map(|machine| (self.plans.number().into(), machine));
+            link.tell(y, plan, transitions, self.modules.board(), t);
+        }
         self.turn_break()?;
+        if let Some(link) = &mut self.link {
+            self.messages.extend(link.take_plans(&mut self.plans, t));
+        }
         self.plans.arm();
+        if let Some(link) = &mut self.link {
+            self.messages.extend(link.answer_plans(&mut self.plans, t));
+        }
         self.modules.drop_later(self.plans.take_spent());
-        self.modules.plan_reads(self.plans.reads().chain(self.rules_read.unwrap_or_default()));
+        self.read_modules();
         self.modules.prepare();
         Ok(turn)
     }

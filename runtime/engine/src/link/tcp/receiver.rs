@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use super::Shared;
 use crate::link::frame::{self, LONGEST, Refused, VERSION};
+use crate::link::letter_frame::{LONGEST_LETTER, is_letter};
 
 /// Time between two checks for a connection, and maximum wait of a read.
 const LOOK: Duration = Duration::from_millis(20);
@@ -17,6 +18,8 @@ const SILENT: Duration = Duration::from_secs(2);
 /// Maximum number of frames that a connection may send in a second: twice as many as a robot with turns of a
 /// millisecond sends.
 const FRAMES: u32 = 2000;
+/// Maximum number of letters that a connection may send in a second.
+const LETTERS: u32 = 20;
 /// Maximum number of connections for each peer: an old connection may still be open when the peer connects
 /// again.
 const CONNECTIONS: usize = 4;
@@ -67,9 +70,20 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
 fn receive(mut stream: TcpStream, shared: &Shared) -> Result<(), String> {
     let set = stream.set_nonblocking(false).and_then(|()| stream.set_read_timeout(Some(LOOK)));
     set.map_err(|error| error.to_string())?;
-    let (mut second, mut count) = (Instant::now(), 0);
+    let (mut second, mut count, mut letters) = (Instant::now(), 0, 0);
     loop {
         let Some(frame) = next(&mut stream, shared)? else { return Ok(()) };
+        if second.elapsed() >= Duration::from_secs(1) {
+            (second, count, letters) = (Instant::now(), 0, 0);
+        }
+        if is_letter(&frame) {
+            letters += 1;
+            if letters > LETTERS {
+                return Err(format!("it sends more than {LETTERS} letters a second"));
+            }
+            shared.letters.take(&frame)?;
+            continue;
+        }
         let state = frame::read(&frame, &shared.key).map_err(|refused| match refused {
             Refused::Garbage => "it sends no states".to_owned(),
             Refused::Version(other) => format!("its version of the link is {other}, and this one has {VERSION}"),
@@ -80,9 +94,6 @@ fn receive(mut stream: TcpStream, shared: &Shared) -> Result<(), String> {
         }
         shared.take(state);
         count += 1;
-        if second.elapsed() >= Duration::from_secs(1) {
-            (second, count) = (Instant::now(), 0);
-        }
         if count > FRAMES {
             return Err(format!("it sends more than {FRAMES} states a second"));
         }
@@ -96,11 +107,17 @@ fn next(stream: &mut TcpStream, shared: &Shared) -> Result<Option<Vec<u8>>, Stri
         return Ok(None);
     }
     let length = u32::from_le_bytes(length) as usize;
-    if length > LONGEST {
+    if length > LONGEST_LETTER {
         return Err("it sends no states".to_owned());
     }
     let mut frame = vec![0; length];
-    if fill(stream, &mut frame, shared)? { Ok(Some(frame)) } else { Err("it ended within a state".to_owned()) }
+    if !fill(stream, &mut frame, shared)? {
+        return Err("it ended within a state".to_owned());
+    }
+    if length > LONGEST && !is_letter(&frame) {
+        return Err("it sends no states".to_owned());
+    }
+    Ok(Some(frame))
 }
 
 /// Fills `bytes`; returns `false` if the connection breaks or ends before the first byte, or if the run has

@@ -1,5 +1,6 @@
-//! The sender to one peer, which connects and writes only the newest state.
+//! The sender to one peer, which connects, and writes only the newest state, and each letter.
 
+use std::collections::VecDeque;
 use std::io::{self, Write as _};
 use std::net::{SocketAddr, TcpStream};
 use std::sync::{Arc, Condvar, Mutex};
@@ -7,6 +8,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::{Shared, lock};
+use crate::link::letter::UNREAD;
 
 /// Maximum time for an attempt to connect.
 const CONNECTS: Duration = Duration::from_millis(500);
@@ -17,18 +19,40 @@ pub(super) const WRITES: Duration = Duration::from_millis(500);
 /// Time without a new state after which the last one is sent again, so that the connection stays open.
 const HEARTBEAT: Duration = Duration::from_millis(500);
 
-/// The newest state for a peer.
+/// The newest state and the letters for a peer.
 #[derive(Default)]
 pub(super) struct Slot {
-    frame: Mutex<Option<Arc<[u8]>>>,
+    waiting: Mutex<Waiting>,
     is_new: Condvar,
+}
+
+/// Frames that wait for the sender.
+#[derive(Default)]
+struct Waiting {
+    /// The newest state; `None` once it has been taken.
+    state: Option<Arc<[u8]>>,
+    letters: VecDeque<Arc<[u8]>>,
 }
 
 impl Slot {
     /// Replaces the state, without waiting.
     pub(super) fn put(&self, frame: Arc<[u8]>) {
-        *lock(&self.frame) = Some(frame);
+        lock(&self.waiting).state = Some(frame);
         self.is_new.notify_one();
+    }
+
+    /// Appends a letter, without waiting.
+    ///
+    /// # Errors
+    /// Returns the number of letters if too many wait.
+    pub(super) fn post(&self, frame: Arc<[u8]>) -> Result<(), usize> {
+        let mut waiting = lock(&self.waiting);
+        if waiting.letters.len() >= UNREAD {
+            return Err(waiting.letters.len());
+        }
+        waiting.letters.push_back(frame);
+        self.is_new.notify_one();
+        Ok(())
     }
 
     /// Wakes the sender.
@@ -36,14 +60,25 @@ impl Slot {
         self.is_new.notify_all();
     }
 
-    /// Waits a while for a state that has not been sent; `None` if there is none.
+    /// Waits a while for a state or a letter that has not been sent; returns the state, or `None` if there is none.
     fn next(&self) -> Option<Arc<[u8]>> {
-        let frame = lock(&self.frame);
-        let (mut frame, _) = self
+        let waiting = lock(&self.waiting);
+        let is_idle = |waiting: &mut Waiting| waiting.state.is_none() && waiting.letters.is_empty();
+        let (mut waiting, _) = self
             .is_new
-            .wait_timeout_while(frame, HEARTBEAT, |frame| frame.is_none())
+            .wait_timeout_while(waiting, HEARTBEAT, is_idle)
             .unwrap_or_else(std::sync::PoisonError::into_inner);
-        frame.take()
+        waiting.state.take()
+    }
+
+    /// Returns the first letter that has not been sent.
+    fn letter(&self) -> Option<Arc<[u8]>> {
+        lock(&self.waiting).letters.front().cloned()
+    }
+
+    /// Removes the first letter, which has been sent.
+    fn letter_is_sent(&self) {
+        lock(&self.waiting).letters.pop_front();
     }
 }
 
@@ -91,7 +126,8 @@ fn connect(address: SocketAddr) -> io::Result<TcpStream> {
     Ok(stream)
 }
 
-/// Sends states until that fails; returns the error. `last` is the state that was taken last.
+/// Sends states and letters until that fails; returns the error. `last` is the state that was taken last, with which
+/// every connection begins: a letter is taken only from a robot whose state has arrived.
 fn send(mut stream: TcpStream, slot: &Slot, last: &mut Option<Arc<[u8]>>, shared: &Shared) -> io::Error {
     while !shared.is_over() {
         *last = slot.next().or(last.take());
@@ -99,6 +135,12 @@ fn send(mut stream: TcpStream, slot: &Slot, last: &mut Option<Arc<[u8]>>, shared
         // A frame that was written in part would shift all that follow: the connection is made anew.
         if let Err(error) = stream.write_all(frame) {
             return error;
+        }
+        while let Some(letter) = slot.letter() {
+            if let Err(error) = stream.write_all(&letter) {
+                return error;
+            }
+            slot.letter_is_sent();
         }
     }
     io::ErrorKind::Interrupted.into()

@@ -10,33 +10,42 @@ use mdle_runtime::{Meters, Nanos, Pose, Twist};
 
 use super::sender::WRITES;
 use super::*;
+use crate::attribute::{AttributeName, Value};
+use crate::link::SharedValue;
 use crate::link::frame::{LONGEST, written};
 
 /// Longest time for which a test waits.
 const SOON: Duration = Duration::from_secs(20);
 
-fn bound() -> TcpListener {
+pub(super) fn bound() -> TcpListener {
     TcpListener::bind("127.0.0.1:0").unwrap()
 }
 
-fn address(listener: &TcpListener) -> SocketAddr {
+pub(super) fn address(listener: &TcpListener) -> SocketAddr {
     listener.local_addr().unwrap()
 }
 
-fn settings(name: &str, peers: &[(&str, SocketAddr)], key: &str) -> TcpSettings {
+pub(super) fn settings(name: &str, peers: &[(&str, SocketAddr)], key: &str) -> TcpSettings {
     let peers = peers.iter().map(|(name, address)| ((*name).to_owned(), *address)).collect();
-    TcpSettings { name: name.to_owned(), listen: "127.0.0.1:0".parse().unwrap(), peers, key: key.to_owned() }
+    let (name, key) = (name.to_owned(), key.to_owned());
+    TcpSettings { name, listen: "127.0.0.1:0".parse().unwrap(), peers, key, plans: Vec::new() }
 }
 
-fn state(name: &str, number: u64) -> State {
+pub(super) fn state(name: &str, number: u64) -> State {
     let pose = Pose { x: Meters(number as f64), ..Pose::ORIGIN };
     State {
         name: name.to_owned(),
+        session: 5,
         number,
         pose,
         velocity: Twist::default(),
         rounds: vec![("bob".to_owned(), number)],
         atom: 1,
+        attributes: vec![SharedValue {
+            name: AttributeName::new("heading", "range"),
+            value: Value::Number(number as f64),
+            age: Nanos(3),
+        }],
     }
 }
 
@@ -48,7 +57,7 @@ fn bob() -> (Tcp, SocketAddr) {
 }
 
 /// Calls `happens` until it returns a value.
-fn wait<T>(mut happens: impl FnMut() -> Option<T>) -> T {
+pub(super) fn wait<T>(mut happens: impl FnMut() -> Option<T>) -> T {
     let begun = Instant::now();
     loop {
         if let Some(value) = happens() {
@@ -59,14 +68,14 @@ fn wait<T>(mut happens: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-fn received(link: &mut Tcp) -> Vec<State> {
+pub(super) fn received(link: &mut Tcp) -> Vec<State> {
     let mut states = Vec::new();
     link.receive(Nanos::ZERO, &mut |state| states.push(state));
     states
 }
 
 /// Waits for a message with these words.
-fn message(link: &mut Tcp, words: &str) -> String {
+pub(super) fn message(link: &mut Tcp, words: &str) -> String {
     wait(|| {
         let mut found = None;
         link.messages(&mut |message| {
@@ -79,7 +88,7 @@ fn message(link: &mut Tcp, words: &str) -> String {
 }
 
 /// Asserts that states of a good peer still arrive.
-fn assert_goes_on(link: &mut Tcp, place: SocketAddr) {
+pub(super) fn assert_goes_on(link: &mut Tcp, place: SocketAddr) {
     let mut peer = TcpStream::connect(place).unwrap();
     peer.write_all(&written(&state("ada", 77), &Key::of("key"))).unwrap();
     let states = wait(|| Some(received(link)).filter(|states| !states.is_empty()));

@@ -1,0 +1,45 @@
+//! Letters between robots: plans as text, and the answers to them. In contrast to a state, no letter replaces another.
+
+use crate::plans::When;
+
+/// Maximum length of the text in a letter, in bytes.
+pub const LONGEST_TEXT: usize = 65_536;
+/// Maximum number of letters that wait for one robot.
+pub(super) const UNREAD: usize = 8;
+
+/// A letter from one robot to another.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Letter {
+    /// Name of the robot that has sent the letter.
+    pub from: String,
+    /// Number of the letter among those of its sender, from 1.
+    pub number: u64,
+    /// Content of the letter.
+    pub content: Content,
+}
+
+/// Content of a letter.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Content {
+    /// A plan that is to take over.
+    Plan {
+        /// Moment at which the plan takes over.
+        when: When,
+        /// Text of the plan.
+        text: String,
+    },
+    /// The answer to a plan.
+    Answer {
+        /// Number of the letter with the plan.
+        of: u64,
+        /// `true` if the plan takes over.
+        is_accepted: bool,
+        /// Sentence that says when the plan takes over, or why it does not.
+        sentence: String,
+    },
+}
+
+/// Cuts a text after at most [`LONGEST_TEXT`] bytes.
+pub(super) fn cut(text: &str) -> &str {
+    text.get(..text.floor_char_boundary(LONGEST_TEXT)).unwrap_or(text)
+}

@@ -1,0 +1,133 @@
+//! A letter in binary form, with a proof of the key that sender and recipient share, and of the runs of both
+//! (docs/src/reference/interfaces.md, 6.5).
+
+use super::frame::{Bytes, Key, Refused, framed, opened, put_name};
+use super::letter::{Content, LONGEST_TEXT, Letter, cut};
+use crate::plans::When;
+
+/// First bytes of a letter's frame.
+const MAGIC: [u8; 4] = *b"MDLl";
+/// Maximum length of a frame, in bytes, without the four bytes of the length.
+pub(super) const LONGEST_LETTER: usize = LONGEST_TEXT + 1024;
+/// Numbers of the contents of letters.
+const PLAN: u8 = 0;
+const REFUSAL: u8 = 1;
+const ACCEPTANCE: u8 = 2;
+
+/// Sender, recipient and runs of a letter, which its proof covers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Envelope {
+    pub(super) from: String,
+    pub(super) to: String,
+    /// Session of the sender.
+    pub(super) sent_in: u64,
+    /// Session of the recipient.
+    pub(super) meant_for: u64,
+}
+
+/// Returns `true` if a frame, without its length, is that of a letter.
+pub(super) fn is_letter(frame: &[u8]) -> bool {
+    frame.starts_with(&MAGIC)
+}
+
+/// Returns the frame of a letter, length included.
+pub(super) fn written(envelope: &Envelope, letter: &Letter, key: &Key) -> Vec<u8> {
+    let mut body = Vec::new();
+    put_name(&mut body, &envelope.from);
+    put_name(&mut body, &envelope.to);
+    [envelope.sent_in, envelope.meant_for, letter.number].iter().for_each(|number| body.extend(number.to_le_bytes()));
+    let text = match &letter.content {
+        Content::Plan { when, text } => {
+            body.extend([PLAN, when.number()]);
+            text
+        }
+        Content::Answer { of, is_accepted, sentence } => {
+            body.push(if *is_accepted { ACCEPTANCE } else { REFUSAL });
+            body.extend(of.to_le_bytes());
+            sentence
+        }
+    };
+    body.extend(cut(text).as_bytes());
+    framed(MAGIC, &body, key)
+}
+
+/// Returns the name of the sender of a letter, which nothing proves yet.
+pub(super) fn sender(frame: &[u8]) -> Option<String> {
+    Bytes::of_body(frame)?.name()
+}
+
+/// Reads the frame of a letter, without its length.
+///
+/// # Errors
+/// The bytes are no letter of somebody with this key.
+pub(super) fn read(frame: &[u8], key: &Key) -> Result<(Envelope, Letter), Refused> {
+    let mut body = opened(MAGIC, frame, key)?;
+    letter(&mut body).ok_or(Refused::Garbage)
+}
+
+fn letter(body: &mut Bytes<'_>) -> Option<(Envelope, Letter)> {
+    let (from, to) = (body.name()?, body.name()?);
+    let (sent_in, meant_for, number) = (body.number()?, body.number()?, body.number()?);
+    let [kind] = body.take()?;
+    let content = match kind {
+        PLAN => {
+            let [when] = body.take()?;
+            Content::Plan { when: When::of_number(when)?, text: body.text()? }
+        }
+        REFUSAL | ACCEPTANCE => {
+            Content::Answer { of: body.number()?, is_accepted: kind == ACCEPTANCE, sentence: body.text()? }
+        }
+        _ => return None,
+    };
+    let letter = Letter { from: from.clone(), number, content };
+    Some((Envelope { from, to, sent_in, meant_for }, letter))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn letters() -> [Letter; 2] {
+        let plan = Content::Plan { when: When::AtomEnds, text: "{ Γ (bumper) }".to_owned() };
+        let answer = Content::Answer { of: 7, is_accepted: true, sentence: String::new() };
+        [plan, answer].map(|content| Letter { from: "ada".to_owned(), number: 3, content })
+    }
+
+    fn envelope() -> Envelope {
+        Envelope { from: "ada".to_owned(), to: "bob".to_owned(), sent_in: 1, meant_for: u64::MAX }
+    }
+
+    #[test]
+    fn a_letter_is_read_as_it_was_written() {
+        let key = Key::of("pair");
+        for letter in letters() {
+            let frame = written(&envelope(), &letter, &key);
+            assert!(is_letter(&frame[4..]) && frame.len() < LONGEST_LETTER);
+            assert_eq!(sender(&frame[4..]).as_deref(), Some("ada"));
+            assert_eq!(read(&frame[4..], &key), Ok((envelope(), letter)));
+        }
+    }
+
+    #[test]
+    fn any_other_bytes_are_no_letter() {
+        let key = Key::of("pair");
+        for letter in letters() {
+            let frame = written(&envelope(), &letter, &key)[4..].to_vec();
+            assert_eq!(read(&frame, &Key::of("another")), Err(Refused::Key));
+            for place in 0..frame.len() {
+                let mut changed = frame.clone();
+                changed[place] ^= 1;
+                assert!(read(&changed, &key).is_err(), "byte {place}");
+                assert!(read(&frame[..place], &key).is_err(), "the first {place} bytes");
+            }
+        }
+    }
+
+    #[test]
+    fn a_long_text_is_cut_at_a_letter() {
+        let content = Content::Answer { of: 1, is_accepted: false, sentence: "Γ".repeat(LONGEST_TEXT) };
+        let frame = written(&envelope(), &Letter { from: "ada".to_owned(), number: 1, content }, &Key::of("pair"));
+        assert!(frame.len() <= LONGEST_LETTER);
+        assert!(read(&frame[4..], &Key::of("pair")).is_ok());
+    }
+}

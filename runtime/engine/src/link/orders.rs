@@ -1,0 +1,128 @@
+//! Plans that other robots send, on their way to take over, and the answers to plans that this robot has sent.
+
+use mdle_runtime::{Nanos, Printable};
+
+use super::{Content, LONGEST_TEXT, Letter, Link};
+use crate::plans::{EngineAlphabet, PlanSource, Plans, When};
+
+/// The plans that are exchanged with other robots.
+#[derive(Debug, Default)]
+pub(super) struct Orders {
+    /// Name of this robot.
+    own: String,
+    /// Names of the robots whose plans are taken.
+    pub(super) takes_from: Vec<String>,
+    /// Names of the robots to which plans can be sent.
+    pub(super) sends_to: Vec<String>,
+    /// Number of the letter that was sent last.
+    sent: u64,
+    /// Plans of other robots that have not taken over.
+    waiting: Vec<Order>,
+}
+
+/// A plan of another robot.
+#[derive(Debug)]
+struct Order {
+    /// Number of the request to the plans of this robot.
+    ticket: u32,
+    from: String,
+    /// Number of the letter with the plan.
+    number: u64,
+}
+
+impl Orders {
+    /// Returns the orders of the robot of this name, which exchanges no plans.
+    pub(super) fn of(own: &str) -> Self {
+        Self { own: own.to_owned(), ..Self::default() }
+    }
+
+    /// Sends the text of a plan, which is to take over at the robot `to`.
+    ///
+    /// # Errors
+    /// The plan cannot be sent: a sentence.
+    pub(super) fn send(
+        &mut self,
+        link: &mut dyn Link,
+        to: &str,
+        (text, when): (&str, When),
+        now: Nanos,
+    ) -> Result<(), String> {
+        if text.len() > LONGEST_TEXT {
+            return Err(format!("the plan has {} bytes, and one that is sent has {LONGEST_TEXT} at most", text.len()));
+        }
+        self.post(link, to, Content::Plan { when, text: text.to_owned() }, now)
+    }
+
+    fn post(&mut self, link: &mut dyn Link, to: &str, content: Content, now: Nanos) -> Result<(), String> {
+        let number = self.sent.saturating_add(1);
+        link.post(to, &Letter { from: self.own.clone(), number, content }, now)?;
+        self.sent = number;
+        Ok(())
+    }
+
+    /// Begins to compile the plans that have arrived; returns messages about them, and about answers.
+    pub(super) fn take<A: EngineAlphabet>(
+        &mut self,
+        link: &mut dyn Link,
+        plans: &mut Plans<A>,
+        now: Nanos,
+    ) -> Vec<String> {
+        let mut letters = Vec::new();
+        link.letters(now, &mut |letter| letters.push(letter));
+        let messages = letters.into_iter().filter_map(|Letter { from, number, content }| match content {
+            Content::Answer { is_accepted: true, sentence, .. } => {
+                Some(format!("state link: {from} takes the plan: {}", printable(&sentence)))
+            }
+            Content::Answer { is_accepted: false, sentence, .. } => {
+                Some(format!("warning: state link: {from} refuses the plan: {}", printable(&sentence)))
+            }
+            Content::Plan { when, text } if self.takes_from.contains(&from) => {
+                let ticket = plans.swap(PlanSource::Peer { robot: from.clone(), text }, when);
+                self.waiting.push(Order { ticket, from, number });
+                None
+            }
+            Content::Plan { .. } => {
+                let sentence = format!("{} takes no plans of {from}", self.own);
+                self.answer(link, &from, number, Err(&sentence), now);
+                Some(format!("warning: state link: the plan of {from} is refused: {sentence}"))
+            }
+        });
+        messages.collect()
+    }
+
+    /// Answers the plans about which has been decided; returns messages about them.
+    pub(super) fn decide<A: EngineAlphabet>(
+        &mut self,
+        link: &mut dyn Link,
+        plans: &mut Plans<A>,
+        now: Nanos,
+    ) -> Vec<String> {
+        let mut messages = Vec::new();
+        for Order { ticket, from, number } in std::mem::take(&mut self.waiting) {
+            match plans.take_decision(ticket) {
+                None => self.waiting.push(Order { ticket, from, number }),
+                Some(Ok(sentence)) => {
+                    messages.push(format!("state link: the plan of {from}: {sentence}"));
+                    self.answer(link, &from, number, Ok(&sentence), now);
+                }
+                Some(Err(sentence)) => {
+                    messages.push(format!("warning: state link: the plan of {from} is refused: {sentence}"));
+                    self.answer(link, &from, number, Err(&sentence), now);
+                }
+            }
+        }
+        messages
+    }
+
+    /// Answers a plan. A robot that cannot be reached gets no answer.
+    fn answer(&mut self, link: &mut dyn Link, to: &str, of: u64, result: Result<&str, &str>, now: Nanos) {
+        let (Ok(sentence) | Err(sentence)) = result;
+        let content = Content::Answer { of, is_accepted: result.is_ok(), sentence: sentence.to_owned() };
+        let _ = self.post(link, to, content, now);
+    }
+}
+
+/// Returns the text of another robot, whose control characters are escaped.
+fn printable(text: &str) -> String {
+    text.lines().map(|line| Printable(line).to_string()).collect::<Vec<_>>().join("\n")
+}

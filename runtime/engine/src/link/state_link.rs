@@ -1,0 +1,330 @@
+//! The state link of one robot: what it knows of the other robots, and what it sends them.
+
+use mdle_host::Transitions;
+use mdle_runtime::{Links, Machine, Meters, ModuleRead, Nanos, Output, Peer, PeerState, Plan, Pose, Radians};
+
+use super::frame::ATTRIBUTES;
+use super::orders::Orders;
+use super::rounds::Rounds;
+use super::{Foreign, Link, SharedValue, State};
+use crate::attribute::{AGE, AttributeName, Reading, Value};
+use crate::board::Board;
+use crate::plans::{EngineAlphabet, Plans, When};
+
+/// The state link of one robot.
+pub struct StateLink {
+    link: Box<dyn Link>,
+    name: String,
+    /// Pose at which the robot's odometry began, in the axes that all robots share.
+    start: Pose,
+    /// Number of the state that was sent last.
+    sent: u64,
+    /// The newest state of each other robot.
+    known: Vec<Known>,
+    rounds: Rounds,
+    /// Modules whose attributes the robot shares, each as a read of its `age`.
+    shares: &'static [ModuleRead],
+    /// Attributes of other robots that were refused.
+    refused: Vec<AttributeName>,
+    orders: Orders,
+}
+
+/// The newest state of another robot.
+struct Known {
+    state: State,
+    /// Time at which the state arrived.
+    at: Nanos,
+    /// `true` until the attributes of the state are on the board.
+    is_new: bool,
+}
+
+impl StateLink {
+    /// Returns the link of the robot of this name, whose odometry begins at `start` in the axes that all robots share.
+    #[must_use]
+    pub fn new(link: Box<dyn Link>, name: &str, start: Pose) -> Self {
+        Self {
+            link,
+            name: name.to_owned(),
+            start,
+            sent: 0,
+            known: Vec::new(),
+            rounds: Rounds::default(),
+            shares: &[],
+            refused: Vec::new(),
+            orders: Orders::of(name),
+        }
+    }
+
+    /// Shares the attributes of the modules of these names with the other robots: their numbers and quantities.
+    #[must_use]
+    pub fn sharing(self, modules: &[String]) -> Self {
+        // As the names of plans, they last as long as the program.
+        let read = |module: &String| ModuleRead { module: module.clone().leak(), attribute: AGE, unit: None };
+        let shares: Vec<_> = modules.iter().map(read).collect();
+        Self { shares: shares.leak(), ..self }
+    }
+
+    /// Takes plans as text from the robots of some names, and lets plans be sent to others.
+    #[must_use]
+    pub fn exchanging_plans(mut self, takes_from: Vec<String>, sends_to: Vec<String>) -> Self {
+        (self.orders.takes_from, self.orders.sends_to) = (takes_from, sends_to);
+        self
+    }
+
+    /// Returns the names of the robots to which plans can be sent.
+    pub(crate) fn recipients(&self) -> &[String] {
+        &self.orders.sends_to
+    }
+
+    /// Sends the text of a plan, which is to take over at the robot `to`.
+    ///
+    /// # Errors
+    /// The plan cannot be sent: a sentence.
+    pub(crate) fn send_plan(&mut self, to: &str, text: &str, when: When, now: Nanos) -> Result<(), String> {
+        self.orders.send(&mut *self.link, to, (text, when), now)
+    }
+
+    /// Begins to compile the plans that have arrived; returns messages about them, and about answers.
+    pub(crate) fn take_plans<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>, now: Nanos) -> Vec<String> {
+        self.orders.take(&mut *self.link, plans, now)
+    }
+
+    /// Answers the plans about which has been decided; returns messages about them.
+    pub(crate) fn answer_plans<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>, now: Nanos) -> Vec<String> {
+        self.orders.decide(&mut *self.link, plans, now)
+    }
+
+    /// Returns the modules whose attributes the robot shares, each as a read of its `age`.
+    pub(crate) fn shares(&self) -> &'static [ModuleRead] {
+        self.shares
+    }
+
+    /// Takes the states that have arrived by time `now`, and puts the attributes that they share on the board; returns
+    /// messages about attributes that are refused, each once.
+    pub(crate) fn receive(&mut self, now: Nanos, board: &mut dyn Foreign) -> Vec<String> {
+        let Self { link, known, name, refused, .. } = self;
+        link.receive(now, &mut |state| match known.iter_mut().find(|known| known.state.name == state.name) {
+            // What was sent later counts, in whatever order it arrives.
+            Some(place) if state.replaces(&place.state) => *place = Known { state, at: now, is_new: true },
+            Some(_) => {}
+            None if state.name == *name => {}
+            None => known.push(Known { state, at: now, is_new: true }),
+        });
+        let mut messages = Vec::new();
+        for Known { state, at, .. } in known.iter_mut().filter_map(|known| known.is_new.then_some(known)) {
+            for shared in state.attributes.iter().take(ATTRIBUTES) {
+                let name = shared.name_from(&state.name);
+                if refused.contains(&name) {
+                    continue;
+                }
+                let reading = Reading { value: shared.value.clone(), at: Nanos(at.0.saturating_sub(shared.age.0)) };
+                if let Err(refusal) = board.put_foreign(&name, reading) {
+                    messages
+                        .push(format!("warning: state link: {} of {} is refused: {refusal}", shared.name, state.name));
+                    refused.push(name);
+                }
+            }
+        }
+        known.iter_mut().for_each(|known| known.is_new = false);
+        messages
+    }
+
+    /// Returns what is known of the robots of these names in the turn at time `now`.
+    pub(crate) fn sense(&self, robots: impl Iterator<Item = &'static str>, now: Nanos) -> Links {
+        let mut links = Links::NONE;
+        for name in robots {
+            if links.peer(name).is_none() {
+                links.add(self.peer(name, now));
+            }
+        }
+        links
+    }
+
+    /// Sends the state of the robot, and what its modules have published, after a turn of its plan at time `now`.
+    pub(crate) fn tell<P: Plan>(
+        &mut self,
+        y: &P::Output,
+        plan: Option<(u64, &Machine<P>)>,
+        transitions: &Transitions,
+        board: &Board,
+        now: Nanos,
+    ) {
+        if let Some((number, machine)) = plan {
+            self.rounds.turn(number, machine.plan(), transitions);
+        }
+        self.sent = self.sent.saturating_add(1);
+        let state = State {
+            name: self.name.clone(),
+            session: self.link.session(),
+            number: self.sent,
+            pose: outward(&self.start, &y.here()),
+            velocity: y.velocities(),
+            rounds: self.rounds.counts().map(|(robot, count)| (robot.to_owned(), count)).collect(),
+            atom: plan.map_or(0, |(_, machine)| machine.atom().map_or(PeerState::OVER, |atom| u64::from(atom) + 1)),
+            attributes: self.shared(board, now),
+        };
+        self.link.send(&state, now);
+    }
+
+    /// Returns the attributes that the robot shares, with their values on the board.
+    fn shared(&self, board: &Board, now: Nanos) -> Vec<SharedValue> {
+        let posts = self.shares.iter().flat_map(|share| board.of(share.module));
+        let shared = posts.filter_map(|post| {
+            let Reading { value, at } = post.reading.as_ref()?;
+            value.number()?;
+            Some(SharedValue { name: post.name.clone(), value: Value::clone(value), age: now.since(*at) })
+        });
+        shared.take(ATTRIBUTES).collect()
+    }
+
+    /// Calls `say` with each message for the operator since the last call.
+    pub(crate) fn messages(&mut self, say: &mut dyn FnMut(&str)) {
+        self.link.messages(say);
+    }
+
+    /// Returns the known state of the robot of this name.
+    fn peer(&self, robot: &'static str, now: Nanos) -> Peer {
+        let known = self.known.iter().find(|known| known.state.name == robot);
+        let state = known.map(|Known { state, at, .. }| PeerState {
+            pose: inward(&self.start, &state.pose),
+            velocity: state.velocity,
+            age: now.since(*at),
+            rounds: state.rounds_with(&self.name),
+            atom: state.atom,
+        });
+        Peer { name: robot, rounds: self.rounds.with(robot), state }
+    }
+}
+
+/// Converts a pose of the robot's own odometry to the axes that all robots share.
+fn outward(start: &Pose, own: &Pose) -> Pose {
+    let (sin, cos) = (libm::sin(start.theta.0), libm::cos(start.theta.0));
+    let (x, y) = (own.x.0, own.y.0);
+    Pose {
+        x: Meters(start.x.0 + cos * x - sin * y),
+        y: Meters(start.y.0 + sin * x + cos * y),
+        theta: Radians(start.theta.0 + own.theta.0).wrapped(),
+    }
+}
+
+/// Converts a pose in the shared axes to those of the robot's own odometry.
+fn inward(start: &Pose, shared: &Pose) -> Pose {
+    let (sin, cos) = (libm::sin(start.theta.0), libm::cos(start.theta.0));
+    let (x, y) = (shared.x.0 - start.x.0, shared.y.0 - start.y.0);
+    Pose {
+        x: Meters(cos * x + sin * y),
+        y: Meters(cos * y - sin * x),
+        theta: Radians(shared.theta.0 - start.theta.0).wrapped(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mdle_runtime::Twist;
+
+    use super::*;
+    use crate::link::Letter;
+    use crate::module::Refusal;
+
+    fn pose(x: f64, y: f64, degrees: f64) -> Pose {
+        Pose { x: Meters(x), y: Meters(y), theta: Radians::from_degrees(degrees) }
+    }
+
+    #[test]
+    fn poses_go_to_the_shared_axes_and_back() {
+        let start = pose(2.0, 1.0, 90.0);
+        let shared = outward(&start, &pose(3.0, 0.5, 45.0));
+        let near =
+            |one: &Pose, other: &Pose| one.distance(other).0 < 1e-12 && (one.theta.0 - other.theta.0).abs() < 1e-12;
+        assert!(near(&shared, &pose(1.5, 4.0, 135.0)), "{shared:?}");
+        assert!(near(&inward(&start, &shared), &pose(3.0, 0.5, 45.0)));
+    }
+
+    /// A link on which states arrive in this order, one at a time.
+    struct Script(Vec<State>);
+
+    impl Link for Script {
+        fn send(&mut self, _: &State, _: Nanos) {}
+
+        fn receive(&mut self, _: Nanos, take: &mut dyn FnMut(State)) {
+            if !self.0.is_empty() {
+                take(self.0.remove(0));
+            }
+        }
+
+        fn post(&mut self, _: &str, _: &Letter, _: Nanos) -> Result<(), String> {
+            Ok(())
+        }
+
+        fn letters(&mut self, _: Nanos, _: &mut dyn FnMut(Letter)) {}
+    }
+
+    #[test]
+    fn a_clock_that_jumps_reorders_no_states() {
+        let state = |number, x| State {
+            name: "ada".to_owned(),
+            session: 0,
+            number,
+            pose: pose(x, 0.0, 0.0),
+            velocity: Twist::default(),
+            rounds: Vec::new(),
+            atom: 1,
+            attributes: Vec::new(),
+        };
+        let restarted = State { session: 1, ..state(1, 9.0) };
+        let script = Script(vec![state(5, 5.0), state(6, 6.0), state(4, 4.0), restarted]);
+        let mut link = StateLink::new(Box::new(script), "bob", Pose::ORIGIN);
+        // An hour ahead, a minute back, and before the start of the clock that the others saw.
+        let seen = [1, 3_600, 3_540, 0, 2].map(|seconds| {
+            let now = Nanos(seconds * 1_000_000_000);
+            link.receive(now, &mut Shared(Vec::new()));
+            let peer = *link.sense(["ada"].into_iter(), now).peer("ada").unwrap();
+            peer.state.map(|state| (state.pose.x.0, state.age.0))
+        });
+        assert_eq!(seen, [Some((5.0, 0)), Some((6.0, 0)), Some((6.0, 0)), Some((9.0, 0)), Some((9.0, 2_000_000_000))]);
+    }
+
+    /// Attributes that were put on a board, with the times of their publication.
+    struct Shared(Vec<(String, Value, u64)>);
+
+    impl Foreign for Shared {
+        fn put_foreign(&mut self, name: &AttributeName, Reading { value, at }: Reading) -> Result<(), Refusal> {
+            self.0.push((name.to_string(), value, at.0));
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn the_newest_state_counts_and_its_age_begins_when_it_arrives() {
+        let state = |number, x| State {
+            name: "ada".to_owned(),
+            session: 0,
+            number,
+            pose: pose(x, 0.0, 0.0),
+            velocity: Twist::default(),
+            rounds: vec![("bob".to_owned(), number)],
+            atom: number,
+            attributes: vec![SharedValue {
+                name: AttributeName::new("heading", "range"),
+                value: Value::Length(Meters(x)),
+                age: Nanos(number),
+            }],
+        };
+        let own = State { name: "bob".to_owned(), ..state(9, 9.0) };
+        let script = Script(vec![own, state(2, 2.0), state(1, 1.0), state(3, 3.0)]);
+        let mut link = StateLink::new(Box::new(script), "bob", pose(1.0, 0.0, 0.0));
+        let (mut seen, mut board) = (Vec::new(), Shared(Vec::new()));
+        for turn in 0..5 {
+            assert_eq!(link.receive(Nanos(10 * turn), &mut board), Vec::<String>::new());
+            let links = link.sense(["ada"].into_iter(), Nanos(10 * turn));
+            let peer = *links.peer("ada").unwrap();
+            seen.push(peer.state.map(|state| (state.pose.x.0, state.age.0, state.rounds, state.atom)));
+        }
+        assert_eq!(
+            seen,
+            [None, Some((1.0, 0, 2, 2)), Some((1.0, 10, 2, 2)), Some((2.0, 0, 3, 3)), Some((2.0, 10, 3, 3))]
+        );
+        let range = |x, at| ("/usr/ada_heading/range".to_owned(), Value::Length(Meters(x)), at);
+        assert_eq!(board.0, [range(2.0, 8), range(3.0, 27)], "each value once, as old as it was when it was sent");
+    }
+}
