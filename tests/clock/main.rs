@@ -8,6 +8,7 @@ mod links;
 mod phases;
 mod pursuits;
 mod scenarios;
+mod sent_plans;
 mod signalled;
 mod stands;
 

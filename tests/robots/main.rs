@@ -35,6 +35,7 @@ mod scenario_records;
 mod scout;
 mod sessions;
 mod several;
+mod shared_modules;
 mod sound;
 mod steps;
 mod views;

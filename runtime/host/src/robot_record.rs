@@ -31,6 +31,10 @@ pub struct RobotTurn<'a> {
     pub kind: Turn<()>,
     /// The plan, and the state in which the turn ended; `None` if no plan has made the turn.
     pub plan: Option<(&'a dyn Texts, u64)>,
+    /// Number of the plan among those that have begun, from 1.
+    pub plan_number: u64,
+    /// Reason why the plan has replaced another plan in this turn, if it has.
+    pub begins: Option<&'a str>,
     /// Transitions of the turn.
     pub transitions: &'a Transitions,
     /// Causes of the turn besides its output.
@@ -51,11 +55,13 @@ impl RobotRecord {
     /// # Errors
     /// The file cannot be written.
     pub fn turn(&mut self, turn: RobotTurn<'_>) -> io::Result<()> {
-        let RobotTurn { number, t, y, sent, kind, plan, transitions, changes } = turn;
-        let supervised = &Supervised::default();
+        let RobotTurn { number, t, y, sent, kind, plan, plan_number, begins, transitions, changes } = turn;
+        let mut supervised = Supervised::default();
+        supervised.note(None, begins);
+        let supervised = &supervised;
         self.0.take(Some(Exact { y, asked: sent, sent }), changes);
         match plan {
-            None => self.0.turn_without_plan(&UnmadeTurn { number, t, plan: 1, supervised }),
+            None => self.0.turn_without_plan(&UnmadeTurn { number, t, plan: plan_number, supervised }),
             Some((plan, state)) => self.0.turn(&Entry {
                 plan,
                 turn: number,
@@ -65,7 +71,7 @@ impl RobotRecord {
                 applied: None,
                 frame: None,
                 transitions,
-                plan_number: 1,
+                plan_number,
                 supervised,
             }),
         }

@@ -24,6 +24,8 @@ struct LinkText {
     listen: String,
     key: String,
     start: Option<String>,
+    #[serde(default)]
+    shares: Vec<String>,
     robot: Vec<PeerText>,
 }
 
@@ -33,6 +35,8 @@ struct LinkText {
 struct PeerText {
     name: String,
     address: String,
+    /// Key that only the two robots have, with which they send each other plans.
+    plans: Option<String>,
 }
 
 /// A link file that has been read.
@@ -42,6 +46,8 @@ pub(crate) struct LinkFile {
     settings: TcpSettings,
     /// Pose at which the robot's odometry begins, in the axes that all robots share.
     start: Pose,
+    /// Names of the modules whose attributes the robot shares.
+    shares: Vec<String>,
 }
 
 impl LinkFile {
@@ -54,8 +60,8 @@ impl LinkFile {
         let unread = |error| Failure::Usage(format!("the file {name} of the link cannot be read: {error}"));
         let text = mdle_host::read_text(path, LARGEST).map_err(unread)?;
         let read = read(&text).map_err(|sentence| Failure::Usage(format!("{name}: {sentence}")))?;
-        let (settings, start) = read;
-        Ok(Self { path: path.to_owned(), settings, start })
+        let (settings, start, shares) = read;
+        Ok(Self { path: path.to_owned(), settings, start, shares })
     }
 
     /// Returns the path of the file.
@@ -94,16 +100,23 @@ impl LinkFile {
         )))
     }
 
+    /// Returns `true` if the robot takes plans of another robot.
+    pub(crate) fn takes_plans(&self) -> bool {
+        !self.settings.plans.is_empty()
+    }
+
     /// Opens the link.
     ///
     /// # Errors
     /// Fails if the robot cannot listen at the address (exit status 2).
     pub(crate) fn open(&self) -> Result<StateLink, Refusal> {
-        let TcpSettings { name, listen, .. } = &self.settings;
+        let TcpSettings { name, listen, plans, .. } = &self.settings;
         let refused =
             |error| Refusal::Usage(format!("{}: nothing can listen at {listen}: {error}", self.path.display()));
         let link = Tcp::open(&self.settings).map_err(refused)?;
-        Ok(StateLink::new(Box::new(link), name, self.start))
+        let names: Vec<_> = plans.iter().map(|(name, _)| name.clone()).collect();
+        let link = StateLink::new(Box::new(link), name, self.start).sharing(&self.shares);
+        Ok(link.exchanging_plans(names.clone(), names))
     }
 }
 
@@ -119,14 +132,22 @@ pub(crate) fn missing(robot: &str) -> Failure {
 ///
 /// # Errors
 /// Fails with a sentence if the text is no link file.
-fn read(text: &str) -> Result<(TcpSettings, Pose), String> {
+fn read(text: &str) -> Result<(TcpSettings, Pose, Vec<String>), String> {
     let file: LinkText = toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())?;
-    let LinkText { name, listen, key, start, robot } = file;
+    let LinkText { name, listen, key, start, shares, robot } = file;
     let listen = address(&listen)?;
     let mut peers: Vec<(String, SocketAddr)> = Vec::new();
-    for PeerText { name: other, address: at } in robot {
+    let mut keys: Vec<(String, String)> = Vec::new();
+    for PeerText { name: other, address: at, plans } in robot {
         if other == name || peers.iter().any(|(known, _)| *known == other) {
             return Err(format!("two robots have the name `{other}`"));
+        }
+        match plans {
+            Some(own) if own.is_empty() || own == key => {
+                return Err(format!("the key `plans` of `{other}` has to be one that only these two robots know"));
+            }
+            Some(own) => keys.push((other.clone(), own)),
+            None => {}
         }
         peers.push((other, address(&at)?));
     }
@@ -135,7 +156,7 @@ fn read(text: &str) -> Result<(TcpSettings, Pose), String> {
     }
     let start = start.map_or(Ok(Start(Pose::ORIGIN)), |start| start.parse());
     let Start(start) = start.map_err(|error| format!("start: {error}"))?;
-    Ok((TcpSettings { name, listen, peers, key, plans: Vec::new() }, start))
+    Ok((TcpSettings { name, listen, peers, key, plans: keys }, start, shares))
 }
 
 /// Reads a literal address. A host name is refused, as its lookup may take long.
@@ -147,13 +168,16 @@ fn address(text: &str) -> Result<SocketAddr, String> {
 mod tests {
     use super::*;
 
-    const GOOD: &str = "name = \"ada\"\nlisten = \"127.0.0.1:7401\"\nkey = \"k\"\nstart = \"1, 0, 90\"\n\
+    const GOOD: &str = "name = \"ada\"\nlisten = \"127.0.0.1:7401\"\nkey = \"k\"\nstart = \"1, 0, 90\"\nshares = [\"heading\"]\n\
                         [[robot]]\nname = \"bob\"\naddress = \"[::1]:7402\"\n";
 
     #[test]
     fn a_file_names_the_robots_and_their_addresses() {
-        let (settings, start) = read(GOOD).unwrap();
-        assert_eq!((settings.name.as_str(), settings.peers.len(), start.x.0), ("ada", 1, 1.0));
+        let (settings, start, shares) = read(GOOD).unwrap();
+        assert_eq!(
+            (settings.name.as_str(), settings.peers.len(), start.x.0, shares),
+            ("ada", 1, 1.0, vec!["heading".to_owned()])
+        );
     }
 
     #[test]
@@ -164,6 +188,16 @@ mod tests {
             ("\"bob\"", "\"ada\"", "two robots have the name `ada`"),
             ("\"k\"", "\"\"", "the key is empty"),
             ("1, 0, 90", "1, 0", "start: expected x,y,heading"),
+            (
+                "7402\"",
+                "7402\"\nplans = \"k\"",
+                "the key `plans` of `bob` has to be one that only these two robots know",
+            ),
+            (
+                "7402\"",
+                "7402\"\nplans = \"\"",
+                "the key `plans` of `bob` has to be one that only these two robots know",
+            ),
             ("listen", "listens", "unknown field `listens`"),
         ] {
             let refused = read(&GOOD.replace(from, to)).unwrap_err();

@@ -1,4 +1,5 @@
-//! Plans that a session loads while the robot runs; their texts are compiled like the text of the first plan.
+//! Plans that a session loads, and that other robots send, while the robot runs; their texts are compiled like the text
+//! of the first plan.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -27,6 +28,12 @@ pub(crate) fn begin<A: EngineAlphabet>(
     let started = plans.compile_with(Box::new(move |source| compiled(source, &target)));
     started.map_err(|error| Refusal::Fault(format!("the system gives no thread for the compiler: {error}")))?;
     plans.store(first).map_err(Refusal::Fault)
+}
+
+/// Enables other robots to send plans for this target, for which turns wait, in simulated time.
+pub(crate) fn begin_at_once<A: EngineAlphabet>(plans: &mut Plans<A>, target: &Arc<Target>) {
+    let target = Arc::clone(target);
+    plans.compile_at_once_with(Box::new(move |source| compiled(source, &target)));
 }
 
 /// Compiles and loads the plans of a text that no other plan of the text uses.

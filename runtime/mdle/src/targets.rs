@@ -155,6 +155,23 @@ struct PlanFor<T, A: Alphabet> {
 }
 
 impl<T, A: EngineAlphabet<Output = Sensed>> PlanFor<T, A> {
+    /// Creates the engine of a run of the plan of this name, which takes plans of other robots if its link does, and of
+    /// a session if it `is_session`.
+    fn loading(
+        &self,
+        name: &str,
+        library: &Library<Sensed>,
+        terms: &RunTerms,
+        is_session: bool,
+    ) -> Result<Engine<A>, Refusal> {
+        let mut engine = self.engine(library, terms)?;
+        if is_session || self.link.as_ref().is_some_and(LinkFile::takes_plans) {
+            let first = StoredPlan { name: name.into(), files: self.files.clone(), loaded: self.loaded.clone() };
+            plans::begin(engine.plans_mut(), first, &self.known)?;
+        }
+        Ok(engine)
+    }
+
     /// Creates the engine of a run.
     fn engine(&self, library: &Library<Sensed>, terms: &RunTerms) -> Result<Engine<A>, Refusal> {
         let engine = match &self.hearing {
@@ -218,7 +235,7 @@ where
 
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode {
         let plan = || self.loaded.plan();
-        let engine = |terms: &RunTerms| self.engine(library, terms);
+        let engine = |terms: &RunTerms| self.loading(name, library, terms, false);
         let Some(safety) = &self.safety else { return mdle_host::run_piloted::<T, _>(name, call, &plan, engine, None) };
         let supervisor = |terms: &RunTerms| Box::new(safety.guardian(terms.period)) as _;
         let diversions = |number| safety.diversion(number);
@@ -229,12 +246,7 @@ where
     fn session(&self, name: &str, call: Call, library: &Library<Sensed>, seat: Seat) -> ExitCode {
         let Seat { desk, is_paused, stream } = seat;
         let (plan, desk) = (|| self.loaded.plan(), Mutex::new(Some(desk)));
-        let first = StoredPlan { name: name.into(), files: self.files.clone(), loaded: self.loaded.clone() };
-        let engine = |terms: &RunTerms| {
-            let mut engine = self.engine(library, terms)?;
-            plans::begin(engine.plans_mut(), first.clone(), &self.known)?;
-            Ok(engine)
-        };
+        let engine = |terms: &RunTerms| self.loading(name, library, terms, true);
         let supervisor = |terms: &RunTerms| {
             let guardian = self.safety.as_ref().map(|safety| safety.guardian(terms.period));
             // A session is one run.

@@ -2,8 +2,10 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use mdle_compiler::alphabet::did_you_mean;
+use mdle_host::Quantity;
 use mdle_runtime::Printable;
 use serde::Deserialize;
 use toml::Spanned;
@@ -27,6 +29,9 @@ pub(super) struct ScenarioText {
     /// The robots, the first of which moves first.
     #[serde(default)]
     pub(super) robot: Vec<RobotText>,
+    /// Plans that robots send each other.
+    #[serde(default)]
+    pub(super) sent_plan: Vec<SentPlanText>,
     /// A crowd in place of robots with names.
     pub(super) crowd: Option<CrowdText>,
 }
@@ -79,6 +84,26 @@ pub(super) struct RobotText {
     pub(super) killed: Option<At<String>>,
     /// Radius of the head between its two ears, whose module `heading` publishes the bearing of a sound.
     pub(super) ears: Option<At<String>>,
+    /// Names of the modules whose attributes the robot shares with the others.
+    #[serde(default)]
+    pub(super) shares: Vec<String>,
+    /// Names of the robots whose plans the robot takes.
+    #[serde(default)]
+    pub(super) plans_from: Vec<At<String>>,
+}
+
+/// A plan that a robot sends, as written.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) struct SentPlanText {
+    /// Time at which the plan is sent, as written.
+    pub(super) at: At<String>,
+    pub(super) from: At<String>,
+    pub(super) to: At<String>,
+    /// File of the plan, relative to the folder of the scenario.
+    pub(super) file: At<PathBuf>,
+    /// Moment at which the plan takes over, as written.
+    pub(super) when: Option<At<String>>,
 }
 
 /// An error in a file of a scenario.
@@ -107,6 +132,13 @@ impl ScenarioError {
     pub(super) fn help(self, help: impl Into<String>) -> Self {
         Self { help: help.into(), ..self }
     }
+}
+
+/// Reads a time between these limits, in seconds.
+pub(super) fn duration(text: &At<String>, least: f64, most: f64) -> Result<Duration, ScenarioError> {
+    let [least, most] = [least, most].map(Duration::from_secs_f64);
+    let read = Quantity::duration(text.get_ref(), "s", least, most);
+    read.map_err(|sentence| ScenarioError::at(text.span(), sentence))
 }
 
 /// Returns the text of a file of a scenario.

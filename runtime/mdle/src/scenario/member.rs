@@ -1,21 +1,24 @@
 //! A running robot of a scenario: its turns, and the way back that it records.
 
+use std::collections::VecDeque;
 use std::fmt::Write as _;
 
 use mdle_compiler::load::{Loaded, LoadedPlan};
 use mdle_engine::link::{Air, StateLink};
 use mdle_engine::{Engine, Library, Recorder as _};
 use mdle_host::{
-    Microphones, Moment, Pace, Passes, Pilot as _, PilotFault, RobotTurn, RunTerms, StopRequest, Target as _, Time,
-    Transitions, cause_words, place,
+    Microphones, Moment, Pace, Passes, Pilot as _, PilotFault, Refusal, RobotTurn, RunTerms, StopRequest, Target as _,
+    Time, Transitions, cause_words, place,
 };
 use mdle_record::Change;
 use mdle_runtime::{Machine, Nanos, PathStore, Plan as _, Robot as _, Sensed, Setpoint, StoredPath, Turn, Twist};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{RobotEars, Sim, Simulated};
 
+use super::sent_plan::SentPlan;
 use super::setup::{Member, Scenario};
 use crate::modules::{AudioSource, SoundInput};
+use crate::plans;
 use crate::way_recorder::{RecordedTurn, WayRecorder};
 
 /// A running robot.
@@ -27,12 +30,16 @@ pub(super) struct Runner {
     input: Twist,
     transitions: Transitions,
     passes: Passes,
+    /// Number of the plan that made the last turn.
+    plan_number: u64,
     killed: Option<Nanos>,
     recorder: Option<WayRecorder>,
     /// The path that was replaced in the turn before.
     replaced: Option<StoredPath>,
     /// Ears of the robot, and the way from them to the module `heading`.
     ears: Option<(RobotEars, Microphones)>,
+    /// Plans that the robot has not sent yet.
+    sends: VecDeque<SentPlan>,
 }
 
 /// State of a robot of a scenario: driven or not.
@@ -56,6 +63,8 @@ pub(super) struct MemberTurn {
     pub(super) law: Option<(u64, String)>,
     /// Name and text of the path that was recorded in this turn.
     pub(super) path: Option<(&'static str, String)>,
+    /// `true` if a plan has replaced another one in this turn.
+    pub(super) begins: bool,
     /// Source of the input; `None` if the robot was not driven.
     pub(super) kind: Option<Turn<()>>,
     /// Causes of the turn besides its output, if the robot is recorded.
@@ -74,7 +83,8 @@ impl Runner {
         library: &Library<Sensed>,
         is_recorded: bool,
     ) -> Result<Self, String> {
-        let Member { name, mut robot, start, loaded, paths, records, killed, ears, .. } = member;
+        let Member { name, mut robot, start, loaded, paths, records, killed, ears, shares, plans_from, sends, .. } =
+            member;
         let microphones = Microphones::default();
         let terms = RunTerms {
             time: Time::Stepped(Pace::Max),
@@ -85,10 +95,14 @@ impl Runner {
         let plan = Loaded::plan(&loaded);
         let hearing = ears.as_ref().map(|(_, radius)| SoundInput { source: AudioSource::Robot, radius: *radius });
         let added = hearing.map(|hearing| hearing.added(library, &microphones));
-        let engine =
-            Engine::new(plan, added.as_ref().unwrap_or(library), &terms).map_err(|refusal| format!("{refusal:?}"))?;
-        let link = StateLink::new(Box::new(air), &name, start);
-        let mut engine = engine.linked(link).map_err(|refusal| format!("{refusal:?}"))?;
+        let engine = Engine::new(plan, added.as_ref().unwrap_or(library), &terms).map_err(sentence)?;
+        let takes_plans = !plans_from.is_empty();
+        let link =
+            StateLink::new(Box::new(air), &name, start).sharing(&shares).exchanging_plans(plans_from, Vec::new());
+        let mut engine = engine.linked(link).map_err(|refusal| format!("the robot `{name}`: {}", sentence(refusal)))?;
+        if takes_plans {
+            plans::begin_at_once(engine.plans_mut(), &scenario.target);
+        }
         if is_recorded {
             engine.record();
         }
@@ -105,10 +119,12 @@ impl Runner {
             input: Twist::default(),
             transitions: Transitions::default(),
             passes: Passes::default(),
+            plan_number: 1,
             killed,
             recorder: records.zip(Sim::PATHS).map(|(path, replays)| WayRecorder::new(path, replays.fastest)),
             replaced: None,
             ears: ears.map(|(ears, _)| (ears, microphones)),
+            sends: sends.into(),
         })
     }
 
@@ -122,7 +138,9 @@ impl Runner {
         let Moment { y, t, number } = moment;
         let plan = self.machine().map(|machine| (machine.plan() as &dyn mdle_host::Texts, machine.state()));
         let (sent, transitions, changes) = (self.input, &self.transitions, made.changes.clone());
-        Some(RobotTurn { number, t, y, sent, kind: made.kind?, plan, transitions, changes })
+        let (kind, plan_number) = (made.kind?, self.engine.plan_number());
+        let begins = made.begins.then(|| self.engine.reason());
+        Some(RobotTurn { number, t, y, sent, kind, plan, plan_number, begins, transitions, changes })
     }
 
     /// Stops the robot.
@@ -146,7 +164,8 @@ impl Runner {
 
     /// Makes turn `number` at time `t` with this output; a robot that is no longer driven does not move.
     pub(super) fn turn(&mut self, y: &Sensed, t: Nanos, number: u64) -> MemberTurn {
-        let mut made = MemberTurn { lines: Vec::new(), law: None, path: None, kind: None, changes: Vec::new() };
+        let (lines, changes) = (Vec::new(), Vec::new());
+        let mut made = MemberTurn { lines, law: None, path: None, begins: false, kind: None, changes };
         if self.standing == Standing::Drives && self.killed.is_some_and(|killed| t >= killed) {
             self.standing = Standing::Killed;
             made.lines.push("its program was killed".to_owned());
@@ -157,6 +176,11 @@ impl Runner {
         }
         if let Some((ears, microphones)) = &mut self.ears {
             microphones.put(t, ears.heard(&self.robot.pose(), t));
+        }
+        while let Some(SentPlan { to, text, when, .. }) = self.sends.pop_front_if(|plan| plan.at <= t) {
+            if let Err(sentence) = self.engine.send_plan(&to, &text, when, t) {
+                made.lines.push(format!("warning: no plan is sent to {to}: {sentence}"));
+            }
         }
         self.transitions.clear();
         let mut complete = *y;
@@ -194,9 +218,15 @@ impl Runner {
 
     /// Records the transitions of the turn, and the current law.
     fn reports(&mut self, made: &mut MemberTurn) {
-        let Self { engine, transitions, passes, .. } = self;
+        let Self { engine, transitions, passes, plan_number, .. } = self;
+        made.begins = std::mem::replace(plan_number, engine.plan_number()) != engine.plan_number();
         let Some(machine) = engine.machine() else { return };
         let plan = machine.plan();
+        if made.begins {
+            *passes = Passes::default();
+            let begun = machine.atom().map(|atom| format!("{} ({})", plan.law(atom), place(plan, passes, atom)));
+            made.lines.extend(begun.map(|begun| format!("{begun}  <- {}", engine.reason())));
+        }
         for (transition, operands) in transitions.iter() {
             passes.step(plan.fsm(), transition);
             let cause = cause_words(plan, transition, operands);
@@ -228,6 +258,14 @@ impl Runner {
                 None
             }
         }
+    }
+}
+
+/// Returns the reason of a refusal.
+fn sentence(refusal: Refusal) -> String {
+    match refusal {
+        Refusal::Usage(sentence) | Refusal::Fault(sentence) => sentence,
+        Refusal::Ended(_) => "the run was asked to end".to_owned(),
     }
 }
 

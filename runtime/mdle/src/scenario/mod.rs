@@ -7,6 +7,7 @@ mod fleet;
 mod member;
 mod output;
 mod records;
+mod sent_plan;
 mod setup;
 
 use std::io::{self, Write as _};

@@ -144,12 +144,14 @@ impl Output {
         self.text(&format!("{}  {robot}: {line}", Clocked(t)));
     }
 
-    /// Writes a line of the report. It is no error if the reader has closed the pipe.
-    pub(super) fn text(&mut self, line: &str) {
-        if let Err(error) = writeln!(self.out, "{}", Printable(line))
-            && error.kind() != io::ErrorKind::BrokenPipe
-        {
-            self.note(Err(format!("standard output cannot be written: {error}")));
+    /// Writes the lines of a message of the report. It is no error if the reader has closed the pipe.
+    pub(super) fn text(&mut self, message: &str) {
+        for line in message.lines() {
+            if let Err(error) = writeln!(self.out, "{}", Printable(line))
+                && error.kind() != io::ErrorKind::BrokenPipe
+            {
+                self.note(Err(format!("standard output cannot be written: {error}")));
+            }
         }
     }
 

@@ -8,13 +8,14 @@ use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::diagnostic::judged;
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::link::Faults;
-use mdle_files::{Group, Settings, read_plan};
+use mdle_files::{Group, Settings, Target, read_plan};
 use mdle_host::{Quantity, Target as _, read_file, read_text, setpoints};
 use mdle_runtime::{Nanos, Plan as _, Pose, Setpoint};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Body, Make, RobotEars, Sim, Simulated, Start, StartNoise, Walls, World};
 
-use super::file::{At, LinkText, RobotText, ScenarioError, ScenarioText};
+use super::file::{At, LinkText, RobotText, ScenarioError, ScenarioText, duration};
+use super::sent_plan::{SentPlan, sent_by};
 use crate::arguments::head;
 use crate::failure::{self, Failure};
 use crate::plans::texts;
@@ -37,6 +38,8 @@ pub(super) struct Scenario {
     /// Faults of the link.
     pub(super) faults: Faults,
     pub(super) members: Vec<Member>,
+    /// The target of all robots.
+    pub(super) target: Arc<Target>,
 }
 
 /// A robot of a scenario.
@@ -58,6 +61,12 @@ pub(super) struct Member {
     pub(super) killed: Option<Nanos>,
     /// Ears of the robot, and the radius of the head between them, in metres.
     pub(super) ears: Option<(RobotEars, f64)>,
+    /// Names of the modules whose attributes the robot shares.
+    pub(super) shares: Vec<String>,
+    /// Names of the robots whose plans the robot takes.
+    pub(super) plans_from: Vec<String>,
+    /// Plans that the robot sends, in the order of their times.
+    pub(super) sends: Vec<SentPlan>,
 }
 
 /// Error of a scenario: in its file, or in a plan whose error was reported.
@@ -98,10 +107,12 @@ impl Scenario {
             period: period.unwrap_or(Sim::PERIOD),
             faults,
             members: Vec::new(),
+            target: Arc::new(Settings::beside(path)?.target(Some(SIM))?),
         };
         let names: Vec<&str> = text.robot.iter().map(|robot| robot.name.get_ref().as_str()).collect();
         for robot in &text.robot {
-            let member = scenario.member(robot, path, &names)?;
+            let mut member = scenario.member(robot, path, &names)?;
+            member.sends = sent_by(&member.name, &text, path)?;
             scenario.members.push(member);
         }
         Ok(scenario)
@@ -138,7 +149,14 @@ impl Scenario {
         let killed = text.killed.as_ref().map(|killed| duration(killed, 0.0, 1e9)).transpose()?;
         let killed = killed.map(|killed| Nanos(u64::try_from(killed.as_nanos()).unwrap_or(u64::MAX)));
         let ears = text.ears.as_ref().map(|ears| self.ears(ears, seed.unwrap_or_default())).transpose()?;
-        Ok(Member { name: name.clone(), body, robot, start, loaded, files, paths, records, killed, ears })
+        for other in &text.plans_from {
+            if other.get_ref() == name || !names.contains(&other.get_ref().as_str()) {
+                return Err(no_other_robot(other, name, names).into());
+            }
+        }
+        let plans_from = text.plans_from.iter().map(|other| other.get_ref().clone()).collect();
+        let (name, shares, sends) = (name.clone(), text.shares.clone(), Vec::new());
+        Ok(Member { name, body, robot, start, loaded, files, paths, records, killed, ears, shares, plans_from, sends })
     }
 
     /// Returns the ears of a robot, and the radius of its head.
@@ -208,6 +226,14 @@ fn part(text: &RobotText, names: &[&str], group: &Group) -> Result<String, Scena
             Err(ScenarioError::at(text.file.span(), message).help(format!("the robots of the group are {robots}")))
         }
     }
+}
+
+/// Returns the error for a name that is that of no other robot of the scenario.
+fn no_other_robot(other: &At<String>, own: &str, names: &[&str]) -> ScenarioError {
+    let others: Vec<&str> = names.iter().copied().filter(|name| *name != own).collect();
+    let near = did_you_mean(other.get_ref(), &others);
+    let message = format!("there is no other robot `{}`{near}", other.get_ref());
+    ScenarioError::at(other.span(), message).help(format!("the other robots of the scenario are {}", others.join(", ")))
 }
 
 /// Returns the error for a robot that a plan names and that the scenario lacks.
@@ -287,13 +313,6 @@ fn latency(text: &At<String>) -> Result<(Nanos, Nanos), ScenarioError> {
         return Err(ScenarioError::at(text.span(), "the least latency comes first, as in `0ms..200ms`"));
     }
     Ok((least, most))
-}
-
-/// Reads a time between these limits, in seconds.
-pub(super) fn duration(text: &At<String>, least: f64, most: f64) -> Result<Duration, ScenarioError> {
-    let [least, most] = [least, most].map(Duration::from_secs_f64);
-    let read = Quantity::duration(text.get_ref(), "s", least, most);
-    read.map_err(|sentence| ScenarioError::at(text.span(), sentence))
 }
 
 /// Returns the path that is recorded, which must be a path that the plan replays.

@@ -48,7 +48,9 @@ impl RecordedMember {
         };
         let Self { record, transitions, next, path, fault } = self;
         let plan = Some((machine.plan() as _, machine.state()));
-        let recorded = RobotTurn { number: *next, t, y, sent, kind, plan, transitions, changes: Vec::new() };
+        let (number, changes) = (*next, Vec::new());
+        let (plan_number, begins) = (1, None);
+        let recorded = RobotTurn { number, t, y, sent, kind, plan, plan_number, begins, transitions, changes };
         let written = record.as_mut().map_or(Ok(()), |record| record.turn(recorded));
         *next += 1;
         if let Err(error) = written {

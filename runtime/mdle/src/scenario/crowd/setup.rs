@@ -11,9 +11,9 @@ use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Make, Sim, Simulated};
 
 use super::super::arguments::Options;
-use super::super::file::{At, CrowdText, ScenarioError, ScenarioText};
+use super::super::file::{At, CrowdText, ScenarioError, ScenarioText, duration};
 use super::super::records::begin;
-use super::super::setup::{self, SetupError, duration};
+use super::super::setup::{self, SetupError};
 use super::places::{Places, hall};
 use super::recorded::RecordedMember;
 

@@ -1,0 +1,66 @@
+//! Plans that robots of a scenario send each other at given times.
+
+use std::path::Path;
+
+use mdle_compiler::alphabet::did_you_mean;
+use mdle_engine::When;
+use mdle_engine::link::LONGEST_TEXT;
+use mdle_host::read_text;
+use mdle_runtime::Nanos;
+
+use super::file::{ScenarioError, ScenarioText, SentPlanText, duration};
+
+/// A plan that a robot sends.
+#[derive(Debug, Clone)]
+pub(super) struct SentPlan {
+    /// Time at which the plan is sent.
+    pub(super) at: Nanos,
+    /// Name of the robot that gets the plan.
+    pub(super) to: String,
+    pub(super) text: String,
+    /// Moment at which the plan takes over.
+    pub(super) when: When,
+}
+
+/// Returns the plans that the robot of this name sends, in the order of their times.
+///
+/// # Errors
+/// A value is invalid, or a file cannot be read.
+pub(super) fn sent_by(own: &str, file: &ScenarioText, path: &Path) -> Result<Vec<SentPlan>, ScenarioError> {
+    let names: Vec<&str> = file.robot.iter().map(|robot| robot.name.get_ref().as_str()).collect();
+    let mut plans = Vec::new();
+    for text in &file.sent_plan {
+        if let Some(unknown) = [&text.from, &text.to].into_iter().find(|name| !names.contains(&name.get_ref().as_str()))
+        {
+            let (name, near) = (unknown.get_ref(), did_you_mean(unknown.get_ref(), &names));
+            let message = format!("the scenario has no robot `{name}`{near}");
+            let help = format!("the robots of the scenario are {}", names.join(", "));
+            return Err(ScenarioError::at(unknown.span(), message).help(help));
+        }
+        if text.from.get_ref() == text.to.get_ref() {
+            return Err(ScenarioError::at(text.to.span(), "a robot sends no plan to itself"));
+        }
+        if text.from.get_ref() == own {
+            plans.push(sent_plan(text, path)?);
+        }
+    }
+    plans.sort_by_key(|plan: &SentPlan| plan.at);
+    Ok(plans)
+}
+
+fn sent_plan(text: &SentPlanText, path: &Path) -> Result<SentPlan, ScenarioError> {
+    let at = duration(&text.at, 0.0, 1e9)?;
+    let file = path.with_file_name("").join(text.file.get_ref());
+    let unread = |error| format!("the plan {} cannot be read: {error}", file.display());
+    let plan = read_text(&file, LONGEST_TEXT as u64);
+    let plan = plan.map_err(|error| ScenarioError::at(text.file.span(), unread(error)))?;
+    let when = match &text.when {
+        None => When::Now,
+        Some(word) => {
+            let found = When::ALL.iter().find(|(name, _)| name == word.get_ref()).map(|(_, when)| *when);
+            found.ok_or_else(|| ScenarioError::at(word.span(), "expected `now`, `atom` or `plan`"))?
+        }
+    };
+    let at = Nanos(u64::try_from(at.as_nanos()).unwrap_or(u64::MAX));
+    Ok(SentPlan { at, to: text.to.get_ref().clone(), text: plan, when })
+}
