@@ -250,7 +250,7 @@ fn a_map_shows_the_walls_at_lab_2() {
     let words = ["run", drive.to_str().unwrap(), "--target", "sim", "--speed", "max", "--start", "0,0,0"];
     let output = run(&folder, &[&words[..], &["--log", "drive.mcap"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
-    let output = run(&folder, &["map", "drive.mcap", "lab2.yaml", "--at", "-0.75,0,0"]);
+    let output = run(&folder, &["map", "drive.mcap", "lab2.yaml", "--at", "-0.75,0,0", "--png", "lab2.png"]);
     assert_eq!(text(&output), "[0]\n");
     insta::assert_snapshot!(fs::read_to_string(folder.join("lab2.yaml")).unwrap(), @r#"
     image: lab2.pgm
@@ -262,6 +262,11 @@ fn a_map_shows_the_walls_at_lab_2() {
 
     "#);
     let map = fs::read(folder.join("lab2.pgm")).unwrap();
+    // The rows of the PNG, each after its filter, are those of the map.
+    let png = fs::read(folder.join("lab2.png")).unwrap();
+    let begins = png.windows(4).position(|name| name == b"IDAT").unwrap() + 4 + 7;
+    let rows: Vec<u8> = png[begins..].chunks(151).take(150).flat_map(|row| row[1..].to_vec()).collect();
+    assert_eq!(rows, map[map.len() - 150 * 150..]);
     let grey = |x: f64, y: f64| {
         let cell = |at: f64| ((at + 1.905) / 0.0254) as usize;
         map[map.len() - 150 * 150 + (149 - cell(y)) * 150 + cell(x)]
@@ -281,6 +286,9 @@ fn a_map_shows_the_walls_at_lab_2() {
 
     "#);
     fs::write(folder.join("other.pgm"), "").unwrap();
+    let output = run(&folder, &["map", "drive.mcap", "third.yaml", "--png", "lab2.png"]);
+    assert_eq!(text(&output), "error: lab2.png exists already\n[2]\n");
+    assert!(!folder.join("third.yaml").exists());
     let words = |name| ["map", "drive.mcap", name];
     let answers = ["other.yaml", "other.png", "other"].map(|name| text(&run(&folder, &words(name)))).concat();
     insta::assert_snapshot!(answers, @r#"

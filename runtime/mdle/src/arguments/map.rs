@@ -13,6 +13,8 @@ pub(crate) struct MakeMap {
     pub(crate) file: PathBuf,
     /// Pose of the robot at the start of the record, in the axes of the map.
     pub(crate) at: String,
+    /// PNG to write as well.
+    pub(crate) png: Option<PathBuf>,
 }
 
 impl MakeMap {
@@ -20,7 +22,7 @@ impl MakeMap {
     pub(super) fn of(matches: &ArgMatches) -> Self {
         let path = |name: &str| matches.get_one::<PathBuf>(name).cloned().unwrap_or_default();
         let at = matches.get_one::<String>("at").cloned().unwrap_or_default();
-        Self { log: path("log"), file: path("file"), at }
+        Self { log: path("log"), file: path("file"), at, png: matches.get_one::<PathBuf>("png").cloned() }
     }
 }
 
@@ -43,6 +45,13 @@ pub(super) fn map() -> Command {
                 .help("Pose of the robot at the start of the record, in the axes of the map, in metres and degrees")
                 .allow_hyphen_values(true)
                 .default_value("0,0,0"),
+        )
+        .arg(
+            Arg::new("png")
+                .long("png")
+                .value_name("FILE")
+                .help("PNG to write as well, with the same image [default: none]")
+                .value_parser(value_parser!(PathBuf)),
         )
         .after_help("Exit status: 0; 1 if the record is damaged, 2 for wrong usage or a file that cannot be read or written")
 }

@@ -3,9 +3,10 @@
 mod grid;
 mod matching;
 mod pings;
+mod png;
 mod ros_image;
 
 pub(crate) use grid::{CELL, EvidenceGrid, GridPing, HALF};
 pub(crate) use matching::{Fit, fit};
 pub(crate) use pings::PingOrder;
-pub(crate) use ros_image::{image, pixels, read_map};
+pub(crate) use ros_image::{image, pixels, png_pixels, read_map};

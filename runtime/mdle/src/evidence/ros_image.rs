@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::grid::{CELLS, EvidenceGrid};
+use super::png::png;
 use crate::failure::Failure;
 
 /// Maximum size of an image, in bytes.
@@ -13,11 +14,19 @@ const WHITE: f64 = 255.0;
 /// Returns the image: its first row has the greatest second coordinate.
 pub(crate) fn pixels(grid: &EvidenceGrid) -> Vec<u8> {
     let mut bytes = head().into_bytes();
-    for row in (0..CELLS).rev() {
-        let greys = (0..CELLS).map(|column| libm::round(WHITE * (1.0 - grid.probability(column, row))) as u8);
-        bytes.extend(greys);
-    }
+    bytes.extend(greys(grid));
     bytes
+}
+
+/// Returns the same image as PNG.
+pub(crate) fn png_pixels(grid: &EvidenceGrid) -> Vec<u8> {
+    png(CELLS, &greys(grid))
+}
+
+/// Returns the grey of each cell, by rows, the row with the greatest second coordinate first.
+fn greys(grid: &EvidenceGrid) -> Vec<u8> {
+    let cells = (0..CELLS).rev().flat_map(|row| (0..CELLS).map(move |column| (column, row)));
+    cells.map(|(column, row)| libm::round(WHITE * (1.0 - grid.probability(column, row))) as u8).collect()
 }
 
 /// Returns the image of the map in a YAML file.

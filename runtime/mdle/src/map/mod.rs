@@ -25,7 +25,7 @@ pub(crate) fn map(arguments: &MakeMap) -> Result<ExitCode, Failure> {
     let origin = pose(&arguments.at)?;
     let mut grid = EvidenceGrid::new();
     let outcome = pings(&arguments.log, origin, &mut |ping| grid.take(ping))?;
-    ros_map::save(&grid, &arguments.file)?;
+    ros_map::save(&grid, &arguments.file, arguments.png.as_deref())?;
     Ok(outcome)
 }
 

@@ -3,18 +3,18 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use crate::evidence::{CELL, EvidenceGrid, HALF, image, pixels};
+use crate::evidence::{CELL, EvidenceGrid, HALF, image, pixels, png_pixels};
 use crate::failure::Failure;
 use crate::log::{created, exists, unwritten};
 
-/// Saves a grid as the YAML file at a path, with its image beside it.
+/// Saves a grid as the YAML file at a path, with its image beside it, and as the PNG `picture`, if it is given.
 ///
 /// # Errors
-/// Fails if the name does not end in `.yaml` or `.yml`, or if a file exists already or cannot be written.
-pub(super) fn save(grid: &EvidenceGrid, file: &Path) -> Result<(), Failure> {
+/// Fails if the name of the file does not end in `.yaml` or `.yml`, or if a file exists already or cannot be written.
+pub(super) fn save(grid: &EvidenceGrid, file: &Path, picture: Option<&Path>) -> Result<(), Failure> {
     let image = image(file)?;
-    // Neither is written if the other is in the way.
-    if let Some(other) = [file, &image].into_iter().find(|path| path.exists()) {
+    // None is written if another is in the way.
+    if let Some(other) = [Some(file), Some(&*image), picture].into_iter().flatten().find(|path| path.exists()) {
         return Err(exists(other));
     }
     let name = image.file_name().unwrap_or_default().display();
@@ -23,7 +23,8 @@ pub(super) fn save(grid: &EvidenceGrid, file: &Path) -> Result<(), Failure> {
         -HALF, -HALF
     );
     write(file, text.as_bytes())?;
-    write(&image, &pixels(grid))
+    write(&image, &pixels(grid))?;
+    picture.map_or(Ok(()), |picture| write(picture, &png_pixels(grid)))
 }
 
 fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
