@@ -123,6 +123,25 @@ fn a_contact_of_one_robot_stops_all() {
 }
 
 #[test]
+fn a_triangle_that_fits_through_no_door_stays_outside() {
+    let folder = scenario("formation_door", "");
+    let wall = |y: f64, end: f64| format!("[[wall]]\npoints = [[3.5, {y}], [3.5, {end}]]\n");
+    let floor = "[[wall]]\npoints = [[-3, -4], [10, -4], [10, 4], [-3, 4], [-3, -4]]\n".to_owned();
+    // One robot fits through 1 m, and three in a triangle of 1 m do not.
+    fs::write(folder.join("floor.toml"), floor + &wall(-4.0, -0.5) + &wall(0.5, 4.0)).unwrap();
+    let output = run(&folder, 9_800_030, "log.jsonl");
+    let report = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{report}");
+    // On the way along the wall a member may touch it, which stops all.
+    let over = report.lines().filter(|line| line.contains("plan over: Triangle")).count();
+    assert_eq!(over, 3, "{report}");
+    assert!(!report.contains("least gap between robots: 0.0 cm"), "{report}");
+    let turns = turns(&folder.join("log.jsonl"));
+    let farthest = turns.iter().flat_map(BTreeMap::values).map(|robot| number(robot, "x")).fold(0.0, f64::max);
+    assert!(farthest < 3.5, "a robot was at {farthest} m: {report}");
+}
+
+#[test]
 fn the_same_seed_gives_the_same_run() {
     let folder = scenario("formation_bytes", "\n[link]\nlatency = \"0ms..200ms\"\nloss = 0.1\n");
     let bytes = |name: &str| (run(&folder, 5, name).stdout, fs::read(folder.join(name)).unwrap());

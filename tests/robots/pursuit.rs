@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use mdle_tests::chance::repeated;
+use mdle_tests::chance::{repeated, sized};
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
 use mdle_tests::ways::{Place, bulge, excess};
@@ -161,6 +161,36 @@ fn the_same_seed_gives_the_same_bytes() {
     let original = fs::read(root().join("plans/pursuit/robot1/lastPath.csv")).unwrap();
     assert_eq!(fs::read(folder.join("robot1/lastPath.csv")).unwrap(), original, "the scenario's own path stays");
     assert!(one.2[0] != original, "the recorded path is another one");
+}
+
+/// Returns the times at which each atom of a robot's plan begins in the first lap, by the report of a run.
+fn begins(report: &str, robot: &str) -> Vec<f64> {
+    let named = format!(" s  {robot}: ");
+    let lines = report.lines().filter_map(|line| line.split_once(&named));
+    let first_lap = lines.filter(|(_, rest)| rest.contains("pass 1 of 4"));
+    [0.0].into_iter().chain(first_lap.map(|(time, _)| time.parse().unwrap())).collect()
+}
+
+#[test]
+fn a_robot_that_dies_in_any_atom_leaves_nobody_waiting() {
+    let robots = ["robot1", "robot2", "robot3"];
+    let folder = scenario("pursuit_dies", "");
+    let whole = String::from_utf8(run(&folder, &["--seed", "9800000"]).stdout).unwrap();
+    let text = fs::read_to_string(folder.join("pursuit.toml")).unwrap().replace("180s", "700s");
+    let atoms: Vec<(&str, f64)> =
+        robots.iter().flat_map(|robot| begins(&whole, robot).into_iter().map(move |t| (*robot, t))).collect();
+    assert_eq!(atoms.len(), 24, "eight atoms of each plan: {whole}");
+    // Every sixth, another one in each run of a few; all in a long one.
+    let step = 24 / sized(4, 24) as usize;
+    for (victim, begun) in atoms.into_iter().step_by(step) {
+        let named = format!("name = \"{victim}\"\n");
+        let killed = format!("{named}killed = \"{}s\"\n", begun + 0.3);
+        fs::write(folder.join("pursuit.toml"), text.replace(&named, &killed)).unwrap();
+        let output = run(&folder, &["--seed", "9800000"]);
+        let report = String::from_utf8(output.stdout).unwrap();
+        let over = report.lines().filter(|line| line.contains(": plan over: ")).count();
+        assert_eq!((output.status.code(), over), (Some(4), 2), "{victim} at {begun} s: {report}");
+    }
 }
 
 #[test]
