@@ -1,5 +1,6 @@
 //! Crowds of Scouts, whose sonars fire in turn and whose plan drives by `goAvoid` or by `go`: microseconds of the
-//! processor for a robot and a second, times real time, and memory, beside the rays of its sonars alone.
+//! processor for a robot and a second, times real time, and memory, beside the rays of its sonars alone; and the
+//! bytes of runs with several numbers of threads.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -14,7 +15,11 @@ use mdle_tests::executable::target;
 use mdle_tests::repository::root;
 
 /// Numbers of robots, and simulated seconds of their runs.
-const CROWDS: [(u32, u32); 5] = [(1, 20_000), (10, 4_000), (100, 400), (1_000, 60), (10_000, 20)];
+const CROWDS: [(u32, u32); 5] = [(1, 8_000), (10, 1_600), (100, 200), (1_000, 40), (10_000, 10)];
+/// Numbers of threads whose runs are compared.
+const THREADS: [u32; 3] = [1, 2, 4];
+/// Number of robots, and simulated seconds, of those runs.
+const COMPARED: (u32, u32) = (1_000, 5);
 /// Rays of a Scout in a second: seven for each ping, one ping in 60 ms.
 const RAYS: f64 = 7.0 / 0.06;
 /// Maximum range of a Scout's sonars, in metres.
@@ -26,6 +31,7 @@ const TIMED_OUT: i32 = 4;
 
 fn main() {
     let mdle = built();
+    compare(&mdle);
     println!(
         "{:<12}{:>8}{:>14}{:>12}{:>18}{:>10}",
         "law", "robots", "rays alone", "crowd", "times real time", "memory"
@@ -54,6 +60,22 @@ fn built() -> PathBuf {
     Path::new(&target()).join("release/mdle")
 }
 
+/// Asserts that a crowd drives the same ways with each number of threads.
+fn compare(mdle: &Path) {
+    let (robots, seconds) = COMPARED;
+    write("goAvoid 0 40 20", robots);
+    let trails = THREADS.map(|threads| {
+        let name = format!("crowd-benchmark-{threads}.csv");
+        let mut command = command(mdle, seconds);
+        command.args(["--threads", &threads.to_string(), "--trail", &name]);
+        let status = command.stdout(Stdio::null()).stderr(Stdio::null()).status().expect("mdle runs");
+        assert_eq!(status.code(), Some(TIMED_OUT), "{threads} threads");
+        fs::read(target().join(name)).expect("a table of poses")
+    });
+    assert!(trails.iter().all(|trail| *trail == trails[0]), "the ways depend on the number of threads");
+    println!("{robots} robots: the same {} bytes with {THREADS:?} threads", trails[0].len());
+}
+
 /// Figures of a run.
 struct Run {
     /// Seconds of all processors.
@@ -64,8 +86,8 @@ struct Run {
     memory: f64,
 }
 
-/// Runs a crowd with this law.
-fn run(mdle: &Path, law: &str, robots: u32, seconds: u32) -> Run {
+/// Writes a crowd of this number of robots, which drive by this law.
+fn write(law: &str, robots: u32) {
     let folder = target();
     let plan = format!(
         "{{ Wander (wait 9h)\n  ExecPlan inf {{\n    (Atom (wait 20 OR bumper) ({law}))\n    (Atom (wait 1) (go -20 0))\n    \
@@ -74,8 +96,19 @@ fn run(mdle: &Path, law: &str, robots: u32, seconds: u32) -> Run {
     let crowd = format!("seed = 1\n[crowd]\nrobots = {robots}\nfile = \"crowd-benchmark.mdle\"\nbody = \"scout\"\n");
     fs::write(folder.join("crowd-benchmark.mdle"), plan).expect("a folder to write to");
     fs::write(folder.join("crowd-benchmark.toml"), crowd).expect("a folder to write to");
+}
+
+/// Returns the command of a run of this many simulated seconds.
+fn command(mdle: &Path, seconds: u32) -> Command {
     let mut command = Command::new(mdle);
-    command.args(["run", "crowd-benchmark.toml", "--timeout", &seconds.to_string()]).current_dir(folder);
+    command.args(["run", "crowd-benchmark.toml", "--timeout", &seconds.to_string()]).current_dir(target());
+    command
+}
+
+/// Runs a crowd with this law.
+fn run(mdle: &Path, law: &str, robots: u32, seconds: u32) -> Run {
+    write(law, robots);
+    let mut command = command(mdle, seconds);
     let begun = Instant::now();
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("mdle runs");
     let (mut processor, mut memory) = (0.0, 0.0);
