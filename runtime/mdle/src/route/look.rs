@@ -15,6 +15,8 @@ use crate::failure::{self, Failure};
 pub(super) const LOOK: &str = "LookAround";
 /// Steps of 10 cm to either side in which a robot that has arrived is searched.
 const WAYS: i16 = 6;
+/// Score by which another landmark has to fit better than the expected one, so that the robot is refused to be there.
+const MARGIN: f64 = 0.6;
 
 /// The map of a landmark.
 pub(crate) struct LandmarkMap {
@@ -109,12 +111,16 @@ impl Heard {
             let axis = Radians::from_degrees(turned).0 + drift.0;
             Some((map, fit(&map.grid, &self.pings, origin(map.at, axis, self.here), WAYS)?))
         });
-        let best = fits.reduce(|best, other| if other.1.score > best.1.score { other } else { best });
-        let Some((map, Fit { origin, .. })) = best else {
+        let fits: Vec<(&LandmarkMap, Fit)> = fits.collect();
+        let best = fits.iter().reduce(|best, other| if other.1.score > best.1.score { other } else { best });
+        let here = fits.iter().find(|(map, _)| map.name == self.expected);
+        let (Some((there, Fit { score: most, .. })), Some((map, Fit { origin, score }))) = (best, here) else {
             return Err(format!("no sonar has heard anything at {expected}: nothing says that the robot is there"));
         };
-        if map.name != self.expected {
-            return Err(format!("the robot is at {} and not at {expected}, by its maps", Printable(&map.name)));
+        if *most > score + MARGIN {
+            let there = Printable(&there.name);
+            let scores = format!("their scores are {most:.2} and {score:.2}");
+            return Err(format!("the robot is at {there} and not at {expected}, by its maps: {scores}"));
         }
         let (sin, cos) = libm::sincos(origin.theta.0);
         let (x, y) = (self.here.x.0, self.here.y.0);
