@@ -1,0 +1,100 @@
+//! Ends, goals and turns of `goAvoid`.
+
+use super::*;
+use crate::trial::{Sensed, begun, framed, sized, until_completed};
+
+fn quark(bearing: f64, range: f64) -> GoAvoid {
+    GoAvoid::new(Radians::from_degrees(bearing), Meters(range), MetersPerSecond(0.2))
+}
+
+#[test]
+fn arrives_at_a_point_given_from_where_the_atom_begins() {
+    let mut y = Sensed::heading(30.0);
+    y.pose.x = Meters(5.0);
+    let mut law = quark(90.0, 2.0).begin(&y, framed(180.0));
+    until_completed(&mut law, &mut y);
+    let goal = Pose { x: Meters(5.0), y: Meters(-2.0), theta: Radians(0.0) };
+    assert!(y.pose.distance(&goal) <= ARRIVED, "{:?}", y.pose);
+}
+
+#[test]
+fn a_range_of_nothing_is_done_at_once() {
+    let y = Sensed::default();
+    assert!(quark(90.0, 0.0).begin(&y, begun()).completed(&y, Nanos::ZERO));
+}
+
+#[test]
+fn arrives_by_one_sonar_that_still_works() {
+    for number in 0..16 {
+        for confirmation in [2, 3] {
+            let mut y = Sensed { confirmation, ..Sensed::default() };
+            for _ in 0..3 {
+                y.ping(mdle_runtime::SonarId::new(number), Some(0.8));
+            }
+            let mut law = quark(0.0, 2.0).begin(&y, begun());
+            until_completed(&mut law, &mut y);
+            let goal = Pose { x: Meters(2.0), ..Pose::ORIGIN };
+            assert!(y.pose.distance(&goal) <= ARRIVED, "sonar {number}: {:?}", y.pose);
+        }
+    }
+}
+
+#[test]
+fn never_drives_backwards_nor_into_what_is_close_ahead() {
+    let mut y = Sensed::default();
+    for number in 0..16 {
+        y.ping(mdle_runtime::SonarId::new(number), Some(0.02));
+    }
+    let mut law = quark(0.0, 40.0).begin(&y, begun());
+    for turn in 0..50 {
+        assert_eq!(law.input(&y, Nanos(turn * 100_000_000)).v.0, 0.0);
+    }
+}
+
+#[test]
+fn the_goal_turns_round_where_the_drift_was_measured_before() {
+    let quarter = Radians::from_degrees(90.0);
+    let mut law = quark(0.0, 3.0).begin(&Sensed::default(), begun());
+    let at = |x: f64, y: f64| Pose { x: Meters(x), y: Meters(y), theta: Radians(0.0) };
+    law.turn_goal(quarter, at(1.0, 0.0));
+    assert!(law.goal.distance(&at(0.0, 3.0)).0 < 1e-12, "{:?}", law.goal);
+    law.turn_goal(quarter, at(2.0, 0.0));
+    law.turn_goal(Radians(0.0), at(2.0, 0.0));
+    assert!(law.goal.distance(&at(4.0, 1.0)).0 < 1e-12, "{:?}", law.goal);
+}
+
+/// After 40 m by odometry, a goal may be 80 cm off: one in a wall is reached where the wall ends the way, but not
+/// before the robot has tried for a while.
+#[test]
+fn a_goal_that_has_drifted_into_a_wall_is_reached() {
+    let mut y = Sensed::default();
+    (0..3).for_each(|_| y.ping(mdle_runtime::SonarId::new(0), Some(0.2)));
+    let mut law = quark(0.0, 0.9).begin(&y, begun());
+    let mut ends = |driven: f64| {
+        law.driven.0 = driven;
+        law.kept_off = None;
+        (0..300).map(|turn| Nanos(turn * 100_000_000)).find(|t| {
+            law.input(&y, *t);
+            law.completed(&y, *t)
+        })
+    };
+    assert_eq!(ends(1.0), None);
+    assert!(ends(40.0).is_some_and(|t| t > DRIFTS_AFTER));
+}
+
+/// An ATRV-mini between two walls begins with a turn of 170 degrees; no way on the map leads elsewhere meanwhile.
+#[test]
+fn the_turn_at_the_beginning_is_no_delay() {
+    let mut y = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+    let mut law = quark(170.0, 5.0).begin(&y, begun());
+    for turn in 1..=20 {
+        let now = Nanos(turn * 100_000_000);
+        y.now = now;
+        for (number, range) in [(0, 0.3), (4, 0.45), (8, 0.3), (12, 0.45)] {
+            y.ping_at(mdle_runtime::SonarId::new(number), Some(range), now);
+        }
+        law.input(&y, now);
+        assert!(law.headed.is_some() || !law.narrow.follows(), "after {turn} turns");
+    }
+    assert!(law.headed.is_none());
+}
