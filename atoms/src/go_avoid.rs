@@ -48,10 +48,13 @@ const SQUEEZES: Nanos = Nanos(30_000_000_000);
 const GOES_ROUND: Nanos = Nanos(60_000_000_000);
 /// Time without progress after which the robot follows ways on its map.
 const HELD_UP: Nanos = Nanos(1_200_000_000);
-/// Time without progress after which the robot, kept from coming nearer, is near enough by what odometry may have
-/// drifted, and that drift as a part of the way driven.
+/// Time without progress after which the robot counts as kept from coming nearer, whatever it hears, and is near enough
+/// by what odometry may have drifted.
 const DRIFTS_AFTER: Nanos = Nanos(10_000_000_000);
+/// Drift of odometry as a part of the way driven, and its maximum in metres. The way of a robot that searches grows
+/// without end: without a maximum it would be done anywhere in the end.
 const DRIFTS: f64 = 0.02;
+const DRIFTS_MOST: f64 = 0.2;
 
 /// The control `goAvoid`, which drives to the point at a bearing and range from where the atom begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,7 +73,8 @@ impl GoAvoid {
     }
 }
 
-/// The law of [`GoAvoid`]: done within 0.12 m of the goal, or within 0.3 m where something is in the way of the rest.
+/// The law of [`GoAvoid`]: done within 0.12 m of the goal, or with its body within 0.1 m where something keeps it off
+/// (docs/src/reference/language.md, 4).
 ///
 /// Wheels that slip when they turn leave odometry a heading that is off, and the goal off with it. A robot that knows
 /// the drift of its heading by walls ([`Odometry::drift`]) therefore turns the goal by what the drift changes, around
@@ -139,17 +143,23 @@ impl GoingRound {
         Radians(libm::atan2(self.goal.y.0 - here.y.0, self.goal.x.0 - here.x.0))
     }
 
+    /// Returns `true` if the robot has come no nearer to the goal for so long that its odometry is in doubt.
+    fn is_lost(&self, here: Pose, t: Nanos) -> bool {
+        self.progress.stalled(here, &self.goal, t) > DRIFTS_AFTER
+    }
+
     /// Returns the distance from the goal at which the robot is near enough if something keeps it from coming nearer.
     fn near(&self, here: Pose, t: Nanos) -> Meters {
-        let has_drifted = self.progress.stalled(here, &self.goal, t) > DRIFTS_AFTER;
-        Meters(self.near.0 + if has_drifted { DRIFTS * self.driven.0 } else { 0.0 })
+        let drifted = if self.is_lost(here, t) { (DRIFTS * self.driven.0).min(DRIFTS_MOST) } else { 0.0 };
+        Meters(self.near.0 + drifted)
     }
 
     /// Notes whether something keeps the robot, which is near the goal, from coming nearer.
     fn notice(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) {
         let Meters(distance) = here.distance(&self.goal);
         let is_in_the_way = obstacles.free(self.direction(here)).0 < distance - ARRIVED.0 || self.narrow.stands();
-        let is_kept_off = distance <= self.near(here, t).0 && is_in_the_way;
+        // A rectangle that has no room to turn goes to and fro beside a way that a disc would find free.
+        let is_kept_off = distance <= self.near(here, t).0 && (is_in_the_way || self.is_lost(here, t));
         self.kept_off = self.kept_off.or(Some(t)).filter(|_| is_kept_off);
     }
 

@@ -63,23 +63,43 @@ fn the_goal_turns_round_where_the_drift_was_measured_before() {
     assert!(law.goal.distance(&at(4.0, 1.0)).0 < 1e-12, "{:?}", law.goal);
 }
 
-/// After 40 m by odometry, a goal may be 80 cm off: one in a wall is reached where the wall ends the way, but not
+/// Returns the time at which a law ends for a robot that does not move, after it has driven this far.
+fn ends(y: &Sensed, range: f64, driven: f64) -> Option<Nanos> {
+    let mut law = quark(0.0, range).begin(y, begun());
+    law.driven.0 = driven;
+    (0..300).map(|turn| Nanos(turn * 100_000_000)).find(|t| {
+        law.input(y, *t);
+        law.completed(y, *t)
+    })
+}
+
+/// After 9 m by odometry, a goal may be 18 cm off: one in a wall is reached where the wall ends the way, but not
 /// before the robot has tried for a while.
 #[test]
 fn a_goal_that_has_drifted_into_a_wall_is_reached() {
     let mut y = Sensed::default();
+    (0..3).for_each(|_| y.ping(mdle_runtime::SonarId::new(0), Some(0.1)));
+    assert_eq!(ends(&y, 0.48, 1.0), None);
+    assert!(ends(&y, 0.48, 9.0).is_some_and(|t| t > DRIFTS_AFTER));
+}
+
+/// A robot that has searched for 100 m is not done a metre off.
+#[test]
+fn a_long_way_is_no_arrival() {
+    let mut y = Sensed::default();
     (0..3).for_each(|_| y.ping(mdle_runtime::SonarId::new(0), Some(0.2)));
-    let mut law = quark(0.0, 0.9).begin(&y, begun());
-    let mut ends = |driven: f64| {
-        law.driven.0 = driven;
-        law.kept_off = None;
-        (0..300).map(|turn| Nanos(turn * 100_000_000)).find(|t| {
-            law.input(&y, *t);
-            law.completed(&y, *t)
-        })
-    };
-    assert_eq!(ends(1.0), None);
-    assert!(ends(40.0).is_some_and(|t| t > DRIFTS_AFTER));
+    assert!(ends(&y, 0.5, 100.0).is_some_and(|t| t > DRIFTS_AFTER));
+    for range in [0.51, 0.6, 1.0, 1.5] {
+        assert_eq!(ends(&y, range, 100.0), None, "{range} m");
+    }
+}
+
+/// An ATRV-mini 17 cm from its goal has no room to turn to it, but hears nothing on the way there.
+#[test]
+fn a_robot_that_comes_no_nearer_is_done_beside_its_goal() {
+    let y = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+    assert!(ends(&y, 0.17, 0.0).is_some_and(|t| t > DRIFTS_AFTER));
+    assert_eq!(ends(&y, 0.55, 0.0), None);
 }
 
 /// An ATRV-mini between two walls begins with a turn of 170 degrees; no way on the map leads elsewhere meanwhile.
