@@ -41,6 +41,9 @@ pub(crate) struct Gains {
     /// 0 the robot comes as near to a wall ahead as the look-ahead lets it; a wide body must begin sooner to go round a
     /// box.
     pub(crate) beyond: f64,
+    /// `goAvoid`: angle turned since it began, in radians, from which the robot turns back rather than on. Four wheels
+    /// that skid make an error of 2 % in each turn, the same in all turns of a run.
+    pub(crate) winds_most: f64,
 }
 
 /// Gains of a body whose sonars all ping in every turn.
@@ -54,6 +57,7 @@ const RING: Gains = Gains {
     soft_margin: 0.35,
     room_at: 0.6,
     beyond: 0.0,
+    winds_most: f64::INFINITY,
 };
 
 /// Gains of a Scout, whose sonars fire one after the other.
@@ -67,12 +71,20 @@ const SCOUT: Gains = Gains {
     soft_margin: 0.4,
     room_at: 0.6,
     beyond: 0.0,
+    winds_most: f64::INFINITY,
 };
 
 /// Gains of an ATRV-mini, which is twice as wide. Its corners need the room that a smaller margin would leave,
 /// and what it hears at 6 inches is within its margin anyway.
-const ATRV: Gains =
-    Gains { look_ahead: Meters(0.5), hard_margin: 0.06, least_range: 0.0, room_at: 0.3, beyond: 0.3, ..SCOUT };
+const ATRV: Gains = Gains {
+    look_ahead: Meters(0.5),
+    hard_margin: 0.06,
+    least_range: 0.0,
+    room_at: 0.3,
+    beyond: 0.3,
+    winds_most: 1.5 * core::f64::consts::PI,
+    ..SCOUT
+};
 
 impl Gains {
     /// Returns the gains of the body that has this output.

@@ -13,6 +13,7 @@ use crate::passers::Passers;
 use crate::stuck::Progress;
 use crate::tangent::{Obstacles, Side, Wish};
 use crate::way::Ahead;
+use crate::winding::Winding;
 
 /// Distance from the goal below which the goal is reached.
 const ARRIVED: Meters = Meters(0.12);
@@ -95,6 +96,7 @@ pub struct GoingRound {
     near: Meters,
     /// Length of the way driven, in metres, and the last place.
     driven: (f64, Pose),
+    winding: Winding,
     previous: Option<Radians>,
     /// Time at which the robot first headed in the direction that it had chosen, after the turn with which it begins.
     headed: Option<Nanos>,
@@ -265,7 +267,7 @@ impl GoingRound {
         let goes_round = stalled.0 % (SQUEEZES.0 + GOES_ROUND.0) >= SQUEEZES.0;
         if self.passers.gives_way().is_some() || goes_round {
             self.narrow.leave();
-            let keeps_off = goes_round.then(|| self.narrow.round(y, here, chosen.direction, self.speed));
+            let keeps_off = goes_round.then(|| self.narrow.round(y, here, chosen.direction, self.speed, self.winding));
             return keeps_off.flatten();
         }
         let distance = here.distance(&self.goal);
@@ -274,7 +276,8 @@ impl GoingRound {
         let free = chosen.to_goal.map(|free| (free, asked));
         let chosen = chosen.direction;
         let near = self.near(here, t);
-        let ahead = Ahead { goal: self.goal, near, from, chosen, free, speed: self.speed, before: None };
+        let ahead =
+            Ahead { goal: self.goal, near, from, chosen, free, speed: self.speed, winding: self.winding, before: None };
         self.narrow.input(y, here, t, ahead)
     }
 }
@@ -297,6 +300,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
             look_ahead: Gains::of(y).look_ahead,
             near: Meters(y.body_radius().0 + NEAR),
             driven: (0.0, here),
+            winding: Winding::begin(y),
             previous: None,
             headed: None,
             detour: None,
@@ -313,6 +317,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
 
     fn input(&mut self, y: &Y, t: Nanos) -> Twist {
         let here = y.pose();
+        self.winding.take(&self.driven.1, &here);
         self.driven = (self.driven.0 + here.distance(&self.driven.1).0, here);
         // Beside obstacles that the robot passes closely, walls are no hallway.
         if !self.narrow.follows() {
@@ -325,7 +330,9 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
         if let Some(twist) = self.squeeze(y, here, t, &chosen) {
             return twist;
         }
-        let Radians(off) = Radians(chosen.direction.0 - here.theta.0).wrapped();
+        let off = Radians(chosen.direction.0 - here.theta.0).wrapped();
+        // Along an obstacle the direction is given from the heading: turning back would lead away from it.
+        let Radians(off) = if self.goes_along(t) { off } else { self.winding.turn_to(off) };
         let Meters(ahead) = chosen.ahead;
         let Meters(distance) = here.distance(&self.goal);
         let v = (self.speed.0 * (1.0 - off.abs() / ON_THE_SPOT.0)).min(0.9 * (ahead - 0.03)).min(0.8 * distance + 0.03);

@@ -44,6 +44,7 @@ mod trial;
 mod turn;
 mod wave;
 mod way;
+mod winding;
 
 pub use advance::{Advance, Advancing};
 pub use align::{Align, Aligning};

@@ -5,8 +5,9 @@ use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, Twist};
 
 use crate::map::Map;
-use crate::swept::Surroundings;
+use crate::swept::{Aim, Surroundings};
 use crate::way::{Ahead, Next, way};
+use crate::winding::Winding;
 
 /// Room around the body, in metres, below which a place is narrow.
 const ROOM: f64 = 0.1;
@@ -69,12 +70,14 @@ impl Narrow {
         here: Pose,
         chosen: Radians,
         speed: MetersPerSecond,
+        winding: Winding,
     ) -> Option<Twist> {
         if self.has_room(y, here) {
             return None;
         }
         let there = here.towards(chosen, AHEAD);
-        self.towards(y, here, Next { x: there.x.0, y: there.y.0, is_straight: false }, speed, false)
+        let next = Next { x: there.x.0, y: there.y.0, is_straight: false };
+        self.towards(y, here, next, (speed, winding), false)
     }
 
     /// Returns the input of a robot at `here`; `None` if the tangent rule suffices.
@@ -98,7 +101,7 @@ impl Narrow {
         let anyhow = Next { x: there.x.0, y: there.y.0, is_straight: false };
         let next = self.way.or((!is_disc).then_some(anyhow))?;
         let is_bold = self.stands.is_some_and(|since| t.since(since) > STANDS);
-        let twist = self.towards(y, here, next, ahead.speed, is_bold)?;
+        let twist = self.towards(y, here, next, (ahead.speed, ahead.winding), is_bold)?;
         self.stands = self.stands.or(Some(t)).filter(|_| twist.v.0 == 0.0);
         Some(twist)
     }
@@ -113,14 +116,15 @@ impl Narrow {
         y: &Y,
         here: Pose,
         next: Next,
-        speed: MetersPerSecond,
+        (speed, winding): (MetersPerSecond, Winding),
         is_bold: bool,
     ) -> Option<Twist> {
         let (sin, cos) = libm::sincos(here.theta.0);
         let (dx, dy) = (next.x - here.x.0, next.y - here.y.0);
         let (ahead, left) = (dx * cos + dy * sin, dy * cos - dx * sin);
         let speed = MetersPerSecond(speed.0.min(FASTEST));
-        Surroundings::of(y, &self.map, here).towards(ahead, left, speed, next.is_straight, is_bold)
+        let aim = Aim { ahead, left, is_straight: next.is_straight, winding };
+        Surroundings::of(y, &self.map, here).towards(&aim, speed, is_bold)
     }
 
     /// Returns `true` if nothing on the map is near the body.

@@ -1,10 +1,13 @@
 //! Chooses the speed and turn rate that bring a body nearest to a place without touching anything on the map:
 //! the body, as a disc or rectangle, is tried along the arc of each (a dynamic window).
 
+use core::f64::consts::TAU;
+
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
 
 use crate::map::Map;
+use crate::winding::Winding;
 
 /// Maximum number of occupied cells that are considered, from the nearest rows on.
 const POINTS: usize = 64;
@@ -29,6 +32,18 @@ const STANDING_COSTS: f64 = 0.06;
 /// Cost of a radian off the place, in metres, and where the body cannot turn on the way there.
 const OFF_COSTS: f64 = 0.15;
 const OFF_COSTS_STRAIGHT: f64 = 1.0;
+
+/// The place to which a body moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Aim {
+    /// Distances of the place ahead of the body and to its left, in metres.
+    pub(crate) ahead: f64,
+    pub(crate) left: f64,
+    /// `true` if the body cannot turn on the way there, so that it first turns to the place.
+    pub(crate) is_straight: bool,
+    /// Angle that the robot has turned, which decides on which side it turns to the place.
+    pub(crate) winding: Winding,
+}
 
 /// Outline and surroundings of a body.
 pub(crate) struct Surroundings {
@@ -84,18 +99,12 @@ impl Surroundings {
         libm::sqrt(square) - self.radius
     }
 
-    /// Returns the input that brings the body nearest to the place at this distance ahead and to the left, at
-    /// most at this speed; `None` if every movement would touch something. A bold robot drives where there is
-    /// little room; a robot that has to go straight first turns to the place.
-    pub(crate) fn towards(
-        &self,
-        ahead: f64,
-        left: f64,
-        speed: MetersPerSecond,
-        is_straight: bool,
-        is_bold: bool,
-    ) -> Option<Twist> {
+    /// Returns the input that brings the body nearest to a place, at most at this speed; `None` if every movement would
+    /// touch something. A bold robot drives where there is little room.
+    pub(crate) fn towards(&self, aim: &Aim, speed: MetersPerSecond, is_bold: bool) -> Option<Twist> {
         let now = self.now();
+        let off = Radians(libm::atan2(aim.left, aim.ahead));
+        let back = Some(aim.winding.turn_to(off).0).filter(|turn| *turn != off.0);
         let kept = if is_bold { -COARSE } else { 0.0 };
         let mut best = (f64::INFINITY, None);
         for part in SPEEDS {
@@ -105,7 +114,7 @@ impl Surroundings {
                 if v == 0.0 && omega == 0.0 || v < 0.0 && self.half_length == 0.0 {
                     continue;
                 }
-                if let Some(cost) = self.cost(v, omega, now, kept, (ahead, left), is_straight)
+                if let Some(cost) = self.cost(v, omega, now, kept, aim, back)
                     && cost < best.0
                 {
                     best = (cost, Some(Twist { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) }));
@@ -115,7 +124,9 @@ impl Surroundings {
         best.1
     }
 
-    fn cost(&self, v: f64, omega: f64, now: f64, kept: f64, to: (f64, f64), is_straight: bool) -> Option<f64> {
+    /// Returns the cost of a movement, in metres; `None` if it would touch something. `back` is the turn to the place
+    /// the longer way round, if the robot has to take that.
+    fn cost(&self, v: f64, omega: f64, now: f64, kept: f64, aim: &Aim, back: Option<f64>) -> Option<f64> {
         let (mut least, mut end, mut before) = (f64::INFINITY, (0.0, 0.0, 0.0), now);
         for t in TIMES {
             let theta = omega * t;
@@ -133,11 +144,12 @@ impl Surroundings {
             (end, before) = ((x, y, theta), room);
         }
         let (x, y, theta) = end;
-        let (dx, dy) = (to.0 - x, to.1 - y);
-        let off = Radians(libm::atan2(dy, dx) - theta).wrapped().0.abs();
+        let (dx, dy) = (aim.ahead - x, aim.left - y);
+        let Radians(off) = Radians(libm::atan2(dy, dx) - theta).wrapped();
+        let off = if back.is_some_and(|back| back * off < 0.0) { TAU - off.abs() } else { off.abs() };
         let stands = if v <= 0.0 { STANDING_COSTS } else { 0.0 };
         let tight = if kept < 0.0 { 0.0 } else { 1.0 } * (ROOM - least).max(0.0) + 4.0 * (CLOSE - least).max(0.0);
-        Some(libm::hypot(dx, dy) + if is_straight { OFF_COSTS_STRAIGHT } else { OFF_COSTS } * off + tight + stands)
+        Some(libm::hypot(dx, dy) + if aim.is_straight { OFF_COSTS_STRAIGHT } else { OFF_COSTS } * off + tight + stands)
     }
 }
 
@@ -148,6 +160,10 @@ mod tests {
 
     const SPEED: MetersPerSecond = MetersPerSecond(0.12);
 
+    fn aim(left: f64) -> Aim {
+        Aim { ahead: 0.4, left, is_straight: false, winding: Winding::begin(&Sensed::default()) }
+    }
+
     /// Returns the input of this body towards a place 0.4 m ahead and `left`, beside walls along its way at
     /// these distances.
     fn towards(y: &Sensed, left: f64, walls: &[f64]) -> Option<Twist> {
@@ -155,7 +171,7 @@ mod tests {
         for wall in walls {
             map.occupy((-0.6, *wall), (0.6, *wall));
         }
-        Surroundings::of(y, &map, Pose::ORIGIN).towards(0.4, left, SPEED, false, false)
+        Surroundings::of(y, &map, Pose::ORIGIN).towards(&aim(left), SPEED, false)
     }
 
     #[test]
@@ -174,11 +190,25 @@ mod tests {
     }
 
     #[test]
+    fn a_rectangle_that_has_turned_far_turns_back() {
+        let y = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+        let turns = |quarters: i32| {
+            let mut winding = Winding::begin(&y);
+            let heading = |quarter: i32| Pose { theta: Radians::from_degrees(f64::from(90 * quarter)), ..Pose::ORIGIN };
+            (0..quarters).for_each(|quarter| winding.take(&heading(quarter), &heading(quarter + 1)));
+            let behind = Aim { ahead: -0.4, left: 0.2, is_straight: false, winding };
+            let twist = Surroundings::of(&y, &Map::EMPTY, Pose::ORIGIN).towards(&behind, SPEED, false);
+            twist.map(|twist| twist.omega.0)
+        };
+        assert_eq!((turns(1), turns(3)), (Some(0.7), Some(-0.7)));
+    }
+
+    #[test]
     fn the_front_of_a_rectangle_touches_before_that_of_a_disc() {
         let ahead = |y: &Sensed| {
             let mut map = Map::EMPTY;
             map.occupy((0.34, -0.1), (0.34, 0.1));
-            let twist = Surroundings::of(y, &map, Pose::ORIGIN).towards(0.4, 0.0, SPEED, false, false);
+            let twist = Surroundings::of(y, &map, Pose::ORIGIN).towards(&aim(0.0), SPEED, false);
             twist.is_some_and(|twist| twist.v.0 > 0.0 && twist.omega.0 == 0.0)
         };
         assert!(!ahead(&sized(0.33, 0.27)));

@@ -7,6 +7,7 @@ use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians};
 
 use crate::map::{CELLS, Cell, Map};
 use crate::wave::{EDGE, Ends, SIDE, Wave, index};
+use crate::winding::Winding;
 
 /// Maximum cost, in centimetres, by which a way may exceed the straight way.
 const LONGER: i32 = 600;
@@ -38,6 +39,8 @@ pub(crate) struct Ahead {
     pub(crate) free: Option<(Meters, Meters)>,
     /// Speed where the way is free.
     pub(crate) speed: MetersPerSecond,
+    /// Angle that the robot has turned.
+    pub(crate) winding: Winding,
     /// Place to which the last way led.
     pub(crate) before: Option<Next>,
 }
@@ -168,6 +171,7 @@ mod tests {
             chosen: Radians(0.0),
             free: None,
             speed: MetersPerSecond(0.2),
+            winding: Winding::begin(&Sensed::default()),
             before,
         }
     }

@@ -102,6 +102,25 @@ fn a_robot_that_comes_no_nearer_is_done_beside_its_goal() {
     assert_eq!(ends(&y, 0.55, 0.0), None);
 }
 
+/// A goal behind, a little to the left, is turned to on the left; after three quarters of a circle on the right.
+#[test]
+fn an_atrv_mini_turns_back_after_a_circle() {
+    let turns = |y: &mut Sensed, quarters: u32| {
+        let mut law = quark(f64::from(90 * quarters) + 150.0, 5.0).begin(y, begun());
+        let mut omega = 0.0;
+        for quarter in 0..=quarters {
+            y.pose.theta = Radians::from_degrees(f64::from(90 * quarter)).wrapped();
+            omega = law.input(y, Nanos(u64::from(quarter))).omega.0;
+        }
+        omega
+    };
+    let mut atrv = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+    assert_eq!(turns(&mut atrv, 1), FASTEST);
+    atrv.pose = Pose::ORIGIN;
+    assert_eq!(turns(&mut atrv, 3), -FASTEST);
+    assert_eq!(turns(&mut Sensed::default(), 3), FASTEST);
+}
+
 /// An ATRV-mini between two walls begins with a turn of 170 degrees; no way on the map leads elsewhere meanwhile.
 #[test]
 fn the_turn_at_the_beginning_is_no_delay() {

@@ -1,0 +1,74 @@
+//! The angle by which a robot has turned since an atom began. Wheels that skid measure each turn too long or too short
+//! by about the same part, so the heading by odometry becomes wrong with every full circle, and turning back mends it.
+
+use core::f64::consts::TAU;
+
+use mdle_runtime::capability::{DiffDrive, SonarRing};
+use mdle_runtime::{Pose, Radians};
+
+use crate::gains::Gains;
+
+/// Angle, in radians, up to which the shorter turn is always chosen.
+const SHORT: f64 = core::f64::consts::FRAC_PI_2;
+
+/// The angle turned, counter-clockwise positive, beyond a full circle too.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Winding {
+    turned: f64,
+    /// Angle turned from which the robot turns back rather than on.
+    most: f64,
+}
+
+impl Winding {
+    /// Returns the winding of a body that has not turned yet.
+    pub(crate) fn begin<Y: DiffDrive + SonarRing>(y: &Y) -> Self {
+        Self { turned: 0.0, most: Gains::of(y).winds_most }
+    }
+
+    /// Includes the turn from one pose to the next.
+    pub(crate) fn take(&mut self, before: &Pose, here: &Pose) {
+        self.turned += Radians(here.theta.0 - before.theta.0).wrapped().0;
+    }
+
+    /// Returns the angle to turn to a direction at the angle `off`, from -π to π: the longer way round if `off` is
+    /// large and would turn the robot on where it has turned far.
+    pub(crate) fn turn_to(self, Radians(off): Radians) -> Radians {
+        let total = self.turned + off;
+        let winds = off.abs() > SHORT && total.abs() > self.most && total * off > 0.0;
+        Radians(if winds { off - TAU.copysign(off) } else { off })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::{Sensed, sized};
+
+    /// Returns the degrees to turn to a direction `off` for a body that has turned from heading 0 by these steps.
+    fn turn_to(y: &Sensed, steps: &[f64], off: f64) -> f64 {
+        let at = |degrees: f64| Pose { theta: Radians::from_degrees(degrees), ..Pose::ORIGIN };
+        let (mut winding, mut before) = (Winding::begin(y), at(0.0));
+        for step in steps {
+            let here = at(before.theta.degrees() + step);
+            winding.take(&before, &here);
+            before = here;
+        }
+        libm::round(winding.turn_to(Radians::from_degrees(off)).degrees())
+    }
+
+    #[test]
+    fn a_body_that_skids_turns_back_after_a_circle() {
+        let atrv = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+        assert_eq!(turn_to(&atrv, &[90.0], 150.0), 150.0);
+        assert_eq!(turn_to(&atrv, &[90.0, 90.0, 90.0], 150.0), -210.0);
+        assert_eq!(turn_to(&atrv, &[-170.0, -170.0], -100.0), 260.0);
+        assert_eq!(turn_to(&atrv, &[90.0, 90.0, 90.0], 80.0), 80.0, "a small turn is not worth a circle");
+        assert_eq!(turn_to(&atrv, &[170.0, 170.0, 170.0], -150.0), -150.0, "it turns back already");
+    }
+
+    #[test]
+    fn a_body_that_skids_little_takes_the_shorter_turn() {
+        let scout = Sensed { confirmation: 2, ..Sensed::default() };
+        assert_eq!(turn_to(&scout, &[170.0, 170.0, 170.0], 150.0), 150.0);
+    }
+}
