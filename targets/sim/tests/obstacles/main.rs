@@ -63,7 +63,7 @@ fn a_corner_is_left() {
 fn the_room_of_the_simulator_is_crossed() {
     assert_clean("room", worlds::room, Body::Ideal, 90);
     assert_clean("room", worlds::room, Body::Scout, 80);
-    assert_clean("room", worlds::room, Body::Atrv, 65);
+    assert_clean("room", worlds::room, Body::Atrv, 80);
 }
 
 #[test]
