@@ -13,7 +13,7 @@ mod token;
 
 pub use combined::{Alphabet, combine, did_you_mean, nearest};
 pub use decimal::Decimal;
-pub use quantity::{Kind, Unit, family_to_si};
+pub use quantity::{Kind, Unit, family_to_si, has_direction};
 pub use read::read;
 
 use crate::diagnostic::Span;

@@ -114,6 +114,28 @@ impl Kind {
     }
 }
 
+/// Returns `true` if a law with this name and with arguments of these kinds may use a direction of its frame: the law
+/// takes an angle, or a file or a module that may contain angles.
+pub fn has_direction(law: &str, mut kinds: impl Iterator<Item = Kind>) -> bool {
+    // The angle of `turn` counts from the heading at which its atom began.
+    law != "turn"
+        && kinds.any(|kind| match kind {
+            Kind::Angle | Kind::File | Kind::Module => true,
+            Kind::Length
+            | Kind::Speed
+            | Kind::AngularRate
+            | Kind::Time
+            | Kind::Voltage
+            | Kind::Frequency
+            | Kind::Number
+            | Kind::Integer
+            | Kind::Count
+            | Kind::Bits(_)
+            | Kind::Sonar
+            | Kind::Robot => false,
+        })
+}
+
 /// A unit that may touch a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Unit {

@@ -2,42 +2,9 @@
 //! the others hear by `past` that it has left.
 
 use super::build::{Build, begin};
-use crate::alphabet::nearest;
+use super::owners::{ANY, LINK, MEETING, Owned, Owner, Place};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{After, Arg, Call, Compared, Condition, ConditionNode, Operand, Plan};
-
-/// The interrupt by which robots meet.
-const MEETING: &str = "rendezvous";
-
-/// Place of a condition, which decides what it may read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Place {
-    /// An operand of the group's own condition.
-    Head,
-    /// The condition of an atom.
-    Atom,
-    /// The condition of a behavior in place.
-    Behavior,
-}
-
-/// Robots to which a quark belongs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Owner {
-    /// A timer, which each robot has alike.
-    Timer,
-    /// One robot, by its index in the group.
-    One(usize),
-    /// Any robot of the group.
-    Any,
-    /// All robots of the group.
-    All,
-}
-
-/// A quark without its robot.
-struct Owned<'s> {
-    owner: Owner,
-    call: Call<'s>,
-}
 
 /// Returns the guards of the robots' plans, in the order of the group.
 pub(super) fn guards<'s>(plan: &Plan<'s>, build: &mut Build<'_, 's>) -> Vec<Option<Condition<'s>>> {
@@ -75,8 +42,23 @@ pub(super) fn of_behavior<'s>(condition: &Condition<'s>, build: &mut Build<'_, '
     build.read(condition, Place::Behavior, 0)
 }
 
+/// Returns `true` for a timer that ends the group: an infinite one never does.
 fn is_timer(operand: &Condition<'_>) -> bool {
-    matches!(operand.node, ConditionNode::Call(call) if call.name == "wait")
+    matches!(operand.node, ConditionNode::Call(call) if call.name == "wait" && !matches!(call.args, [Arg::Infinity(_)]))
+}
+
+/// Returns `true` if there is an `any` within an odd number of NOTs; the condition itself is, if `is_negated`.
+fn negates_any(condition: &Condition<'_>, is_negated: bool) -> bool {
+    match condition.node {
+        ConditionNode::Or(operands) | ConditionNode::And(operands) => {
+            operands.iter().any(|operand| negates_any(operand, is_negated))
+        }
+        ConditionNode::Not(operand) => negates_any(operand, !is_negated),
+        ConditionNode::Rising(operand) => negates_any(operand, is_negated),
+        ConditionNode::Call(call) => is_negated && call.name == ANY,
+        ConditionNode::Comparison(compared) => is_negated && compared.left.name == ANY,
+        ConditionNode::After(_) | ConditionNode::Null | ConditionNode::Broken => false,
+    }
 }
 
 /// Warns of a group without a timer: a robot that is off would be waited for without end.
@@ -91,6 +73,14 @@ impl<'s> Build<'_, 's> {
     /// Returns the robots whose plans an operand of the group's condition guards.
     fn guarded(&mut self, operand: &Condition<'s>) -> Vec<usize> {
         let all = 0..self.robots.len();
+        if negates_any(operand, false) {
+            let message = "NOT before `any`: none of the robots can read this of all of them";
+            let report = Diagnostic::new(Code::E0209, message, operand.span, "not on the state link");
+            self.found.push(report.help(
+                "each robot reads its own quark, and one robot alone is asked by its name, as in `NOT robot1.bumper`",
+            ));
+            return Vec::new();
+        }
         let mut owners = Vec::new();
         self.owners(operand, &mut owners);
         owners.retain(|owner| *owner != Owner::Timer);
@@ -174,7 +164,7 @@ impl<'s> Build<'_, 's> {
         if own.name == MEETING && own.args.is_empty() {
             return self.meeting(owner, place, span).unwrap_or(broken);
         }
-        if !self.may_read(call, owner, place, robot) {
+        if !self.may_read(call, owner, place, robot) || self.names_itself(&own, robot) {
             return broken;
         }
         Condition { node: ConditionNode::Call(self.arena.alloc(own)), span }
@@ -207,7 +197,7 @@ impl<'s> Build<'_, 's> {
     /// Projects a comparison for this robot.
     fn comparison(&mut self, compared: &Compared<'s>, place: Place, robot: usize) -> ConditionNode<'s> {
         let Some(Owned { owner, call: left }) = self.owned(compared.left, place) else { return ConditionNode::Broken };
-        if !self.may_read(compared.left, owner, place, robot) {
+        if !self.may_read(compared.left, owner, place, robot) || self.names_itself(&left, robot) {
             return ConditionNode::Broken;
         }
         let right = match compared.right {
@@ -247,73 +237,4 @@ impl<'s> Build<'_, 's> {
         self.found.push(report);
         false
     }
-
-    /// Returns a quark without its robot; `None` if it was reported.
-    fn owned(&mut self, call: &Call<'s>, place: Place) -> Option<Owned<'s>> {
-        match call.name {
-            "wait" => Some(Owned { owner: Owner::Timer, call: *call }),
-            "any" => self.of_several(call, Owner::Any),
-            "all" => self.of_several(call, Owner::All),
-            _ => match call.name.split_once('.') {
-                Some((robot, name)) => self.of_one(call, robot, name),
-                None => {
-                    self.found.push(self.whose(call, place));
-                    None
-                }
-            },
-        }
-    }
-
-    /// Reads `any q` and `all q`.
-    fn of_several(&mut self, call: &Call<'s>, owner: Owner) -> Option<Owned<'s>> {
-        match call.args {
-            [Arg::Name(name), args @ ..] if !name.node.contains('.') => {
-                let span = name.span.to(call.span);
-                Some(Owned { owner, call: Call { name: name.node, args, span } })
-            }
-            _ => {
-                let message = format!("`{}` is followed by an interrupt or a signal of each robot", call.name);
-                let report = Diagnostic::new(Code::E0209, message, call.span, "no quark follows");
-                self.found.push(report.help("write `any bumper`, `any x > 7m` or `all rendezvous`"));
-                None
-            }
-        }
-    }
-
-    /// Reads `robot1.x`.
-    fn of_one(&mut self, call: &Call<'s>, robot: &'s str, name: &'s str) -> Option<Owned<'s>> {
-        let start = call.span.start + u32::try_from(robot.len()).unwrap_or(0);
-        let place = Span { end: start, ..call.span };
-        let Some(index) = self.robots.iter().position(|known| known.node == robot) else {
-            let message = format!("the group has no robot `{robot}`");
-            let report = Diagnostic::new(Code::E0201, message, place, "not in the group");
-            let known: Vec<&str> = self.robots.iter().map(|robot| robot.node).collect();
-            self.found.push(match nearest(robot, known.iter().copied()) {
-                Some(near) => report.fix("did you mean {}?", place, near),
-                None => report.help(format!("its robots are {}", known.join(", "))),
-            });
-            return None;
-        };
-        let span = Span { start: start + 1, ..call.span };
-        Some(Owned { owner: Owner::One(index), call: Call { name, span, ..*call } })
-    }
-
-    /// Reports a quark of which nobody knows whose it is.
-    fn whose(&self, call: &Call<'s>, place: Place) -> Diagnostic {
-        let (name, here) = (call.name, call.name_span());
-        let report = Diagnostic::new(Code::E0209, format!("`{name}` of which robot?"), here, "no robot is named");
-        if name == MEETING {
-            return report.fix("of all robots: {}", here, format!("all {name}"));
-        }
-        let first = self.robots.first().map_or("", |first| first.node);
-        let report = report.fix("of the first robot: {}", here, format!("{first}.{name}"));
-        match place {
-            Place::Head => report.fix("of any robot: {}", here, format!("any {name}")),
-            Place::Atom | Place::Behavior => report,
-        }
-    }
 }
-
-/// Help about what the state link carries.
-const LINK: &str =
-    "the link carries where each robot and its plan are: for these there are `all rendezvous` and formations";

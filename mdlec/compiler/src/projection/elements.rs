@@ -5,11 +5,13 @@ use super::build::Build;
 use super::conditions;
 use super::formation::{self, FORMATION};
 use super::part_name;
-use super::robots::used;
-use crate::alphabet::{Alphabet, DeclarationKind};
+use super::robots::{part_used, used};
+use crate::alphabet::{Alphabet, DeclarationKind, has_direction};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::Arena;
-use crate::syntax::tree::{Arg, Atom, Condition, ConditionNode, Element, Marks, Name, Number, Plan, Primary, Spanned};
+use crate::syntax::tree::{
+    Arg, Atom, Condition, ConditionNode, Element, Frame, Marks, Name, Number, Plan, Primary, Spanned,
+};
 
 /// Time for which each robot stops at the end: a robot whose plan is over sends nothing more, and a state may be lost.
 const LAST_STOP: &str = "2s";
@@ -58,6 +60,21 @@ fn completes(alphabet: &Alphabet, name: &str) -> bool {
     declarations.any(|declaration| declaration.kind == DeclarationKind::Control && declaration.completes)
 }
 
+/// Returns `true` if a law of this name may use a direction of its frame.
+fn uses_frame(alphabet: &Alphabet, name: &str) -> bool {
+    alphabet.declarations_of(name).any(|known| has_direction(name, known.params.iter().map(|param| param.kind)))
+}
+
+/// Returns `true` if a law in these projected elements may use a direction of the frame around them.
+fn use_frame(alphabet: &Alphabet, elements: &[Element<'_>]) -> bool {
+    elements.iter().filter(|element| element.frame() != Some(&Frame::Here)).any(|element| match element.primary {
+        Primary::Atom(atom) => uses_frame(alphabet, atom.control.name),
+        Primary::String(body) => use_frame(alphabet, body),
+        Primary::Plan(plan) => use_frame(alphabet, plan.elements),
+        Primary::Ref(_) | Primary::Exec(_) | Primary::Formal(_) | Primary::Broken => false,
+    })
+}
+
 impl<'s> Build<'_, 's> {
     /// Makes the plan of a robot: its elements under its guard, and then the last stop.
     fn plan(&self, plan: &Plan<'s>, robot: Name<'s>, guard: Option<Condition<'s>>, body: &[Element<'s>]) -> Plan<'s> {
@@ -100,6 +117,7 @@ impl<'s> Build<'_, 's> {
                     self.joined(inner, element, &mut parts);
                 }
                 Primary::Ref(call) if call.name == self.group => self.found.push(used(call)),
+                Primary::Ref(call) if self.is_part(call.name) => self.found.push(part_used(call)),
                 Primary::Ref(call) => {
                     let help = "write its elements here: the first robot decides when each of them ends";
                     self.refuse("a group uses no plan by name", call.span, help);
@@ -121,6 +139,11 @@ impl<'s> Build<'_, 's> {
         parts
     }
 
+    /// Returns `true` for the name of the plan of one of the robots.
+    fn is_part(&self, name: &str) -> bool {
+        self.robots.iter().any(|robot| part_name(self.group, robot.node) == name)
+    }
+
     fn refuse(&mut self, message: &str, span: Span, help: &str) {
         self.found.push(Diagnostic::new(Code::E0208, message, span, "not in a group").help(help));
     }
@@ -136,7 +159,12 @@ impl<'s> Build<'_, 's> {
         let Some((first, others)) = laws else { return };
         let (span, until) = (element.span, self.past_first(self.done + 1, atom.condition.span));
         let marks = element.marks.map(|marks| &*self.arena.alloc(Marks { label: None, ..*marks }));
-        for (part, law) in parts.iter_mut().zip(std::iter::once(first).chain(others)).skip(1) {
+        let laws: Vec<_> = std::iter::once(first).chain(others).collect();
+        for (robot, law) in laws.iter().enumerate() {
+            self.names_itself(law, robot);
+        }
+        for (part, law) in parts.iter_mut().zip(laws).skip(1) {
+            let marks = marks.filter(|_| uses_frame(self.alphabet, law.name));
             part.push(self.atom(until, law, marks, span));
             if completes(self.alphabet, law.name) {
                 part.push(self.atom(until, self.call("stop", &[], law.span), None, span));
@@ -162,15 +190,16 @@ impl<'s> Build<'_, 's> {
         self.joined(inner, element, parts);
     }
 
-    /// Adds the elements of a string to those of each robot; they keep its frame.
+    /// Adds the elements of a string to those of each robot; they keep its frame where one of their laws uses it.
     fn joined(&self, inner: Parts<'s>, element: &Element<'s>, parts: &mut Parts<'s>) {
         for (robot, (part, inner)) in parts.iter_mut().zip(inner).enumerate() {
             let label = element.label().filter(|_| robot == 0);
-            if inner.is_empty() || element.frame().is_none() && label.is_none() {
+            let frame = element.frame().filter(|_| robot == 0 || use_frame(self.alphabet, &inner));
+            if inner.is_empty() || frame.is_none() && label.is_none() {
                 part.extend(inner);
                 continue;
             }
-            let marks = Marks { label, frame: element.frame().copied(), power: None };
+            let marks = Marks { label, frame: frame.copied(), power: None };
             let primary = Primary::String(self.arena.alloc(self.list(&inner)));
             part.push(Element { primary, marks: Some(self.arena.alloc(marks)), span: element.span });
         }

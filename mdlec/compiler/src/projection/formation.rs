@@ -102,7 +102,7 @@ fn shape(call: &Call<'_>, others: u32) -> Result<Shape, Diagnostic> {
     if *shape == Shape::Triangle && others != 2 {
         let message = format!("a triangle has three robots, and this group has {}", u64::from(others) + 1);
         let report = Diagnostic::new(Code::E0306, message, name.span, "not for this group");
-        return Err(report.help("`line` and `column` are for any number of robots"));
+        return Err(report.help("`line` and `column` are for two robots or more"));
     }
     Ok(*shape)
 }

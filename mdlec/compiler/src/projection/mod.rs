@@ -7,6 +7,7 @@ mod build;
 mod conditions;
 mod elements;
 mod formation;
+mod owners;
 mod print;
 mod robots;
 #[cfg(test)]

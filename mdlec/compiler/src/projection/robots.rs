@@ -2,6 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use mdle_runtime::PEERS;
+
+use super::part_name;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::Files;
 use crate::syntax::tree::{Arg, Call, Element, Name, Plan, Primary};
@@ -37,6 +40,14 @@ pub(super) fn named<'s>(plan: &Plan<'s>, written: &[Arg<'s>], found: &mut Vec<Di
         let report = Diagnostic::new(Code::E0208, message, span, "no other robot");
         found.push(report.help(format!("for one robot leave the group out: `{{ {name} … }}`")));
     }
+    // The state link of a robot keeps the states of so many others.
+    if let Some(extra) = robots.get(1 + PEERS) {
+        let (name, count, most) = (plan.name.node, robots.len(), 1 + PEERS);
+        let message = format!("the group `{name}` has {count} robots, and a group has {most} at most");
+        let report = Diagnostic::new(Code::E0208, message, extra.span, "one robot too many");
+        found.push(report.help("make several groups, each with a plan of its own"));
+        return None;
+    }
     (robots.len() > 1).then_some(robots)
 }
 
@@ -57,18 +68,29 @@ pub(super) fn misplaced(files: &Files<'_>) -> Vec<Diagnostic> {
     found
 }
 
-/// Reports the plans of groups that other plans use by name.
+/// Reports the plans of groups, and those of their robots, that other plans use by name.
 pub(super) fn uses_of_groups(files: &Files<'_>) -> Vec<Diagnostic> {
-    let groups: BTreeSet<&str> =
-        files.plans.iter().filter(|plan| plan.group.is_some()).map(|plan| plan.name.node).collect();
+    let (mut groups, mut parts) = (BTreeSet::new(), BTreeSet::new());
+    for plan in &files.plans {
+        let Some(robots) = plan.group else { continue };
+        groups.insert(plan.name.node);
+        parts.extend(robots.iter().filter_map(|robot| match robot {
+            Arg::Name(robot) => Some(part_name(plan.name.node, robot.node)),
+            Arg::Number(_) | Arg::Infinity(_) | Arg::String(_) | Arg::Module(_) => None,
+        }));
+    }
     let mut found = Vec::new();
     for plan in files.plans.iter().filter(|plan| plan.group.is_none()) {
-        visit(plan.elements, &mut |element| {
-            if let Primary::Ref(call) = element.primary
-                && groups.contains(call.name)
-            {
-                found.push(used(call));
-            }
+        visit(plan.elements, &mut |element| match element.primary {
+            Primary::Ref(call) if groups.contains(call.name) => found.push(used(call)),
+            Primary::Ref(call) if parts.contains(call.name) => found.push(part_used(call)),
+            Primary::Ref(_)
+            | Primary::Atom(_)
+            | Primary::Plan(_)
+            | Primary::Exec(_)
+            | Primary::String(_)
+            | Primary::Formal(_)
+            | Primary::Broken => {}
         });
     }
     found
@@ -96,6 +118,13 @@ pub(super) fn used(call: &Call<'_>) -> Diagnostic {
     let message = format!("the group `{}` cannot be part of a plan", call.name);
     let report = Diagnostic::new(Code::E0208, message, call.name_span(), "the plan of a group");
     report.help("a group has plans for several robots, and runs by itself")
+}
+
+/// Reports the use of the plan of a robot of a group: the other robots count its atoms from the plan's beginning.
+pub(super) fn part_used(call: &Call<'_>) -> Diagnostic {
+    let message = format!("`{}` is the plan of a robot of a group, and cannot be part of a plan", call.name);
+    let report = Diagnostic::new(Code::E0208, message, call.name_span(), "the plan of a robot of a group");
+    report.help("the other robots of the group count its atoms from the start: it runs by itself")
 }
 
 /// Calls `act` with each of these elements and all inside them.

@@ -92,6 +92,7 @@ fn a_group_has_two_robots_or_more_with_names_of_their_own() {
         "{ Group [a, 5] R (wait 2min) (Atom (wait 5) stop) }",
         "{ Group a b R (wait 5) (Atom (wait 5) stop) }",
         "{ Group [a b] R (v: speed) (wait 2min) (Atom (wait 5) stop) }",
+        "{ Group [a b c d e f g h i j k] R (wait 2min) (Atom (wait 5) stop) }",
     );
 }
 
@@ -104,6 +105,8 @@ fn a_group_is_a_plan_by_itself() {
         "{ Group [a b] R (wait 5) ExecPlan 3 { (Atom (wait 5) stop) } (Atom (wait 5) stop)^2 (stop, bumper) }",
         "{ Group [a b] R (wait 5) (Atom (wait 9) stop) } { R (wait 5) (Atom (wait 5) stop) }",
         "{ Group [a b] R (wait 5) (Atom (wait 9) stop) } { R_a (wait 5) (Atom (wait 5) stop) }",
+        "{ Group [a b] R (wait 5) (Atom (wait 9) stop) } { T (wait 50) (Atom (wait 1) (go 5 0)) R_a ExecPlan 2 R_b }",
+        "{ Group [a b] R (wait 5) (Atom (wait 9) stop) R_b }",
     );
 }
 
@@ -118,6 +121,48 @@ fn conditions_of_other_robots_are_refused() {
         "{ Group [a b] R (any bumper) (Atom (wait 5) stop) }",
         "{ P (wait 5) (Atom (any bumper) formation line 1m (go 5 0)) (Atom (robot1.x > 3m OR all bumper) stop) }",
     );
+}
+
+#[test]
+fn no_robot_reads_that_none_of_them_has_a_quark() {
+    assert_refused!(
+        "{ Group [a b] R (NOT any bumper AND wait 8 OR NOT (any x > 3m) OR NOT (any bumper OR wait 5) OR wait 20)
+  (Atom (wait 12) (go 20 0)) }",
+    );
+    plans("{ Group [a b] R (NOT (NOT any bumper) OR NOT a.bumper AND wait 3 OR wait 20) (Atom (wait 12) stop) }");
+}
+
+#[test]
+fn no_robot_of_a_group_names_itself() {
+    assert_refused!(
+        "{ Group [a b c] R (wait 1min) (Atom (wait 3) (Follow b)) (Atom (wait 3) formation line 1m (Follow a)) }",
+        "{ Group [a b] R (any sync b OR any sync d OR b.past b 1 OR wait 1min)
+  (Atom (a.sync a OR wait 5) stop) (Atom (wait 5) (slot b 1m 0m)) }",
+    );
+    plans("{ Group [a b] R (any sync d OR b.past a 1 OR wait 1min) (Atom (a.sync b OR wait 3) (Follow d)) }");
+    plans("{ Group [a way] R (wait 1min) (Atom (wait 3) (path way)) }");
+}
+
+#[test]
+fn an_infinite_timer_ends_no_group() {
+    assert_refused!("{ Group [a b] R (any bumper OR wait inf) (Atom (wait 5) stop) }");
+}
+
+#[test]
+fn the_others_have_a_frame_where_their_law_uses_it() {
+    insta::assert_snapshot!(plans(
+        "{ Group [a b] R (wait 1min)
+  FRAME here (Atom (wait 5) formation column 1m (goAvoid 0 7m 20))
+  FRAME here ((Atom (wait 5) formation column 1m (rotate 0)) (Atom (wait 5) stop))
+  FRAME 90deg ((Atom (wait 5) formation column 1m (rotate 0)) FRAME here (Atom (wait 5) (rotate 90)))
+  FRAME here { Inner (wait 9) (Atom (wait 5) (rotate 0)) }
+}"
+    ));
+}
+
+#[test]
+fn a_frame_that_no_robot_uses_is_reported() {
+    assert_refused!("{ Group [a b] R (wait 1min) FRAME here (Atom (wait 5) formation column 1m (go 20 0)) }");
 }
 
 #[test]

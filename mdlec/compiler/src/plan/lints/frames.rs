@@ -1,6 +1,6 @@
 //! W0207: a `FRAME here` that contains no law which turns to a heading or drives at a bearing.
 
-use crate::alphabet::Kind;
+use crate::alphabet::has_direction;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Atom, Node, Plan, Quark, Value};
 
@@ -45,27 +45,11 @@ impl<'p> Frames<'p, '_> {
     }
 }
 
-/// Returns `true` if a law may use a direction of its frame: the law takes an angle, or a file or a module that
-/// may contain angles.
+/// Returns `true` if a law may use a direction of its frame.
 fn names_a_direction(law: &Quark) -> bool {
-    // The angle of `turn` counts from the heading at which its atom began.
-    law.name != "turn"
-        && law.args.iter().any(|argument| match argument {
-            Value::Quantity { kind, .. } | Value::Name(kind, _) => match kind {
-                Kind::Angle | Kind::File | Kind::Module => true,
-                Kind::Length
-                | Kind::Speed
-                | Kind::AngularRate
-                | Kind::Time
-                | Kind::Voltage
-                | Kind::Frequency
-                | Kind::Number
-                | Kind::Integer
-                | Kind::Count
-                | Kind::Bits(_)
-                | Kind::Sonar
-                | Kind::Robot => false,
-            },
-            Value::Infinity(_) | Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) => false,
-        })
+    let kinds = law.args.iter().filter_map(|argument| match argument {
+        Value::Quantity { kind, .. } | Value::Name(kind, _) => Some(*kind),
+        Value::Infinity(_) | Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) => None,
+    });
+    has_direction(&law.name, kinds)
 }
