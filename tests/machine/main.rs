@@ -1,5 +1,6 @@
 //! The state machines of plans: every interpreter agrees, and so do files, pictures, analysis and Theorem 1.
 
+mod allocations;
 mod analysis;
 mod differential;
 mod engine;
