@@ -369,7 +369,7 @@ pub(super) struct Explain {
 /// Arguments of `mdlec quarks`.
 #[derive(Debug, Args)]
 pub(super) struct Quarks {
-    /// Robot to list them for [default: a robot with every capability]
+    /// Robot whose laws, interrupts and signals to list [default: a robot with every capability]
     #[arg(long, value_name = "NAME|FOLDER")]
     pub(super) target: Option<String>,
 }
