@@ -72,7 +72,7 @@ impl<Y: DiffDrive + Odometry> Law<Y> for Advancing {
         let gain = if GAIN * period > AT_ONCE { AT_ONCE / period } else { GAIN };
         let fastest = self.quark.speed.0.abs();
         let off = Radians(self.from.theta.0 - y.pose().theta.0).wrapped();
-        // `clamp` panics where a bound is no number.
+        // `clamp` panics where a bound is not a number.
         let v = MetersPerSecond((gain * self.left(y)).max(-fastest).min(fastest));
         Twist { v, ..turning(off, y.steering().rotate, before, t) }
     }

@@ -71,8 +71,8 @@ impl Approach {
         self.heard[0] = Some(Echo { at: ping.at, place });
     }
 
-    /// Returns the time, in seconds, from the newest echo until an approaching person reaches the robot; `None`
-    /// if nobody approaches.
+    /// Returns the time, in seconds, from the newest echo until an approaching person reaches the robot; `None` if no
+    /// person approaches.
     ///
     /// Fixed obstacles stay at the same place.
     pub(crate) fn seconds(&self, here: Pose, way: Radians, in_turn: bool) -> Option<f64> {
@@ -111,7 +111,7 @@ mod tests {
     use crate::trial::Sensed;
     use mdle_runtime::Twist;
 
-    /// Returns the seconds until somebody arrives who is heard at these ranges, one second apart, by a robot that
+    /// Returns the seconds until a person arrives who is heard at these ranges, one second apart, by a robot that
     /// drives at `v` m/s and turns at `omega` rad/s.
     fn seconds(ranges: &[Option<f64>], v: f64, omega: f64) -> Option<f64> {
         let (mut y, mut approach) = (Sensed::default(), Approach::default());
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(seconds(&[Some(4.0), Some(3.8), Some(2.6)], 0.2, 0.0), None);
     }
 
-    /// Returns `true` if a robot at rest whose sonars fire in turn avoids somebody who comes at 1 m/s and is heard this
+    /// Returns `true` if a robot at rest whose sonars fire in turn avoids a person who comes at 1 m/s and is heard this
     /// many times, 0.36 s apart.
     fn avoids(echoes: u64) -> bool {
         let (mut y, mut approach) = (Sensed::default(), Approach::default());

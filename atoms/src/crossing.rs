@@ -28,8 +28,8 @@ struct Echo {
     across: f64,
 }
 
-/// Returns the seconds until somebody has passed who comes from a side and would cross the way ahead of a robot that
-/// stands still here, but perhaps not ahead of one that goes on at this speed, in m/s; `None` if nobody comes.
+/// Returns the time, in seconds, until a person who comes from a side has passed; `None` if no such person comes. The
+/// person would pass ahead of the robot if it stood still, but may meet it if it drove on at `speed`, in m/s.
 pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, here: Pose, speed: f64) -> Option<f64> {
     (0..SONARS as u8).map(SonarId::new).filter_map(|sonar| comes(y, sonar, here, speed)).reduce(f64::max)
 }
@@ -76,7 +76,7 @@ mod tests {
     use crate::trial::Sensed;
     use mdle_runtime::Nanos;
 
-    /// Returns the seconds for which a robot at rest waits for somebody whom its sonar 3 hears at these ranges, one
+    /// Returns the seconds for which a robot at rest waits for a person whom its sonar 3 hears at these ranges, one
     /// second apart.
     fn seconds(ranges: [f64; 3]) -> Option<f64> {
         let mut y = Sensed::default();
@@ -102,14 +102,14 @@ mod tests {
 
     #[test]
     fn the_robot_waits_until_he_has_passed() {
-        // He is 1.84 m beside the way, and leaves it half a metre further on.
+        // The person is 1.84 m beside the way, and leaves it half a metre further on.
         let passed = seconds([2.8, 2.3, 1.8]).expect("somebody");
         assert!((4.5..4.8).contains(&passed), "{passed}");
     }
 
     #[test]
     fn a_person_who_comes_abreast_is_not_waited_for() {
-        // 1 m away at 67.5°, he is 46 cm ahead: he would walk into a robot that stands.
+        // 1 m away at 67.5°, the person is 46 cm ahead and would walk into a robot that stands.
         assert!(!waits([1.8, 1.4, 0.9]));
     }
 }

@@ -43,7 +43,7 @@ pub struct Pursuing {
     has_led: bool,
     /// Length of the path driven since the law began, in metres.
     way: f64,
-    /// Pose in the turn before.
+    /// Pose in the previous turn.
     last: Pose,
 }
 

@@ -38,7 +38,7 @@ impl Lead {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Leading {
     width: Meters,
-    /// The pings that were no echoes of other robots when they were taken.
+    /// The pings that were not echoes of other robots when they were taken.
     heard: [Pings; SONARS],
     /// Time of the last turn.
     before: Nanos,
@@ -119,7 +119,7 @@ fn is_of(ping: &Ping, sonar: SonarId, ring: Meters, place: &Pose) -> bool {
     transducer.towards(Radians(axis.theta.0 + off), range).distance(place).0 < MEMBER
 }
 
-/// Collects the pings that are new since the turn before, and are no echoes of other robots.
+/// Collects the pings since the previous turn, except echoes of other robots.
 fn take<Y: SonarRing + StateLink>(heard: &mut [Pings; SONARS], y: &Y, since: Option<Nanos>) {
     let ring = y.ring_radius();
     for (sonar, heard) in (0..SONARS as u8).map(SonarId::new).zip(heard) {

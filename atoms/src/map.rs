@@ -16,25 +16,26 @@ const BYTES: usize = (CELLS * CELLS / 2) as usize;
 const UNKNOWN: u8 = 4;
 /// Evidence from which a cell is occupied.
 const OCCUPIED: u8 = 8;
-/// Evidence that an echo adds; `MOST` is the maximum evidence.
+/// Evidence that an echo adds.
 const HIT: u8 = 4;
+/// Maximum evidence.
 const MOST: u8 = 13;
 /// Evidence that a passing ping removes.
 const MISS: u8 = 2;
 /// Angles off a sonar's axis, in degrees, of the places of an echo.
 const ARC: [f64; 9] = [-12.0, -9.0, -6.0, -3.0, 0.0, 3.0, 6.0, 9.0, 12.0];
-/// Rays of free way before an echo: degrees off the axis, and distance from the transducer from which a ray counts.
-/// Nearer its cells are those of another.
+/// Rays along which a ping marks cells as free: angle off the axis, in degrees, and distance from the transducer, in
+/// metres, at which the marking begins. Nearer cells belong to another ray.
 const RAYS: [(f64, f64); 5] = [(0.0, 0.0), (-11.0, 0.26), (11.0, 0.26), (-5.5, 0.52), (5.5, 0.52)];
-/// Distance from the transducer, in metres, up to which a ping is taken in.
+/// Distance from the transducer, in metres, up to which a ping changes the map.
 const WITHIN: f64 = 1.6;
-/// Range, in metres, that stands for one below the least: the obstacle may be anywhere nearer.
+/// Range, in metres, that replaces a range below the minimum: the obstacle may be anywhere nearer.
 const INSTEAD: f64 = 0.1;
-/// Greatest number of a cell: differences of two do not overflow.
+/// Maximum number of a cell: differences of two numbers do not overflow.
 const FURTHEST: f64 = 1e8;
-/// Number of turns in which each sonar is taken in once, where all of them ping in every turn.
+/// Number of turns in which each sonar is read once, on a robot whose sonars all ping in every turn.
 const THIRDS: usize = 3;
-/// Distance before an echo, in metres, from which a cell is not taken to be free.
+/// Distance before an echo, in metres, from which a cell is not marked as free.
 const BEFORE: f64 = 0.08;
 
 /// The cell of a place in the odometry's axes: its numbers along both axes.

@@ -46,7 +46,8 @@ impl Memory {
         }
     }
 
-    /// Stores a place instead of the same place, a free place, or the oldest place.
+    /// Stores an echo: updates the time of a stored place within 10 cm, otherwise uses a free entry, otherwise replaces
+    /// the oldest entry.
     fn keep(&mut self, heard: Echo) {
         let same = |place: &Echo| {
             let (x, y) = (place.x - heard.x, place.y - heard.y);

@@ -31,8 +31,9 @@ pub(crate) struct Narrow {
     map: Map,
     /// Next place on the way; `None` if the robot follows no way.
     way: Option<Next>,
-    /// Time of the last search, and of the last one that found a way.
+    /// Time of the last search.
     searched: Nanos,
+    /// Time of the last search that found a way.
     found: Nanos,
     /// Time since which the robot has stood still.
     stands: Option<Nanos>,

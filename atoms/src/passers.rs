@@ -12,15 +12,15 @@ use crate::tangent::{Obstacles, Side};
 /// Room on its right with which the robot gives way to the right, as people do; with less it gives way to the side with
 /// more room.
 const ROOM: Meters = Meters(0.4);
-/// Time, in seconds, for which the robot keeps out of the way after somebody should have passed.
+/// Time, in seconds, for which the robot keeps out of the way after a person should have passed.
 const PASSES: f64 = 1.0;
 /// Maximum time, in seconds, for which the robot avoids a person who no longer approaches.
 const PASSES_MOST: f64 = 8.0;
 /// Number of consecutive turns in which a person must be heard; the edge of a cone that touches a wall is heard
 /// in fewer.
 const SURE: u32 = 5;
-/// Least time, in seconds, for which the robot stands after it has heard somebody come who is about to cross its way;
-/// it stands until he should have passed.
+/// Minimum time, in seconds, for which the robot stands for a person who is about to cross its way; it stands until
+/// that person should have passed.
 const STANDS: f64 = 2.5;
 
 /// The people on the way to a goal.
@@ -28,9 +28,9 @@ const STANDS: f64 = 2.5;
 pub(crate) struct Passers {
     approach: Approach,
     gives_way: Option<GivesWay>,
-    /// Number of turns in a row in which somebody was about to cross the way.
+    /// Number of turns in a row in which a person was about to cross the way.
     crossed: u32,
-    /// Time until which the robot stands, since somebody crosses its way.
+    /// Time until which the robot stands, since a person crosses its way.
     stands_until: Nanos,
 }
 
@@ -83,12 +83,12 @@ impl Passers {
         };
     }
 
-    /// Returns the side on which the robot gives way; `None` while nobody approaches.
+    /// Returns the side on which the robot gives way; `None` while no person approaches.
     pub(crate) fn gives_way(&self) -> Option<Side> {
         self.gives_way.map(|gives_way| gives_way.side)
     }
 
-    /// Returns `true` if the robot stands at this time, before somebody who crosses its way.
+    /// Returns `true` if the robot stands at this time, because a person crosses its way.
     pub(crate) fn stops(&self, t: Nanos) -> bool {
         t < self.stands_until
     }

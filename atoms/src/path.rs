@@ -26,8 +26,8 @@ impl Path {
     }
 }
 
-/// The law of [`Path`]: it is done at the time of the last setpoint. Without such a path the robot stands still and the
-/// law is never done, since what comes after it in a plan relies on the way having been driven.
+/// The law of [`Path`], which is done at the time of the last setpoint. If there is no path of this name, the robot
+/// stands still and the law is never done, because the elements after it assume that the path was driven.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Replaying {
     file: &'static str,

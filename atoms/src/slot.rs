@@ -21,8 +21,8 @@ const NEAR: f64 = 0.03;
 const FASTEST: (f64, f64) = (0.5, 1.5);
 
 /// `u = f + k (g + l f/|f| - q - l e)`, `v = u·e`, `ω = u·n/l`: the point `l` ahead of the robot at `q` with the
-/// heading `e` follows the one ahead of its place `g`, which moves at `f`. The place turns with the leader's
-/// way, as a low-pass of its heading has it.
+/// heading `e` follows the one ahead of its place `g`, which moves at `f`. The formation turns with the leader's
+/// heading after a low-pass filter with time constant `TURNS_IN`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slot {
     leader: &'static str,

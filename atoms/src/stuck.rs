@@ -7,7 +7,7 @@ use mdle_runtime::{Interrupt, Meters, Nanos, Pose};
 /// Length, in metres, by which a law must come nearer to its goal to have made progress.
 const NEARER: f64 = 0.1;
 
-/// The interrupt `stuck`, which fires once the law of the turn before has made no progress for this long.
+/// The interrupt `stuck`, which fires once the law of the previous turn has made no progress for this long.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stuck {
     duration: Nanos,

@@ -74,7 +74,7 @@ pub(crate) struct Wish {
     pub(crate) goal: Radians,
     /// Length of the way ahead that should be free.
     pub(crate) look_ahead: Meters,
-    /// Direction chosen in the turn before.
+    /// Direction chosen in the previous turn.
     pub(crate) previous: Option<Radians>,
     /// Side of an obstacle to which the law keeps.
     pub(crate) side: Option<Side>,
@@ -85,8 +85,8 @@ pub(crate) struct Wish {
 }
 
 impl Wish {
-    /// Returns the cost of a direction other than that of the turn before, which keeps the robot from
-    /// alternating between two equally good ways.
+    /// Returns the cost of changing the direction since the previous turn. It keeps the robot from alternating between
+    /// two equally good directions.
     fn turns(&self, offset: f64) -> f64 {
         let costs = if self.along { CHANGE_COSTS_ON_A_DETOUR } else { CHANGE_COSTS };
         let change = |previous: Radians| Radians(self.goal.0 + offset - previous.0).wrapped().0.abs();
@@ -219,8 +219,8 @@ impl Obstacles {
         Radians(best.2)
     }
 
-    /// Returns the cost of a direction, where `turns` is the cost of the change from the turn before; `None` if
-    /// a part of the cost exceeds `best`.
+    /// Returns the cost of a direction, including `turns`, the cost of the change since the previous turn; `None` if
+    /// the cost exceeds `best`.
     fn cost(&self, offset: f64, turns: f64, wish: &Wish, best: f64) -> Option<f64> {
         let axis = Axis::of(Radians(wish.goal.0 + offset));
         let mut cost = offset.abs();
@@ -280,8 +280,8 @@ fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose) -> Opti
     Some(EXTENDS.map(|further| Point { x: new.x + further * along / length, y: new.y + further * up / length }))
 }
 
-/// Returns the newest ping of a sonar, or the ping before if the newest heard nothing, if it is near enough to
-/// matter.
+/// Returns the newest ping of a sonar, or the previous ping if the newest heard nothing; `None` if the echo is too far
+/// away to matter.
 fn heard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<(Ping, Meters)> {
     const { assert!(PINGS_KEPT >= 2) };
     let (ping, range) = y.pings(sonar).newest_first().take(2).find_map(|ping| Some((*ping, ping.range?)))?;

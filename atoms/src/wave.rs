@@ -6,22 +6,25 @@ use mdle_runtime::{Meters, Pose};
 
 use crate::map::{CELLS, Cell, Map};
 
-/// Number of cells along a side of the wave: those of the map, and one more on each side.
+/// Number of cells along a side of the wave: the side of the map and one more cell at each end.
 pub(crate) const SIDE: usize = CELLS as usize + 2;
-/// Cost of a step to an adjacent cell, in centimetres. All distances are whole centimetres.
+/// Cost of a step to a cell of the same row or column, in centimetres. All distances are whole centimetres.
 const STRAIGHT: u16 = 5;
+/// Cost of a diagonal step, in centimetres.
 const ACROSS: u16 = 7;
 /// Bits of a cell that contain the distance; the other bits contain the class.
 const DISTANCE: u16 = 0x1fff;
-/// Room beside the body, in centimetres, below which a cell is of a class, and the factor of its cost. A body does not
-/// pass a cell of the first class. From `AROUND` on, room counts beside the smallest circle around the body, in which
-/// a rectangle turns.
+/// Classes of cells: the room beside the body, in centimetres, below which a cell belongs to a class, and the factor of
+/// its cost. A body does not pass a cell of the first class. From class `AROUND` on, the room is measured from the
+/// smallest circle around the body, in which a rectangle can turn.
 const CLASSES: [(i32, u16); 8] = [(2, 0), (4, 10), (6, 6), (8, 5), (2, 4), (10, 4), (16, 2), (i32::MAX, 1)];
+/// First class whose room is measured from the smallest circle around the body.
 const AROUND: usize = 4;
 /// Class from which a body can turn freely; a disc can also turn in lower classes.
 const TURNS: usize = 5;
-/// Rooms in centimetres, below which classes are looked up in a table, and that of a map without obstacles.
+/// Room, in centimetres, below which the class is looked up in a table.
 const SMALL: usize = 64;
+/// Room on a map without obstacles, in centimetres.
 const LARGE: i32 = DISTANCE as i32;
 /// Class of cells of which nothing is known.
 const UNKNOWN: usize = 5;
@@ -51,8 +54,8 @@ pub(crate) struct Wave {
     cells: [u16; SIDE * SIDE],
 }
 
-/// The rows of the map, each a bit, in which a pass to and fro may change a distance: a cell gets nearer only after one
-/// before it in the direction of the pass, in its own row or in the row before.
+/// Rows of the map, one bit each, in which a forward or backward pass may change a distance: a distance decreases only
+/// after that of an earlier cell of the pass, in the same row or the previous one.
 struct Rows {
     forth: u64,
     back: u64,

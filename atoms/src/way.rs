@@ -102,8 +102,10 @@ impl Way<'_> {
         (0..AHEAD).fold(self.here, |cell, _| self.wave.next(cell).unwrap_or(cell))
     }
 
-    /// Returns the cell to which a rectangle drives, and `true` if it has to drive straight: the last cell in
-    /// which it can turn, and from there the first such cell beyond, as far as a straight line leads.
+    /// Returns the cell to which a rectangular body drives next, and `true` if it must drive there straight. Before a
+    /// narrow stretch this is the last cell in which the body can turn; from there it is a cell a little beyond the
+    /// stretch, if a free straight line leads to it. `before` is the last result, from which the search continues while
+    /// that result is still good.
     fn beyond(&self, map: &Map, before: Option<Next>) -> (usize, bool) {
         let before = before.and_then(|before| Some((self.kept(map, &before)?, before.is_straight)));
         let is_tight = |cell: usize| self.wave.is_tight(cell);

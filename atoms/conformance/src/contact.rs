@@ -12,7 +12,7 @@ use super::{Out, Room, Stage, Verdict};
 /// Distance of the wall from the body, in metres, and the speed towards it, in m/s.
 const AWAY: f64 = 0.4;
 const V: f64 = 0.1;
-/// Maximum gap, in metres, between the body and a wall that it feels, beyond the way of one period.
+/// Maximum gap, in metres, between the body and a wall that it feels, beyond the distance that it drives in one period.
 const FEELS: f64 = 0.02;
 
 pub(super) fn is_felt<S: Stage>(stage: &mut S) -> Result<(), Verdict>

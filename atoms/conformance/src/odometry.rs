@@ -10,15 +10,17 @@ use super::measured::Measured;
 use super::trial::{Trial, Way, lasting};
 use super::{Out, Room, Stage, Verdict};
 
-/// Tolerance of a measured speed, in m/s, and of a measured turn rate, in rad/s.
+/// Tolerance of a measured speed, in m/s.
 const SPEED: f64 = 0.015;
+/// Tolerance of a measured turn rate, in rad/s.
 const RATE: f64 = 0.03;
 
 fn counted(what: &str, unit: &str, found: f64, wanted: f64, within: f64) -> Result<(), String> {
     Measured { what, unit, whose: "odometry", found, wanted, within }.check()
 }
 
-/// Checks that the way `reported` by odometry is the way that the body truly `went`. `did` names the motion in errors.
+/// Checks that the path `reported` by odometry is the path that the body truly `went`. `did` names the motion in
+/// errors.
 fn check_way(did: &str, reported: &Way, went: &Way) -> Result<(), String> {
     let says = |what: &str| format!("{did}, and by odometry it {what}");
     let (metres, radians) = (METRES + PART * went.far(), RADIANS + PART * went.turn.abs());
@@ -27,7 +29,7 @@ fn check_way(did: &str, reported: &Way, went: &Way) -> Result<(), String> {
     counted(&says("went to its left by"), "m", reported.left, went.left, metres)
 }
 
-/// Drives with this input. Returns the true way of the body and the way that odometry reports.
+/// Drives with this input. Returns the true path of the body and the path that odometry reports.
 fn driven<S: Stage>(trial: &mut Trial<'_, S>, v: f64, omega: f64, seconds: f64) -> Result<(Way, Way), String>
 where
     Out<S>: Odometry,
