@@ -37,7 +37,7 @@ pub struct ReadAlphabet {
 /// with every capability.
 ///
 /// # Errors
-/// The alphabets have errors: the files and the diagnostics.
+/// Fails if the alphabets have errors; returns the files and the diagnostics.
 pub fn read(own: Option<(String, String)>) -> Result<ReadAlphabet, (Sources, Vec<Diagnostic>)> {
     let mut reading = Reading::default();
     let mut shared = Vec::new();

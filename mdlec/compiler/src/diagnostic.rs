@@ -231,7 +231,7 @@ pub fn most_shown(diagnostics: &[Diagnostic]) -> usize {
 /// warnings.
 ///
 /// # Errors
-/// A sentence with their number.
+/// Returns the number of errors, or of denied warnings, as text.
 pub fn judged(diagnostics: &[Diagnostic], deny_warnings: bool) -> Result<(), String> {
     let count = |severity| diagnostics.iter().filter(|found| found.code.severity() == severity).count();
     match (count(Severity::Error), count(Severity::Warning)) {

@@ -37,8 +37,8 @@ pub(super) struct KnownFacts<'l> {
     /// Ends of the timers of enclosing scopes, on the clock of `entered`, with the scopes' brackets; the last timer in
     /// the list ends first.
     deadlines: Vec<(u64, u32)>,
-    /// Paths that end enclosing scopes, in nanometres, with the scopes' brackets; each path is shorter than those
-    /// before it.
+    /// Lengths of the path driven at which enclosing scopes end, in nanometres, with the scopes' brackets; in
+    /// descending order.
     distances: Vec<(u64, u32)>,
     /// Other conditions of enclosing scopes that have not fired, by the variables in them.
     clauses: BTreeMap<Variable, Vec<Read<'l>>>,

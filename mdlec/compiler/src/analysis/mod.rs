@@ -69,7 +69,7 @@ pub struct Analysis {
 pub struct Duration {
     /// Duration in seconds; `None` if there is no bound.
     pub seconds: Option<f64>,
-    /// Number of times between two turns that have to be added, because a timer is read once per turn.
+    /// Number of turn periods to add to `seconds`: each timer is read once per turn, so it may end up to a period late.
     pub turns: Option<u64>,
     /// Reason why there is no bound; `None` if there is a bound.
     pub because: Option<String>,

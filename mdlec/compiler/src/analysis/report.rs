@@ -11,7 +11,7 @@ impl Analysis {
     /// Returns the analysis as a JSON object.
     #[must_use]
     pub fn to_json(&self) -> String {
-        // Only maps with keys that are no strings cannot be written, and there are none.
+        // Only maps with keys that are not strings cannot be written, and there are none.
         serde_json::to_string_pretty(self).map(|text| text + "\n").unwrap_or_default()
     }
 

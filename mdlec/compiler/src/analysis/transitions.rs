@@ -25,9 +25,9 @@ pub(super) struct Most {
 
 /// Returns the maximum number of transitions in a turn of a machine.
 pub(super) fn most(machine: &Machine) -> Most {
-    /// Maximum number of quarks for which every choice is counted. The next constant is the maximum number of brackets
-    /// times choices.
+    /// Maximum number of quarks for which every choice is counted.
     const QUARKS: usize = 8;
+    /// Maximum product of the number of brackets and the number of choices.
     const WORK: usize = 2_000_000;
     let mut quarks: Vec<QuarkId> = Vec::new();
     for element in machine.elements() {

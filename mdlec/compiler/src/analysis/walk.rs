@@ -76,8 +76,9 @@ type Facts<'l> = Vec<Read<'l>>;
 /// A bracket that encloses the current place of the walk.
 struct Open {
     reach: Reach,
-    /// Earliest entry of the bracket. `own` is the earliest end by its own condition.
+    /// Earliest entry of the bracket.
     clock: Option<u64>,
+    /// Earliest end of the bracket by its own condition.
     own: Option<u64>,
     added: Assumptions,
     /// `true` if the element before the bracket ends, as far as the text alone shows.
@@ -121,7 +122,7 @@ pub(super) struct Walk<'l> {
     pub(super) alone: KnownFacts<'l>,
     open: Vec<Open>,
     found: Vec<BracketFacts>,
-    /// Brackets of the enclosing scopes in whose interrupts a timer is an operand, for each timer.
+    /// For each timer, the brackets of the enclosing scopes that have the timer as an operand of their interrupt.
     pub(super) waits: BTreeMap<QuarkId, Vec<u32>>,
     /// Earliest entry of the next element; `None` if it is never entered.
     pub(super) clock: Option<u64>,

@@ -77,8 +77,8 @@ impl Sources {
         failed.map_or(Ok(()), Err)
     }
 
-    /// Writes a report that is no diagnostic of a plan to a terminal with colours; its labels have byte ranges in these
-    /// files.
+    /// Writes a report that is not a diagnostic of a plan to a terminal with colours; its labels have byte ranges in
+    /// these files.
     ///
     /// # Errors
     /// Fails if writing to the terminal fails.

@@ -50,7 +50,7 @@ impl<'a> Message<'a> {
     /// The message as one line of JSON, without the line break.
     #[must_use]
     pub fn to_json(&self) -> String {
-        // Only maps with keys that are no strings cannot be written, and there are none.
+        // Only maps with keys that are not strings cannot be written, and there are none.
         serde_json::to_string(self).unwrap_or_default()
     }
 }

@@ -6,9 +6,9 @@ use crate::plan::{Loop, Node, Nondegenerate, Part, Scope};
 
 /// Maximum number of states of an expanded plan.
 const EXPANDED: u64 = 100_000;
-/// Maximum number of parts of an expanded plan's conditions, and of bytes of their texts and of names, unless
-/// the plan as written has more.
+/// Maximum number of condition parts of an expanded plan, unless the plan as written has more.
 const PARTS: u64 = 1 << 20;
+/// Maximum number of bytes of an expanded plan's conditions and names, unless the plan as written has more.
 const TEXT: u64 = 1 << 26;
 
 /// Returns the plan with its finite loops written out; a loop without end is left as it is.

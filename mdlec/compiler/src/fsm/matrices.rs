@@ -131,11 +131,13 @@ struct Bracket<'p> {
     around: Option<usize>,
     /// Labels of the elements that end together with the atom.
     marks: &'p [Mark],
-    /// First and last state of the bracket, from 0.
+    /// First state of the bracket, from 0.
     first: usize,
+    /// Last state of the bracket, from 0.
     last: usize,
-    /// Number of the bracket's first interrupt; `ends` is the number after its last interrupt.
+    /// Number of the bracket's first interrupt.
     begins: usize,
+    /// Number after that of the bracket's last interrupt.
     ends: usize,
 }
 

@@ -52,7 +52,7 @@ pub fn replayed_files<'m>(machine: &'m Machine, alphabet: &Alphabet) -> BTreeSet
     laws.flat_map(|quark| quark.args.iter().filter_map(file)).collect()
 }
 
-/// Returns the name of the file that an argument names; `None` for an argument that is no file.
+/// Returns the name of the file that an argument names; `None` for an argument that is not a file.
 fn file(argument: &Value) -> Option<&str> {
     match argument {
         Value::Name(Kind::File, name) => Some(name),

@@ -61,8 +61,9 @@ enum Step {
 
 struct Walk<'l> {
     draft: &'l Draft,
-    /// Number of brackets that the walk has visited; `atoms` is the number of atoms.
+    /// Number of brackets that the walk has visited.
     brackets: u32,
+    /// Number of atoms that the walk has visited.
     atoms: u32,
 }
 

@@ -19,7 +19,7 @@ pub struct Moment {
     pub cause: Option<Cause>,
     /// `true` if the law of the atom is done.
     pub is_completed: bool,
-    /// Time for which the law of the turn before has made no progress; `None` if that law has no goal.
+    /// Time for which the law of the previous turn has made no progress; `None` if that law has no goal.
     pub stalled: Option<Nanos>,
     /// The scopes that enclose the atom, the plan first and the atom's own last.
     pub scopes: Vec<ScopeMoment>,

@@ -133,8 +133,9 @@ fn exit(element: Element<'_>, placed: &Placed, to: (i64, i64), over: i64) -> Vec
     vec![line(Arrow::Exit, placed.depth, &[from, (over, from.1), (over, to.1), to])]
 }
 
-/// Returns the arrows of the exit, by its own condition, of a scope at the end of a row: down to the gap, from where an
-/// arrow leads on.
+/// Returns the arrow of a scope's exit by its own condition, for a scope at the end of a row. If the scope can also end
+/// with its last element, the arrow ends in the gap below, where the other arrow continues; otherwise it continues to
+/// `to`.
 fn exit_below(element: Element<'_>, placed: &Placed, to: (i64, i64), gap: i64) -> Vec<Polyline> {
     let right = placed.x + placed.width;
     if placed.flows {

@@ -9,8 +9,9 @@ use super::{can_be_shown, place, too_many};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Atom, Element, ElementKind, Machine, Visit};
 
-/// Maximum number of characters in a line of a label. `LINES` is the maximum number of lines.
+/// Maximum number of characters in a line of a label.
 const LETTERS: usize = 30;
+/// Maximum number of lines of a label.
 const LINES: usize = 3;
 /// Maximum number of edges: each of several loops that end together has an edge.
 const EDGES: usize = 10_000;

@@ -18,8 +18,9 @@ const BOTTOM: i64 = 16;
 /// Height below the content of a loop for the arrow to the next pass, in pixels.
 const AGAIN: i64 = 30;
 const PADDING: i64 = 10;
-/// Maximum width of an atom's text, in characters. `LINES` is the maximum number of lines.
+/// Maximum width of an atom's text, in characters.
 const LETTERS: usize = 30;
+/// Maximum number of lines of an atom's text.
 const LINES: usize = 3;
 
 /// Style of a line in a box.
@@ -38,9 +39,9 @@ pub(super) struct Placed {
     pub(super) y: i64,
     pub(super) width: i64,
     pub(super) height: i64,
-    /// Distance from the box's upper edge to the arrow that enters the box. `leaves` is the distance to the arrow that
-    /// leaves it.
+    /// Distance from the box's upper edge to the arrow that enters the box.
     pub(super) enters: i64,
+    /// Distance from the box's upper edge to the arrow that leaves the box.
     pub(super) leaves: i64,
     /// Lines at the head of the box, from top to bottom.
     pub(super) lines: Vec<(Style, String)>,
@@ -49,9 +50,9 @@ pub(super) struct Placed {
     pub(super) rows: Vec<usize>,
     /// Number of scopes and loops that enclose the box.
     pub(super) depth: usize,
-    /// `true` if the element can end. `flows` is `true` if it can end with its last element, or is an atom that can
-    /// end.
+    /// `true` if the element can end.
     pub(super) ends: bool,
+    /// `true` if the element can end with its last element, or is an atom that can end.
     pub(super) flows: bool,
 }
 

@@ -103,7 +103,7 @@ pub struct Comparison {
     pub operator: Operator,
     /// Right-hand side of the comparison.
     pub with: Compared,
-    /// Largest difference between values that count as equal.
+    /// Maximum difference between values that count as equal.
     pub tolerance: Value,
 }
 

@@ -16,7 +16,7 @@ use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
 use crate::syntax::Files;
 use crate::syntax::tree::{self, Arg, Call, ConditionNode, Count, Element, Formal, Frame, Number, Primary};
 
-/// Largest angle of a FRAME, in its unit: far beyond a full circle, and small enough for exact sums.
+/// Maximum angle of a FRAME, in its unit: far beyond a full circle, and small enough for exact sums.
 const FRAME: f64 = 100_000.0;
 
 /// Resolves the plans of a file and of the files that it uses: the file's plans to which no other plan refers,

@@ -144,7 +144,7 @@ impl Resolving<'_, '_, '_> {
         let cause = after.cause.as_ref().map(|cause| (self.condition(cause), cause));
         self.memories = memories;
         if self.around.found.len() > before {
-            // A cause that cannot be resolved is no operand either.
+            // A cause that cannot be resolved is not an operand either.
             return Condition::Null;
         }
         let cause = cause.map(|(cause, written)| {

@@ -121,7 +121,7 @@ impl Measure<'_> {
                     // Each pass becomes a scope.
                     if element.frame() == Some(&Frame::Here) { size.nested() } else { size }
                 }
-                // An open string is no scope of its own, except in `FRAME here`.
+                // An open string is not a scope of its own, except in `FRAME here`.
                 Primary::String(body) if element.frame() == Some(&Frame::Here) => self.elements(body).nested(),
                 Primary::String(body) => self.elements(body).indented(),
                 Primary::Formal(formal) => {

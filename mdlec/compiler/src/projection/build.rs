@@ -13,7 +13,8 @@ pub(super) struct Build<'b, 's> {
     pub(super) alphabet: &'b Alphabet,
     /// Name of the group's plan.
     pub(super) group: &'s str,
-    /// For each atom of the group its number in the plans of the robots after the first; then that of their last stop.
+    /// For each atom of the group, its number in the plans of the robots after the first; the last entry is the number
+    /// of the final stop in these plans.
     pub(super) numbers: Vec<usize>,
     /// Number of atoms that have been projected.
     pub(super) done: usize,

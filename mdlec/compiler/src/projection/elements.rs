@@ -1,5 +1,5 @@
-//! Makes the plans of a group's robots: the first robot has the group's conditions, and the atoms of each other one end
-//! when the first has gone on.
+//! Makes a plan for each robot of a group. The first robot keeps the group's conditions; an atom of any other robot
+//! ends when the first robot has reached its next atom.
 
 use super::build::Build;
 use super::conditions;
@@ -39,7 +39,8 @@ pub(super) fn plans<'s>(
     plans
 }
 
-/// Adds the number of the atom after each of these: an atom whose law may complete is followed by one that waits.
+/// Adds, for each atom, the number of the atom after it. An atom whose law may complete counts as two: a waiting atom
+/// follows it.
 fn number(elements: &[Element<'_>], alphabet: &Alphabet, numbers: &mut Vec<usize>) {
     for element in elements {
         match element.primary {
@@ -148,7 +149,8 @@ impl<'s> Build<'_, 's> {
         self.found.push(Diagnostic::new(Code::E0208, message, span, "not in a group").help(help));
     }
 
-    /// Projects an atom: of the first robot with its condition, of each other one until the first has gone on.
+    /// Projects an atom: the first robot keeps its condition, every other robot runs it until the first robot has
+    /// reached its next atom.
     fn group_atom(&mut self, atom: &Atom<'s>, element: &Element<'s>, parts: &mut Parts<'s>) {
         let condition = conditions::of_atom(&atom.condition, self);
         self.done += 1;

@@ -9,7 +9,7 @@ use crate::syntax::tree::{Arg, Call};
 pub(super) const FORMATION: &str = "formation";
 /// Height of a triangle with sides of length 1.
 const HEIGHT: f64 = 0.866_025_403_784_438_6;
-/// Least distance of the robots, in metres.
+/// Minimum distance of the robots, in metres.
 const LEAST: f64 = 0.01;
 const EXAMPLE: &str = "a formation is written `formation triangle 1m (goAvoid 0 7m 20)`";
 

@@ -9,7 +9,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::Files;
 use crate::syntax::tree::{Arg, Call, Element, Name, Plan, Primary};
 
-/// Returns the robots of a group, the first of which decides; `None` if they are no group.
+/// Returns the robots of a group, the first of which decides; `None` if they are not a group.
 pub(super) fn named<'s>(plan: &Plan<'s>, written: &[Arg<'s>], found: &mut Vec<Diagnostic>) -> Option<Vec<Name<'s>>> {
     let first = found.len();
     if let [param, ..] = plan.params {

@@ -64,7 +64,7 @@ pub(super) fn quark_value(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     quote!(robot::#kind::new(#(#arguments),*))
 }
 
-/// Emits the arguments of a quark that is no comparison.
+/// Emits the arguments of a quark that is not a comparison.
 pub(super) fn arguments(quark: &Quark) -> impl Iterator<Item = TokenStream> {
     quark.args.iter().map(argument)
 }

@@ -183,7 +183,7 @@ fn write_line(line: &str, text: &mut String) {
     text.push('\n');
 }
 
-/// Tokens that are no Rust are an error of rustc's.
+/// Tokens that are not Rust are an error of rustc's.
 fn pretty(file: TokenStream) -> String {
     syn::parse2(file).map_or_else(|error| error.into_compile_error().to_string(), |file| prettyplease::unparse(&file))
 }

@@ -57,8 +57,8 @@ impl Shape {
     /// Maximum number of scopes, loops and atoms of a plan that is emitted as inline code and not as tables:
     /// about as many as rustc compiles in half a second.
     const CODE: usize = 64;
-    /// Maximum number of parts of all conditions of a plan that is emitted as inline code: rustc takes another
-    /// half a second for this number.
+    /// Maximum total number of condition parts in a plan that is emitted as inline code; rustc needs about half a
+    /// second more for this many.
     const PARTS: usize = 512;
 
     /// Returns the shape that suits the size of a plan.

@@ -107,7 +107,7 @@ pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s
             // A colon is missing between the second name and its type.
             [Some(Tok::Comma), Some(Tok::Name(_)), Some(Tok::Name(kind))] if is_type(kind) => Begins::Parameters,
             [Some(Tok::LBracket), ..] | [Some(Tok::Comma), Some(Tok::Name(_)), Some(Tok::Colon)] => Begins::Parameters,
-            // What has a power is no list.
+            // What has a power is not a list.
             [Some(Tok::RParen), Some(Tok::Caret), ..] => Begins::Others,
             [Some(Tok::RParen), ..] => Begins::Either(name),
             _ => Begins::Others,

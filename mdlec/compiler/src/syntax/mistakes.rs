@@ -66,7 +66,7 @@ fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
         return None;
     }
     let brace = site.at - 1;
-    // The name of the plan around is no name for this one.
+    // The name of the enclosing plan is not the name of this plan.
     let is_own = brace < 2 || site.kind(brace - 2) != Some(Tok::LBrace);
     if let Some(name) = brace.checked_sub(1).filter(|_| is_own).and_then(|at| site.name_at(at)) {
         let is_loop = brace >= 3 && site.kind(brace - 3) == Some(Tok::ExecPlan);

@@ -30,8 +30,9 @@ pub struct Tree<'p> {
 #[derive(Debug)]
 struct Element<'p> {
     kind: NodeKind<'p>,
-    /// Nodes of the body; the first node is element number `held`, and the others follow it.
+    /// Nodes of the body.
     body: &'p [Node],
+    /// Number of the element that is the first node of the body; the other nodes follow it.
     held: usize,
     /// Number of states in the expanded plan; for a loop, the number of states of one pass.
     states: u64,
@@ -53,8 +54,9 @@ struct Open {
     index: usize,
     /// For a loop, the number of the current pass, from 1.
     pass: u64,
-    /// Number of the first state of this pass; `here` is the number of the open nested element's first state.
+    /// Number of the first state of this pass.
     first: u64,
+    /// Number of the first state of the open nested element.
     here: u64,
     /// Memories of RISING in the element's interrupt.
     memories: Vec<bool>,
