@@ -1,4 +1,4 @@
-//! Beginning of an order of a machine's states, with its scopes and loops. Computes the scopes that must end if a state
+//! Prefix of an order of a machine's states, with its scopes and loops. Computes the scopes that must end if a state
 //! follows, and whether they can end (Theorem 1, R1 to R4).
 //!
 //! All stretches that have ended are pairwise nested or disjoint, and each place but the last has an interrupt of its
@@ -38,7 +38,7 @@ pub(super) struct Before {
     has_whole: bool,
 }
 
-/// Beginning of an order of a machine's states.
+/// Prefix of an order of a machine's states.
 pub(super) struct Beginning<'m> {
     machine: &'m Machine,
     pub(super) order: Vec<State>,

@@ -38,7 +38,7 @@ pub enum Broken {
         state: State,
         /// Next state in the order.
         next: State,
-        /// An interrupt that leads to the next state, but also from the state before; with the state before.
+        /// An interrupt that leads to the next state, but also from the previous state; with that previous state.
         shared: Option<(InterruptId, State)>,
     },
     /// An interrupt leads past a state, but does not lead from that state to the same destination.
@@ -89,10 +89,10 @@ pub enum Broken {
         /// First state of the enclosing loop.
         begins: State,
     },
-    /// No order of the states satisfies the theorem. The fields describe the longest beginning of an order, and why no
-    /// state can follow it.
+    /// No order of the states satisfies the theorem. The fields describe the longest prefix of an order that was found,
+    /// and why no state can follow it.
     NoOrder {
-        /// States of the longest beginning.
+        /// States of the longest prefix, in order.
         begins: Vec<State>,
         /// States that might follow, each with the condition that it breaks.
         tries: Vec<(State, Broken)>,

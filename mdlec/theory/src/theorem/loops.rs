@@ -1,15 +1,15 @@
-//! Theorem 1 with endless loops (R4): searches among the orders of the states, and abandons a beginning of an order
-//! when no next state can make it a string.
+//! Theorem 1 with endless loops (R4): searches among the orders of the states, and abandons a prefix of an order when
+//! no next state can make it a string.
 
 use std::collections::BTreeSet;
 
 use super::beginning::{Before, Beginning, Boundary, Open};
 use super::{Answer, Broken, Found, InterruptId, Machine, State};
 
-/// Maximum number of states after the longest beginning that are reported.
+/// Maximum number of states after the longest prefix that are reported.
 const TOLD: usize = 10;
 
-/// Number of steps after which failed beginnings are remembered; most searches end earlier.
+/// Number of steps after which failed prefixes are remembered; most searches end earlier.
 const REMEMBERS: u64 = 2_000;
 
 /// A place with a state, and the continuations that have been tried.
@@ -31,13 +31,13 @@ struct Search<'m> {
     /// States to which each state leads, without duplicates.
     next: Vec<Vec<State>>,
     beginning: Beginning<'m>,
-    /// Hashes of beginnings that cannot become a string.
+    /// Hashes of prefixes that cannot become a string.
     failed: BTreeSet<[u8; 32]>,
     furthest: Furthest,
     leaves: Leaves,
 }
 
-/// The longest beginning, with the reasons why no state can follow.
+/// The longest prefix, with the reasons why no state can follow.
 #[derive(Default)]
 struct Furthest {
     begins: Vec<State>,

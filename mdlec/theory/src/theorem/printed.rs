@@ -58,7 +58,7 @@ struct Same {
     behind: usize,
 }
 
-/// Lowest destination row of some moves, and the lowest destination row of the moves by another interrupt.
+/// Minimum destination row of some moves, and the minimum destination row of the moves by another interrupt.
 #[derive(Debug, Clone, Copy, Default)]
 struct Lowest {
     one: Option<(usize, InterruptId)>,

@@ -1,4 +1,4 @@
-//! Checks that scopes and loops can end after the beginning of an order: no interrupt may lead into the middle of a
+//! Checks that scopes and loops can end after a prefix of an order: no interrupt may lead into the middle of a
 //! closed stretch (Theorem 1, R4).
 
 use super::{Beginning, Boundary};
