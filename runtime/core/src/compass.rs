@@ -16,18 +16,18 @@ use line::Line;
 
 /// The sonars that look to the left and to the right, each with the sign of its direction.
 const SIDES: [(usize, f64); 2] = [(4, 1.0), (12, -1.0)];
-/// Greatest angle between the robot's heading and walls along which it drives.
+/// Maximum angle between the robot's heading and walls along which it drives.
 const ALONG: Radians = Radians::from_degrees(25.0);
 /// Distance, in metres, beyond which walls are ignored.
 const WITHIN: f64 = 1.5;
-/// Least sum of squared distances along a single wall, in square metres, by which its direction is known.
+/// Minimum sum of squared distances along a single wall, in square metres, by which its direction is known.
 const LONG: f64 = 4.0;
-/// Greatest difference of the slopes of walls on both sides.
+/// Maximum difference of the slopes of walls on both sides.
 const PARALLEL: f64 = 0.14;
-/// Greatest difference, in metres, between the ranges of the two sonars beside the one that faces a wall, at
-/// which the robot counts as nearly square to the wall.
+/// Maximum difference, in metres, between the ranges of the two sonars beside the one that faces a wall, at which the
+/// robot counts as nearly square to the wall.
 const SQUARE: f64 = 0.12;
-/// Greatest distance, in metres, of the middle of a straight wall from the mean of its sides.
+/// Maximum distance, in metres, of the middle of a straight wall from the mean of its sides.
 const STRAIGHT: f64 = 0.1;
 
 /// Error of a direction, in radians, by walls on both sides of the way.
@@ -36,13 +36,13 @@ const BOTH: f64 = 0.026;
 const ONE: f64 = 0.06;
 /// Error of a direction, in radians, by three pings of a wall.
 const THREE: f64 = 0.12;
-/// Least time, in nanoseconds, between two measurements by three pings.
+/// Minimum time, in nanoseconds, between two measurements by three pings.
 const AGAIN: Nanos = Nanos(1_000_000_000);
 /// Error of the drift, in radians, before any wall is measured.
 const AT_FIRST: f64 = 0.1;
-/// Greatest error of the drift, in radians.
+/// Maximum error of the drift, in radians.
 const UNKNOWN: f64 = 0.35;
-/// Greatest error, in radians, at which the drift counts as known.
+/// Maximum error, in radians, at which the drift counts as known.
 const BELIEVED: f64 = 0.3;
 /// Number of errors by which a measurement may deviate; beyond that it is rejected, as it is not from a wall.
 const GATE: f64 = 2.0;
@@ -52,11 +52,10 @@ const OF_TURNS: f64 = 0.025;
 const OF_WAYS: f64 = 2e-4;
 /// Angle, in radians, up to which a frame counts as aligned with the axes of odometry.
 const ALIGNED: f64 = 0.02;
-/// Greatest angle, in radians, between the first walls and the axes of odometry at which the walls count as
-/// parallel to these axes.
+/// Maximum angle, in radians, between the first walls and the axes of odometry at which the walls count as parallel to
+/// these axes.
 const ALONG_AXES: f64 = 0.17;
-/// Greatest drift of a frame whose axes are not those of odometry. At a larger angle, the frame lies askew in
-/// the room.
+/// Maximum drift of a frame whose axes are not those of odometry. At a larger angle, the frame lies askew in the room.
 const MOST: Radians = Radians::from_degrees(20.0);
 
 /// The drift of the heading by odometry from walls at right angles to each other.

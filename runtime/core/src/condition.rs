@@ -41,7 +41,7 @@ pub(crate) struct Reading<'r, I, Y, M> {
     pub(crate) level: u16,
     /// Length of the path driven since the scope of the condition was entered.
     pub(crate) way: Nanometers,
-    /// Time for which the law of the turn before has made no progress.
+    /// Time for which the law of the previous turn has made no progress.
     pub(crate) stalled: Option<Nanos>,
     pub(crate) operands: &'r [Condition<I>],
     pub(crate) memory: &'r M,

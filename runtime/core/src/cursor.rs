@@ -39,15 +39,15 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         self.entered.way(level)
     }
 
-    /// Returns how long the law of the turn before has made no progress towards its goal; `None` if it has no goal, and
-    /// in a plan that does not ask. The value is the same throughout a turn.
+    /// Returns the time for which the law of the previous turn has made no progress towards its goal; `None` if the law
+    /// has no goal, or if the plan does not use this time. The value is the same throughout a turn.
     #[inline(always)]
     pub fn stalled(&self) -> Option<Nanos> {
         self.entered.stalled()
     }
 
-    /// Takes the output of a turn and the report of the law of the turn before, before anything in the turn is read or
-    /// entered.
+    /// Takes the output of a turn and the report of the law of the previous turn, before anything in the turn is read
+    /// or entered.
     #[inline(always)]
     pub(crate) fn observe<Y: Output>(&mut self, y: &Y, stalled: Option<Nanos>) {
         self.entered.observe(y, stalled);

@@ -11,17 +11,17 @@ pub trait Entries {
     fn time(&self, level: u16) -> Option<Nanos>;
     /// Records that the scope of this level is entered at time `t`.
     fn note(&mut self, level: u16, t: Nanos);
-    /// Takes the output of a turn and the report of the law of the turn before ([`Law::stalled`](crate::Law::stalled)),
-    /// before anything in the turn is read or entered.
+    /// Takes the output of a turn and the report of the law of the previous turn
+    /// ([`Law::stalled`](crate::Law::stalled)), before anything in the turn is read or entered.
     #[inline(always)]
     fn observe<Y: Output>(&mut self, _y: &Y, _stalled: Option<Nanos>) {}
-    /// Returns that report; `None` where it is not stored.
+    /// Returns the report of the law of the previous turn; `None` where it is not stored.
     #[inline(always)]
     fn stalled(&self) -> Option<Nanos> {
         None
     }
-    /// Takes the output of the first turn of a plan that was suspended while another one drove: the path driven
-    /// meanwhile is none of its own.
+    /// Takes the output of the first turn after the plan was suspended; the path that another plan drove meanwhile does
+    /// not count.
     fn resume<Y: Output>(&mut self, _y: &Y) {}
     /// Returns the length of the path driven since the scope of this level was entered.
     #[inline(always)]
@@ -94,9 +94,9 @@ pub struct Stamps<S, F = &'static [Option<Here>]> {
     frames: F,
     /// The odometer's reading and the heading in this turn; the `time` is not used.
     now: Stamp,
-    /// The pose in the turn before; `None` before the first.
+    /// The pose in the previous turn; `None` before the first.
     last: Option<Pose>,
-    /// Time for which the law of the turn before has made no progress.
+    /// Time for which the law of the previous turn has made no progress.
     stalled: Option<Nanos>,
 }
 

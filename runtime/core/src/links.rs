@@ -35,8 +35,8 @@ impl PeerState {
 pub struct Peer {
     /// Name of the robot.
     pub name: &'static str,
-    /// Number of scopes with a `rendezvous` with this robot that the receiver had entered by the end of the
-    /// turn before.
+    /// Number of scopes with a `rendezvous` with this robot that the receiver had entered by the end of the previous
+    /// turn.
     pub rounds: u64,
     /// The newest state that has arrived; `None` before the first arrival.
     pub state: Option<PeerState>,

@@ -8,7 +8,7 @@ pub trait Interrupt<Y: ?Sized> {
     /// Returns `true` if the interrupt has fired: where the paper's active-low function is 0.
     fn fired(&self, y: &Y) -> bool;
 
-    /// Returns `true` if the interrupt has fired, given that the law of the turn before reports `stalled`
+    /// Returns `true` if the interrupt has fired, given that the law of the previous turn reports `stalled`
     /// ([`Law::stalled`]). Called instead of [`Interrupt::fired`]; only `stuck` uses the report.
     #[inline(always)]
     fn fired_during(&self, y: &Y, _stalled: Option<Nanos>) -> bool {

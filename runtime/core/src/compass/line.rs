@@ -2,14 +2,14 @@
 
 use crate::Nanos;
 
-/// Greatest distance, in metres, of an echo from the line of its wall.
+/// Maximum distance, in metres, of an echo from the line of its wall.
 const APART: f64 = 0.1;
-/// Greatest number of echoes that a line takes into account.
+/// Maximum number of echoes that a line takes into account.
 const KEPT: f64 = 24.0;
-/// Least sum of squared distances along a wall, in square metres, at which its direction counts as known:
-/// errors of 1.5 cm then amount to 1 degree. Sides of boxes are shorter, and may lie at any angle.
+/// Minimum sum of squared distances along a wall, in square metres, at which its direction counts as known: errors of
+/// 1.5 cm then amount to 1 degree. Sides of boxes are shorter, and may lie at any angle.
 const KNOWN: f64 = 1.0;
-/// Least sum of squared distances, in square metres, from which the line predicts the next echo of the wall.
+/// Minimum sum of squared distances, in square metres, from which the line predicts the next echo of the wall.
 const GUESSED: f64 = 0.02;
 
 /// A line through echoes, from their distances along the axis and across it, in metres.
