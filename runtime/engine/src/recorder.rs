@@ -2,7 +2,7 @@
 
 use mdle_runtime::StoredPath;
 
-/// Records the way of some laws, and replaces a path of the robot by it.
+/// Records the path driven under some laws, and replaces a path of the robot by it.
 pub trait Recorder<Y>: Send {
     /// Writes the recorded path into the output of a turn.
     fn complete(&self, y: &mut Y);

@@ -72,7 +72,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         })
     }
 
-    /// Returns the modules of a run that repeats another run, which had these arrivals at its breaks.
+    /// Returns the modules of a replay. `arrivals` are the arrivals at the turn breaks of the recorded run, in order.
     ///
     /// # Errors
     /// Fails if the system cannot create the threads.

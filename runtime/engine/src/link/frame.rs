@@ -42,7 +42,7 @@ impl Key {
 /// Reason why a frame is refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Refused {
-    /// The bytes are no frame, or were changed on the way.
+    /// The bytes are not a frame, or were changed on the way.
     Garbage,
     /// The frame has another version: its number.
     Version(u8),
@@ -104,7 +104,7 @@ pub(super) fn put_name(to: &mut Vec<u8>, name: &str) {
 /// Reads the frame of a state, without its length.
 ///
 /// # Errors
-/// Fails if the bytes are no frame of a robot with this key.
+/// Fails if the bytes are not a frame of a robot with this key.
 pub(super) fn read(frame: &[u8], key: &Key) -> Result<State, Refused> {
     let mut body = opened(MAGIC, frame, key)?;
     state(&mut body).ok_or(Refused::Garbage)

@@ -16,7 +16,7 @@ const PATIENCE: Nanos = Nanos(2_000_000_000);
 pub(super) enum Unready {
     /// Attributes that have not been published yet.
     Missing(Vec<&'static ModuleRead>),
-    /// An attribute has another kind than the one that the plan reads: a sentence.
+    /// Sentence about an attribute whose kind is not the kind that the plan expects.
     OtherKind(String),
 }
 
@@ -91,10 +91,11 @@ pub(crate) fn current(reads: &'static [ModuleRead], board: &Board, now: Nanos) -
     numbers
 }
 
-/// Checks that modules publish the attributes that a plan reads in the kinds in which it reads them, if any does.
+/// Checks that each attribute that a plan reads has the kind that the plan expects. Attributes that no module publishes
+/// are ignored.
 ///
 /// # Errors
-/// A module does not: a sentence.
+/// Fails with a sentence if an attribute has another kind.
 pub(crate) fn check_kinds<'r>(reads: impl IntoIterator<Item = &'r ModuleRead>, board: &Board) -> Result<(), String> {
     reads.into_iter().try_for_each(|read| match board.post(read.module, read.attribute) {
         Some(post) => check_kind(read, post).map_err(|sentence| format!("the plan {sentence}")),

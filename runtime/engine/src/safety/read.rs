@@ -14,7 +14,7 @@ const TABLES: [&str; 6] = ["limits", "fence", "contact", "stale", "overrun", "gu
 /// Reads the rules of a file.
 ///
 /// # Errors
-/// Fails if the text is no TOML, or has an invalid key, value or fence.
+/// Fails if the text is not TOML, or has an invalid key, value or fence.
 pub fn read(text: &str) -> Result<Rules, RulesError> {
     let parsed = DeTable::parse(text).map_err(|error| RulesError {
         line: line(text, error.span().map_or(0, |span| span.start)),

@@ -25,7 +25,7 @@ pub trait Lines {
 pub enum Typed {
     /// A line, and its number from 1.
     Line(usize, String),
-    /// The line of this number is not usable: a sentence.
+    /// Number of a line that is not usable, and a sentence with the reason.
     Unusable(usize, String),
     /// There are no more lines.
     End,

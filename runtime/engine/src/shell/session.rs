@@ -45,8 +45,8 @@ struct Parts<A: Alphabet> {
 }
 
 impl<A: Alphabet> Session<A> {
-    /// Returns the session of a run with these terms. If `is_paused` is `true`, stepped time does not begin
-    /// before it is resumed.
+    /// Returns a session for a run with these terms. If `is_paused` is `true`, the run begins paused; this has no
+    /// effect in real time.
     #[must_use]
     pub fn new(desk: Desk, guardian: Option<Guardian<A>>, terms: &RunTerms, is_paused: bool) -> Self {
         let parts = Parts {

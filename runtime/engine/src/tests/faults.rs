@@ -266,7 +266,7 @@ fn an_exchange_waits_for_the_next_break() {
     modules.prepare();
     for number_of in 0..100 {
         turn(&mut modules, number_of);
-        // What it read was published at the break before.
+        // The value that the module read was published at the previous break.
         let read = if number_of == 0 { -1.0 } else { number_of as f64 };
         assert_eq!(number(&modules, "endless", "out"), Some((read, number_of)));
     }

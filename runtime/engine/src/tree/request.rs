@@ -63,9 +63,9 @@ pub enum Answer {
     Entries(Vec<String>),
     /// A value.
     Value(String),
-    /// The change was carried out: a sentence, which may be empty.
+    /// Sentence about a change that was carried out; it may be empty.
     Done(String),
-    /// The request was refused: a sentence with the reason.
+    /// Sentence with the reason why the request was refused.
     Refused(String),
     /// The run has ended, or has not begun, so that no desk answers.
     Ended,

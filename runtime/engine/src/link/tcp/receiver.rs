@@ -138,7 +138,7 @@ fn fill(stream: &mut TcpStream, bytes: &mut [u8], shared: &Shared) -> Result<boo
             Ok(count) => filled += count,
             Err(error)
                 if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
-            // A peer that went away is no fault of this robot's; its state grows old.
+            // A peer that went away is not a fault of this robot's; its state grows old.
             Err(_) => return Ok(false),
         }
     }

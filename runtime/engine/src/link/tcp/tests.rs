@@ -14,7 +14,7 @@ use crate::attribute::{AttributeName, Value};
 use crate::link::SharedValue;
 use crate::link::frame::{LONGEST, written};
 
-/// Longest time for which a test waits.
+/// Maximum time for which a test waits.
 const SOON: Duration = Duration::from_secs(20);
 
 pub(super) fn bound() -> TcpListener {
