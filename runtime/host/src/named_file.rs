@@ -114,7 +114,7 @@ mod tests {
         assert_eq!(refused("spelling", "new", "sub/../new"), same("sub/../new"));
         assert_eq!(refused("dangling", "new", "dangling"), same("dangling"));
         assert_eq!(refused("hard", "old", "hard"), same("hard"));
-        // What is no file can take as many as like.
+        // A device accepts several outputs.
         assert_eq!(refused("device", "/dev/null", "/dev/null"), None);
     }
 

@@ -24,7 +24,7 @@ pub struct Observation<R> {
 pub type SeveralRuns<R> = Result<Option<Batch<R>>, Refusal>;
 
 impl<R> Observation<R> {
-    /// Returns the functions of a robot that draws nothing and makes one run at a time.
+    /// Returns an observation with this observer. The host draws the views, and the robot makes a single run.
     pub const fn by(observer: fn(&mut R) -> &mut dyn Observer) -> Self {
         Self { observer, draws: false, batch: |_, _| Ok(None) }
     }

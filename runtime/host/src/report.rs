@@ -192,7 +192,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Closes the report after an error: a report is no reason for stopping a robot.
+    /// Closes the report after an error: a report is not a reason for stopping a robot.
     fn note(&mut self, written: io::Result<()>) {
         if let Err(error) = written {
             self.state = ReportState::Closed((error.kind() != io::ErrorKind::BrokenPipe).then_some(error));

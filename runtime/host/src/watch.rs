@@ -36,7 +36,7 @@ pub struct Watch {
     screen: Option<Screen>,
     world: World,
     map: Option<Map>,
-    /// Positions on the way so far, at least a centimetre apart.
+    /// Positions on the path driven so far, at least a centimetre apart.
     way: Vec<Place>,
     echoes: Vec<Place>,
     /// Displacement of each moving object of the world; `None` for an open door.

@@ -11,8 +11,8 @@ pub(crate) struct Recorder<W: Write = Outlet> {
     file: W,
     /// Heading by odometry at the beginning of the plan.
     begun: Option<Radians>,
-    /// Result of writing. After an error nothing more is written, and the error is reported at the end: it is no reason
-    /// for stopping a robot.
+    /// Result of writing. After an error nothing more is written, and the error is reported at the end: it is not a
+    /// reason for stopping a robot.
     written: io::Result<()>,
 }
 

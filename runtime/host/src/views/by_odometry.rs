@@ -1,5 +1,5 @@
-//! The views of a run by odometry: the way that the robot reports, the echoes of its sonars as points, and the places
-//! where atoms began.
+//! The views of a run by odometry: the path driven as the robot reports it, the echoes of its sonars as points, and the
+//! places where atoms began.
 
 use clap::ArgMatches;
 use mdle_runtime::capability::Bumpers as _;

@@ -1,4 +1,5 @@
-//! The floor as dots: walls and goal are drawn once, then the growing way, and on top the robot with its echoes.
+//! The floor as dots: walls and goal are drawn once, then the growing path driven, and on top the robot with its
+//! echoes.
 
 use mdle_runtime::{Meters, Radians};
 use mdle_simulator::{Footprint, Form, Place, Thing, World, Zone, edge};
@@ -7,8 +8,9 @@ use super::canvas::{Canvas, Ink};
 
 /// Margin around the drawing, in metres.
 const AROUND: f64 = 0.3;
-/// Minimum radius of a body whose edge is drawn, in dots. The next constant is the number of dots of the edge.
+/// Minimum radius of a body whose edge is drawn, in dots.
 const BODY_LEAST: f64 = 2.5;
+/// Number of dots of a body's edge.
 const BODY_DOTS: u32 = 60;
 /// Arrows for eight directions of a robot, counter-clockwise from the first axis.
 const ARROWS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];
@@ -21,7 +23,7 @@ pub(super) struct Map {
     corner: Place,
     /// Number of dots per metre.
     scale: f64,
-    /// Number of places of the way that are drawn.
+    /// Number of places of the path driven that are drawn.
     way_count: usize,
     /// Number of places of earlier echoes that are drawn.
     echo_count: usize,
@@ -82,7 +84,7 @@ impl Map {
         self.echo_count = echoes.len();
     }
 
-    /// Draws the new part of the way.
+    /// Draws the new part of the path driven.
     pub(super) fn draw_way(&mut self, way: &[Place]) {
         for place in way.iter().skip(self.way_count) {
             self.dot(*place, Ink::Way);

@@ -141,7 +141,7 @@ impl Terminal {
                 Ok(count) => drop(self.left.drain(..count)),
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => return false,
-                // A terminal that is gone is no reason to stop a robot; its own signal says so.
+                // A terminal that is gone is not a reason to stop a robot; its own signal says so.
                 Err(_) => self.left.clear(),
             }
         }
