@@ -53,7 +53,7 @@ fn unnamed(machine: &Machine, text: &str) -> (String, String) {
     (format!("the plan has no atom `{text}`{near}"), format!("the laws of its atoms are {}{scopes}", listed(&laws)))
 }
 
-/// Returns the text of a law as in a plan, whatever its units and spaces; `None` if it is no law.
+/// Returns the text of a law as in a plan, whatever its units and spaces; `None` if it is not a law.
 fn law(target: &Target, text: &str) -> Option<String> {
     let plan = format!("{{ Law (Atom (null) ({text})) }}");
     let mut sources = target.sources();

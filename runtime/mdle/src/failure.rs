@@ -25,11 +25,11 @@ pub(crate) enum Failure {
     Input(InputError),
     /// The plan has errors, whose diagnostics were printed.
     Plan,
-    /// The plan is not the plan of the record: a sentence.
+    /// Sentence about a plan that is not the plan of the record.
     OtherPlan(String),
-    /// The reader of standard output has closed it, which is no error.
+    /// The reader of standard output has closed it, which is not an error.
     Closed,
-    /// A file of tests has errors, which were printed.
+    /// A test file has errors, which were printed.
     TestFile,
 }
 
@@ -90,7 +90,7 @@ impl Failure {
     }
 }
 
-/// Returns the failure to write to standard output. A reader that closes the pipe, as `head` does, is no error.
+/// Returns the failure to write to standard output. A reader that closes the pipe, as `head` does, is not an error.
 pub(crate) fn unprinted(error: &io::Error) -> Failure {
     if error.kind() == io::ErrorKind::BrokenPipe {
         return Failure::Closed;

@@ -1,4 +1,4 @@
-//! The paths that a run has recorded, which replace those of its begin when its turns are made again.
+//! Paths that a run has recorded. When the run is repeated, they replace the paths with which it began.
 
 use mdle_runtime::{PathStore, Sensed, Setpoint, StoredPath};
 

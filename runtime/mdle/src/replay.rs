@@ -81,7 +81,7 @@ fn stepped(
 /// Opens a record and reads its first entry.
 ///
 /// # Errors
-/// Fails if the file cannot be read, or is no record.
+/// Fails if the file cannot be read, or is not a record.
 pub(crate) fn record(log: &Path) -> Result<(Begin, Record), Failure> {
     let file = opened(log).map_err(|error| unread(log, &error))?;
     Records::open(BufReader::new(file)).map_err(|error| unread(log, &error))

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 /// Reads a time of a run.
 ///
 /// # Errors
-/// Fails if the text is no time, or a negative time.
+/// Fails if the text is not a time, or is a negative time.
 pub(crate) fn run_time(text: &str) -> Result<Nanos, Failure> {
     let seconds = Quantity::Time.read(text, "s").map_err(Failure::Usage)?;
     if seconds < 0.0 {

@@ -88,7 +88,7 @@ pub(crate) fn step(
 
 /// Reason why a command is not carried out.
 enum Refused {
-    /// The command is wrong: a sentence.
+    /// Sentence about a wrong command.
     Sentence(String),
     /// A plan cannot be compiled.
     Failure(Failure),

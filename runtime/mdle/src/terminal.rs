@@ -104,6 +104,6 @@ impl Printing {
 }
 
 fn say(print: &Mutex<Box<PrintAbove>>, text: &str) {
-    // A terminal that has gone is no reason to stop.
+    // A terminal that has gone is not a reason to stop.
     let _ = (print.lock().unwrap_or_else(PoisonError::into_inner))(text);
 }

@@ -17,7 +17,7 @@ const RAMP: f64 = 1.0;
 const ROW: f64 = 0.1;
 /// Distance on either side of a place, in metres, of the two places that determine the heading.
 const AHEAD: f64 = 0.05;
-/// Length, in metres, below which a way is too short to be recorded.
+/// Length, in metres, below which a path is too short to be recorded.
 const SHORTEST: f64 = 0.2;
 
 /// Coordinates of a place, in metres.
@@ -38,7 +38,7 @@ impl Way {
         }
     }
 
-    /// Returns the way back as the text of a path, with headings relative to `frame`; `None` for a way that is too
+    /// Returns the way back as the text of a path, with headings relative to `frame`; `None` for a path that is too
     /// short.
     pub(crate) fn back(&self, frame: Radians) -> Option<String> {
         let reversed: Vec<Place> = self.places.iter().rev().copied().collect();

@@ -16,7 +16,7 @@ pub(crate) struct WayRecorder {
     path: &'static str,
     /// Maximum speeds of a path.
     fastest: Twist,
-    /// The way driven under the current law; `None` if this law is not recorded.
+    /// The path driven under the current law; `None` if this law is not recorded.
     way: Option<Way>,
     /// Frame of the plan.
     frame: Option<Frame>,

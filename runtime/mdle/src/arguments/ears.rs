@@ -55,7 +55,7 @@ pub(super) fn ears(matches: &ArgMatches) -> (Option<EarsOption>, f64) {
 /// Reads the radius of a head, in metres.
 ///
 /// # Errors
-/// The text is no length, or no radius of a head: a sentence.
+/// Fails with a sentence if the text is not a length from 2 cm to 50 cm.
 pub(crate) fn head(text: &str) -> Result<f64, String> {
     let radius = Quantity::Length.read(text, "m")?;
     if (0.02..=0.5).contains(&radius) { Ok(radius) } else { Err("expected 2 cm to 50 cm".to_owned()) }

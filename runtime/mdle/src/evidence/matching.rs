@@ -9,8 +9,9 @@ use super::grid::{EvidenceGrid, GridPing};
 const BEFORE: f64 = 0.6;
 /// Weight of the evidence at that fraction of a range.
 const BEFORE_WEIGHT: f64 = 0.3;
-/// Steps of the first search, in metres and radians, and its number of angles to either side.
+/// Steps of the first search, in metres and radians.
 const COARSE: (f64, f64) = (0.10, 3.0 * DEGREE);
+/// Number of angles to either side in the first search.
 const COARSE_ANGLES: i16 = 8;
 /// Steps of the searches around the best pose so far.
 const FINE: [(f64, f64); 3] = [(0.05, 1.5 * DEGREE), (0.025, 0.75 * DEGREE), (0.0125, 0.5 * DEGREE)];

@@ -43,7 +43,7 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Begins a file, which must not exist; `None` is standard output.
+    /// Creates `file`, which must not exist yet; uses standard output for `None`.
     ///
     /// # Errors
     /// Fails if the file cannot be created.

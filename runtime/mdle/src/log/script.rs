@@ -99,7 +99,7 @@ fn parts<'m>(
     condition.children().iter().try_for_each(|operand| parts(machine, operand, examined, fired))
 }
 
-/// Records that a text is true or false in the turn; fails if it had the other value before.
+/// Records that a text is true or false in the turn; fails if the opposite was recorded before.
 fn note<'m>(known: &mut BTreeMap<&'m str, bool>, text: &'m str, is_so: bool) -> Result<(), String> {
     match known.insert(text, is_so) {
         Some(before) if before != is_so => Err(text.to_owned()),

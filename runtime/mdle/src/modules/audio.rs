@@ -13,7 +13,7 @@ use mdle_sound::{RATE, WINDOW};
 
 use crate::arguments::EarsOption;
 
-/// Greatest length of a WAV file, in seconds.
+/// Maximum length of a WAV file, in seconds.
 const LONGEST: u32 = 1800;
 
 /// Source of sound that can be opened for several runs.

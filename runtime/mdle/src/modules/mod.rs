@@ -25,11 +25,10 @@ pub(crate) fn shipped(library: &mut Library<Sensed>) {
     library.registered("sensors", Sensors::declare);
 }
 
-/// Registers the modules that the `mdle.toml` and the options name; an option replaces a module of the same
-/// name.
+/// Registers the modules that the `mdle.toml` and the options name; an option replaces a module of the same name.
 ///
 /// # Errors
-/// A name in the `mdle.toml` is none of a module, or another module has it.
+/// Fails if a name in the `mdle.toml` is not a module name, or is already taken.
 pub(crate) fn of_settings(settings: &Settings, arguments: &Run, library: &mut Library<Sensed>) -> Result<(), Failure> {
     let Run { modules, point, .. } = arguments;
     for NamedProcess { place, name, command } in only_of_settings(settings, arguments) {

@@ -40,7 +40,7 @@ impl Look {
     /// Compiles the plan of a look around. Messages go to standard error.
     ///
     /// # Errors
-    /// The target has not what the plan needs.
+    /// Fails if the plan does not compile for the target.
     pub(crate) fn of(maps: Vec<LandmarkMap>, graph: &Path, target: &Target) -> Result<Self, Failure> {
         let text = format!("{{ {LOOK} (bumper OR wait 1min)\n  (Atom (null) turn 360)\n}}\n");
         let mut input = plan(&graph.with_file_name(format!("{LOOK}.mdle")), text, target)?;
@@ -102,7 +102,7 @@ impl Heard {
     /// Returns how the robot stands at the landmark, after odometry has turned by about `drift`.
     ///
     /// # Errors
-    /// The robot is at another landmark, or has heard nothing: a sentence.
+    /// Fails with a sentence if the robot is at another landmark, or if no sonar heard anything.
     pub(super) fn stand(&self, maps: &[LandmarkMap], drift: Radians) -> Result<Stand, String> {
         let expected = Printable(&self.expected);
         let fits = maps.iter().filter_map(|map| {

@@ -22,7 +22,7 @@ pub(super) struct Options {
     pub(super) trail: Option<PathBuf>,
     /// File of the picture.
     pub(super) plot: Option<PathBuf>,
-    /// File of the picture of the ways driven under `path` and `Follow`.
+    /// File of the picture of the paths driven under `path` and `Follow`.
     pub(super) trips: Option<PathBuf>,
     /// Folder of the paths that robots record.
     pub(super) recorded_paths: Option<PathBuf>,

@@ -152,8 +152,8 @@ pub(super) fn text(path: &Path) -> Result<String, String> {
 /// Reads a file of a scenario.
 ///
 /// # Errors
-/// Fails if the text is no TOML, has unknown keys or values of the wrong type, no robot, or two robots of the
-/// same name.
+/// Fails if the text is not TOML, has unknown keys or values of the wrong type, no robot, or two robots of the same
+/// name.
 pub(super) fn read(text: &str) -> Result<ScenarioText, ScenarioError> {
     let file: ScenarioText = toml::from_str(text).map_err(|error| refused(&error))?;
     let is_name = |name: &str| {

@@ -30,7 +30,7 @@ impl Fleet {
     /// Returns the robots before their first turn, which note what a record needs if they `are_recorded`.
     ///
     /// # Errors
-    /// A module is refused: a sentence.
+    /// Fails with a sentence if a module is refused.
     pub(super) fn new(mut scenario: Scenario, library: &Library<Sensed>, are_recorded: bool) -> Result<Self, String> {
         let members = std::mem::take(&mut scenario.members);
         let names: Vec<&str> = members.iter().map(|member| member.name.as_str()).collect();

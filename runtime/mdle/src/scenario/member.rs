@@ -34,7 +34,7 @@ pub(super) struct Runner {
     plan_number: u64,
     killed: Option<Nanos>,
     recorder: Option<WayRecorder>,
-    /// The path that was replaced in the turn before.
+    /// The path that was replaced in the previous turn.
     replaced: Option<StoredPath>,
     /// Ears of the robot, and the way from them to the module `heading`.
     ears: Option<(RobotEars, Microphones)>,
@@ -51,7 +51,7 @@ pub(super) enum Standing {
     Over,
     /// The robot's program was killed.
     Killed,
-    /// A fault has stopped the robot: a sentence.
+    /// Sentence about the fault that has stopped the robot.
     Failed(String),
 }
 
@@ -202,7 +202,7 @@ impl Runner {
             Err(PilotFault::Panicked(message)) => self.fails(format!("a panic, which is a bug: {message}")),
         }
         made.changes = self.engine.take_changes();
-        // The way that was recorded in the turn before is part of this turn's output.
+        // The path that was recorded in the previous turn is part of this turn's output.
         let replaced = self.replaced.take();
         made.changes.extend(replaced.map(|StoredPath { name, setpoints }| Change::Path {
             name: name.to_owned(),
@@ -242,8 +242,7 @@ impl Runner {
         made.law = machine.atom().map(|atom| (machine.state(), plan.law(atom).to_owned()));
     }
 
-    /// Records the way driven under `path` and `Follow`; returns the name and the text of the path that was
-    /// replaced.
+    /// Records the path driven under `path` and `Follow`; returns the name and the text of the path that was replaced.
     fn records(&mut self, y: &Sensed, law: Option<&str>, lines: &mut Vec<String>) -> Option<(&'static str, String)> {
         let recorder = self.recorder.as_mut()?;
         let has_changed = !self.transitions.is_empty();

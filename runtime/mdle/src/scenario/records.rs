@@ -31,7 +31,7 @@ impl Records {
     /// `ada`.
     ///
     /// # Errors
-    /// One cannot be written: a sentence.
+    /// Fails with a sentence if a record cannot be written.
     pub(super) fn create(log: &Path, scenario: &Scenario, command: &str) -> Result<Self, String> {
         let created = scenario.members.iter().map(|member| {
             let path = log.with_extension(format!("{}.mcap", member.name));
@@ -45,7 +45,7 @@ impl Records {
     /// Writes a turn of a robot.
     ///
     /// # Errors
-    /// The record cannot be written: a sentence.
+    /// Fails with a sentence if the record cannot be written.
     pub(super) fn turn(&mut self, robot: &str, turn: RobotTurn<'_>) -> Result<(), String> {
         let number = turn.number;
         self.write(robot, |record, last| {
@@ -57,7 +57,7 @@ impl Records {
     /// Completes the record of a robot, unless it is complete, with the cause of its end.
     ///
     /// # Errors
-    /// The record cannot be written: a sentence.
+    /// Fails with a sentence if the record cannot be written.
     pub(super) fn end(&mut self, robot: &str, t: Nanos, cause: &str) -> Result<(), String> {
         self.write(robot, |record, last| record.take().map_or(Ok(()), |record| record.end(*last, t, cause)))
     }

@@ -181,7 +181,8 @@ impl Scenario {
 /// A plan with the names and the texts of its files, its own first.
 pub(super) type PlanWithFiles = (Arc<Loaded<SimAlphabet>>, Vec<(String, String)>);
 
-/// Compiles and loads the plan of a robot; of the plan of a group, the part of the robot with these names of all.
+/// Compiles and loads the plan of a robot, or the robot's part of a group's plan. `robot` has the robot and the names
+/// of all robots of the scenario.
 pub(super) fn plan(
     file: &At<PathBuf>,
     name: Option<&At<String>>,

@@ -10,7 +10,7 @@ pub(crate) const MOST_SEEDS: u64 = 1_000_000;
 /// The arguments of `mdle test`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Test {
-    /// Files of tests, plans, or folders.
+    /// Test files, plans, or folders.
     pub(crate) files: Vec<PathBuf>,
     /// Name of the only test to run.
     pub(crate) only: Option<String>,
@@ -28,7 +28,7 @@ pub(crate) struct Test {
     pub(crate) junit: Option<PathBuf>,
     /// `true` if the results are printed as JSON.
     pub(crate) json: bool,
-    /// `true` if files of tests are updated with the results of the runs.
+    /// `true` if test files are updated with the results of the runs.
     pub(crate) update: bool,
     /// `true` if the tests run again whenever a file changes.
     pub(crate) watch: bool,

@@ -56,7 +56,7 @@ pub(super) enum Ending {
     Over,
     /// The plan was not over at the end of the script, or at the limit of the run.
     Running,
-    /// A fault ended the run: a sentence.
+    /// Sentence about the fault that ended the run.
     Failed(String),
 }
 

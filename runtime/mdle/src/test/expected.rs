@@ -17,7 +17,7 @@ const LONGEST: Duration = Duration::from_secs(1_000_000_000);
 /// Maximum distance in a test, in metres.
 const FURTHEST: f64 = 1000.0;
 
-/// Place of an expectation in the file of tests.
+/// Place of an expectation in the test file.
 pub(super) type Place = Range<usize>;
 
 /// The expectations of a test.

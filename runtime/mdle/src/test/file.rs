@@ -1,4 +1,4 @@
-//! A file of tests: its keys and values, as written (docs/src/testing.md).
+//! A test file: its keys and values, as written (docs/src/testing.md).
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -8,21 +8,21 @@ use mdle_runtime::Printable;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-/// Suffix of the name of a file of tests.
+/// Suffix of the name of a test file.
 pub(super) const ENDING: &str = ".test.toml";
 /// Description of a number without a sign, for messages.
 const COUNT: &str = "a whole number from 0 on";
-/// Maximum size of a file of tests, in bytes.
+/// Maximum size of a test file, in bytes.
 const LARGEST: u64 = 4_000_000;
 
 /// A value with its place in the file.
 pub(super) type At<T> = Spanned<T>;
 
-/// A file of tests.
+/// A test file.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct TestFile {
-    /// File of the plan, relative to the folder of the file of tests; by default the plan beside that file.
+    /// File of the plan, relative to the folder of the test file; by default the plan beside that file.
     pub(super) plan: Option<At<PathBuf>>,
     /// Name of the plan, for a file with several.
     pub(super) name: Option<At<String>>,
@@ -153,7 +153,7 @@ impl TestText {
     }
 }
 
-/// An error in a file of tests.
+/// An error in a test file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct TestFileError {
     /// Byte range in the file; `None` for the whole file.
@@ -176,7 +176,7 @@ impl TestFileError {
     }
 }
 
-/// Reads the text of a file of tests.
+/// Reads the text of a test file.
 ///
 /// # Errors
 /// Fails with a sentence without a place if the file cannot be read.
@@ -189,10 +189,10 @@ pub(super) fn text(path: &Path) -> Result<String, TestFileError> {
     mdle_host::read_text(path, LARGEST).map_err(unread)
 }
 
-/// Reads a file of tests.
+/// Reads a test file.
 ///
 /// # Errors
-/// Fails if the text is no TOML, has unknown keys or values of the wrong type, or two tests of the same name.
+/// Fails if the text is not TOML, has unknown keys or values of the wrong type, or two tests of the same name.
 pub(super) fn read(text: &str) -> Result<TestFile, TestFileError> {
     let file: TestFile = toml::from_str(text).map_err(|error| refused(&error))?;
     for (number, test) in file.test.iter().enumerate() {

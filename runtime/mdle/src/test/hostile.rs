@@ -1,5 +1,4 @@
-//! Tests that any text in place of a file of tests is read or refused, and that a refusal names a place in the
-//! text.
+//! Tests that any text in place of a test file is read or refused, and that a refusal names a place in the text.
 
 use super::file::read;
 

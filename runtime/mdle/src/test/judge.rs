@@ -12,7 +12,7 @@ use super::subject::Subject;
 /// An expectation that a run has not met.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Failure {
-    /// Place of the expectation in the file of tests.
+    /// Place of the expectation in the test file.
     pub(super) place: Place,
     /// A sentence about the run.
     pub(super) message: String,

@@ -48,7 +48,7 @@ use crate::failure::{self, Failure};
 /// Exit status if a test fails.
 const FAILED: u8 = 1;
 
-/// Runs tests; returns 0 if all of them pass, 1 if one fails or a plan has errors, and 2 if a file of tests has errors.
+/// Runs tests; returns 0 if all of them pass, 1 if one fails or a plan has errors, and 2 if a test file has errors.
 ///
 /// # Errors
 /// Fails if there is nothing to test, or if a file cannot be written.
@@ -67,7 +67,7 @@ pub(crate) fn test(arguments: &Test, library: &Library<Sensed>) -> Result<ExitCo
     }
 }
 
-/// Runs tests, and runs them again if that has updated files of tests; returns the exit status.
+/// Runs tests, and runs them again if that has updated test files; returns the exit status.
 fn once(arguments: &Test, library: &Library<Sensed>) -> Result<u8, Failure> {
     if arguments.update {
         let (all, status) = Suites::read(arguments)?;
@@ -92,7 +92,7 @@ fn once(arguments: &Test, library: &Library<Sensed>) -> Result<u8, Failure> {
     Ok(if has_failed { status.max(FAILED) } else { status })
 }
 
-/// The files of tests of a call.
+/// The test files of a call.
 struct Suites {
     suites: Vec<Suite>,
     /// The files of each plan, for reports.
@@ -100,7 +100,7 @@ struct Suites {
 }
 
 impl Suites {
-    /// Reads the files of tests; returns them with the exit status that erroneous files require.
+    /// Reads the test files; returns them with the exit status that erroneous files require.
     fn read(arguments: &Test) -> Result<(Self, u8), Failure> {
         let (mut suites, mut inputs, mut status) = (Vec::new(), Vec::new(), 0);
         for file in files(&arguments.files)? {
@@ -167,8 +167,8 @@ fn must_have(name: &str, suites: &[Suite], status: u8) -> Result<(), Failure> {
     Err(Failure::Usage(format!("there is no test `{name}`{}", did_you_mean(name, &names))))
 }
 
-/// Returns the files of tests that the arguments name: such files themselves, plans with such a file beside
-/// them, and folders.
+/// Returns the test files that the arguments name: such files themselves, plans with such a file beside them, and
+/// folders.
 fn files(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let here = [PathBuf::from(".")];
     let mut files = Vec::new();
@@ -193,7 +193,7 @@ fn files(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(files)
 }
 
-/// Collects the files of tests in a folder and its subfolders, except hidden ones and `target`.
+/// Collects the test files in a folder and its subfolders, except hidden ones and `target`.
 fn collect(folder: &Path, found: &mut BTreeSet<PathBuf>) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {

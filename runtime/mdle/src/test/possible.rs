@@ -112,7 +112,7 @@ impl<'m> PossibleTransitions<'m> {
         entered
     }
 
-    /// Returns the elements whose end can end an atom for which `is_from` is true.
+    /// Returns all elements that can end an atom accepted by `is_from`: the atom itself and enclosing elements.
     fn ending(&self, is_from: impl Fn(u32) -> bool) -> Vec<Element<'m>> {
         let atoms = self.machine.atoms().filter(|atom| is_from(atom.number()));
         let ending: BTreeSet<u32> = atoms.flat_map(|atom| ending(atom).map(Element::number)).collect();

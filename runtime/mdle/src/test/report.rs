@@ -113,7 +113,7 @@ pub(super) fn tell(tests: &[Tested<'_>]) {
 
 /// Prints text to standard output.
 pub(super) fn said(text: &str) {
-    // A reader that has gone is no reason to fail.
+    // A reader that has gone is not a reason to fail.
     let _ = write!(io::stdout().lock(), "{}", PrintableLines(text)).and_then(|()| io::stdout().flush());
 }
 

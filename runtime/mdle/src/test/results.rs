@@ -44,7 +44,7 @@ struct FailureEntry {
     message: String,
     expected: String,
     got: String,
-    /// Line number in the file of tests.
+    /// Line number in the test file.
     line: usize,
     /// Line number in the plan.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -39,7 +39,7 @@ pub(super) struct Made {
 pub(super) enum RunResult {
     /// The run has a course, and a list of the expectations that it has not met.
     Judged(Box<Course>, Vec<Failure>),
-    /// The run could not begin, or its code panicked: a sentence.
+    /// Sentence about a run that could not begin, or whose code panicked.
     Crashed(String),
 }
 

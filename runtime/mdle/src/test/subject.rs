@@ -55,8 +55,8 @@ pub(super) struct TestCondition {
 }
 
 impl Subject {
-    /// Compiles the plan of the file of tests at `path`; returns it with its files. Messages of the compiler go to
-    /// standard error; `refused` reports an error of the file of tests.
+    /// Compiles the plan of the test file at `path`; returns it with its files. Messages of the compiler go to standard
+    /// error; `refused` reports an error of the test file.
     ///
     /// # Errors
     /// Fails if the plan cannot be read or has errors.
@@ -110,7 +110,7 @@ impl Subject {
     /// Returns the modules of a run: those of the program, and those that the `mdle.toml` names.
     ///
     /// # Errors
-    /// A name is none of a module, or is taken: a sentence.
+    /// Fails with a sentence if a name is not a module name, or is already taken.
     pub(super) fn modules(&self, library: &Library<Sensed>) -> Result<Library<Sensed>, String> {
         let mut library = library.clone();
         for NamedByFile { place, name, command } in &self.processes {
@@ -139,7 +139,7 @@ impl Subject {
     /// Compiles a condition on the output of one turn.
     ///
     /// # Errors
-    /// Fails with a sentence if the text is no such condition.
+    /// Fails with a sentence if the text is not such a condition.
     pub(super) fn condition(&self, text: &str) -> Result<TestCondition, String> {
         let law = self.machine().atom(0).law().text.clone();
         let plan = format!("{{ Condition ({text})\n (Atom (null) ({law})) }}");
@@ -172,8 +172,7 @@ impl Subject {
     }
 }
 
-/// Returns the error at its place in the file of tests, if it has a place there and the plan's own file has no
-/// errors.
+/// Returns the error at its place in the test file, if it has a place there and the plan's own file has no errors.
 ///
 /// # Errors
 /// Fails with the error itself otherwise.
@@ -215,7 +214,7 @@ fn is_error(diagnostic: &Diagnostic) -> bool {
     diagnostic.code.severity() == Severity::Error
 }
 
-/// Returns the plan file of a file of tests: the file that it names, or the file beside it.
+/// Returns the plan file of a test file: the file that it names, or the file beside it.
 fn plan_file(path: &Path, tests: &TestFile) -> PathBuf {
     match &tests.plan {
         Some(plan) => path.with_file_name("").join(plan.get_ref()),

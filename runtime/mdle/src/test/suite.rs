@@ -1,4 +1,4 @@
-//! A file of tests that is ready to run: its plan is compiled, and its tests are resolved.
+//! A test file that is ready to run: its plan is compiled, and its tests are resolved.
 
 use std::path::{Path, PathBuf};
 
@@ -18,10 +18,10 @@ use super::subject::Subject;
 use crate::failure::{self, Failure};
 use crate::messages;
 
-/// A file of tests.
+/// A test file.
 pub(super) struct Suite {
     pub(super) path: PathBuf,
-    /// The text of the file of tests, among the files of the plan.
+    /// The text of the test file, among the files of the plan.
     pub(super) source: SourceId,
     pub(super) subject: Subject,
     pub(super) cases: Vec<Case>,
@@ -42,9 +42,8 @@ pub(super) enum RunsOn {
 }
 
 impl Suite {
-    /// Reads a file of tests and compiles its plan; returns the tests, and the files of the plan together with
-    /// the file of tests. Tests without expectations are accepted if `is_recorded` is `true`. Messages go to
-    /// standard error.
+    /// Reads a test file and compiles its plan; returns the tests, and the files of the plan together with the test
+    /// file. Tests without expectations are accepted if `is_recorded` is `true`. Messages go to standard error.
     ///
     /// # Errors
     /// Fails if the file or the plan cannot be read, or has errors.
@@ -108,7 +107,7 @@ impl Case {
     }
 }
 
-/// Prints the error of a file of tests.
+/// Prints the error of a test file.
 fn refused(path: &Path, text: &str, error: &TestFileError) -> Failure {
     if error.place.is_none() {
         let help = if error.help.is_empty() { String::new() } else { format!("\nhelp: {}", error.help) };
@@ -119,7 +118,7 @@ fn refused(path: &Path, text: &str, error: &TestFileError) -> Failure {
     Failure::TestFile
 }
 
-/// Prints an error at its place in a file of tests.
+/// Prints an error at its place in a test file.
 fn report(path: &Path, text: &str, error: &TestFileError) {
     let mut sources = Sources::default();
     let source = sources.add(path.display().to_string(), text);

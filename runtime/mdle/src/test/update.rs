@@ -1,5 +1,4 @@
-//! `--update`: writes the results of runs into files of tests, so that people can review them as changes of
-//! these files.
+//! `--update`: writes the results of runs into test files, so that people can review them as changes of these files.
 
 use std::fs;
 use std::io;
@@ -22,8 +21,8 @@ const POSE: [&str; 2] = ["10cm", "5"];
 /// A replacement of a range of a text.
 type Edit = (Range<usize>, String);
 
-/// Returns the text of a file of tests in which the expectations of atoms, of the end, of the pose and of numbers are
-/// those of the first run of each test; `None` if nothing changes.
+/// Returns the text of a test file in which the expectations of atoms, of the end, of the pose and of numbers are those
+/// of the first run of each test; `None` if nothing changes.
 pub(super) fn updated(text: &str, tests: &[Tested<'_>]) -> Option<String> {
     let mut edits: Vec<Edit> = tests.iter().flat_map(|test| edits(text, test)).collect();
     if edits.is_empty() {
@@ -39,10 +38,10 @@ pub(super) fn updated(text: &str, tests: &[Tested<'_>]) -> Option<String> {
     Some(text)
 }
 
-/// Writes the text of a file of tests, after checking that it is valid.
+/// Writes the text of a test file, after checking that it is valid.
 ///
 /// # Errors
-/// Fails with a sentence if the text is no file of tests, or cannot be written.
+/// Fails with a sentence if the text is not a test file, or cannot be written.
 pub(super) fn write(path: &Path, text: &str) -> Result<(), String> {
     let name = path.display();
     file::read(text).map_err(|error| {

@@ -15,7 +15,7 @@ const ENDINGS: [&str; 6] = ["mdle", "toml", "csv", "yaml", "pgm", "png"];
 /// Modification time and size of each file.
 type Looks = BTreeMap<PathBuf, (Option<SystemTime>, u64)>;
 
-/// The files in the folders of the watched files of tests.
+/// The files in the folders of the watched test files.
 #[derive(Debug)]
 pub(super) struct WatchedFiles {
     folders: Vec<PathBuf>,
@@ -23,7 +23,7 @@ pub(super) struct WatchedFiles {
 }
 
 impl WatchedFiles {
-    /// Watches the folders of these files of tests.
+    /// Watches the folders of these test files.
     pub(super) fn new(files: &[PathBuf]) -> Self {
         let mut folders: Vec<_> = files.iter().map(|file| folder(file)).collect();
         folders.sort();

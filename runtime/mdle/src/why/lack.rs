@@ -11,7 +11,7 @@ pub(crate) struct Values<'v> {
     pub(crate) since: Nanos,
     /// Length of the path driven since the scope was entered.
     pub(crate) way: Nanometers,
-    /// Time for which the law of the turn before has made no progress; `None` if that law has no goal.
+    /// Time for which the law of the previous turn has made no progress; `None` if that law has no goal.
     pub(crate) stalled: Option<Nanos>,
     /// `true` if the atom was entered in this turn.
     pub(crate) is_new: bool,
@@ -135,7 +135,7 @@ fn compared(measured: Measured, values: &Values<'_>) -> String {
     format!("{} {words}", amount(difference / scale, unit))
 }
 
-/// Returns the difference by which a comparison holds; empty if it is no comparison.
+/// Returns the difference by which a comparison holds; empty if it is not a comparison.
 fn margin(measured: Measured, values: &Values<'_>) -> String {
     let (Measured::Compared { left, right, .. }, Some((unit, scale))) = (measured, values.unit) else {
         return String::new();

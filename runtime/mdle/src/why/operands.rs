@@ -46,7 +46,7 @@ pub(crate) struct Facts {
     pub(crate) ages: [Option<Nanos>; SONARS],
     /// Time for which the law of the previous turn has made no progress; `None` if that law has no goal.
     pub(crate) stalled: Option<Nanos>,
-    /// `true` if the atom was entered in this turn, so that the law of the turn before belongs to another atom.
+    /// `true` if the atom was entered in this turn, so that the law of the previous turn belongs to another atom.
     pub(crate) is_new: bool,
 }
 
@@ -172,8 +172,8 @@ struct Explaining<'e> {
 }
 
 impl Explaining<'_> {
-    /// Explains an operand; `turns` if the condition would have the other value if this operand alone had, `must_end`
-    /// if it is a part of a NOT that has not fired.
+    /// Explains an operand. `turns` is `true` if inverting this operand alone would invert the condition; `must_end` is
+    /// `true` if the operand is a part of a NOT that has not fired.
     fn operand(&self, node: &Node<'_>, words: Option<&OperandWords<'_>>, turns: bool, must_end: bool) -> Operand {
         let Examined { fired, measured } = node.part;
         let is_about_another = matches!(node.condition, Condition::Not(_) | Condition::Rising { .. });

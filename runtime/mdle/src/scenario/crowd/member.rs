@@ -30,7 +30,7 @@ impl Member {
         Self { robot, machine: None, input: Twist::default(), is_over: false, has_touched: false, way: 0.0, record }
     }
 
-    /// Returns the error of the record: a sentence.
+    /// Returns a sentence about the error of the record, if any.
     pub(super) fn fault(&self) -> Option<&str> {
         self.record.as_ref().and_then(|record| record.fault())
     }
@@ -48,7 +48,7 @@ impl Member {
         let before = self.pose();
         self.robot.swap_others(others);
         if self.robot.moves(&self.input).is_err() {
-            // The input was no number: the plan is stopped, as on any robot.
+            // The input was not a number: the plan is stopped, as on any robot.
             self.ends();
         }
         self.robot.swap_others(others);

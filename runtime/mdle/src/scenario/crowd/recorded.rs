@@ -19,7 +19,7 @@ pub(super) struct RecordedMember {
     pub(super) transitions: Transitions,
     /// Number of the next turn.
     next: u64,
-    /// The error that ended the record: a sentence.
+    /// Sentence about the error that ended the record.
     fault: Option<String>,
 }
 
@@ -27,7 +27,7 @@ impl RecordedMember {
     /// Creates the record of the robot of this number: `run.mcap` becomes `run.17.mcap`.
     ///
     /// # Errors
-    /// It cannot be written: a sentence.
+    /// Fails with a sentence if the record cannot be written.
     pub(super) fn create(log: &Path, number: usize, begin: Begin) -> Result<Self, String> {
         let path = log.with_extension(format!("{number}.mcap"));
         let record = RobotRecord::create(&path, begin).map_err(|error| unwritten(&path, &error))?;
@@ -67,7 +67,7 @@ impl RecordedMember {
         }
     }
 
-    /// Returns the error that ended the record: a sentence.
+    /// Returns a sentence about the error that ended the record, if any.
     pub(super) fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
     }

@@ -73,7 +73,7 @@ impl CrowdSetup {
     /// Creates a record for each robot of a crowd that this command repeats, named after its number from 1.
     ///
     /// # Errors
-    /// There are too many robots, or a record cannot be written: a sentence.
+    /// Fails with a sentence if there are too many robots, or if a record cannot be written.
     pub(super) fn records(&self, log: &Path, command: &str) -> Result<Vec<RecordedMember>, String> {
         let count = self.robots.len();
         if count > RECORDED_MOST {

@@ -103,7 +103,7 @@ impl Turns {
         self.each().for_each(|mut member| member.stop(t));
     }
 
-    /// Returns the error of a record that could not be written: a sentence.
+    /// Returns a sentence about a record that could not be written, if any.
     pub(super) fn fault(&self) -> Option<String> {
         self.each().find_map(|member| member.fault().map(str::to_owned))
     }
@@ -160,13 +160,13 @@ impl Shared<'_> {
         self.turns.members.get(number as usize).map(lock)
     }
 
-    /// Takes down the other robots that one hears, where they were when the turn began.
+    /// Collects the other robots that robot `number` hears, where they were when the turn began.
     fn hear(&self, number: u32, Others { heard, .. }: &mut Others) {
         heard.clear();
         self.near(number, self.turns.hears, |_, body| heard.push(*body));
     }
 
-    /// Takes down the robots of its group that one may touch, where they are now.
+    /// Collects the robots of the group that robot `number` may touch, where they are now.
     fn touch(&self, number: u32, group: &[u32], now: &[Footprint], Others { touched, .. }: &mut Others) {
         touched.clear();
         // Most robots are alone.
@@ -178,7 +178,8 @@ impl Shared<'_> {
         }
     }
 
-    /// Calls `take` with the number and the place of each other robot within `reach` metres of one when the turn began.
+    /// Calls `take` with the number and the place of each other robot that was within `reach` metres of robot `number`
+    /// when the turn began.
     fn near(&self, number: u32, reach: f64, mut take: impl FnMut(usize, &Footprint)) {
         let Some(own) = self.crowd.bodies().get(number as usize) else { return };
         self.crowd.near(own.at(), reach, |other, body| {
