@@ -49,7 +49,7 @@ impl Quantity {
     /// the unit of the variant.
     ///
     /// # Errors
-    /// The text is not a number with a unit of this kind: a sentence with what to type instead.
+    /// Fails with a sentence that says what to type instead if the text is not a number with a unit of this kind.
     pub fn read(self, text: &str, bare: &str) -> Result<f64, String> {
         let is_unit = |letter: char| !letter.is_ascii() || letter.is_ascii_alphabetic() && !matches!(letter, 'e' | 'E');
         let (digits, unit) = text.split_at(text.find(is_unit).unwrap_or(text.len()));
@@ -64,7 +64,7 @@ impl Quantity {
     /// Reads a time as [`Quantity::read`] does.
     ///
     /// # Errors
-    /// The text is no time from `least` to `most`: a sentence with what to type instead.
+    /// Fails with a sentence that says what to type instead if the text is not a time from `least` to `most`.
     pub fn duration(text: &str, bare: &str, least: Duration, most: Duration) -> Result<Duration, String> {
         let read = Duration::try_from_secs_f64(Self::Time.read(text, bare)?).ok();
         read.filter(|duration| (least..=most).contains(duration))

@@ -70,7 +70,7 @@ pub enum Change {
         /// The newest state that has arrived; `None` before the first.
         state: Option<PeerState>,
     },
-    /// A way was recorded: from now on it replaces the path of this name.
+    /// The way back along a path driven was recorded: from now on it replaces the path of this name.
     Path {
         /// Name of the path.
         name: String,

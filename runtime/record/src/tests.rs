@@ -292,7 +292,7 @@ fn zeros_after_a_cut_record_are_its_end() {
     assert!(turns >= 40 && !records.is_whole(), "{turns}");
 }
 
-/// A length that leads over the end of the file is no cut: the end is there.
+/// A length that leads over the end of the file is not a cut: the end is there.
 #[test]
 fn a_flipped_bit_in_the_head_of_any_part_is_noticed() {
     const TURNS: u64 = 12;

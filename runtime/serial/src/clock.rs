@@ -58,8 +58,9 @@ impl Clock {
 #[derive(Debug)]
 pub struct Times {
     clock: Clock,
-    /// Moment of the first output, by the computer's clock. The next field is the number of outputs so far.
+    /// Moment of the first output, by the computer's clock.
     first: Option<Instant>,
+    /// Number of outputs so far.
     outputs: u64,
 }
 

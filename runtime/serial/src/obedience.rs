@@ -11,9 +11,9 @@ use mdle_runtime::Nanos;
 
 /// Part of the commanded deceleration that a robot must achieve.
 const PART: f64 = 0.5;
-/// Tolerated distance of a side's speed from the band: in m/s, and (next constant) as a part of the highest speed in
-/// the band.
+/// Tolerated distance of a side's speed from the band, in m/s.
 const ERROR: f64 = 0.05;
+/// Tolerated distance of a side's speed from the band, as a part of the highest speed in the band.
 const ERROR_PART: f64 = 0.2;
 /// Maximum time for a robot to stop.
 const LONGEST: Duration = Duration::from_secs(5);
@@ -25,8 +25,9 @@ const REACTION: Duration = Duration::from_millis(100);
 pub struct Obedience {
     /// Maximum time for which the speeds may be outside the band; zero for no limit.
     limit: Nanos,
-    /// Band of the common speed of both sides. The next field is the band of half their difference.
+    /// Band of the common speed of both sides.
     forward: Band,
+    /// Band of half the difference of both sides' speeds.
     turning: Band,
     last: Option<Nanos>,
     /// Speed of the faster side at the last measurement, in m/s.
@@ -38,8 +39,9 @@ pub struct Obedience {
 /// Range of speeds that the commands allow, in m/s.
 #[derive(Debug, Clone, Copy)]
 struct Band {
-    /// Ends of the band: `low` is at most zero, `high` at least zero.
+    /// Lower end of the band, at most zero.
     low: f64,
+    /// Upper end of the band, at least zero.
     high: f64,
     /// Last commanded speed, in m/s.
     command: f64,

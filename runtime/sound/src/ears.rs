@@ -10,7 +10,7 @@ use crate::{RATE, SPEED, WINDOW};
 
 /// Length of the transform by which sources and responses are convolved.
 const LENGTH: usize = 16_384;
-/// Longest response of a room, in samples.
+/// Maximum length of a room's response, in samples.
 const LONGEST: usize = LENGTH - WINDOW;
 /// Purposes of random numbers: that of the microphones, and the first of the sources.
 const MICROPHONES: u64 = 0;

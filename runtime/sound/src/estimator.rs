@@ -39,7 +39,7 @@ pub struct Estimator {
 pub struct Estimate {
     /// Angle off straight ahead, to the left, in radians from -π/2 to π/2.
     pub angle: f64,
-    /// Greatest value of the correlation over the root of its mean square.
+    /// Maximum of the correlation over the root of its mean square.
     pub ratio: f64,
 }
 

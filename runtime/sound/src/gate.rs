@@ -20,7 +20,8 @@ impl Default for RatioGate {
 }
 
 impl RatioGate {
-    /// Returns `true` if an estimate of this ratio is kept, the first one in this many seconds.
+    /// Returns `true` if an estimate with this ratio is kept. `seconds` is the time since the previous samples, by
+    /// which the limit falls while nothing is kept.
     pub fn keeps(&mut self, ratio: f64, seconds: f64) -> bool {
         let keeps = ratio > self.limit;
         self.limit = if keeps { HIGHEST } else { (self.limit - FALL * seconds).max(LOWEST) };

@@ -13,7 +13,7 @@ pub(crate) const TAPS: usize = 128;
 pub(crate) const LATE: usize = 40;
 /// Length of the transform by which a response is computed.
 const PERIOD: usize = 256;
-/// Greatest number of terms of the series.
+/// Maximum number of terms of the series.
 const TERMS: usize = 200;
 /// Frequencies in Hz between which a response falls to nothing, so that it is short.
 const FALL: (f64, f64) = (12_000.0, 18_000.0);

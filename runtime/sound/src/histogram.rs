@@ -10,7 +10,7 @@ const SPREAD: f64 = 0.02;
 const FORGOTTEN: f64 = 0.02;
 /// Standard deviation of an estimate, in radians: 8°.
 const DEVIATION: f64 = 8.0 * PI / 180.0;
-/// Greatest likelihood of an estimate, and its least.
+/// Maximum and minimum likelihood of an estimate.
 const LIKELY: (f64, f64) = (0.85, 0.015);
 
 /// Probabilities of the bearing of a source.

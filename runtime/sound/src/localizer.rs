@@ -21,7 +21,7 @@ impl Localizer {
     }
 
     /// Takes the newest samples of the left and the right ear, in the middle of which the robot had this heading, in
-    /// radians; `seconds` have passed since the call before. Returns the angle that was estimated, if it was kept.
+    /// radians; `seconds` have passed since the previous call. Returns the estimated angle, if it was kept.
     pub fn take(&mut self, samples: &[[f32; 2]], heading: f64, seconds: f64) -> Option<f64> {
         self.histogram.pass();
         self.silent = self.silent.map(|silent| silent + seconds);

@@ -9,7 +9,7 @@ const EARS: f64 = 1.2;
 /// Distance within which no sound gets louder, in metres.
 const NEAREST: f64 = 0.2;
 
-/// Greatest number of reflections of sound that is heard.
+/// Maximum number of reflections of sound that is heard.
 const ORDER: i32 = 5;
 
 /// A room, or open air.
@@ -37,7 +37,7 @@ pub(crate) struct ImageSource {
 type Along = (f64, i32);
 
 impl SoundRoom {
-    /// Greatest reverberation time, in seconds.
+    /// Maximum reverberation time, in seconds.
     pub const T60_MOST: f64 = 0.5;
 
     /// Returns open air, in which nothing reflects.
