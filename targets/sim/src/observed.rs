@@ -129,7 +129,7 @@ impl Observed {
         Self { goal, ..self }
     }
 
-    /// Draws the robot's way when the run is finished, as a still picture and as a moving one; `setup` names the world,
+    /// Draws the path driven when the run is finished, as a still picture and as a moving one; `setup` names the world,
     /// the body and the seed in their titles.
     pub(crate) fn drawn(
         mut self,

@@ -29,7 +29,7 @@ impl Drawing {
         Self { world: world.clone(), trail }
     }
 
-    /// Begins the record of a robot whose world is not known, at its first output; the way comes from odometry.
+    /// Begins the record of a robot whose world is not known, at its first output; the path driven comes from odometry.
     /// `setup` names the run in titles. Only an `animated` record keeps the data of a moving picture.
     #[must_use]
     pub fn without_world(y: &Sensed, setup: String, animated: bool) -> Self {

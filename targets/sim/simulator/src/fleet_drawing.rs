@@ -1,4 +1,4 @@
-//! The picture of several robots in one world: the floor, and the way of each robot.
+//! The picture of several robots in one world: the floor, and the path driven by each robot.
 
 use mdle_runtime::{Nanos, Pose};
 
@@ -19,7 +19,7 @@ pub struct FleetDrawing {
     contacts: Vec<(Place, Nanos)>,
 }
 
-/// The way of a robot.
+/// The path driven by a robot.
 #[derive(Debug, Clone)]
 struct RobotWay {
     name: String,

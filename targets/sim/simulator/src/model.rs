@@ -98,14 +98,14 @@ pub(crate) struct Drive {
 /// Errors of odometry: standard deviations of normal distributions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Slip {
-    /// Relative error of the way driven, drawn once for a run; it represents the size of the tyres.
+    /// Relative error of the distance driven, drawn once for a run; it represents the size of the tyres.
     pub(crate) way: f64,
     /// Relative error of the angle turned, drawn once for a run; it represents the points at which the wheels
     /// touch the floor.
     pub(crate) turn: f64,
     /// Error of the heading, in radians per metre driven, drawn once for a run; it represents unequal wheels.
     pub(crate) bend: f64,
-    /// Error of the heading, in radians, after a metre driven; it grows with the square root of the way.
+    /// Error of the heading, in radians, after a metre driven; it grows with the square root of the distance.
     pub(crate) wander: f64,
 }
 
@@ -155,8 +155,9 @@ pub(crate) struct Order {
 /// A sonar on the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Transducer {
-    /// Position ahead of the centre, in metres; `y` is the position to the left.
+    /// Position ahead of the centre, in metres.
     pub(crate) x: f64,
+    /// Position to the left of the centre, in metres.
     pub(crate) y: f64,
     pub(crate) bearing: Radians,
     /// Sonar, of the paper's sixteen, that the transducer represents.

@@ -1,4 +1,4 @@
-//! The pictures of a run: for `--plot`, the floor with the way driven and the places where atoms began; for
+//! The pictures of a run: for `--plot`, the floor with the path driven and the places where atoms began; for
 //! `--record`, a moving picture.
 
 mod chart;

@@ -8,7 +8,7 @@ use crate::world::World;
 /// The ears of a robot.
 pub struct RobotEars {
     ears: Ears,
-    /// Pose at the exchange before, and number of samples until then; `None` before the first exchange.
+    /// Pose at the previous exchange, and number of samples until then; `None` before the first exchange.
     before: Option<(Pose, u64)>,
 }
 
@@ -23,8 +23,8 @@ impl RobotEars {
         Some(Self { ears, before: None })
     }
 
-    /// Returns the samples of the left and the right ear from the exchange before until this one, at which the
-    /// robot has this pose.
+    /// Returns the samples of the left and the right ear from the previous exchange to this one, at which the robot has
+    /// this pose.
     pub fn heard(&mut self, here: &Pose, now: Nanos) -> Vec<[f32; 2]> {
         let until = (u128::from(now.0) * u128::from(RATE) / 1_000_000_000).try_into().unwrap_or(u64::MAX);
         let (before, since) = self.before.replace((*here, until)).unwrap_or((*here, until));

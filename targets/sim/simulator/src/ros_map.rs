@@ -24,7 +24,7 @@ impl Header {
     /// Returns the world of this header and the bytes of its image; errors call the image `file`.
     ///
     /// # Errors
-    /// Fails if the bytes are no readable image, or an image with too many walls.
+    /// Fails if the bytes are not a readable image, or are an image with too many walls.
     pub fn world(&self, file: &str, bytes: &[u8]) -> Result<World, WorldError> {
         let image = Image::read(bytes).map_err(|what| WorldError::new(file, None, what))?;
         let (sin, cos) = libm::sincos(self.yaw);

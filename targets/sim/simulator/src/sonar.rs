@@ -204,7 +204,7 @@ fn mount(transducer: &Transducer, ring_radius: f64) -> Mount {
 }
 
 fn stepped(range: f64, step: f64) -> f64 {
-    // A whole number of steps is not to become the one before by rounding.
+    // A whole number of steps is not to become the previous number by rounding.
     if step > 0.0 { libm::floor(range / step + 1e-9) * step } else { range }
 }
 

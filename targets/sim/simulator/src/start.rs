@@ -25,7 +25,7 @@ pub struct Start(pub Pose);
 pub enum StartError {
     /// The text is not `x,y,deg`.
     Malformed,
-    /// A part of the text is not a number with a unit: a sentence with what to type instead.
+    /// Sentence that says what to type instead of a part that is not a number with a unit.
     Quantity(String),
     /// A body of this form would overlap this wall or box.
     Overlaps(Form, String),

@@ -1,4 +1,4 @@
-//! The record of a run for its pictures: the way, the places where atoms began, the echoes, and the contacts.
+//! The record of a run for its pictures: the path driven, the places where atoms began, the echoes, and the contacts.
 
 mod ways;
 
@@ -16,7 +16,7 @@ pub(crate) use ways::{Atom, Mark, Ways};
 /// number of echoes.
 const SQUARE: f64 = 0.04;
 
-/// The way of a robot.
+/// The path driven by a robot.
 #[derive(Debug, Clone)]
 pub(crate) struct Trail {
     /// The form of the body.
@@ -26,7 +26,7 @@ pub(crate) struct Trail {
     pub(crate) here: Pose,
     /// Current displacement of each moving object of the world; `None` for an open door.
     pub(crate) things: Vec<Option<Place>>,
-    /// The way, divided by the atoms that drove it.
+    /// The path driven, divided by the atoms that drove it.
     pub(crate) ways: Ways,
     /// Text about the run for a title.
     pub(crate) about: About,
@@ -44,7 +44,7 @@ pub(crate) struct Trail {
     pub(crate) frames: Option<Frames>,
     /// The other robots of a fleet; empty if there is only one robot.
     pub(crate) companions: Vec<Companion>,
-    /// Word for the cause of a way: `atom`, or `robot` in a fleet.
+    /// Word for the driver of a path: `atom`, or `robot` in a fleet.
     pub(crate) kind: &'static str,
 }
 

@@ -58,10 +58,11 @@ impl Walls {
         Self::in_grid(world, segments, grid)
     }
 
-    /// Returns the walls of a world, unless it has so many in one place that preparing them would take too long.
+    /// Returns the walls of a world, unless so many of them share cells of its grid that preparing them would take too
+    /// long.
     ///
     /// # Errors
-    /// Fails with a sentence that names the part of the world that is too large.
+    /// Fails with a sentence if too many pairs of walls share a cell.
     pub fn of_any(world: &World) -> Result<Self, String> {
         let segments = segments(world);
         let grid = Grid::of(&segments);

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The defect of a world file: `file:line:column: sentence`.
+/// The defect of a world file, displayed as `file:line:column: sentence`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WorldError {
     file: String,

@@ -80,7 +80,7 @@ fn the_first_passages_of_the_maze_are_driven() {
     assert_clean("maze", worlds::maze, Body::Atrv, 90);
 }
 
-/// Before the law waited for him, 14 of 40 ideal robots and 19 of 40 Scouts met the walker.
+/// Before the law waited for the walker, 14 of 40 ideal robots and 19 of 40 Scouts met the walker.
 #[test]
 fn somebody_who_walks_across_is_waited_for() {
     assert_clean("hall", worlds::hall, Body::Ideal, 90);

@@ -1,4 +1,4 @@
-//! The walker of `hall`: a robot that meets him would have met him standing still, too.
+//! The walker of `hall`: a robot that meets the walker would have met it standing still, too.
 
 use std::time::Duration;
 
@@ -65,7 +65,7 @@ fn avoids(body: Body, seed: u64, contact: u64, before: u64) -> bool {
     meets(body, seed, contact.saturating_sub(before)).is_none_or(|turn| turn > contact + PASSED)
 }
 
-/// He is noticed, so that the test below can fail: he walks from (8, 1) to (8, 9).
+/// The walker is noticed, so that the test below can fail: it walks from (8, 1) to (8, 9).
 #[test]
 fn a_robot_in_the_way_of_the_walker_is_met() {
     for body in [Body::Ideal, Body::Scout, Body::Atrv] {

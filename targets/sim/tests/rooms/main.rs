@@ -75,8 +75,8 @@ fn a_doorway_twenty_centimetres_wider_than_the_body_is_passed() {
     assert!(scout >= 3);
 }
 
-/// Returns the number of these seeds that go 6 m along a hallway 2 m wide, without contact, while somebody comes
-/// towards them at this speed, who keeps this far to his right of the middle.
+/// Returns the number of these seeds that go 6 m along a hallway 2 m wide, without contact, while a person comes
+/// towards them at this speed and keeps this far to the person's right of the middle.
 fn meet(name: &str, make: fn(u64) -> Make, seeds: u64, speed: f64, right: f64) -> usize {
     let run = |seed: u64| {
         let y = 0.1 * (seed as f64 / 9.5 - 1.0);
@@ -91,8 +91,8 @@ fn meet(name: &str, make: fn(u64) -> Make, seeds: u64, speed: f64, right: f64) -
     clean(name, (0..seeds).map(run))
 }
 
-/// A person who walks at 1 m/s, 20 cm right of the middle, touches none of 20 ideal robots and 2 of 20 Scouts. At
-/// 0.5 m/s he touches none.
+/// A person who walks at 1 m/s, 20 cm right of the middle, touches none of 20 ideal robots and 2 of 20 Scouts. At 0.5
+/// m/s the person touches none.
 #[test]
 fn somebody_who_keeps_right_in_a_hallway_is_given_way_to() {
     assert_eq!(meet("ideal", |_| ideal(), 6, 1.0, 0.2), 6);

@@ -22,7 +22,7 @@ const LEFT: [f64; 2] = [60.0, 500.0];
 /// Width of the first chart, in degrees.
 const DEGREES: f64 = 60.0;
 const EACH: usize = 3;
-/// Largest error in the second chart, in centimetres to either side, with a bar for each centimetre.
+/// Maximum error in the second chart, in centimetres to either side, with a bar for each centimetre.
 const CENTIMETRES: i32 = 8;
 
 pub(crate) fn svg() -> String {

@@ -1,4 +1,4 @@
-//! Odometry: the way that the wheels measure, and the errors of that measurement.
+//! Odometry: the path driven as the wheels measure it, and the errors of that measurement.
 
 use mdle_runtime::{Meters, Pose, Radians};
 
@@ -17,11 +17,13 @@ pub(crate) struct Odometry {
 #[derive(Debug, Clone)]
 struct Errors {
     noise: Noise,
-    /// Factors of the measured way (`way`) and turn (`turn`), error of the heading in radians per metre
-    /// (`bend`), and standard deviation of the heading in radians after a metre (`wander`).
+    /// Factor of the measured distance.
     way: f64,
+    /// Factor of the measured turn.
     turn: f64,
+    /// Error of the heading, in radians per metre.
     bend: f64,
+    /// Standard deviation of the heading after a metre, in radians.
     wander: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The picture of a finished run: the floor, the way coloured by atom, echoes and contacts, and the legend.
+//! The picture of a finished run: the floor, the path driven coloured by atom, echoes and contacts, and the legend.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +17,7 @@ use crate::place::Place;
 use crate::trail::{Companion, Trail};
 use crate::world::World;
 
-/// Distance, in pixels, between two points of the way that callouts avoid.
+/// Distance, in pixels, between two points of the path driven that callouts avoid.
 const STEP: f64 = 6.0;
 
 /// Side of a square, in pixels, in which at most one echo is drawn.
@@ -58,7 +58,7 @@ fn echoes(layout: &Layout, trail: &Trail) -> Path {
     path.set("class", "echo").set("stroke-opacity", 0.55).set("stroke-width", 1.6).set("stroke-linecap", "round")
 }
 
-/// Draws the way of each atom as written, with all its passes in one path.
+/// Draws the path driven by each atom as written, with all passes of the atom in one SVG path.
 fn way(layout: &Layout, trail: &Trail) -> Group {
     let data = |way: &[Place]| through(simplified(way.iter().map(|place| layout.at(*place))));
     let ways = &trail.ways;

@@ -10,7 +10,7 @@ use crate::trail::{Mark, Trail};
 
 /// Maximum duration of the film, in seconds, without the pause at the end.
 const SHOWN_MOST: f64 = 20.0;
-/// Maximum number of places of all ways, about 200 m, for a film that draws each place.
+/// Maximum number of places of all paths driven, about 200 m, for a film that draws each place.
 const PLACES_MOST: usize = 20_000;
 /// Maximum number of atoms that begin and are all shown; if there are more, atoms that begin and end between
 /// two moments are left out.
@@ -26,7 +26,7 @@ pub(super) struct Film<'f> {
     pub(super) acts: Vec<Act>,
     /// Factor by which the film is faster than the run.
     pub(super) times: f64,
-    /// `true` if the ways are short enough to be written place by place.
+    /// `true` if the paths driven are short enough to be written place by place.
     smooth: bool,
 }
 
@@ -87,8 +87,8 @@ impl<'f> Film<'f> {
         self.frames.get(act.first..=act.last).unwrap_or_default()
     }
 
-    /// Returns the way driven in an act, followed by the ways of the atoms left out after it; `None` if all the ways
-    /// are too long to be written down.
+    /// Returns the path driven in an act, followed by the paths of the atoms left out after it; `None` if all paths
+    /// together are too long to be written down.
     pub(super) fn way(&self, act: &Act, trail: &Trail) -> Option<Vec<Place>> {
         let first = act.mark?;
         let next = self.acts.get(self.acts.partition_point(|other| other.mark <= act.mark)).and_then(|next| next.mark);
@@ -178,7 +178,7 @@ fn newest(marks: &[Mark], before: usize, begun: usize) -> Option<(usize, &Mark)>
     Some((number, marks.get(number)?))
 }
 
-/// Returns the values without those that equal the value before.
+/// Returns the values without those that equal the previous value.
 pub(super) fn changes<T>(values: impl Iterator<Item = (T, String)>) -> impl Iterator<Item = (T, String)> {
     let mut last = None;
     values.filter(move |(_, value)| last.replace(value.clone()).as_ref() != Some(value))

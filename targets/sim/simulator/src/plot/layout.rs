@@ -47,7 +47,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Returns the layout that shows the whole way and the room around it.
+    /// Returns the layout that shows the whole path driven and the room around it.
     pub(super) fn of(world: &World, trail: &Trail) -> Self {
         let View { x, y } = View::of(world, trail);
         let scale = (FLOOR_MOST.0 / (x.1 - x.0)).min(FLOOR_MOST.1 / (y.1 - y.0)).min(SCALE_MOST);

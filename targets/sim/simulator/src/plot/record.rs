@@ -1,8 +1,8 @@
-//! The moving picture of a run: the way is drawn as it was driven, the robot drives along it, and the running
-//! atom is named.
+//! The moving picture of a run: the path is drawn as it was driven, the robot drives along it, and the running atom is
+//! named.
 //!
-//! Everything repeats together, after a pause. A viewer without animation shows the end of the run; a viewer
-//! that runs scripts also shows the time, a button to pause and a strip to seek.
+//! Everything repeats together, after a pause. A viewer without animation shows the end of the run; a viewer that runs
+//! scripts also shows the time, a button to pause and a strip to seek.
 
 use mdle_runtime::{Pose, Radians};
 use svg::node::element::{Group, Path, Rectangle, Script};
@@ -44,7 +44,7 @@ pub(crate) fn animated(world: &World, trail: &Trail) -> String {
     format!("{document}\n")
 }
 
-/// Returns the way of each atom, which grows while it runs.
+/// Returns the path driven by each atom, which grows while the atom runs.
 fn ways(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     let group = Group::new().set("stroke-width", 2.5).set("stroke-linejoin", "round").set("fill", "none");
     film.acts.iter().fold(group, |group, act| {

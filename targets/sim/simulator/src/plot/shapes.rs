@@ -157,7 +157,7 @@ mod tests {
         for corner in [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.1)] {
             assert!(corners.iter().any(|at| libm::hypot(at.0 - corner.0, at.1 - corner.1) < 0.5), "{corner:?}");
         }
-        // There and back is no straight line from the start to the start.
+        // There and back is not a straight line from the start to the start.
         assert_eq!(simplified([(0.0, 0.0), (5.0, 0.0), (9.0, 0.0), (5.0, 0.0), (0.0, 0.0)]).len(), 3);
     }
 

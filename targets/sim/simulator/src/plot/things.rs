@@ -1,5 +1,5 @@
-//! Drawings of the moving objects of a world: doors are dashed, other objects are at their last position, with
-//! their way.
+//! Drawings of the moving objects of a world: doors are dashed, other objects are at their last position, with the path
+//! that they followed.
 
 use svg::node::element::{Group, Path};
 
@@ -99,7 +99,7 @@ fn pixels(layout: &Layout, thing: &Thing, gone: Place) -> impl Iterator<Item = P
     thing.corners(gone).map(|place| layout.at(place))
 }
 
-/// Draws the ways of all objects that have one.
+/// Draws the paths of all objects that follow one.
 fn ways(layout: &Layout, world: &World) -> Group {
     let moving = world.things.iter().filter(|thing| Sign::of(thing) == Sign::Moves);
     moving.fold(Group::new(), |group, thing| group.add(way(thing.way().map(|place| layout.at(place)))))

@@ -26,12 +26,12 @@ const LINE: f64 = 20.0;
 const LISTED: usize = 16;
 /// Distance between two circles on the first trip, in pixels.
 const CIRCLES: f64 = 14.0;
-/// Minimum length of a trip, in metres; a shorter way is not listed.
+/// Minimum length of a trip, in metres; a shorter trip is not listed.
 const SHORTEST: f64 = 0.2;
 /// Minimum distance between two numbers of an axis, in pixels.
 const APART: f64 = 50.0;
 
-/// The trips of several robots: the ways driven under the laws `path` and `Follow`.
+/// The trips of several robots: the paths driven under the laws `path` and `Follow`.
 #[derive(Debug, Clone)]
 pub struct TripDrawing {
     title: String,
@@ -47,7 +47,7 @@ struct RobotTrips {
     is_on_trip: bool,
 }
 
-/// Returns the length of a way, in metres, and the percentage by which it is longer than the distance between
+/// Returns the length of a path driven, in metres, and the percentage by which it is longer than the distance between
 /// its ends.
 fn figures(way: &[Place]) -> (f64, f64) {
     let apart = |one: &Place, other: &Place| libm::hypot(one.x - other.x, one.y - other.y);

@@ -1,11 +1,11 @@
-//! The part of the floor that a plot shows: the way, and the room around it.
+//! The part of the floor that a plot shows: the path driven, and the room around it.
 
 use crate::trail::Trail;
 use crate::world::World;
 
 /// Margin around walls, in metres.
 const AROUND: f64 = 0.4;
-/// Margin of floor that is shown around the way, in metres; smaller where the world ends.
+/// Margin of floor that is shown around the path driven, in metres; smaller where the world ends.
 const ROOM: f64 = 2.0;
 /// Fraction of the world from which the whole world is shown.
 const MOST: f64 = 0.5;
@@ -18,7 +18,7 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Returns the way with the floor around it, or the whole world if only a little of it would be left out.
+    /// Returns the path driven with the floor around it, or the whole world if only a little of it would be left out.
     pub(super) fn of(world: &World, trail: &Trail) -> Self {
         // Without a world there is only what the robot has heard.
         let heard = || trail.echoes.iter().copied().filter(|_| world.places().next().is_none());

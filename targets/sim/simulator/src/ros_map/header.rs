@@ -12,9 +12,11 @@ pub struct Header {
     pub image: String,
     /// Size of a pixel, in metres.
     pub(crate) resolution: f64,
-    /// Position of the lower left corner of the image, and its rotation, in metres and radians.
+    /// First coordinate of the image's lower left corner, in metres.
     pub(crate) x: f64,
+    /// Second coordinate of the image's lower left corner, in metres.
     pub(crate) y: f64,
+    /// Rotation of the image, in radians.
     pub(crate) yaw: f64,
     /// `true` if white is occupied and black is free.
     pub(crate) negate: bool,
@@ -33,7 +35,7 @@ impl Header {
     /// Reads the text of the file, which errors call `file`.
     ///
     /// # Errors
-    /// Fails if the text lacks an image or a resolution, or has a value that is no number or out of range.
+    /// Fails if the text lacks an image or a resolution, or has a value that is not a number or out of range.
     pub fn parse(file: &str, text: &str) -> Result<Self, WorldError> {
         let missing = |what: &str| WorldError::new(file, None, what.to_owned());
         let image = value(text, "image").ok_or_else(|| missing("no `image`: expected as in `image: map.pgm`"))?;

@@ -1,4 +1,4 @@
-//! The way of a robot, divided by the atoms that drove it: a bounded number of places, separate for each pass
+//! The path driven by a robot, divided by the atoms that drove it: a bounded number of places, separate for each pass
 //! of an atom.
 
 use std::collections::BTreeMap;
@@ -9,15 +9,15 @@ use crate::place::Place;
 
 /// Distance, in metres, below which a place is not kept, as it is less than a pixel from the last place.
 const APART: f64 = 0.01;
-/// Maximum number of places of the way that are kept; above this number, every second place is removed.
+/// Maximum number of places of the path driven that are kept; above this number, every second place is removed.
 const PLACES_MOST: usize = 100_000;
-/// Maximum number of passes whose ways are kept separately, and of atoms that are counted.
+/// Maximum number of passes whose paths are kept separately, and of atoms that are counted.
 const MARKS_MOST: usize = 10_000;
 
-/// The way driven, and the atoms that drove it.
+/// The path driven, and the atoms that drove it.
 #[derive(Debug, Clone)]
 pub(crate) struct Ways {
-    /// The way before the first atom began.
+    /// The path driven before the first atom began.
     pub(crate) before: Vec<Place>,
     /// Each pass of an atom, in order.
     pub(crate) marks: Vec<Mark>,
@@ -49,18 +49,18 @@ pub(crate) struct Atom {
     pub(crate) total: Nanos,
 }
 
-/// A pass of an atom, with the way driven in it.
+/// A pass of an atom, with the path driven in it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Mark {
     /// Position of the atom in [`Ways::atoms`]; `None` for the remainder of a run with too many passes.
     pub(crate) atom: Option<usize>,
     pub(crate) t: Nanos,
-    /// The way, from the place where the pass began.
+    /// The path driven, from the place where the pass began.
     pub(crate) way: Vec<Place>,
 }
 
 impl Ways {
-    /// Returns a way that begins here.
+    /// Returns a path that begins here.
     pub(super) fn from(place: Place) -> Self {
         Self {
             before: vec![place],
@@ -87,14 +87,14 @@ impl Ways {
         }
     }
 
-    /// Includes the way that a robot of a fleet drove, until this time.
+    /// Includes the path that a robot of a fleet drove, until this time.
     pub(crate) fn drove(&mut self, number: u64, name: &str, way: &[Place], until: Nanos) {
         let Some(place) = way.first().copied() else { return };
         self.marks.push(Mark { atom: Some(self.atoms.len()), t: Nanos::ZERO, way: way.to_vec() });
         self.atoms.push(Atom { number, law: name.to_owned(), place, times: 1, total: until });
     }
 
-    /// Returns the way of the current pass of an atom.
+    /// Returns the path driven in the current pass of an atom.
     fn last(&mut self) -> &mut Vec<Place> {
         self.marks.last_mut().map_or(&mut self.before, |mark| &mut mark.way)
     }
@@ -211,7 +211,7 @@ mod tests {
         assert_eq!(ways.atoms.iter().map(|atom| atom.times).sum::<u64>(), 20_000);
         assert_eq!(ways.before.first(), Some(&Place { x: 0.0, y: 0.0 }));
         assert!(ways.places().last().is_some_and(|last| 19_999.98 - last.x < ways.apart), "{:?}", ways.places().last());
-        // Passes that have no way of their own are no atom's.
+        // Passes without a path of their own do not belong to an atom.
         assert!(ways.marks.last().is_some_and(|mark| mark.atom.is_none()));
     }
 }

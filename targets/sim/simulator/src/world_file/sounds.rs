@@ -10,7 +10,7 @@ use crate::place::Place;
 
 /// Default level of a source, in dB.
 const LEVEL: f64 = 10.0;
-/// Least and greatest level, in dB.
+/// Minimum and maximum level, in dB.
 const LEVELS: (f64, f64) = (-40.0, 80.0);
 /// Maximum number of sources, since each costs a convolution in each turn.
 const MOST: usize = 8;
