@@ -17,10 +17,11 @@ use crate::sender::Mouth;
 
 /// Speed of the line in bits per second, 8N1.
 const SPEED: u32 = 115_200;
-/// Half the length of the body, in metres. The next two constants are half its width and the radius of the smallest
-/// circle around it.
+/// Half the length of the body.
 const HALF_LENGTH: Meters = Meters(0.315);
+/// Half the width of the body.
 const HALF_WIDTH: Meters = Meters(0.27);
+/// Radius of the smallest circle around the body.
 const RADIUS: Meters = Meters(0.415);
 /// Distance, in metres, between the two points of a wall beside the robot that the sonars 18° from the wall's direction
 /// hear.
@@ -55,8 +56,9 @@ pub struct Atrv {
     /// Drift of the odometry, measured by means of walls.
     compass: Compass,
     obedience: Obedience,
-    /// Interval of the position reports. `a_turn` is the number of reports in a turn in lockstep.
+    /// Interval of the position reports.
     reports: Duration,
+    /// Number of position reports in a turn in lockstep.
     a_turn: u32,
     /// Time of the last request for the state of the brake.
     asked: Nanos,

@@ -13,8 +13,9 @@ pub(crate) const RING_RADIUS: f64 = 0.28;
 pub(crate) struct Transducer {
     /// Board of the sonar, times 16, plus its channel.
     pub(crate) id: u8,
-    /// Distance of the sonar forward of the centre, in metres. The next field is the distance to the left.
+    /// Distance of the sonar forward of the centre, in metres.
     x: f64,
+    /// Distance of the sonar to the left of the centre, in metres.
     y: f64,
     /// Direction of the sonar's axis, in degrees counter-clockwise from the front.
     degrees: f64,

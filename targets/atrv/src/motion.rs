@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn leaps_again_and_again_mean_nothing() {
         let config = Config { units_per_metre: 1000.0, ..config() };
-        // The first `leaps` reports are each 3 m from the one before, the others 1 mm.
+        // The first `leaps` reports are each 3 m from the previous one, the others 1 mm.
         let leaps = |leaps: i32, steps: i32| {
             let mut odometer = Odometer::default();
             let positions = (0..=leaps).map(|leap| leap * 3000).chain((1..=steps).map(|step| leaps * 3000 + step));

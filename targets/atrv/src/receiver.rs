@@ -50,8 +50,9 @@ struct Known {
     switches: u32,
     /// Time of the last report of each bumper.
     felt: [Option<Nanos>; 2],
-    /// `true` if the brake is set, `None` before the first report. The next field is the time of the last report.
+    /// `true` if the brake is set; `None` before the first report.
     is_braked: Option<bool>,
+    /// Time of the last report of the brake.
     answered: Nanos,
     /// Battery voltage at the last report of the brake.
     battery: Volts,

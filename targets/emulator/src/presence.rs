@@ -20,8 +20,9 @@ pub(crate) struct Presence {
 struct Observation {
     /// Number by which the system's reports identify the line.
     number: i32,
-    /// Number of programs that have the line open; `has_begun` is `true` if any program has opened it.
+    /// Number of programs that have the line open.
     users: u32,
+    /// `true` if any program has opened the line.
     has_begun: bool,
 }
 

@@ -174,8 +174,8 @@ pub(crate) struct FinishedRun<T: Trial> {
 /// Runs a driver that requests `speed`, in m/s, for `turns` turns, and then stops it, as the host always does.
 ///
 /// # Errors
-/// A fault does not exist, the driver could not connect, the line was closed without a fault that closes it, or the
-/// line stayed open with such a fault.
+/// Fails if a fault does not exist, if the driver cannot connect, or if the line closes without a fault that closes it
+/// or stays open despite one.
 pub(crate) fn ran<T: Trial>(
     turns: u32,
     faults: &[&str],

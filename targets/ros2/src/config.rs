@@ -121,7 +121,7 @@ configuration! {
     stale_scan: u64 = 1000, in 50..=60_000, "ms" "without a scan or a range until the robot is stopped";
     /// Time without a bumper message after which the robot is stopped, in milliseconds; 0 for no limit.
     stale_bumper: u64 = 0, in 0..=60_000, "ms" "without the bumper until the robot is stopped; 0 for no limit";
-    /// Distance by which odometry may differ from the longest way that the robot can have driven, in metres.
+    /// Distance by which odometry may differ from the longest path that the robot can have driven, in metres.
     jump: f64 = 0.3, in 0.01..=100.0, "m" "by which odometry may differ from the fastest way";
     /// Maximum time to find all topics of the robot, in milliseconds.
     discovery: u64 = 10_000, in 100..=600_000, "ms" "to find all topics";

@@ -17,16 +17,17 @@ const NOTHING: u8 = 255;
 /// direction in which the sonar four places further pointed before.
 const TURN: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Last data of the robot that differed from the data before, and its motion since then.
+/// Last data of the robot that differed from the previous data, and its motion since then.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Freshness {
     /// Time of the robot's clock, and the moment at which it was first received.
     clock: Option<(u32, Nanos)>,
     sonars: [u8; 16],
-    /// Last pose of the robot. The next fields are its distance and turn since a sonar's range changed, in metres and
-    /// radians.
+    /// Last pose of the robot.
     pose: Pose,
+    /// Length of the path driven since a sonar's range changed, in metres.
     way: f64,
+    /// Angle turned since a sonar's range changed, in radians.
     turn: f64,
 }
 

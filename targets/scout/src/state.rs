@@ -8,8 +8,9 @@ use crate::number;
 /// Length of the state, in bytes.
 pub(crate) const LENGTH: usize = 42;
 
-/// Upper ends of the scales of both supply voltages, in volts.
+/// Upper end of the scale of the processor's supply voltage, in volts.
 const CPU_RANGE: f64 = 12.0;
+/// Upper end of the scale of the motors' supply voltage, in volts.
 const MOTOR_RANGE: f64 = 12.85;
 
 /// The state of a Scout, in the units of the line.

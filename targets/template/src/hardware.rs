@@ -1,4 +1,5 @@
-//! The hardware: all that you REPLACE to have your own robot. Until then it is one that only this program imagines.
+//! The hardware: REPLACE everything in this file to drive your own robot. Until then the robot exists only in this
+//! program.
 
 use std::fmt;
 use std::time::Duration;
@@ -34,7 +35,7 @@ const FASTEST_TURN: RadiansPerSecond = RadiansPerSecond(2.0);
 /// stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
-    /// A law has asked for a speed that is no number.
+    /// A law has asked for a speed that is not a number.
     NoNumber,
 }
 

@@ -39,8 +39,9 @@ pub struct Atrv {
     step: Duration,
     sensed: Output,
     incoming: Incoming,
-    /// Reports that have not been sent yet; `count` is the number of the last report.
+    /// Reports that have not been sent yet.
     outgoing: Vec<Vec<u8>>,
+    /// Number of the last report.
     count: u8,
     /// Commanded speeds, forward and turning, in the robot's units per second, and the last command that arrived.
     command: (i32, i32),
@@ -180,7 +181,7 @@ impl Atrv {
         }
         match axis {
             _ if self.has(Ailment::Runaway) => {}
-            // As on the ATRV-Jr: nothing is no speed, so that the old one stays.
+            // As on the ATRV-Jr: a velocity of 0 does not change the commanded forward speed.
             0 if velocity == 0 => {}
             0 => self.command.0 = velocity,
             _ => self.command.1 = velocity,

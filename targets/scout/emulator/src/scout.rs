@@ -60,8 +60,9 @@ pub struct Scout {
     is_cut_off: bool,
     /// Wheel speeds of a robot that ignores all commands.
     runaway: Option<(i32, i32)>,
-    /// Offset of the reported positions, in tenths of an inch, which grows while `leaps` is `true`.
+    /// Offset of the reported positions, in tenths of an inch.
     off: i64,
+    /// `true` while the offset grows.
     leaps: bool,
     orders: Orders,
 }
