@@ -9,7 +9,7 @@ use mdle_compiler::diagnostic::{Diagnostic, Sources};
 /// Reason why a plan or a target cannot be read.
 #[derive(Debug)]
 pub enum InputError {
-    /// A file cannot be read, or a folder is no target: the reason, as a sentence.
+    /// A file cannot be read, or a folder is not a target: the reason, as a sentence.
     Unusable(String),
     /// No target is named, although Rust code can be written only for a target.
     NoTarget,

@@ -1,4 +1,4 @@
-//! The plan to run in a file, compiled, and its Rust code; messages go to standard error.
+//! Compiles the only plan of a file that is to run, and generates its Rust code. Messages go to standard error.
 
 use std::path::Path;
 

@@ -124,7 +124,7 @@ pub(super) fn follow(
     for heard in heard {
         match heard {
             CargoLine::Blocked => progress(Progress::Blocked),
-            // A line that is no message, such as a compiler wrapper's, is none of ours.
+            // A line that is not a message, such as a compiler wrapper's, is none of ours.
             CargoLine::Message(line) => {
                 if let Ok(line) = serde_json::from_slice(&line) {
                     log.take(line, progress);

@@ -48,7 +48,7 @@ fn assert_mends(robot: &Robot, cause: &str, restore: impl FnOnce()) {
     }
     let mut leave = |progress| {
         if progress == Progress::Mending {
-            // Without a message: it is no failure.
+            // Without a message: it is not a failure.
             panic::resume_unwind(Box::new(progress));
         }
     };
