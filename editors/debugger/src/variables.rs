@@ -75,7 +75,7 @@ fn meters(nanometers: u64) -> String {
     format!("{} m", nanometers as f64 / 1e9)
 }
 
-/// Returns the memory of a frame: timer, way, passes, memories of RISING, and the record of `after`.
+/// Returns the memory of a frame: timer, path driven, passes, memories of RISING, and the record of `after`.
 fn kept(loaded: &Loaded, run: &Run<'_>, frame: &Frame) -> Vec<Value> {
     let reports = run.reports();
     let opened: Vec<_> = run.open().collect();

@@ -20,7 +20,7 @@ fn tree(parser: &mut Parser, text: &str) -> Tree {
 }
 
 /// Returns the messages of mdlec about the notation of a text, as far as a grammar can have them: the depth of brackets
-/// and what a file lacks are no question of notation.
+/// and what a file lacks are not a question of notation.
 fn syntax_errors(text: &str) -> Vec<String> {
     let arena = arena_for(text);
     let (_, found) = parse(SourceId(0), text, &arena);

@@ -38,7 +38,7 @@ pub(crate) enum End {
     Over,
     /// The time limit was reached.
     Limit,
-    /// A fault of the robot: a sentence.
+    /// Sentence about a fault of the robot.
     Fault(String),
 }
 

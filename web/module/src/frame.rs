@@ -14,7 +14,7 @@ use crate::course::{Course, Exchange, Made};
 /// Maximum number of transitions of a turn that a page gets.
 const TRANSITIONS_MOST: usize = 40;
 
-/// Returns a turn as JSON; `before` is the time of the exchange before.
+/// Returns a turn as JSON; `before` is the time of the previous exchange.
 pub(crate) fn frame(course: &Course, exchange: &Exchange, made: &Made, before: Option<Nanos>) -> Value {
     let Exchange { t, y, .. } = exchange;
     let pose = course.robot.pose();

@@ -10,7 +10,7 @@ use mdle_language_server::{ServeError, serve_on};
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
-/// Longest wait for an answer.
+/// Maximum wait for an answer.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A client with its server, which runs in a thread.
