@@ -17,7 +17,7 @@ use mdle_tests::chance::Chance;
 pub(crate) struct Line {
     /// States that are lost, in percent.
     pub(crate) loss: usize,
-    /// The longest time that a state takes; each takes a random one, so that later ones overtake.
+    /// The maximum time that a state takes; each takes a random one, so that later ones overtake.
     pub(crate) longest: Duration,
 }
 

@@ -34,7 +34,7 @@ const FLOOR: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[-6, -6], [9, -6], [9, 6], [-6, 6], [-6, -6]]";
 /// Time that a robot's step takes in real time at least.
 const SLOWER: Duration = Duration::from_millis(2);
-/// The longest time for which programs may run, in real time.
+/// The maximum time for which programs may run, in real time.
 const LONGEST: Duration = Duration::from_secs(400);
 
 /// A folder with the plans, for this number of laps and with this timer, and with the file of each robot's link, by

@@ -15,7 +15,7 @@ use mdle_tests::executable::{folder, mdle};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{Termios, Winsize, tcgetattr, tcsetwinsize};
 
-/// Longest wait for what has to appear.
+/// Maximum wait for what has to appear.
 const LONG: Duration = Duration::from_secs(60);
 
 /// A program at a terminal.

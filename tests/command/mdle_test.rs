@@ -1,4 +1,4 @@
-//! `mdle test`: tests that fail and their messages, files of tests that have errors, and the tests of our own plans.
+//! `mdle test`: tests that fail and their messages, test files that have errors, and the tests of our own plans.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -201,7 +201,7 @@ fn faulty_files_of_tests_have_a_help() {
     insta::assert_snapshot!(reports.join("\n"));
 }
 
-/// The plan's name, its file and the target have a place in the file of tests.
+/// The plan's name, its file and the target have a place in the test file.
 #[test]
 fn what_tests_name_in_vain_has_its_place() {
     let heads = ["plan = \"nix.mdle\"", "plan = \".\"", "name = \"Dokc\"", "target = \"smi\"", "target = \"../robot\""];

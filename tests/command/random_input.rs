@@ -143,7 +143,7 @@ fn a_random_script_is_wrong_usage() {
         let mut chance = Chance::new(seed);
         for script in [bytes(&mut chance), words(&mut chance), spoilt(good, &mut chance)] {
             fs::write(folder.join("script"), script).unwrap();
-            // No line at all is a script that ends at once; bytes that are no text have a code, as in plans.
+            // No line at all is a script that ends at once; bytes that are not text have a code, as in plans.
             assert_ends(&folder, &["trace", "plan.mdle", "--script", "script"], &[0, 1, 2], seed);
         }
     }

@@ -1,4 +1,4 @@
-//! Files that are no plain files, or endless ones, wherever a command or an executable reads one: refused at once.
+//! Files that are not plain files, or endless ones, wherever a command or an executable reads one: refused at once.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs::{self, File};

@@ -1,8 +1,8 @@
-//! Circles of modules: modules of one folder that use each other, directly or by way of others, can only be
-//! understood together, so there are to be none.
+//! Circles of modules: modules of one folder that use each other, directly or by way of others, can only be understood
+//! together, so there are to be none.
 //!
 //! A module counts with all below it, and a file without the tests in it. What it takes from its parent is what the
-//! parent has from another of its modules; what the parent has itself is no circle, as a room's types are where its
+//! parent has from another of its modules; what the parent has itself is not a circle, as a room's types are where its
 //! modules meet.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -25,7 +25,7 @@ fn modules_use_each_other_in_no_circle() {
     assert_eq!(found, [""; 0], "move what both need into a module of its own, or into the parent");
 }
 
-/// The file without its tests; `None` for a file of tests, and for one that is in no package's `src`.
+/// The file without its tests; `None` for a test file, and for a file outside of every package's `src`.
 fn without_tests(file: TextFile) -> Option<TextFile> {
     let is_test =
         file.path.ends_with("/tests.rs") || file.path.contains("/tests/") || file.path.ends_with("/samples.rs");

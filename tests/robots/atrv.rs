@@ -1,6 +1,6 @@
 //! The lab tour on an ATRV-mini: the executable that `mdlec --target atrv` builds, against the emulated robot on a
-//! pseudo-terminal, beside the simulator's own run with that robot's body; and its messages about a device that is no
-//! robot.
+//! pseudo-terminal, beside the simulator's own run with that robot's body; and its messages about a device that is not
+//! a robot.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;

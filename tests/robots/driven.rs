@@ -16,7 +16,7 @@ use mdle_tests::golden;
 use mdle_tests::repository::TextFile;
 
 const PERIOD: Duration = Duration::from_millis(100);
-/// The greatest distance of a start from the world's, along each axis, in metres, and in heading, in degrees.
+/// The maximum distance of a start from the world's, along each axis, in metres, and in heading, in degrees.
 const OFF: [f64; 2] = [0.05, 3.0];
 
 /// A plan before it begins.

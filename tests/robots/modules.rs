@@ -255,7 +255,7 @@ fn a_plan_that_waits_in_vain_names_the_modules() {
     ");
 }
 
-/// A module `heading` whose bearing is no angle.
+/// A module `heading` whose bearing is not an angle.
 fn wrong() -> Library<Sensed> {
     struct Wrong;
     impl Module<Sensed> for Wrong {

@@ -90,7 +90,7 @@ fn messages_for_viewers_are_complete() {
     );
 }
 
-/// A negative time is no option.
+/// A negative time is not an option.
 #[test]
 fn times_before_the_run_have_a_help() {
     let folder = recorded("negative");

@@ -121,7 +121,7 @@ fn robots_are_watched_at_a_terminal() {
     assert!(behind.contains("plan over: wait 3s (corner.mdle:2)"), "{behind}");
 }
 
-/// A view is no reason to stop a robot.
+/// A view is not a reason to stop a robot.
 #[test]
 fn a_file_that_may_not_grow_is_an_error_at_the_end() {
     let folder = folder("views-limited");

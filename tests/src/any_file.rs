@@ -1,5 +1,6 @@
-//! The properties of all bytes of a file that is no plan: an alphabet, a machine, a script, a world, a map, a path, a
-//! robot's configuration, a record. libFuzzer searches for bytes without these properties, and a test tries the corpus.
+//! The properties of all bytes of a file that is not a plan: an alphabet, a machine, a script, a world, a map, a path,
+//! a robot's configuration, a record. libFuzzer searches for bytes without these properties, and a test tries the
+//! corpus.
 //!
 //! Each function panics if a property does not hold.
 

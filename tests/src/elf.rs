@@ -3,7 +3,7 @@
 /// The sizes in bytes of the sections of a 64-bit ELF file of this machine's byte order, by name.
 ///
 /// # Panics
-/// If it is no such file.
+/// If it is not such a file.
 #[must_use]
 pub fn sections(file: &[u8]) -> Vec<(String, usize)> {
     assert!(file.starts_with(b"\x7fELF\x02"), "a 64-bit ELF file");

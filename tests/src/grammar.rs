@@ -32,7 +32,7 @@ impl Production {
     }
 }
 
-/// Returns every production of `grammar.lalrpop` except those of tokens, whose spellings are no grammar.
+/// Returns every production of `grammar.lalrpop` except those of tokens, whose spellings are not part of the grammar.
 #[must_use]
 pub fn productions() -> Vec<Production> {
     let path = root().join("mdlec/compiler/src/syntax/grammar.lalrpop");

@@ -49,7 +49,7 @@ fn needed(package: &Path) -> BTreeSet<String> {
     lines.lines().filter_map(|line| line.split(' ').next()).map(str::to_owned).collect()
 }
 
-/// Returns the development profile of the workspace, as far as it is about these packages. Ours are no members
+/// Returns the development profile of the workspace, as far as it is about these packages. Ours are not members
 /// elsewhere, and have a member's debug information all the same.
 fn profile(needed: &BTreeSet<String>) -> Table {
     let manifest: Table = fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();

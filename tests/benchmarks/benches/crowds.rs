@@ -82,7 +82,7 @@ struct Run {
     processor: f64,
     /// Seconds of the clock.
     wall: f64,
-    /// Greatest memory, in megabytes.
+    /// Maximum memory, in megabytes.
     memory: f64,
 }
 

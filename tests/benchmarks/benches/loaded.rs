@@ -23,9 +23,9 @@ const PLANS: [(&str, &str); 2] = [
 const TIME: u32 = 3600;
 /// Turns in a simulated second.
 const RATE: f64 = 10.0;
-/// Largest number of runs of each; the median counts.
+/// Maximum number of runs of each; the median counts.
 const RUNS: usize = 7;
-/// Smallest number of runs of each, however long they take.
+/// Minimum number of runs of each, however long they take.
 const FEWEST: usize = 3;
 /// Time after which no further runs of a plan begin.
 const LONGEST: Duration = Duration::from_secs(20);

@@ -100,7 +100,7 @@ fn bytes<const N: usize>(whole: &[u64]) -> [u8; N] {
     record
 }
 
-/// The records of the pings that are newer than those of the output before, the oldest of a sonar first.
+/// Returns the records of the pings that are newer than those of the previous output, the oldest ping of a sonar first.
 fn new_pings(y: &Output, before: Option<&Output>) -> Vec<record::Ping> {
     let mut records = Vec::new();
     for (sonar, pings) in (0_u64..).zip(&y.pings) {

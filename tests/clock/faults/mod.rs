@@ -97,7 +97,7 @@ impl Robot {
         RefCell::new(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap())
     }
 
-    /// Returns the row of a device that is no line, or that has no robot.
+    /// Returns the row of a device that is not a line, or that has no robot.
     fn without(&self, device: &Path) -> Row {
         let still = Way { metres: 0.0, time: Duration::ZERO };
         Row::of(self.started(device, IN_LOCKSTEP).into_inner().wait_with_output().unwrap(), still, None)

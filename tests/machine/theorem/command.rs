@@ -1,4 +1,4 @@
-//! Tests of `mdlec decompile` through the real binary: the paper's machines, and files that are no machines.
+//! Tests of `mdlec decompile` through the real binary: the paper's machines, and files that are not machines.
 
 use std::fmt::Write;
 use std::fs;

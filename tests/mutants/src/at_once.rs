@@ -101,7 +101,7 @@ impl<'m> AtOnce<'m> {
         self.checkout
     }
 
-    /// Marks the mutants that are no syntax as such: each of them would make the whole file invalid.
+    /// Marks the mutants that are not valid syntax: each of them would make the whole file invalid.
     fn refuse_what_is_no_syntax(&mut self, source: &Source) {
         for (standing, mutant) in self.mutants.iter_mut().filter(|(_, mutant)| mutant.file == source.file) {
             if syn::parse_file(&mutant.apply(&source.text)).is_err() {

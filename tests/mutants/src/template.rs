@@ -1,4 +1,4 @@
-//! Finder of changes inside `quote!`: in tokens of emitted code, some of which are no expressions yet.
+//! Finder of changes inside `quote!`: in tokens of emitted code, some of which are not expressions yet.
 
 use std::ops::Range;
 

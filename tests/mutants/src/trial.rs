@@ -56,7 +56,7 @@ const MEMORY: &str = "8388608";
 /// Result of a mutant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// The mutant is no valid program, so no test has to find it.
+    /// The mutant is not a valid program, so no test has to find it.
     DoesNotCompile,
     /// The test of this index failed.
     Caught(usize),

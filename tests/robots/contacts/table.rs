@@ -10,7 +10,7 @@ pub(super) struct Row {
     pub(super) worlds: &'static str,
     /// The reason why the plan asks for contact; empty if it does not.
     pub(super) asks: &'static str,
-    /// Greatest number of runs in a hundred with a contact that the plan does not ask for.
+    /// Maximum number of runs in a hundred with a contact that the plan does not ask for.
     pub(super) most: u64,
     /// The cause of such contacts.
     pub(super) cause: &'static str,

@@ -35,7 +35,7 @@ fn look(
                 let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
                 let starts = path.match_indices('.').map(|(at, _)| at + 1);
                 let ends: Vec<_> = [0].into_iter().chain(starts).map(|at| path[at..].to_owned()).collect();
-                // A key of the answer itself is no key of an object inside it.
+                // A key of the answer itself is not a key of an object inside it.
                 let inside = ends.iter().filter(|end| end.contains('.') || **end == path);
                 match inside.into_iter().find(|end| known.contains(*end)) {
                     Some(end) => _ = unused.remove(end),

@@ -99,7 +99,7 @@ impl Watch for Steps {
     }
 }
 
-/// Returns as many outputs as `turns`, each changed by `change` from the one before; its number comes with it.
+/// Returns as many outputs as `turns`, each changed by `change` from the previous one; its number comes with it.
 pub(super) fn outputs(turns: u64, mut change: impl FnMut(u64, &mut Sensed)) -> Vec<Sensed> {
     let mut y = first();
     let turns = (0..turns).map(|number| {
