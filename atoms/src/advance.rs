@@ -1,5 +1,5 @@
-//! `advance D v`: drives straight ahead, or back, by a length of path; a law of this project, beside the
-//! paper's `goAvoid` (section IV-A).
+//! `advance D v`: drives this distance straight ahead, or back; a law of this project, beside the paper's `goAvoid`
+//! (section IV-A).
 
 use mdle_runtime::capability::{DiffDrive, Odometry};
 use mdle_runtime::{Begin, Completes, Control, Law, Meters, MetersPerSecond, Nanos, Pose, Radians, Twist};
@@ -17,7 +17,7 @@ const NEAR: f64 = 0.01;
 /// Speed, in m/s, below which the robot counts as at rest.
 const AT_REST: f64 = 0.02;
 
-/// The control `advance`: `u_f = k(D − way so far)`, at most `v`, and `u_θ = k(θ_0 − θ)`.
+/// The control `advance`: `u_f = k(D − distance so far)`, at most `v`, and `u_θ = k(θ_0 − θ)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Advance {
     distance: Meters,

@@ -94,10 +94,10 @@ impl Aligning {
         self.sample(y).filter(|sample| sample.difference.abs() <= Gains::of(y).align_equal)
     }
 
-    /// Includes a measurement, which ends the law at equal ranges that the robot has passed.
+    /// Takes a sample. If the robot has just passed equal ranges, the law ends at the heading with these.
     ///
-    /// Pings of sonars that fire in turn belong to headings that are degrees apart, and err by an inch, so a
-    /// change of sign alone does not mean equal ranges.
+    /// Pings of sonars that fire in turn belong to headings that are degrees apart, and their ranges may be wrong by an
+    /// inch, so a change of sign alone does not mean equal ranges.
     fn take(&mut self, sample: Sample, in_turn: bool) {
         let Some(last) = self.last.replace(sample).filter(|last| *last != sample) else {
             self.best = self.best.or(Some(sample));
@@ -131,7 +131,7 @@ impl Aligning {
         match (heard(self.sonars.first), heard(self.sonars.second)) {
             (false, true) => fastest,
             (true, false) => -fastest,
-            // Nothing to align with; both heard is the business of `sample`.
+            // Neither sonar hears the wall, or both do, which `sample` handles.
             (false, false) | (true, true) => 0.0,
         }
     }
@@ -157,7 +157,7 @@ fn nearest<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<(&Ping, f64)> {
     heard.reduce(|one, other| if other.1 < one.1 { other } else { one })
 }
 
-/// Returns the heading at the fraction `part` of the shorter way from one heading to another.
+/// Returns the heading at the fraction `part` of the shorter turn from one heading to another.
 fn between(from: Radians, to: Radians, part: f64) -> Radians {
     Radians(from.0 + part * Radians(to.0 - from.0).wrapped().0)
 }

@@ -6,14 +6,14 @@ use mdle_runtime::{Meters, Nanos, Ping, Radians, SONARS, SonarId};
 
 use crate::directions::{CONE, DIRECTIONS, after, newest, off, towards};
 
-/// Multiple of the range below which a direction is blocked, up to which a wall counts as facing a diagonal.
+/// Maximum range of a wall that faces a diagonal, as a multiple of the range below which a direction is blocked.
 const ALSO_FACES: f64 = 1.5;
 /// Difference, in metres, below which ranges count as equal.
 const ALIKE: f64 = 0.06;
 /// Minimum angle between a diagonal and the axis of a ping that distinguishes a wall there from an edge.
 const BESIDE: Radians = Radians::from_degrees(16.0);
-/// Maximum distance, in metres, of an echo beyond the line of a wall that faces a diagonal. Beside the edge of
-/// a way, rough walls that run away from the edge are heard further away.
+/// Maximum distance, in metres, of an echo beyond the line of a wall that faces a diagonal. Beside the edge of a
+/// passage, rough walls that run away from the edge are heard further away.
 const OF_LINE: f64 = 0.04;
 
 /// Angles, in degrees, from one of the four directions to a smooth wall to which the robot is askew.
@@ -42,9 +42,9 @@ fn after_by(direction: SonarId, degrees: f64) -> Radians {
     Radians(direction.bearing().0 + Radians::from_degrees(degrees).0)
 }
 
-/// Returns `true` if a wall faces the diagonal counter-clockwise after `direction`: a near object is heard
-/// there and on both sides, nothing nearer than there, and no edge. An edge is heard in only one or two
-/// directions.
+/// Returns `true` if a wall faces the diagonal counter-clockwise after `direction`: near objects are heard there and on
+/// both sides, those on the sides are not nearer, and the objects are neither an edge nor a corner between two walls.
+/// An edge is heard in only one or two directions.
 fn faces_between<Y: SonarRing>(y: &Y, direction: SonarId) -> bool {
     let near = |further: usize| towards(y, after(direction, further)).filter(|range| is_near(y, *range));
     let (Some(before), Some(diagonal), Some(behind)) = (near(1), near(2), near(3)) else { return false };
@@ -79,9 +79,10 @@ struct Look {
     range: Option<Meters>,
 }
 
-/// Returns `true` if the last pings heard a smooth wall whose normal has this bearing: all but a few within `WIDTH` of
-/// the normal heard what a straight wall there returns, some of them on either side, and none heard anything from
-/// where a rough wall would be heard too. An edge is heard in half of that angle.
+/// Returns `true` if the last pings heard a smooth wall whose normal has this bearing. Within `WIDTH` of the normal,
+/// all pings but a few must return the range of a straight wall there, on either side and in the middle. Between the
+/// angles `BEYOND`, where a rough wall would be heard too, no ping may hear a near object. An edge is heard only within
+/// half of `WIDTH`.
 fn is_smooth_wall<Y: SonarRing>(y: &Y, bearing: Radians) -> bool {
     let ring = y.ring_radius().0;
     let looks = || looks(y, bearing);

@@ -34,7 +34,8 @@ pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, here: Pose, speed: f64) -
     (0..SONARS as u8).map(SonarId::new).filter_map(|sonar| comes(y, sonar, here, speed)).reduce(f64::max)
 }
 
-/// Returns the seconds until such a person has passed whom the sonar hears in all the pings kept.
+/// Returns the time, in seconds, until a person has passed whom this sonar has heard in all its kept pings, as
+/// [`crosses`] does; `None` if it hears no such person.
 fn comes<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, speed: f64) -> Option<f64> {
     const { assert!(PINGS_KEPT == 3) };
     if sonar.bearing().wrapped().0.abs() > core::f64::consts::FRAC_PI_2 {

@@ -1,4 +1,4 @@
-//! The echoes that sonars have heard in the four directions of a robot, whichever sonar faced there.
+//! The echoes that a robot's sonars have heard in its four directions, no matter which sonar faced there.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Ping, Radians, SONARS, SonarId};
@@ -73,7 +73,8 @@ pub(crate) fn off<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping:
 }
 
 /// Returns `true` if the near echo of this ping may be of a wall along the way in `direction`: the ping looked to the
-/// side of that wall, and the edge of its cone reaches it. A rough wall along the way is heard so, and closes nothing.
+/// side of that wall, and the edge of its cone reaches it. A rough wall along the way causes such echoes without
+/// blocking the way.
 fn is_of_side<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Ping) -> bool {
     let Some(range) = ping.range.filter(|range| *range < y.blocked_within()) else { return false };
     let (Radians(off), here) = (off(y, direction, sonar, ping), y.here());
@@ -98,9 +99,9 @@ fn nearest(pings: [Option<(SonarId, &Ping)>; 2]) -> Option<Meters> {
     heard.reduce(|one, other| if other < one { other } else { one })
 }
 
-/// Returns the range of a wall that a sonar no longer hears in its two last pings, because they missed it, strayed, or
-/// look past it by now. The sonar must have heard the wall before, and both its neighbours must have heard it lately
-/// and nothing further.
+/// Returns the range of a wall that the third-last ping of a sonar heard and its two last pings did not: they returned
+/// no echo or a wrong range, or the sonar has turned past the wall. Both neighbours of the sonar must have heard the
+/// wall lately, and nothing further away.
 fn overheard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<Meters> {
     let [new, old, before] = [0, 1, 2].map(|number| y.pings(sonar).newest_first().nth(number)?.range);
     let before = before.filter(|range| *range < y.blocked_within())?;

@@ -10,7 +10,7 @@ const WIDE: Meters = Meters(0.3);
 /// Parameters of the laws that differ from body to body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Gains {
-    /// `align`: the fastest turn, in rad/s. Where sonars fire in turn, the ranges are older.
+    /// `align`: maximum turn rate, in rad/s. Where sonars fire in turn, the ranges are older.
     pub(crate) align_fastest: f64,
     /// `align`: maximum difference, in metres, at which ranges count as equal. 8 mm correspond to 2° in a
     /// hallway 1.5 m wide, for sonars of 25°. Where sonars fire in turn, it is an inch, the resolution of the
@@ -24,7 +24,7 @@ pub(crate) struct Gains {
     /// obstacles may be nearer meanwhile.
     pub(crate) look_ahead: Meters,
     /// `goAvoid`: distance between the body and an obstacle, in metres, at which a way still counts as free. A doorway
-    /// 15 cm wider than the body leaves 7.5 cm on both sides, of which errors of ranges of 1.5 cm and drift take some.
+    /// 15 cm wider than the body leaves 7.5 cm on both sides; drift, and errors of ranges of 1.5 cm, reduce them.
     pub(crate) hard_margin: f64,
     /// `goAvoid`: range, in metres, below which an obstacle may be nearer than it is heard: a Scout reports 6 inches
     /// for anything nearer, so that a wall into which it drifts looks parallel.

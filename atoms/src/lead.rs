@@ -88,7 +88,7 @@ impl<Y: DiffDrive> DiffDrive for Group<'_, Y> {
 
 impl<Y: SonarRing> SonarRing for Group<'_, Y> {
     fn pings(&self, sonar: SonarId) -> &Pings {
-        // A number of a sonar is below that of all.
+        // A sonar's number is below `SONARS`, so there is always a place for it.
         self.heard.get(sonar.number()).unwrap_or_else(|| self.y.pings(sonar))
     }
 
@@ -138,7 +138,7 @@ fn take<Y: SonarRing + StateLink>(heard: &mut [Pings; SONARS], y: &Y, since: Opt
 impl<Y: DiffDrive + Odometry + SonarRing + StateLink> Control<Y> for Lead {
     type Law = Leading;
 
-    // Not inlined, so that the law is written once, where it is to be.
+    // Not inlined, so that the large law is constructed only once, in its final place.
     #[inline(never)]
     fn begin(&self, y: &Y, begin: Begin) -> Leading {
         let mut heard = [Pings::default(); SONARS];

@@ -71,10 +71,10 @@ pub(crate) struct Map {
     evidence: [u8; BYTES],
     /// The cell with the smallest numbers.
     pub(crate) corner: Cell,
-    /// Time up to which pings of each third of the sonars have been taken in; `None` before the first. Sonars that
-    /// fire in turn all belong to the first.
+    /// Time up to which the pings of each third of the sonars have been read; `None` before the first reading. Sonars
+    /// that fire in turn all belong to the first third.
     taken: [Option<Nanos>; THIRDS],
-    /// Number of the third that is taken in next.
+    /// Number of the third that is read next.
     third: usize,
 }
 
@@ -86,8 +86,8 @@ impl Map {
         third: 0,
     };
 
-    /// Takes in the pings since the last turn, made around `here`. Where all sonars ping in every turn, each counts in
-    /// every third turn, which is as often as those that fire in turn.
+    /// Updates the map with the pings since the last turn; the robot is at `here`. On a robot whose sonars all ping in
+    /// every turn, each sonar is read in every third turn, about as often as a sonar pings that fires in turn.
     pub(crate) fn take<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose) {
         self.move_to(here);
         let least = Gains::of(y).least_range;
@@ -119,7 +119,8 @@ impl Map {
         }
     }
 
-    /// Records that a ping passed from this place in the direction of `axis`.
+    /// Marks as free the cells that a ping from this place passed in the direction of `axis`, up to the distance
+    /// `free`.
     fn pass(&mut self, from: Pose, axis: Radians, free: f64) {
         let steps = libm::floor(free / CELL).max(0.0) as i32;
         for (degrees, begin) in RAYS {
@@ -133,7 +134,7 @@ impl Map {
         }
     }
 
-    /// Returns `true` if an object is known to be nearer than `least`.
+    /// Returns `true` if the map already has an object nearer than `least` in the cone of a sonar at this place.
     fn explains(&self, from: Pose, axis: Radians, least: f64) -> bool {
         ARC.iter().any(|degrees| {
             let (sin, cos) = libm::sincos(axis.0 + 2.0 * degrees.to_radians());
@@ -145,7 +146,8 @@ impl Map {
         })
     }
 
-    /// Records an echo: at the place where the map knows most of an object, or anywhere on its arc.
+    /// Records an echo. If a cell on the echo's arc is occupied, the cells with the most evidence get more; otherwise
+    /// all cells on the arc become occupied.
     fn hit(&mut self, from: Pose, axis: Radians, range: f64) {
         let cells = ARC.map(|degrees| {
             let (sin, cos) = libm::sincos(axis.0 + degrees.to_radians());
@@ -160,13 +162,13 @@ impl Map {
         });
     }
 
-    /// Returns the evidence for an object in a cell; that of an unknown cell off the map.
+    /// Returns the evidence for an object in a cell; outside the map, the evidence of an unknown cell.
     fn evidence(&self, cell: Cell) -> u8 {
         let (place, shift) = place(cell);
         self.evidence.get(place).filter(|_| self.contains(cell)).map_or(UNKNOWN, |byte| byte >> shift & 15)
     }
 
-    /// Changes cells, each once where it comes several times in a row.
+    /// Changes cells; a cell that is repeated in a row is changed only once.
     fn once(&mut self, cells: impl Iterator<Item = Cell>, to: impl Fn(u8) -> u8) {
         let mut last = None;
         for cell in cells {
@@ -177,7 +179,7 @@ impl Map {
         }
     }
 
-    /// Moves the map so that the robot is in its middle, and forgets what is no longer on it.
+    /// Moves the map so that the robot is in its middle, and forgets the cells that are no longer on the map.
     fn move_to(&mut self, here: Pose) {
         let Cell { x, y } = Cell::of(here.x.0, here.y.0);
         let corner = Cell { x: x - CELLS / 2, y: y - CELLS / 2 };
@@ -198,7 +200,7 @@ impl Map {
 
     /// Returns `true` if the cell is on the map.
     pub(crate) fn contains(&self, cell: Cell) -> bool {
-        // A number below 0 is a great one without its sign.
+        // Without its sign, a negative number is a large one.
         let is_within = |place: i32| (place as u32) < CELLS as u32;
         is_within(cell.x - self.corner.x) && is_within(cell.y - self.corner.y)
     }
@@ -214,14 +216,14 @@ impl Map {
         }
     }
 
-    /// Returns `true` if the cell is occupied; `false` off the map.
+    /// Returns `true` if the cell is occupied; `false` outside the map.
     pub(crate) fn is_occupied(&self, cell: Cell) -> bool {
         self.evidence(cell) >= OCCUPIED
     }
 
-    /// Returns the cells in which something is.
+    /// Returns the occupied cells.
     pub(crate) fn occupied(&self) -> impl Iterator<Item = Cell> {
-        // Most bytes are of two cells without anything.
+        // Most bytes contain two cells that are not occupied.
         let bytes = (0..).zip(&self.evidence).filter(|(_, byte)| **byte & 15 >= OCCUPIED || **byte >> 4 >= OCCUPIED);
         let cells = bytes.flat_map(|(number, _)| {
             let (x, y) = (2 * (number % (CELLS / 2)), number / (CELLS / 2));
@@ -232,7 +234,7 @@ impl Map {
         cells.filter(|cell| self.is_occupied(*cell))
     }
 
-    /// Returns `true` if no ping has passed the cell.
+    /// Returns `true` if the map has no evidence about the cell.
     pub(crate) fn is_unknown(&self, cell: Cell) -> bool {
         self.evidence(cell) == UNKNOWN
     }

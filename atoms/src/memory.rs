@@ -32,7 +32,7 @@ pub(crate) struct Memory {
 impl Memory {
     pub(crate) const EMPTY: Self = Self { echoes: [Echo { x: 0.0, y: 0.0, at: Nanos::ZERO }; PLACES], count: 0 };
 
-    /// Takes in the newest ping of each sonar.
+    /// Stores the places of the sonars' newest echoes, except those beyond `NEAR`.
     pub(crate) fn take<Y: SonarRing>(&mut self, y: &Y) {
         for number in 0..SONARS as u8 {
             let sonar = SonarId::new(number);
@@ -51,7 +51,7 @@ impl Memory {
     fn keep(&mut self, heard: Echo) {
         let same = |place: &Echo| {
             let (x, y) = (place.x - heard.x, place.y - heard.y);
-            // One axis alone tells most places apart.
+            // Most places differ enough along one axis alone.
             x.abs() < ONE_PLACE && y.abs() < ONE_PLACE && libm::hypot(x, y) < ONE_PLACE
         };
         if let Some(place) = self.echoes.iter_mut().take(self.count).find(|place| same(place)) {

@@ -9,7 +9,7 @@ use crate::go_avoid::{GoAvoid, GoingRound};
 const BEARING: &str = "bearing";
 /// Attribute of a module with the distance to a point, in metres.
 const RANGE: &str = "range";
-/// Number that every module has: the time since it published what the plan reads of it, in seconds.
+/// Number that every module has: the time since it published the attributes that the plan reads, in seconds.
 const AGE: &str = "age";
 /// Age from which a direction is stale.
 const STALE: Nanos = Nanos(2_000_000_000);
@@ -18,7 +18,7 @@ const FAR: Meters = Meters(5.0);
 /// Speed where the way is free.
 const SPEED: MetersPerSecond = MetersPerSecond(0.2);
 
-/// Declares signals of modules: the type, what it is, and how it is read.
+/// Declares signals of modules: for each, the name of the type, its doc comment, and the expression of its value.
 macro_rules! signals {
     ($($name:ident $doc:literal |$y:ident, $module:ident| $value:expr;)*) => {$(
         #[doc = $doc]
@@ -52,8 +52,7 @@ signals! {
         |y, module| y.published(module, AGE).map_or(f64::INFINITY, |number| number.value);
 }
 
-/// The control `goAvoid` that drives around obstacles towards the goal that a module publishes, wherever it
-/// moves.
+/// The control `goAvoid` that drives around obstacles towards the goal that a module publishes; the goal may move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct GoAvoid2(&'static str);
 
@@ -94,7 +93,7 @@ impl<Y: DiffDrive + Odometry + SonarRing + Modules> Law<Y> for Following {
             let range = y.published(self.module, RANGE).map_or(FAR, |range| Meters(range.value));
             let heading = Radians(y.pose().theta.0 + bearing.value - self.begin.frame.0.0);
             let goal = Control::<Y>::begin(&GoAvoid::new(heading, range, SPEED), y, Begin { now: t, ..self.begin });
-            // Where obstacles are, it remembers.
+            // The law keeps its memory of obstacles.
             let law = self.towards.map_or(goal, |(_, before)| before.with_goal_of(&goal, y.pose()));
             self.towards = Some((bearing.at, law));
         }

@@ -15,12 +15,12 @@ const ROOM: f64 = 0.1;
 const LEAVES: Meters = Meters(0.4);
 /// Time between two searches for a way.
 const SEARCHES: Nanos = Nanos(500_000_000);
-/// Time for which the last way remains valid when none is found, since single pings close and open gaps on the
+/// Time for which the last way remains valid when the searches find none, since single pings close and open gaps on the
 /// map.
 const COUNTS: Nanos = Nanos(2_000_000_000);
 /// Maximum speed, in m/s.
 const FASTEST: f64 = 0.12;
-/// Distance, in metres, of the place that a rectangle drives to where there is no way.
+/// Distance, in metres, of the place to which a rectangle drives if there is no way on the map.
 const AHEAD: Meters = Meters(0.4);
 /// Maximum time for which the robot stands and turns; then it continues with less room, as cells are coarse.
 const STANDS: Nanos = Nanos(4_000_000_000);
@@ -43,7 +43,7 @@ impl Narrow {
     pub(crate) const EMPTY: Self =
         Self { map: Map::EMPTY, way: None, searched: Nanos::ZERO, found: Nanos::ZERO, stands: None };
 
-    /// Takes in the pings since the last turn, made around `here`.
+    /// Updates the map with the pings since the last turn; the robot is at `here`.
     pub(crate) fn take<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose) {
         self.map.take(y, here);
     }

@@ -48,7 +48,7 @@ impl Default for Passers {
 }
 
 impl Passers {
-    /// Includes the pings of people on the way in the direction `goal` at this speed.
+    /// Updates the state with the pings of a turn, for a robot that drives in the direction `goal` at this speed.
     pub(crate) fn take<Y: DiffDrive + SonarRing>(
         &mut self,
         y: &Y,

@@ -1,8 +1,8 @@
 //! `path file`: replays the headings and forward speeds of a file (paper, section IV-A).
 //!
-//! Between two setpoints both go from one to the other in a straight line, the heading the shortest way round. So what
-//! a path asks for depends neither on the period of the turns that recorded it nor on that of the turns that replay it;
-//! held until the next setpoint, both would lag by half a row, and a heading would come in steps.
+//! Between two setpoints, heading and speed are interpolated linearly, the heading along the shorter turn. So the
+//! replay depends neither on the period of the turns that recorded the path nor on that of the turns that replay it. If
+//! the setpoints were held, heading and speed would lag by half a row, and the heading would change in steps.
 
 use mdle_runtime::capability::{DiffDrive, Odometry, Paths};
 use mdle_runtime::{
@@ -11,15 +11,15 @@ use mdle_runtime::{
 
 use crate::heading::turning;
 
-/// `u_f = v_s(t)`, `u_θ = dα_s/dt + k(α_s(t) − θ)`: without the first term the heading would lag in every bend, by half
-/// a second of it.
+/// The control `path`: `u_f = v_s(t)`, `u_θ = dα_s/dt + k(α_s(t) − θ)`. Without the first term of `u_θ`, the heading
+/// would lag by half a second in every bend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Path {
     file: &'static str,
 }
 
 impl Path {
-    /// Returns the quark `path file`: headings are meant in the frame in which the atom begins.
+    /// Returns the quark `path file`; the headings of the file are relative to the frame in which the atom begins.
     #[must_use]
     pub const fn new(file: &'static str) -> Self {
         Self { file }
@@ -48,8 +48,8 @@ struct Asked {
 }
 
 impl Asked {
-    /// Returns what `path` asks for at the time `at` after its begin; `None` before its first setpoint and from its
-    /// last one on.
+    /// Returns the interpolated setpoint of `path` at the time `at` after its begin; `None` before its first setpoint
+    /// and from its last one on.
     fn of(path: &[Setpoint], at: Nanos) -> Option<Self> {
         let next = path.partition_point(|setpoint| setpoint.at <= at);
         let (from, to) = (path.get(next.checked_sub(1)?)?, path.get(next)?);

@@ -41,7 +41,7 @@ impl<Y: SonarRing> Signal<Y> for Age {
     }
 }
 
-/// Declares signals of odometry: the type, what it is, and how it is read.
+/// Declares signals of odometry: for each, the name of the type, its doc comment, and the expression of its value.
 macro_rules! signals {
     ($($name:ident $doc:literal |$y:ident| $value:expr;)*) => {$(
         #[doc = $doc]

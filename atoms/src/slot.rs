@@ -7,9 +7,10 @@ use mdle_runtime::{
 
 /// Speed of the correction, in m/s for each metre off the place.
 const CORRECTS: f64 = 1.0;
-/// Distance ahead of the centre of the point that is steered, in metres: a point of the axle cannot move sideways.
+/// Distance of the steered point ahead of the robot's centre, in metres: a point on the axle cannot move sideways.
 const AHEAD: f64 = 0.1;
-/// Time constant with which the formation turns after its leader, in seconds: its outer places would be too fast.
+/// Time constant with which the formation turns after its leader, in seconds: without it, outer places would be too
+/// fast.
 const TURNS_IN: f64 = 1.5;
 /// Age from which the leader's state is stale.
 const SILENT: Nanos = Nanos(1_000_000_000);

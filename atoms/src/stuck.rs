@@ -1,5 +1,5 @@
-//! `stuck T`: fires when the law that runs makes no progress towards its goal; ours, next to the paper's `goAvoid`
-//! (docs/src/reference/semantics.md, 3.5).
+//! `stuck T`: fires when the law that runs makes no progress towards its goal; an interrupt of this project, beside the
+//! paper's `goAvoid` (docs/src/reference/semantics.md, 3.5).
 
 use mdle_runtime::capability::Odometry;
 use mdle_runtime::{Interrupt, Meters, Nanos, Pose};
@@ -52,7 +52,7 @@ impl Progress {
         Self { from: Meters(self.from.0 + further.0), ..self }
     }
 
-    /// Includes the pose of a turn.
+    /// Updates the progress with the pose of a turn.
     pub(crate) fn take(&mut self, here: Pose, goal: &Pose, now: Nanos) {
         let distance = here.distance(goal);
         if self.is_made(distance) {

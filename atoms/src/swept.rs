@@ -29,8 +29,9 @@ const ROOM: f64 = 0.12;
 const CLOSE: f64 = 0.08;
 /// Cost of turning on the spot, in metres, so that a turn must bring the robot further than that.
 const STANDING_COSTS: f64 = 0.06;
-/// Cost of a radian off the place, in metres, and where the body cannot turn on the way there.
+/// Cost, in metres, of each radian by which the body faces off the place.
 const OFF_COSTS: f64 = 0.15;
+/// Cost, in metres, of each radian by which the body faces off a place on the way to which it cannot turn.
 const OFF_COSTS_STRAIGHT: f64 = 1.0;
 
 /// The place to which a body moves.
@@ -49,8 +50,9 @@ pub(crate) struct Aim {
 pub(crate) struct Surroundings {
     points: [(f64, f64); POINTS],
     count: usize,
-    /// Half of the length and of the width of a rectangle that `radius` surrounds; 0 for a disc.
+    /// Half the length of a rectangle that `radius` surrounds; 0 for a disc.
     half_length: f64,
+    /// Half the width of a rectangle that `radius` surrounds; 0 for a disc.
     half_width: f64,
     radius: f64,
 }
@@ -110,7 +112,7 @@ impl Surroundings {
         for part in SPEEDS {
             for omega in RATES {
                 let v = speed.0 * part;
-                // A disc gets free by a turn.
+                // A disc can turn on the spot, so it need not drive back.
                 if v == 0.0 && omega == 0.0 || v < 0.0 && self.half_length == 0.0 {
                     continue;
                 }

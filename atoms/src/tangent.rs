@@ -149,7 +149,7 @@ impl Obstacles {
         }
     }
 
-    /// Includes the places that `memory` keeps; returns the number of points before.
+    /// Adds the places that `memory` keeps; returns the number of points before this.
     pub(crate) fn remember(&mut self, memory: &Memory, here: Pose, now: Nanos) -> usize {
         let seen = self.count;
         memory.around(here, now).for_each(|(x, y)| self.push(Point { x, y }));
@@ -170,7 +170,7 @@ impl Obstacles {
     fn free_along(&self, axis: Axis) -> Meters {
         let mut free = FREE_MOST;
         for (along, across) in self.along(axis) {
-            // A point whose whole margin lies further away is quickly seen.
+            // A quick check skips points whose whole margin lies further away.
             if along > 0.0 && across.abs() < self.hard && along - self.nose - self.hard < free {
                 free = free.min(along - self.nose - libm::sqrt(self.hard * self.hard - across * across));
             }
@@ -188,7 +188,7 @@ impl Obstacles {
         let place = self.gains.room_at.min(free.0).max(0.0);
         let mut least = f64::INFINITY;
         for (along, across) in self.along(axis) {
-            // Most points lie further away by one axis alone, which is quickly seen.
+            // A quick check skips most points, which lie further away along one axis alone.
             if back < along && along < ahead && (along - place).abs() < least && across.abs() < least {
                 least = least.min(libm::hypot(along - place, across));
             }
@@ -201,8 +201,8 @@ impl Obstacles {
     pub(crate) fn best(&self, wish: &Wish) -> Radians {
         let mut best = (f64::INFINITY, 0, 0.0);
         for number in 0..DIRECTIONS {
-            // From the goal's direction outwards, so that most others are known to be worse without a look at any
-            // point.
+            // From the goal's direction outwards, so that most other directions are skipped before any point is
+            // examined.
             let step = if number % 2 == 0 { number / 2 } else { -(number + 1) / 2 };
             let offset = Radians::from_degrees(f64::from(step) * (360.0 / f64::from(DIRECTIONS))).0;
             let counted = wish.side.map_or(offset, |side| side.counted(offset));
@@ -211,7 +211,7 @@ impl Obstacles {
                 continue;
             }
             let Some(cost) = self.cost(counted, turns, wish, best.0) else { continue };
-            // Of two that are equally good, the one further clockwise.
+            // Of two equally good directions, the one further clockwise.
             if cost < best.0 || cost == best.0 && step < best.1 {
                 best = (cost, step, counted);
             }

@@ -50,12 +50,12 @@ impl Sensed {
         Self { pose: Pose { theta: Radians::from_degrees(degrees), ..Pose::ORIGIN }, ..Self::default() }
     }
 
-    /// Includes a ping from the robot's current pose.
+    /// Adds a ping from the robot's current pose.
     pub(crate) fn ping(&mut self, sonar: SonarId, range: Option<f64>) {
         self.ping_at(sonar, range, Nanos::ZERO);
     }
 
-    /// Includes a ping at this time from the robot's current pose.
+    /// Adds a ping at this time from the robot's current pose.
     pub(crate) fn ping_at(&mut self, sonar: SonarId, range: Option<f64>, at: Nanos) {
         let ping = Ping { range: range.map(Meters), at, pose: self.pose, mount: Mount::default() };
         self.pings.get_mut(sonar.number()).expect("one of the sixteen").push(ping);

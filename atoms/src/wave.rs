@@ -1,5 +1,5 @@
-//! A wave over a map, which starts at the goal, or at the edge of the map on the way to the goal, and has
-//! higher costs beside obstacles.
+//! Costs of the ways to the goal from each cell of a map. They spread as a wave from the goal, or from the edge of the
+//! map on the way to it; cells beside obstacles cost more.
 
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Meters, Pose};
@@ -32,7 +32,8 @@ const UNKNOWN: usize = 5;
 const PASSES: u32 = 12;
 /// Distance, in metres, by which the goal must be nearer at the end of a way.
 const GAINS: f64 = 0.5;
-/// Distance of the far edge of the map, in metres, from which distances count.
+/// Distance from the robot, in metres, to just beyond the corners of the map. The remaining distance to the goal is
+/// left out of the costs, so that they fit into a cell.
 pub(crate) const EDGE: f64 = 2.4;
 
 /// The ends of ways on a map.
@@ -43,9 +44,10 @@ pub(crate) struct Ends {
     /// Distance from the goal at which the robot is near enough: a goal near a wall, or in it by odometry's drift, lies
     /// where the body has no room.
     pub(crate) near: Meters,
-    /// Distance of the goal from which a way must lead nearer before it leaves the map.
+    /// Reference distance from the goal: a way may leave the map only where it is nearer to the goal by at least
+    /// `GAINS`.
     pub(crate) from: Meters,
-    /// Distance from the goal, in metres, from which distances count.
+    /// Length, in metres, that is subtracted from all distances from the goal.
     pub(crate) base: f64,
 }
 
@@ -64,7 +66,7 @@ struct Rows {
 impl Rows {
     const NONE: Self = Self { forth: 0, back: 0 };
 
-    /// Notes that a distance in row `y` has changed.
+    /// Records that a distance in row `y` has changed.
     fn changes(&mut self, y: i32) {
         let row = 1_u64 << y;
         self.forth |= row | row << 1;
@@ -77,7 +79,7 @@ impl Rows {
     }
 }
 
-/// The place of a cell of the map, given by its numbers from the corner.
+/// Returns the index of a cell in a wave, given the cell's numbers from the corner of the map.
 pub(crate) fn index(x: i32, y: i32) -> usize {
     (y + 1) as usize * SIDE + (x + 1) as usize
 }
@@ -99,15 +101,15 @@ impl Wave {
     /// The wave before it starts.
     pub(crate) const NONE: Self = Self { cells: [DISTANCE; SIDE * SIDE] };
 
-    /// Lets a wave start from the ends of ways over the map of this body.
+    /// Computes the wave over a map for this body, from the ends of ways.
     pub(crate) fn start<Y: DiffDrive>(&mut self, map: &Map, ends: &Ends, y: &Y) {
         self.measure(map, y);
         let rows = self.seed(map, ends);
         self.spread(rows);
     }
 
-    /// Returns the cost from a cell to the goal, in centimetres, minus the distance from which costs count;
-    /// `None` if no way leads to the goal.
+    /// Returns the cost from a cell to the goal, in centimetres, minus the cost of the length `base`; `None` if no way
+    /// leads to the goal.
     pub(crate) fn left(&self, cell: usize) -> Option<i32> {
         let left = self.at(cell) & DISTANCE;
         (left < DISTANCE).then_some(left.into())
@@ -155,7 +157,7 @@ impl Wave {
             };
             CLASSES.iter().enumerate().position(is_below).unwrap_or(CLASSES.len() - 1)
         };
-        // Most rooms are small, or as large as can be.
+        // Most cells have little room, or the room of a map without obstacles.
         let (small, large) = (core::array::from_fn::<_, SMALL, _>(|room| class_of(room as i32)), class_of(LARGE));
         for (x, y, place) in all() {
             let room = i32::from(self.at(place));
@@ -165,7 +167,7 @@ impl Wave {
             if class > UNKNOWN && map.is_unknown(cell) {
                 class = UNKNOWN;
             }
-            // The robot is where it is.
+            // The robot can drive in the cells that it covers, even if an error of the map blocks them.
             if class == 0 && (x - CELLS / 2).abs() <= 2 && (y - CELLS / 2).abs() <= 2 {
                 class = 1;
             }
@@ -173,7 +175,8 @@ impl Wave {
         }
     }
 
-    /// Passes over the rows of the map to and fro once. `factor` is that of a cell's cost.
+    /// Passes over the rows of the map once forwards and once backwards. `factor` returns the factor of a cell's cost,
+    /// given the cell's value.
     fn pass(&mut self, rows: &mut Rows, factor: impl Fn(u16) -> u16) {
         for y in 0..CELLS {
             if rows.forth >> y & 1 == 1 && self.relax((0..CELLS).map(|x| index(x, y)), &factor, |cell, off| cell - off)
@@ -216,7 +219,7 @@ impl Wave {
         changes
     }
 
-    /// Sets the distances where ways end; returns the rows that may change by it.
+    /// Sets the distances of the cells in which ways end; returns the rows in which distances may change as a result.
     fn seed(&mut self, map: &Map, Ends { goal, near, from, base }: &Ends) -> Rows {
         let (corner, end, mut rows) = (map.corner, Cell::of(goal.x.0, goal.y.0), Rows::NONE);
         for (column, row, place) in all() {

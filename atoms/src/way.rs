@@ -1,6 +1,6 @@
-//! The way to where the robot is nearer to its goal: the shortest one on a map. A rectangle keeps to it until another
-//! is much shorter, and goes straight through places in which it cannot turn: from the last place before, in which it
-//! turns to the first place beyond.
+//! The shortest way on a map to a place nearer to the goal. A rectangle keeps to its way until another one is much
+//! shorter. It goes straight through places in which it cannot turn: in the last place before them, it turns to the
+//! first place beyond them.
 
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians};
@@ -31,7 +31,7 @@ pub(crate) struct Ahead {
     pub(crate) goal: Pose,
     /// Distance from the goal at which the robot is near enough.
     pub(crate) near: Meters,
-    /// Distance of the goal from which a way must lead nearer.
+    /// Distance from the goal that a way must reduce.
     pub(crate) from: Meters,
     /// Direction that the rule has chosen.
     pub(crate) chosen: Radians,
@@ -63,7 +63,7 @@ pub(crate) struct Next {
 pub(crate) fn way<Y: DiffDrive>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> Option<Next> {
     let (goal, straight) = (&ahead.goal, here.distance(&ahead.goal).0);
     let base = (straight - EDGE).max(0.0);
-    // Made where it stays: a copy would take as much of the stack again.
+    // Constructed in place: a copy would take the same space on the stack again.
     let mut wave = Wave::NONE;
     wave.start(map, &Ends { goal: *goal, near: ahead.near, from: ahead.from, base }, y);
     let way = Way { wave: &wave, here: index(CELLS / 2, CELLS / 2) };

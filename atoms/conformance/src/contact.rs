@@ -9,8 +9,9 @@ use super::room::AT;
 use super::trial::{Trial, Way};
 use super::{Out, Room, Stage, Verdict};
 
-/// Distance of the wall from the body, in metres, and the speed towards it, in m/s.
+/// Distance of the wall from the body, in metres.
 const AWAY: f64 = 0.4;
+/// Speed towards the wall, in m/s.
 const V: f64 = 0.1;
 /// Maximum gap, in metres, between the body and a wall that it feels, beyond the distance that it drives in one period.
 const FEELS: f64 = 0.02;

@@ -10,15 +10,17 @@ use super::{Room, Stage, Verdict};
 
 /// Tolerance of the body's motion, as a fraction of the commanded motion.
 pub(super) const PART: f64 = 0.06;
-/// Additional tolerance of the body's motion, in metres and in radians.
+/// Additional tolerance of the body's motion, in metres.
 pub(super) const METRES: f64 = 0.02;
+/// Additional tolerance of the body's turn, in radians.
 pub(super) const RADIANS: f64 = 0.03;
 /// Time, in seconds, after which a body must have the commanded speed.
 pub(super) const SETTLES: f64 = 0.8;
-/// Time for which the motion is measured after that, in seconds.
+/// Time after `SETTLES`, in seconds, for which the motion is measured.
 pub(super) const SECONDS: f64 = 2.0;
-/// Commanded speeds, in m/s and rad/s.
+/// Commanded speed, in m/s.
 pub(super) const V: f64 = 0.2;
+/// Commanded turn rate, in rad/s.
 pub(super) const OMEGA: f64 = 0.4;
 /// Maximum motion of a body at rest, in metres and radians.
 const STANDS: (f64, f64) = (0.01, 0.02);
@@ -71,7 +73,7 @@ pub(super) fn ignores_what_is_no_number<S: Stage>(stage: &mut S) -> Result<(), V
     for (v, omega) in [(f64::NAN, 0.0), (0.0, f64::NAN), (f64::INFINITY, 0.0), (0.0, f64::NEG_INFINITY)] {
         let mut trial = Trial::of(stage, &Room::open())?;
         let from = trial.truth();
-        // Whether that is a fault is for the robot to say.
+        // The robot decides if such an input is a fault.
         for _ in 0..10 {
             if trial.robot.exchange(&twist(v, omega)).is_err() {
                 break;
@@ -134,7 +136,7 @@ pub(super) fn stops<S: Stage>(stage: &mut S) -> Result<(), Verdict> {
         let from = trial.truth();
         trial.robot.stop().map_err(|fault| format!("its stop command failed: {fault}"))?;
         let way = Way::between(from, trial.truth());
-        // For a period it may not have heard of it.
+        // The robot may obey the stop a period late.
         let brakes = |speed: f64, by: f64| speed.abs() * S::PERIOD.seconds() + speed * speed / (2.0 * by);
         let (most, round) = (METRES + brakes(v, BRAKES.0), RADIANS + brakes(omega, BRAKES.1));
         if way.far() > most || way.turn.abs() > round {

@@ -11,8 +11,8 @@ use super::ring::HEARD;
 use super::trial::{Trial, Way, lasting};
 use super::{Out, Room, Stage, Verdict};
 
-/// Tolerance of the final heading of a law that turns, in degrees, in addition to a fraction of the turn: 2
-/// degrees of the law's own, and the error of odometry.
+/// Tolerance of the final heading of a law that turns, in degrees, in addition to a fraction of the turn: 2 degrees
+/// that the law tolerates, and the error of odometry.
 const DONE: f64 = 5.0;
 /// Tolerance of the heading of `align`, in degrees; its ranges may be wrong by an inch and old by a second.
 const SQUARE: f64 = 8.0;

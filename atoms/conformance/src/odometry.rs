@@ -105,7 +105,7 @@ where
         }
         let (went, way) = (Way::between(began, trial.truth()), Way::between(from, last));
         let did = format!("the body turned by more than a circle, and {:.2} rad", went.turn);
-        // What a circle adds up to may be off by part of a circle.
+        // The error may grow with the angle turned, which is more than a circle.
         let off = Radians(way.turn - went.turn).wrapped().0;
         counted(&format!("{did}; its odometry's heading is off by"), "rad", off, 0.0, RADIANS + PART * 7.0)?;
     }

@@ -14,9 +14,9 @@ pub(super) const HEARD: f64 = 3.2;
 /// Tolerance of a range, in metres: for a sonar with a resolution of an inch, which need not be mounted exactly
 /// on the ring.
 const RANGE: f64 = 0.05;
-/// Distances from the centre, in metres, of the walls in front of the sonars, all different. Walls with even
-/// numbers are nearer, since some robots listen to two sonars there, beside which the next walls are. No order
-/// of the distances equals another one reversed or shifted.
+/// Distances from the centre, in metres, of the walls in front of the sonars, all different. Walls with even numbers
+/// are nearer, since some robots listen to two sonars there, beside which the next walls are. The sequence differs from
+/// each of its rotations and reversals.
 const WALLS: [f64; SONARS] =
     [1.08, 1.71, 0.75, 2.37, 1.41, 1.93, 0.86, 1.60, 1.19, 2.15, 0.97, 2.26, 1.52, 1.82, 1.30, 2.04];
 /// Half the width of a wall with an even and with an odd number, per metre of its distance, so that
@@ -147,14 +147,14 @@ where
     };
     trial.drive(0.0, 0.0, HEARD)?;
     check(&trial, "standing", RANGE)?;
-    // What it hears on the way is up to a second old.
+    // Ranges heard while driving are up to a second old.
     trial.drive(0.2, 0.0, 3.0)?;
     check(&trial, "driving at 0.2 m/s", RANGE + 0.25)?;
     trial.drive(0.0, 0.0, HEARD)?;
     check(&trial, "standing", RANGE)?;
     trial.drive(0.1, 0.0, 5.0)?;
     trial.drive(0.0, 0.0, HEARD)?;
-    // So near, a sonar may say the least that it can hear.
+    // At this distance, a sonar may report its minimum range.
     Ok(check(&trial, "in contact", RANGE + 0.25)?)
 }
 

@@ -8,10 +8,11 @@ use mdle_runtime::{Argument, Meters, MetersPerSecond, Pose, Radians};
 use super::trial::{Trial, Way};
 use super::{Out, Room, Stage, Verdict};
 
-/// Maximum distance from the goal at the end, in metres: 0.12 m of the law's own, and the error of odometry.
+/// Maximum distance from the goal at the end, in metres: 0.12 m that the law tolerates, and the error of odometry.
 const ARRIVED: f64 = 0.2;
-/// Distance of the goal, in metres, and the speed, in m/s.
+/// Distance of the goal from the start, in metres.
 const RANGE: f64 = 1.0;
+/// Speed to drive at, in m/s.
 const SPEED: f64 = 0.2;
 /// Maximum distance, in metres, at which a body touches a wall.
 const TOUCHES: f64 = 0.002;

@@ -9,9 +9,9 @@ use super::ring::HEARD;
 use super::trial::Trial;
 use super::{Out, Room, Stage, Verdict};
 
-/// Distances of a wall that blocks a side and of a wall that does not, as fractions of the range below which a
-/// side is blocked.
+/// Distance of a wall that blocks a side, as a fraction of the range below which a side is blocked.
 const NEAR: f64 = 0.6;
+/// Distance of a wall that does not block a side, as a fraction of the range below which a side is blocked.
 const FREE: f64 = 1.4;
 /// Half the length of the walls, in metres.
 const HALF: f64 = 0.8;

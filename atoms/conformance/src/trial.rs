@@ -28,9 +28,9 @@ pub(super) struct Trial<'s, S: Stage> {
 /// The motion of a body between two poses, in the axes of the first pose.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way {
-    /// Way forward, in metres.
+    /// Distance forward, in metres.
     pub(super) ahead: f64,
-    /// Way to the left, in metres.
+    /// Distance to the left, in metres.
     pub(super) left: f64,
     /// Turn in radians between -π and π, counter-clockwise.
     pub(super) turn: f64,
