@@ -171,7 +171,7 @@ pub struct Label {
     pub span: Span,
     /// Text at the place; may be empty.
     pub text: String,
-    /// `true` for the place of the defect, `false` for one that explains it.
+    /// `true` for the place of the defect, `false` for a place that explains the defect.
     pub primary: bool,
 }
 

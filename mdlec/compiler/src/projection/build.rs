@@ -5,7 +5,7 @@ use crate::diagnostic::{Diagnostic, Span};
 use crate::syntax::Arena;
 use crate::syntax::tree::{Arg, Atom, Call, Condition, ConditionNode, Element, Marks, Name, Number, Primary, Spanned};
 
-/// The group whose plans are being made, and the nodes and errors of them.
+/// The state of a projection: the group, the arena for new nodes, and the diagnostics so far.
 pub(super) struct Build<'b, 's> {
     pub(super) arena: &'s Arena,
     pub(super) robots: &'b [Name<'s>],
@@ -20,18 +20,18 @@ pub(super) struct Build<'b, 's> {
     pub(super) done: usize,
 }
 
-/// The empty span at the start of a span.
+/// Returns the empty span at the start of a span.
 pub(super) fn begin(span: Span) -> Span {
     Span { end: span.start, ..span }
 }
 
 impl<'s> Build<'_, 's> {
-    /// Number of the atom that is being projected, in the plans of the robots after the first.
+    /// Returns the number of the atom that is being projected, in the plans of the robots after the first.
     pub(super) fn own_number(&self) -> usize {
         self.numbers.get(self.done).copied().unwrap_or(1)
     }
 
-    /// Number of the last stop in the plans of the robots after the first.
+    /// Returns the number of the final stop, in the plans of the robots after the first.
     pub(super) fn last_number(&self) -> usize {
         self.numbers.last().copied().unwrap_or(1)
     }
@@ -54,20 +54,20 @@ impl<'s> Build<'_, 's> {
         self.arena.alloc(Call { name, args: self.arena.alloc_slice_copy(args), span })
     }
 
-    /// `past ROBOT NUMBER`, as a condition at `span`. With an empty span, reports of runs show this text.
+    /// Returns the condition `past ROBOT NUMBER` at `span`. If the span is empty, reports of runs show this text.
     pub(super) fn past(&self, robot: &Name<'s>, number: usize, span: Span) -> Condition<'s> {
         let number = Number::new(self.arena.alloc_str(&number.to_string()), span);
         let call = self.call("past", &[Arg::Name(Name { node: robot.node, span }), Arg::Number(number)], span);
         Condition { node: ConditionNode::Call(call), span }
     }
 
-    /// The first robot is at this atom of its plan, or further.
+    /// Returns the condition that the first robot has reached this atom of its plan.
     pub(super) fn past_first(&self, number: usize, span: Span) -> Condition<'s> {
         let first = self.robots.first().copied().unwrap_or(Spanned { node: "", span });
         self.past(&first, number, begin(span))
     }
 
-    /// Joins conditions by `join`; a single one stays as it is.
+    /// Joins conditions with `join`; returns a single condition unchanged.
     pub(super) fn join(
         &self,
         parts: &[Condition<'s>],
@@ -80,7 +80,7 @@ impl<'s> Build<'_, 's> {
         }
     }
 
-    /// A length in metres, to the millimetre, as an argument at `span`.
+    /// Returns a length in metres, rounded to the millimetre, as an argument at `span`.
     pub(super) fn length(&self, metres: f64, span: Span) -> Arg<'s> {
         let digits = format!("{metres:.3}");
         let digits = digits.trim_end_matches('0').trim_end_matches('.');
@@ -88,7 +88,7 @@ impl<'s> Build<'_, 's> {
         Arg::Number(Number::new(self.arena.alloc_str(&format!("{digits}m")), span))
     }
 
-    /// The first robot as an argument at `span`.
+    /// Returns the name of the first robot as an argument at `span`.
     pub(super) fn first(&self, span: Span) -> Arg<'s> {
         Arg::Name(Name { node: self.robots.first().map_or("", |first: &Spanned<&'s str>| first.node), span })
     }

@@ -1,5 +1,6 @@
-//! Projects the conditions of a group: its first robot reads them. In the head, a robot's own signals guard its plan;
-//! the others hear by `past` that it has left.
+//! Projects the conditions of a group. The first robot reads the conditions of atoms and behaviors. In the condition of
+//! the whole group, an operand about one robot guards the plan of that robot, and the first robot detects by `past`
+//! that another robot has left its plan.
 
 use super::build::{Build, begin};
 use super::owners::{ANY, LINK, MEETING, Owned, Owner, Place};
@@ -61,7 +62,7 @@ fn negates_any(condition: &Condition<'_>, is_negated: bool) -> bool {
     }
 }
 
-/// Warns of a group without a timer: a robot that is off would be waited for without end.
+/// Returns a warning about a group without a timer: if one robot is off, the others wait for it forever.
 fn untimed(plan: &Plan<'_>, whole: Option<&Condition<'_>>) -> Diagnostic {
     let message = format!("if a robot of the group `{}` is off, the others wait for ever", plan.name.node);
     let span = whole.map_or(plan.name.span, |condition| condition.span);
@@ -86,7 +87,7 @@ impl<'s> Build<'_, 's> {
         owners.retain(|owner| *owner != Owner::Timer);
         match owners.as_slice() {
             [] => all.collect(),
-            // Each robot reads its own.
+            // Each robot reads its own quark.
             [Owner::Any] => all.collect(),
             [Owner::One(first), others @ ..] if others.iter().all(|owner| *owner == Owner::One(*first)) => vec![*first],
             _ => {
@@ -114,7 +115,8 @@ impl<'s> Build<'_, 's> {
         }
     }
 
-    /// Returns the owner of a quark; one that is wrong counts as the first robot's, which reports it.
+    /// Returns the owner of a quark, without reporting errors. An invalid quark counts as one of the first robot, for
+    /// which it is reported later.
     fn silently(&mut self, call: &Call<'s>) -> Option<Owner> {
         let first = self.found.len();
         let owned = self.owned(call, Place::Head);
@@ -170,7 +172,7 @@ impl<'s> Build<'_, 's> {
         Condition { node: ConditionNode::Call(self.arena.alloc(own)), span }
     }
 
-    /// Projects `all rendezvous` and `robot2.rendezvous`: the others are at this atom.
+    /// Projects `all rendezvous` and `robot2.rendezvous`: the condition that the other robots have reached this atom.
     fn meeting(&mut self, owner: Owner, place: Place, span: Span) -> Option<Condition<'s>> {
         let met = match owner {
             _ if place != Place::Atom => Err("robots meet in an atom"),
@@ -216,7 +218,7 @@ impl<'s> Build<'_, 's> {
         ConditionNode::Comparison(self.arena.alloc(Compared { left: self.arena.alloc(left), right, ..*compared }))
     }
 
-    /// Returns `true` if a robot reads quarks of this owner; reports it otherwise.
+    /// Returns `true` if a robot can read a quark of this owner; reports an error otherwise.
     fn may_read(&mut self, call: &Call<'s>, owner: Owner, place: Place, robot: usize) -> bool {
         let others = match owner {
             Owner::Timer => return true,

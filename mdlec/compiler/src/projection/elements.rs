@@ -93,7 +93,7 @@ impl<'s> Build<'_, 's> {
         Plan { docs, label: None, name, group: None, params: &[], condition: None, elements, span: plan.span }
     }
 
-    /// Comment of a robot's plan: the links that it needs.
+    /// Returns the doc comment of a robot's plan, which names the links that the robot needs.
     fn docs(&self, robot: Name<'s>) -> &'s [&'s str] {
         let (group, first) = (self.group, self.robots.first().map_or("", |first| first.node));
         let others: Vec<_> = self.robots.iter().skip(1).map(|other| format!("`{}`", other.node)).collect();
@@ -133,7 +133,7 @@ impl<'s> Build<'_, 's> {
                         "write `(Atom (condition) law)`",
                     );
                 }
-                // A group within a group is reported as within any plan.
+                // A group within a group is reported as a group within any plan is.
                 Primary::Plan(_) | Primary::Broken => {}
             }
         }

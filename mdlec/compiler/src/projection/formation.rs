@@ -17,7 +17,7 @@ const EXAMPLE: &str = "a formation is written `formation triangle 1m (goAvoid 0 
 pub(super) struct Formation<'s> {
     /// Law of the first robot.
     pub(super) first: &'s Call<'s>,
-    /// Laws of the others, in the order of the group.
+    /// Laws of the other robots, in the order of the group.
     pub(super) others: Vec<&'s Call<'s>>,
 }
 
@@ -32,7 +32,8 @@ enum Shape {
 const SHAPES: [(&str, Shape); 3] = [("line", Shape::Line), ("column", Shape::Column), ("triangle", Shape::Triangle)];
 
 impl Shape {
-    /// Place of the `number`-th of the other robots, ahead of the first robot and to its left, for a spacing of 1.
+    /// Returns the place of the `number`-th of the other robots, ahead of the first robot and to its left, for a
+    /// spacing of 1.
     fn slot(self, number: u32) -> (f64, f64) {
         let (row, side) = (f64::from(number / 2 + 1), if number.is_multiple_of(2) { 1.0 } else { -1.0 });
         match self {
@@ -42,7 +43,8 @@ impl Shape {
         }
     }
 
-    /// Room beside the first robot that `others` robots need, for a spacing of 1. A column swings out in bends.
+    /// Returns the room beside the first robot that `others` robots need, for a spacing of 1. A column swings out in
+    /// bends.
     fn width(self, others: u32) -> f64 {
         match self {
             Self::Line => f64::from(others.div_ceil(2)),
@@ -51,7 +53,7 @@ impl Shape {
     }
 }
 
-/// Reads a formation of the group's robots; `None` if it was reported.
+/// Reads a formation of the group's robots; `None` if the formation is invalid, which is then reported.
 pub(super) fn read<'s>(call: &Call<'s>, build: &mut Build<'_, 's>) -> Option<Formation<'s>> {
     let others = u32::try_from(build.robots.len().saturating_sub(1)).unwrap_or(u32::MAX);
     let shape = shape(call, others);

@@ -31,14 +31,15 @@ pub struct Part {
     pub plan: String,
 }
 
-/// Replaces the plan of each group by those of its robots, and returns these with the errors of the groups.
+/// Replaces the plan of each group by the plans of its robots; returns those plans' names, and the errors of the
+/// groups.
 pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet) -> (Vec<Part>, Vec<Diagnostic>) {
     let mut found = robots::misplaced(files);
     if files.plans.iter().all(|plan| plan.group.is_none()) {
         return (Vec::new(), found);
     }
     let uses = robots::uses_of_groups(files);
-    // The uses are reported here, and not as those of plans that are not there.
+    // The uses are reported here, and not as uses of missing plans.
     files.is_incomplete |= !uses.is_empty();
     found.extend(uses);
     found.extend(robots::equal_names(files));
@@ -70,13 +71,13 @@ pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet)
     (parts, found)
 }
 
-/// Name of the plan of a robot of the group with this name.
+/// Returns the name of the plan of a robot of the group with this name.
 #[must_use]
 pub fn part_name(group: &str, robot: &str) -> String {
     format!("{group}_{robot}")
 }
 
-/// Returns `true` if the plan is for an executable of a robot that has the state link in an engine alone.
+/// Returns `true` if the plan is for an executable of a robot that has the state link only in an engine.
 fn lacks_link(alphabet: &Alphabet) -> bool {
     let link = Capability { name: "state_link".to_owned(), size: None };
     !alphabet.has(&link) && alphabet.needs_engine(&link)

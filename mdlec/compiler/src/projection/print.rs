@@ -6,7 +6,8 @@ use crate::diagnostic::SourceId;
 use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Element, Frame, Number, Operand, Plan, Primary};
 use crate::syntax::{self, Loader, arena_for, parse_with};
 
-/// Returns the plans of the robots of a file's groups as MDLe text, or only that called `wanted`; empty without one.
+/// Returns the plans of the robots of a file's groups as MDLe text, or only the plan called `wanted`; empty if there is
+/// no such plan.
 #[must_use]
 pub fn projected(
     source: SourceId,
@@ -56,7 +57,7 @@ fn element(element: &Element<'_>) -> String {
         Primary::Atom(atom) => format!("(Atom ({}) ({}))", condition(&atom.condition), call(atom.control)),
         Primary::Plan(plan) => braces(plan),
         Primary::String(body) => format!("({})", elements(body)),
-        // A projected plan has no others.
+        // A projected plan has no other elements.
         Primary::Ref(_) | Primary::Exec(_) | Primary::Formal(_) | Primary::Broken => String::new(),
     };
     format!("{label}{frame}{primary}")
@@ -89,7 +90,7 @@ fn condition(written: &Condition<'_>) -> String {
     }
 }
 
-/// Prints an operand of a condition that this word joins, in parentheses where it binds less tightly.
+/// Prints an operand of a condition that `word` joins, in parentheses if the operand binds less tightly than the word.
 fn operand_of(operand: &Condition<'_>, word: &str) -> String {
     let text = condition(operand);
     let is_looser = match operand.node {

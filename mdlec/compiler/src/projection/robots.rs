@@ -1,4 +1,4 @@
-//! Checks the heads of groups, and where plans of groups are: each is a plan by itself.
+//! Checks the heads of groups, and that the plan of a group is neither inside another plan nor used by one.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::Files;
 use crate::syntax::tree::{Arg, Call, Element, Name, Plan, Primary};
 
-/// Returns the robots of a group, the first of which decides; `None` if they are not a group.
+/// Returns the robots of a group, the first of which decides; `None` for fewer than two robots. Reports errors in the
+/// head of the group.
 pub(super) fn named<'s>(plan: &Plan<'s>, written: &[Arg<'s>], found: &mut Vec<Diagnostic>) -> Option<Vec<Name<'s>>> {
     let first = found.len();
     if let [param, ..] = plan.params {
@@ -96,7 +97,7 @@ pub(super) fn uses_of_groups(files: &Files<'_>) -> Vec<Diagnostic> {
     found
 }
 
-/// Reports the plans of groups that have the name of another plan: their robots' plans have other names.
+/// Reports groups and plans of the same name. Later stages see only the plans of the robots, which have other names.
 pub(super) fn equal_names(files: &Files<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (index, plan) in files.plans.iter().enumerate() {

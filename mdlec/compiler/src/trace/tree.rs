@@ -224,8 +224,8 @@ impl<'p> Tree<'p> {
         0
     }
 
-    /// Replaces the record of each definition whose labelled elements have ended; each ended element comes with
-    /// the operand that was the cause.
+    /// Replaces the record of each definition in which labelled elements have ended. `ended` has the labels of each
+    /// ended element, with the operand that ended it.
     fn record(&mut self, ended: &[(&[Mark], Option<u32>)]) {
         let marks = || ended.iter().flat_map(|(marks, operand)| marks.iter().map(move |mark| (mark, *operand)));
         for open in &mut self.open {
