@@ -75,7 +75,8 @@ impl<'t> Exits<'t> {
             }
             let condition = &conditions[exit.interrupt.0 as usize];
             let operands = operands(condition).unwrap_or_else(|| vec![condition]);
-            // What never fires leads nowhere, and what the first has led away from never comes to the second.
+            // An operand `null` never fires, and a repeated operand never decides, since the first one takes
+            // precedence.
             let new = operands.into_iter().filter(|operand| *operand != "null" && seen.insert(*operand));
             exits.operands.extend(new.map(|operand| (operand, exit.to)));
         }

@@ -8,7 +8,7 @@ mod fits;
 
 use super::{Broken, InterruptId, Loop, Machine, Run, State, Stretch};
 
-/// An interrupt that leads to the same state from each place since `first`.
+/// An interrupt that has led to the state `to` from each place of the order since `first`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Open {
     interrupt: InterruptId,
@@ -49,7 +49,7 @@ pub(super) struct Beginning<'m> {
     pub(super) loops: Vec<Loop>,
     /// First and last place of each closed stretch that is not inside another one.
     wholes: Vec<(usize, usize)>,
-    /// Interrupt of the completion of laws; it belongs to atoms only, so that it leads from each state by itself.
+    /// Interrupt of the completion of laws, if it may end only atoms; `None` if it may end any scope.
     completed: Option<InterruptId>,
 }
 
@@ -169,7 +169,7 @@ impl<'m> Beginning<'m> {
         }
     }
 
-    /// Returns the scopes and loops that end, if they can.
+    /// Returns the boundary at which the scopes marked in `ends` end, or the condition that forbids it.
     fn ended(&self, open: &[Open], next: State, ends: &[bool], widest: usize) -> Result<Boundary, Broken> {
         let here = self.order.len() - 1;
         let mut ending = Boundary { widest: Some(widest), ..Boundary::default() };

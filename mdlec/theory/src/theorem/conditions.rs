@@ -196,7 +196,7 @@ impl Broken {
                     }
                 };
                 for (next, broken) in tries {
-                    // Its tries are never orders themselves.
+                    // The conditions of `tries` are never `NoOrder` themselves.
                     let _ = write!(text, "\n    then {}? {}", state(*next), broken.sentence(machine));
                 }
                 if *more > 0 {

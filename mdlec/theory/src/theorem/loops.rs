@@ -134,7 +134,7 @@ impl<'m> Search<'m> {
         let order = &self.beginning.order;
         let near = order.last().map_or(&[][..], |last| &self.next[last.0 as usize]);
         let leads_back = order.is_empty() || near.iter().any(|to| self.beginning.place(*to).is_some());
-        // What nothing leads to can only follow a loop.
+        // A state to which the last state does not lead can only follow a loop.
         let far = if leads_back { self.candidates } else { &[] };
         let is_last = order.len() + 1 == self.candidates.len();
         loop {

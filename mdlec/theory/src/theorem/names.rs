@@ -66,7 +66,7 @@ impl Names {
 /// Returns the texts of a machine, and the names that they use.
 pub(super) fn texts(machine: &Machine) -> (Texts, Names) {
     let mut names = Names::default();
-    // What stands in texts is somebody's name already.
+    // Words in the texts are names that are already in use.
     let of_interrupts = machine.interrupts().iter().filter_map(|interrupt| interrupt.text.as_deref());
     for text in of_interrupts.chain(machine.laws.iter().flatten().map(String::as_str)) {
         names.taken.extend(words(text).map(str::to_owned));
@@ -77,7 +77,7 @@ pub(super) fn texts(machine: &Machine) -> (Texts, Names) {
     };
     let mut renamed = Vec::new();
     let conditions = machine.interrupts().iter().map(|interrupt| {
-        // Which labels `after` asks, the file does not say.
+        // An FSM file does not contain the labels that `after` refers to.
         let is_whole = |text: &&String| !words(text).any(|word| word == "after");
         if let Some(text) = interrupt.text.as_ref().filter(is_whole) {
             return text.clone();

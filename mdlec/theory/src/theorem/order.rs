@@ -8,7 +8,7 @@ pub(super) fn forwards(machine: &Machine) -> Vec<State> {
     let first = machine.start().unwrap_or(State(0));
     let mut seen = vec![false; machine.states().len()];
     let mut left = Vec::with_capacity(seen.len());
-    // Reverse postorder: what is left last comes first.
+    // Reverse postorder: the state that is left last comes first.
     for root in machine.atoms().rev().filter(|root| *root != first).chain([first]) {
         leave(machine, root, &mut seen, &mut left);
     }

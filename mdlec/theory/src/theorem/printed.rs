@@ -45,7 +45,7 @@ pub fn as_printed(machine: &Machine, exactly: &Answer) -> [Rule; 4] {
         Rule { name: "R1", letter: first.clone(), meant: first },
         Rule { name: "R2", letter: second.clone(), meant: second },
         Rule { name: "R3", letter: columns.nested_to_the_letter(), meant: columns.nested() },
-        // R2 forbids what it speaks of.
+        // R2 forbids the moves that R4 is about.
         Rule { name: "R4", letter: columns.loops_to_the_letter(), meant: None },
     ]
 }
@@ -58,7 +58,8 @@ struct Same {
     behind: usize,
 }
 
-/// Minimum destination row of some moves, and the minimum destination row of the moves by another interrupt.
+/// Minimum destination row of some moves, with the interrupt, and the minimum destination row of the moves by other
+/// interrupts.
 #[derive(Debug, Clone, Copy, Default)]
 struct Lowest {
     one: Option<(usize, InterruptId)>,
@@ -66,7 +67,7 @@ struct Lowest {
 }
 
 impl Lowest {
-    /// Returns the lowest rows with an additional move.
+    /// Returns the minimum rows after an additional move.
     fn with(self, interrupt: InterruptId, row: usize) -> Self {
         let Some((lowest, of)) = self.one else { return Self { one: Some((row, interrupt)), other: None } };
         if of == interrupt {
@@ -78,7 +79,7 @@ impl Lowest {
         Self { other: Some(self.other.map_or(row, |other| other.min(row))), ..self }
     }
 
-    /// Returns the lowest destination row of the moves by interrupts other than `interrupt`.
+    /// Returns the minimum destination row of the moves by interrupts other than `interrupt`.
     fn of_another(self, interrupt: InterruptId) -> usize {
         match self.one {
             Some((lowest, of)) if of != interrupt => lowest,
@@ -214,7 +215,7 @@ impl Columns<'_> {
             let (interrupt, from, to) = (*interrupt, *from, *to);
             let first = self.first_enclosed(&moves, &runs, number);
             let is_enclosed = |column: usize| column < from && first.is_some_and(|first| first <= column);
-            // Those that begin before what it encloses; those that begin where it does follow.
+            // First the moves that begin before the enclosed columns, then those that begin in the same column.
             let asked =
                 first.map_or(number, |first| moves.partition_point(|(_, column, _)| *column < first).min(number));
             let beside = moves[..number].iter().rev().take_while(|(_, column, _)| *column == from);

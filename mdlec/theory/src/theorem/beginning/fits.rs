@@ -12,7 +12,7 @@ impl Beginning<'_> {
         let stretch = |first: usize, last: usize| Stretch { first: self.order[first], last: self.order[last] };
         for run in &ending.runs {
             let around = ending.loops.partition_point(|begin| run.to <= here && *begin <= run.to);
-            // A law that is done ends what is innermost.
+            // The completion of a law ends the innermost scope first.
             let is_innermost = self.completed == Some(run.interrupt);
             if let Some(begins) =
                 ending.loops.get(around).filter(|begins| **begins < run.first + usize::from(is_innermost))
@@ -50,7 +50,8 @@ impl Beginning<'_> {
             }
         }
         for source in self.outside(next).filter(|source| *source != next) {
-            // It will come back here and, by each of these, to before here: what does that has to begin before this.
+            // `source` will have a later place and lead back to `next`. If it also leads to an earlier place, the scope
+            // of that interrupt begins before `next`, so `next` must have the interrupt as well.
             let mut exits = self.machine.exits(source).iter().filter(|exit| self.place(exit.to).is_some());
             let lacking = exits.find(|exit| self.machine.destination(next, exit.interrupt) != Some(exit.to));
             if let Some(exit) = lacking {
@@ -73,8 +74,8 @@ impl Beginning<'_> {
         self.sources[state.0 as usize].iter().copied().filter(|source| self.place(*source).is_none())
     }
 
-    /// Returns the broken condition of a state outside that leads into the middle of the stretch that begins at place
-    /// `first`.
+    /// Returns the broken condition of a state without a place that leads into the middle of the stretch that begins at
+    /// place `first`.
     fn leads_inside(&self, from: State, to: State, first: usize, last: State) -> Broken {
         let exit = self.machine.exits(from).iter().find(|exit| exit.to == to);
         let interrupt = exit.map_or(InterruptId(0), |exit| exit.interrupt);
