@@ -85,7 +85,7 @@ impl Line {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
-    /// Returns the place at this length; beyond an end, the end itself.
+    /// Returns the place after this length of the path; the nearer end of the path if the length is outside of it.
     fn at(&self, length: f64) -> Place {
         let next = self.lengths.partition_point(|other| *other <= length).clamp(1, self.places.len().max(2) - 1);
         let place = |number: usize| self.places.get(number).copied().unwrap_or_default();

@@ -15,7 +15,8 @@ pub(crate) enum Log {
     Export {
         /// The record.
         log: PathBuf,
-        /// For a script instead of a table: the file of the plan, unless the record contains the plan.
+        /// `Some` to write a script instead of a table; it contains the file of the plan, unless the plan is in the
+        /// record.
         script: Option<Option<PathBuf>>,
         /// File to write; `None` for standard output.
         file: Option<PathBuf>,

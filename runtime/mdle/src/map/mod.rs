@@ -35,7 +35,8 @@ fn pose(text: &str) -> Result<Pose, Failure> {
     read.map(|Start(pose)| pose).map_err(|error| Failure::Usage(format!("--at {text}: {error}")))
 }
 
-/// Calls `take` with each ping of a record, of a robot whose odometry was zero at this pose. Returns the exit status.
+/// Calls `take` with each ping of a record. `origin` is the pose on the map at which the robot's odometry was zero.
+/// Returns the exit status.
 ///
 /// # Errors
 /// Fails if the record cannot be read.

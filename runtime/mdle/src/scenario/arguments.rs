@@ -14,7 +14,7 @@ use crate::failure::Failure;
 pub(super) struct Options {
     pub(super) seed: Option<u64>,
     pub(super) timeout: Option<Duration>,
-    /// File of the log; with the ending of a record, the name from which those of the records are made.
+    /// File of the log. If its name is that of a record, the names of the robots' records are derived from it.
     pub(super) log: Option<PathBuf>,
     /// The command that repeats the run, without its log.
     pub(super) command: String,
@@ -142,7 +142,7 @@ fn command() -> Command {
         )
 }
 
-/// Reads the name of a log: that of records, or of JSON lines.
+/// Reads the name of a log: `.mcap` for records, `.jsonl` or no extension for JSON lines.
 fn log(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let is_known = is_record(&path) || path.extension().is_none_or(|ending| ending.eq_ignore_ascii_case("jsonl"));

@@ -1,4 +1,4 @@
-//! A file of a scenario: its keys and values, as written (docs/src/many_robots.md).
+//! A scenario file: its keys and values, as written (docs/src/many_robots.md).
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -10,13 +10,13 @@ use mdle_runtime::Printable;
 use serde::Deserialize;
 use toml::Spanned;
 
-/// Maximum size of a file of a scenario, in bytes.
+/// Maximum size of a scenario file, in bytes.
 const LARGEST: u64 = 4_000_000;
 
 /// A value with its place in the file.
 pub(super) type At<T> = Spanned<T>;
 
-/// A file of a scenario.
+/// A scenario file.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct ScenarioText {
@@ -82,7 +82,7 @@ pub(super) struct RobotText {
     pub(super) records: Option<At<String>>,
     /// Time at which the robot's program is killed.
     pub(super) killed: Option<At<String>>,
-    /// Radius of the head between its two ears, whose module `heading` publishes the bearing of a sound.
+    /// Radius of the robot's head, between two ears; the module `heading` then publishes the bearing of a sound.
     pub(super) ears: Option<At<String>>,
     /// Names of the modules whose attributes the robot shares with the others.
     #[serde(default)]
@@ -106,7 +106,7 @@ pub(super) struct SentPlanText {
     pub(super) when: Option<At<String>>,
 }
 
-/// An error in a file of a scenario.
+/// An error in a scenario file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct ScenarioError {
     /// Byte range in the file; `None` for the whole file.
@@ -149,7 +149,7 @@ pub(super) fn text(path: &Path) -> Result<String, String> {
     mdle_host::read_text(path, LARGEST).map_err(|error| format!("{} cannot be read: {error}", path.display()))
 }
 
-/// Reads a file of a scenario.
+/// Reads a scenario file.
 ///
 /// # Errors
 /// Fails if the text is not TOML, has unknown keys or values of the wrong type, no robot, or two robots of the same

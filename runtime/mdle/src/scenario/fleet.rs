@@ -22,12 +22,13 @@ const FAR: f64 = 100.0;
 pub(super) struct Fleet {
     runners: Vec<Runner>,
     period: Duration,
-    /// The smallest gap between two robots in any turn, in metres, with the numbers of the two.
+    /// Minimum gap between two robots in any turn, in metres, with the numbers of the two robots.
     nearest: Option<(f64, usize, usize)>,
 }
 
 impl Fleet {
-    /// Returns the robots before their first turn, which note what a record needs if they `are_recorded`.
+    /// Returns the robots before their first turn. If `are_recorded` is `true`, they collect the data that a record
+    /// needs.
     ///
     /// # Errors
     /// Fails with a sentence if a module is refused.
@@ -90,7 +91,7 @@ impl Fleet {
         }
     }
 
-    /// Updates the smallest gap between robots.
+    /// Updates the minimum gap between robots.
     fn measure(&mut self) {
         let bodies: Vec<Footprint> = self.runners.iter().map(|runner| runner.robot.footprint()).collect();
         for (number, body) in bodies.iter().enumerate() {

@@ -36,7 +36,7 @@ pub(super) struct Runner {
     recorder: Option<WayRecorder>,
     /// The path that was replaced in the previous turn.
     replaced: Option<StoredPath>,
-    /// Ears of the robot, and the way from them to the module `heading`.
+    /// Ears of the robot, and the microphones through which the module `heading` gets their samples.
     ears: Option<(RobotEars, Microphones)>,
     /// Plans that the robot has not sent yet.
     sends: VecDeque<SentPlan>,

@@ -70,7 +70,7 @@ impl Output {
             trail.line("t,robot,x,y,heading")?;
         }
         for path in [&options.plot, &options.trips].into_iter().flatten() {
-            // Nobody wants to hear after the run that there is no such folder.
+            // A missing folder is reported now, and not after the run.
             File::create(path).map_err(|error| unwritten(path, &error))?;
         }
         Ok(output)
@@ -125,7 +125,7 @@ impl Output {
         }
     }
 
-    /// Takes the end of the run at time `t`, at which a robot still runs this law.
+    /// Records the end of the run at time `t`, at which a robot still runs this law.
     pub(super) fn ends(&mut self, runner: &Runner, t: Nanos, law: Option<&str>) {
         self.line(t, &runner.name, &runner.standing.words(law));
         if let Some(records) = &mut self.records {

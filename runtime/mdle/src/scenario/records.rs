@@ -1,4 +1,4 @@
-//! The records of the robots of a scenario: a file for each, which commands read as that of any run.
+//! The records of the robots of a scenario: one file for each robot, which commands read like the record of any run.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -78,7 +78,7 @@ pub(super) fn unwritten(path: &Path, error: &io::Error) -> String {
     format!("{} cannot be written: {error}", path.display())
 }
 
-/// Returns the begin of a robot's record.
+/// Returns the first entry of a robot's record.
 fn of_member(member: &Member, scenario: &Scenario, command: &str) -> Begin {
     let Member { loaded, files, records, .. } = member;
     let plan = loaded.plan();
@@ -92,7 +92,7 @@ fn of_member(member: &Member, scenario: &Scenario, command: &str) -> Begin {
     Begin { beside: beside.join(" and "), ..begin(&plan, files, command, period) }
 }
 
-/// Returns the begin of a robot's record, in a run that this command repeats.
+/// Returns the first entry of a robot's record, in a run that this command repeats.
 pub(super) fn begin(plan: &LoadedPlan<SimAlphabet>, files: &[(String, String)], command: &str, period: Nanos) -> Begin {
     Begin {
         version: env!("CARGO_PKG_VERSION").to_owned(),

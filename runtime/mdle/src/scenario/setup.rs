@@ -51,9 +51,9 @@ pub(super) struct Member {
     /// Nominal pose at which the robot's odometry begins, in the world.
     pub(super) start: Pose,
     pub(super) loaded: Arc<Loaded<SimAlphabet>>,
-    /// Names and texts of the files of its plan, its own first.
+    /// Names and texts of the plan's files, the plan's own file first.
     pub(super) files: Vec<(String, String)>,
-    /// The paths that its plan replays; one that is recorded may come later.
+    /// Paths that the plan replays; a path that the robot records may be missing.
     pub(super) paths: Vec<(&'static str, Vec<Setpoint>)>,
     /// Name of the path that the robot records.
     pub(super) records: Option<&'static str>,
@@ -178,7 +178,7 @@ impl Scenario {
     }
 }
 
-/// A plan with the names and the texts of its files, its own first.
+/// A plan with the names and the texts of its files, the plan's own file first.
 pub(super) type PlanWithFiles = (Arc<Loaded<SimAlphabet>>, Vec<(String, String)>);
 
 /// Compiles and loads the plan of a robot, or the robot's part of a group's plan. `robot` has the robot and the names
@@ -210,7 +210,7 @@ pub(super) fn plan(
     Ok((Arc::new(load::load(&machine, &input.sources, &target.alphabet)?), texts(&input)))
 }
 
-/// Returns the name of a robot's part of the plan of a group, all of whose robots the scenario has to have.
+/// Returns the name of a robot's part of a group's plan. The scenario must have all robots of the group.
 fn part(text: &RobotText, names: &[&str], group: &Group) -> Result<String, ScenarioError> {
     let (own, name) = (text.name.get_ref(), &group.name);
     let robots = group.robots.join(", ");

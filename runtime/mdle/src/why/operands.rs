@@ -258,7 +258,7 @@ fn still(condition: &Condition, held: &str) -> String {
     if is_whole { held.to_owned() } else { format!("holds {held}") }
 }
 
-/// Returns what several NOT and RISING are about.
+/// Returns the condition inside all enclosing NOT and RISING.
 fn innermost<'n, 'c>(node: &'n Node<'c>) -> &'n Node<'c> {
     match (node.condition, node.parts.first()) {
         (Condition::Not(_) | Condition::Rising { .. }, Some(inner)) => innermost(inner),

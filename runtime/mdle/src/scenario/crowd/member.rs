@@ -87,7 +87,7 @@ impl Member {
     fn ends(&mut self) {
         self.is_over = true;
         self.input = Twist::default();
-        // It takes no more memory.
+        // A robot without a plan takes no more memory.
         self.machine = None;
     }
 

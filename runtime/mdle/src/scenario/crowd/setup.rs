@@ -28,7 +28,7 @@ const SPACING: f64 = 2.0;
 pub(in super::super) struct CrowdSetup {
     pub(super) robots: Vec<Simulated>,
     pub(super) plan: Arc<Loaded<SimAlphabet>>,
-    /// Names and texts of the files of the plan, its own first.
+    /// Names and texts of the plan's files, the plan's own file first.
     files: Vec<(String, String)>,
     pub(super) period: Nanos,
     pub(super) timeout: Nanos,

@@ -51,7 +51,8 @@ fn lock(member: &Mutex<Member>) -> MutexGuard<'_, Member> {
 }
 
 impl Turns {
-    /// Returns a crowd before its first turn, with the records of its robots; none if they are not recorded.
+    /// Returns a crowd before its first turn, with the records of its robots; `records` is empty if they are not
+    /// recorded.
     pub(super) fn new(setup: CrowdSetup, records: Vec<RecordedMember>) -> Self {
         let CrowdSetup { robots, plan, threads, .. } = setup;
         let mut records = records.into_iter();
