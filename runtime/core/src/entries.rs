@@ -41,7 +41,7 @@ pub trait Entries {
     }
 }
 
-/// Entries that are times alone.
+/// Entries that store only times.
 impl<S: AsRef<[Nanos]> + AsMut<[Nanos]>> Entries for S {
     #[inline(always)]
     fn is_empty(&self) -> bool {

@@ -40,7 +40,7 @@ pub struct Plans<A: EngineAlphabet> {
     current: Option<Box<Flight<A>>>,
     /// The plan that is to take over, and its moment.
     armed: Option<(Running<A>, When)>,
-    /// The plan before the plan on trial, with the time of the turn in which it was suspended.
+    /// The plan that the plan on trial has replaced, with the time of the turn in which it was suspended.
     suspended: Option<(Running<A>, Nanos)>,
     /// Time since which the plan that continues in the next turn has been suspended.
     resumes: Option<Nanos>,

@@ -27,9 +27,9 @@ enum PlanProgress {
     Skipped,
     /// The turn had begun, but was not done in time.
     Late,
-    /// The plan's turn of an earlier time was not done yet.
+    /// The plan was still busy with a turn that it had begun earlier.
     Away,
-    /// The plan's turn of an earlier time was done.
+    /// The plan had finished a turn that it had begun earlier.
     Back,
 }
 
@@ -67,7 +67,7 @@ impl Repeats {
         }
     }
 
-    /// Returns what was known of the robots of these names in the turn.
+    /// Returns the links to the robots of these names, with the states that had arrived by the turn.
     pub(crate) fn links(&self, robots: impl Iterator<Item = &'static str>) -> Links {
         let mut links = Links::NONE;
         for name in robots {
