@@ -49,7 +49,7 @@ pub trait Stage {
     /// replaces any earlier robot.
     ///
     /// # Errors
-    /// A message if there is no robot to return.
+    /// Fails with a message if there is no robot to return.
     fn robot(&mut self, room: &Room, at: Pose) -> Result<Self::Robot, String>;
 
     /// Passes the paths that the robot's plan replays to the robot, before its first exchange; for robots with
