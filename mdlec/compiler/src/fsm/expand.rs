@@ -14,7 +14,7 @@ const TEXT: u64 = 1 << 26;
 /// Returns the plan with its finite loops written out; a loop without end is left as it is.
 ///
 /// # Errors
-/// E0501 for a plan that cannot be lowered; E0502 for a plan with more than 100,000 states, or with too many
+/// Fails with E0501 for a plan that cannot be lowered; E0502 for a plan with more than 100,000 states, or with too many
 /// conditions in these states.
 pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
     expands(plan)?;
@@ -51,7 +51,7 @@ pub fn expands(plan: &Nondegenerate) -> Result<(), Diagnostic> {
 /// Returns the number of states of a plan with its finite loops written out, the termination state included.
 ///
 /// # Errors
-/// E0501 for a plan that cannot be lowered, E0502 for a plan with more than 100,000 states.
+/// Fails with E0501 for a plan that cannot be lowered, E0502 for a plan with more than 100,000 states.
 pub fn expanded_states(plan: &Nondegenerate) -> Result<u64, Diagnostic> {
     let count = Count { unit: "states", of: |part| u64::from(part.atom().is_some()) };
     let expanded = Expanded::of(Part::Scope(&plan.plan().root), &count, true);

@@ -13,12 +13,11 @@ use super::{Machine, Visit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Function, Functions};
 
-/// Checks that all columns of a machine's transition matrices are standard basis vectors, also in matrices that
-/// count an interrupt once. The brackets must be in pre-order and nested, which [`validate`](super::validate)
-/// checks.
+/// Checks that all columns of a machine's transition matrices are standard basis vectors, also in matrices that count
+/// an interrupt once. The brackets must be in pre-order and nested, which [`validate`](super::validate) checks.
 ///
 /// # Errors
-/// E0901 for the first interrupt that is repeated inside its scope, which is a defect of the compiler.
+/// Fails with E0901 for the first interrupt that is repeated inside its scope, which is a defect of the compiler.
 pub fn observation1(machine: &Machine) -> Result<(), Diagnostic> {
     let functions = Functions::new(machine.quarks());
     let mut open: BTreeMap<Function, &str> = BTreeMap::new();

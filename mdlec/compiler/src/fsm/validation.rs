@@ -20,7 +20,7 @@ use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Record, Scope};
 /// Checks that `draft` is the machine of `plan`.
 ///
 /// # Errors
-/// E0901 for the first difference between plan and machine, which is a defect of the compiler.
+/// Fails with E0901 for the first difference between plan and machine, which is a defect of the compiler.
 pub fn validate(plan: &Nondegenerate, draft: &Draft) -> Result<(), Diagnostic> {
     let root = &plan.plan().root;
     let mut walk = Walk { draft, brackets: 0, atoms: 0 };

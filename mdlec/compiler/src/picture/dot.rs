@@ -19,7 +19,7 @@ const EDGES: usize = 10_000;
 /// Returns the plan in Graphviz's language.
 ///
 /// # Errors
-/// E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
+/// Fails with E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
 pub fn dot(machine: &Machine) -> Result<String, Diagnostic> {
     can_be_shown(machine)?;
     let mut graph = Graph { text: String::new(), depth: 0, edges: 0 };

@@ -18,7 +18,7 @@ const LETTERS: usize = 60;
 /// Returns the plan as a state diagram.
 ///
 /// # Errors
-/// E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
+/// Fails with E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
 pub fn mermaid(machine: &Machine) -> Result<String, Diagnostic> {
     can_be_shown(machine)?;
     let mut diagram = Diagram { ends: ends(machine), depth: 1, text: "stateDiagram-v2\n".into() };

@@ -29,7 +29,7 @@ const SHOWN: usize = 1000;
 /// Checks that a plan can be drawn.
 ///
 /// # Errors
-/// E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
+/// Fails with E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
 pub fn fits(plan: &Nondegenerate) -> Result<(), Diagnostic> {
     let plan = plan.plan();
     let (elements, atoms) =

@@ -25,7 +25,7 @@ const BEFORE: u32 = TRANSITIONS_PER_TURN + 1;
 /// Returns the plan as a state machine in SCXML.
 ///
 /// # Errors
-/// E0501 and E0502, as in [`fsm::expand`](crate::fsm::expand); E0502 for a machine of more than 64 MB.
+/// Fails with E0501 and E0502, as in [`fsm::expand`](crate::fsm::expand); E0502 for a machine of more than 64 MB.
 pub fn scxml(plan: &Nondegenerate) -> Result<String, Diagnostic> {
     let made = matrices(plan)?;
     let mut listing = vec![Vec::new(); made.laws.len() + 1];

@@ -27,7 +27,7 @@ const COLOURS: usize = 4;
 /// Returns the picture of a plan as SVG.
 ///
 /// # Errors
-/// E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
+/// Fails with E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
 pub fn svg(machine: &Machine) -> Result<String, Diagnostic> {
     drawn(machine, None)
 }
@@ -36,7 +36,7 @@ pub fn svg(machine: &Machine) -> Result<String, Diagnostic> {
 /// faint.
 ///
 /// # Errors
-/// E0502 as for [`svg`].
+/// Fails with E0502 as for [`svg`].
 pub fn counted_svg(machine: &Machine, began: &[u64]) -> Result<String, Diagnostic> {
     drawn(machine, Some(began))
 }

@@ -76,7 +76,7 @@ const EMITTED: usize = 1 << 18;
 /// Checks that a plan is not too large to be emitted.
 ///
 /// # Errors
-/// E0501 for a plan that rustc would compile for minutes.
+/// Fails with E0501 for a plan that rustc would compile for minutes.
 pub fn fits(plan: &Nondegenerate) -> Result<(), Diagnostic> {
     let plan = plan.plan();
     let (brackets, parts) = plan.parts().fold((0_usize, 0_usize), |(brackets, parts), part| {
