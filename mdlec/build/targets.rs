@@ -12,8 +12,8 @@ const TEMPLATE: &str = "template";
 const PACKED: &str = "packed";
 const PACKED_MANIFEST: &str = "manifest.toml";
 
-/// Returns the folder of the sources: the checkout, `up` from the package that is built, or what a published package
-/// contains of it.
+/// Returns the folder of the sources: the packed sources of a published package, or else the checkout, at the path `up`
+/// from the package.
 pub(crate) fn checkout(up: &str) -> Result<PathBuf, Box<dyn Error>> {
     let package = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let packed = package.join(PACKED);

@@ -113,7 +113,7 @@ impl Embed {
     }
 }
 
-/// Returns `true` if `output` is one of `inputs`, by any path.
+/// Returns `true` if `output` is the same file as one of `inputs`, even if the paths differ.
 fn is_among(output: &Path, inputs: &[PathBuf]) -> bool {
     let Ok(output) = output.canonicalize() else { return false };
     inputs.iter().any(|input| input.canonicalize().is_ok_and(|input| input == output))

@@ -186,7 +186,7 @@ impl Input {
     /// Emits a plan of the file as Rust, for the crate of `target`.
     ///
     /// # Errors
-    /// E0501 for a plan that is too large.
+    /// Fails with E0501 for a plan that is too large.
     pub fn rust(&self, compiled: &Compiled, target: &Target) -> Result<String, Diagnostic> {
         rust::fits(&compiled.nondegenerate)?;
         let file = self.paths.get(&self.source).and_then(|path| path.file_name()).unwrap_or_default();
