@@ -19,13 +19,13 @@ pub trait Robot {
     /// Applies `input` for one period and returns the output that follows.
     ///
     /// # Errors
-    /// When the robot does not answer, answers nonsense, or reports that it cannot move.
+    /// Fails if the robot does not answer, answers nonsense, or reports that it cannot move.
     fn exchange(&mut self, input: &Self::Input) -> Result<Self::Output, Self::Error>;
 
     /// Stops the robot with its own stop command; called on every way out.
     ///
     /// # Errors
-    /// When the command could not be delivered; the hardware's watchdog is then what stops it.
+    /// Fails if the command could not be delivered; the hardware's watchdog then stops the robot.
     fn stop(&mut self) -> Result<(), Self::Error>;
 
     /// Returns the longest time without a command, by the wall clock, after which the robot may still be

@@ -102,7 +102,7 @@ impl Outlet {
     /// Starts a thread that writes to `sink`.
     ///
     /// # Errors
-    /// The system cannot create a thread.
+    /// Fails if the system cannot create a thread.
     pub(crate) fn open(sink: impl Write + Send + 'static, keeps: Keeps, patience: &Patience) -> io::Result<Self> {
         let queue = Queue {
             pieces: VecDeque::new(),

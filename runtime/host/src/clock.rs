@@ -101,8 +101,8 @@ impl<I: Instants> Clock<I> {
     /// Waits for the beginning of the next turn.
     ///
     /// # Errors
-    /// A signal has arrived, which ends the wait early; too many consecutive turns were longer than the period; or the
-    /// robot was without a command for too long.
+    /// Fails if a signal has arrived, which ends the wait early, if too many consecutive turns were longer than the
+    /// period, or if the robot was without a command for too long.
     pub(crate) fn next_turn(&mut self, signals: &Signals) -> Result<(), RunEnd> {
         if self.time == Time::Wall {
             let took = nanos(self.instants.now()).saturating_sub(self.begun);

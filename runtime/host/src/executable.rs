@@ -29,7 +29,7 @@ pub(crate) trait Executable: Sync {
     /// Opens the robot with [`Target::connect`], the plan that will drive it, and the paths that the plan replays.
     ///
     /// # Errors
-    /// [`Target::connect`] failed.
+    /// Fails if [`Target::connect`] fails.
     fn connect(
         &self,
         matches: &ArgMatches,
@@ -40,7 +40,7 @@ pub(crate) trait Executable: Sync {
     /// Returns several runs with [`Observation::batch`], if the options request more than one run.
     ///
     /// # Errors
-    /// An option is invalid, or a fault has occurred.
+    /// Fails if an option is invalid, or if a fault has occurred.
     fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore) -> Result<Option<Runs<'_>>, Refusal>;
 }
 
@@ -70,7 +70,7 @@ where
     /// Returns the robot with the pilot that drives it, its supervisor, and the paths that the plan replays.
     ///
     /// # Errors
-    /// A module listens, but the robot has no sound.
+    /// Fails if a module listens, but the robot has no sound.
     fn drive(
         &self,
         mut robot: T::Robot,

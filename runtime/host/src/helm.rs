@@ -55,7 +55,7 @@ where
     /// Makes turn `number` with output `y` at time `t`; afterwards the input is [`Helm::input`].
     ///
     /// # Errors
-    /// [`Pilot::turn`] failed.
+    /// Fails if [`Pilot::turn`] fails.
     pub fn turn(
         &mut self,
         y: &mut PilotOutput<B>,

@@ -15,7 +15,7 @@ impl Interruption {
     /// Starts recording signals that request the end of the program. A second signal ends the program at once.
     ///
     /// # Errors
-    /// The system does not permit catching a signal, or cannot create a thread.
+    /// Fails if the system does not permit catching a signal, or cannot create a thread.
     pub fn listen() -> io::Result<Self> {
         let signals = Signals::listen()?;
         second_signal::watch(&signals)?;

@@ -73,7 +73,7 @@ impl<'p> UnchangedFile<'p> {
     /// Opens the file at `path`.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails if the file cannot be written.
     pub(crate) fn open(path: &'p Path) -> io::Result<Self> {
         match File::create_new(path) {
             Ok(file) => Ok(Self { file, new: Some(New(path)) }),
@@ -88,7 +88,7 @@ impl<'p> UnchangedFile<'p> {
     /// Truncates the file and begins the log. With `prompt`, the log is flushed after each turn.
     ///
     /// # Errors
-    /// The file cannot be truncated.
+    /// Fails if the file cannot be truncated.
     pub(crate) fn begin(self, prompt: bool, patience: &Patience) -> io::Result<Log> {
         Ok(Log { file: self.emptied(patience)?, prompt })
     }
@@ -96,7 +96,7 @@ impl<'p> UnchangedFile<'p> {
     /// Truncates the file and returns a writer to it; from now on the file is kept.
     ///
     /// # Errors
-    /// The file cannot be truncated.
+    /// Fails if the file cannot be truncated.
     pub(crate) fn emptied(self, patience: &Patience) -> io::Result<Outlet> {
         Outlet::open(self.cut()?, Keeps::All, patience)
     }
@@ -104,7 +104,7 @@ impl<'p> UnchangedFile<'p> {
     /// Truncates the file and returns a writer that converts frames to a record.
     ///
     /// # Errors
-    /// The file cannot be truncated.
+    /// Fails if the file cannot be truncated.
     pub(crate) fn recorded(self, patience: &Patience) -> io::Result<Outlet> {
         Outlet::open(RecordFile::new(self.cut()?), Keeps::All, patience)
     }
@@ -138,7 +138,7 @@ impl Log {
     /// Writes a turn.
     ///
     /// # Errors
-    /// The file cannot be written, for example because the disk is full.
+    /// Fails if the file cannot be written, for example because the disk is full.
     pub(crate) fn turn(&mut self, entry: &Entry<'_>) -> io::Result<()> {
         let Entry { plan, turn, t, state, applied, frame, transitions, .. } = *entry;
         let law = applied.map(|atom| plan.law(atom));
@@ -166,7 +166,7 @@ impl Log {
     /// Passes all text written so far to the system.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails if the file cannot be written.
     pub(crate) fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
     }

@@ -48,7 +48,7 @@ pub(crate) fn recording(target: &TargetOptions, matches: &ArgMatches) -> Option<
 /// Checks that turns are short enough for recording a path.
 ///
 /// # Errors
-/// The turns are too long: the path could not be replayed.
+/// Fails if the turns are too long: the path could not be replayed.
 pub(crate) fn check_period(period: Duration) -> Result<(), Refusal> {
     if period <= APART {
         return Ok(());
@@ -61,8 +61,8 @@ pub(crate) fn check_period(period: Duration) -> Result<(), Refusal> {
 /// Reads the paths that a plan replays. The path with the name `later` may have no file yet.
 ///
 /// # Errors
-/// A file is missing or contains no path, or its path is too fast for the robot. The message names the file, place and
-/// reason.
+/// Fails if a file is missing or contains no path, or if its path is too fast for the robot. The message names the
+/// file, place and reason.
 pub(crate) fn load(
     target: &TargetOptions,
     matches: &ArgMatches,

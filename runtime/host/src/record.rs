@@ -73,7 +73,7 @@ impl<W: Write> Record<W> {
     /// Writes a turn whose output has been stored.
     ///
     /// # Errors
-    /// The file cannot be written, for example because the disk is full.
+    /// Fails if the file cannot be written, for example because the disk is full.
     pub(crate) fn turn(&mut self, entry: &Entry<'_>) -> io::Result<()> {
         let Entry { turn, t, state, kind, transitions, plan_number, supervised, .. } = *entry;
         let applied = match kind {
@@ -91,7 +91,7 @@ impl<W: Write> Record<W> {
     /// Writes a turn that no plan has made and whose output has been stored.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails if the file cannot be written.
     pub(crate) fn turn_without_plan(&mut self, unmade: &UnmadeTurn<'_>) -> io::Result<()> {
         self.exact(unmade, (Applied::Cut, 0), Vec::new())?;
         self.written(unmade)
@@ -177,7 +177,7 @@ impl<W: Write> Record<W> {
     /// Writes the reason why the turns have ended.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails if the file cannot be written.
     pub(crate) fn ended(&mut self, turn: u64, t: Nanos, cause: &str) -> io::Result<()> {
         if !self.has_begun {
             return Ok(());
@@ -190,7 +190,7 @@ impl<W: Write> Record<W> {
     /// Completes the record.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails if the file cannot be written.
     pub(crate) fn close(&mut self) -> io::Result<()> {
         self.bytes.clear();
         self.frames.end(&mut self.bytes);

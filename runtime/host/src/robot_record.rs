@@ -45,7 +45,7 @@ impl RobotRecord {
     /// Creates the file of a record, or empties the file that has its name.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails if the file cannot be written.
     pub fn create(path: &Path, begin: Begin) -> io::Result<Self> {
         Ok(Self(Record::new(RecordFile::new(File::create(path)?), begin, false)))
     }
@@ -53,7 +53,7 @@ impl RobotRecord {
     /// Writes a turn.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails if the file cannot be written.
     pub fn turn(&mut self, turn: RobotTurn<'_>) -> io::Result<()> {
         let RobotTurn { number, t, y, sent, kind, plan, plan_number, begins, transitions, changes } = turn;
         let mut supervised = Supervised::default();
@@ -80,7 +80,7 @@ impl RobotRecord {
     /// Completes the record, whose last turn had this number, with the cause of the end.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails if the file cannot be written.
     pub fn end(mut self, number: u64, t: Nanos, cause: &str) -> io::Result<()> {
         self.0.ended(number, t, cause)?;
         self.0.close()

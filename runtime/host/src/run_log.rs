@@ -67,7 +67,7 @@ impl RunLog {
     /// Writes a turn that no plan has made.
     ///
     /// # Errors
-    /// The file cannot be written, and the run must not continue without the log.
+    /// Fails if the file cannot be written, and the run must not continue without the log.
     pub(crate) fn turn_without_plan(&mut self, unmade: &UnmadeTurn<'_>) -> io::Result<()> {
         self.t = unmade.t;
         self.write(|format| match format {
@@ -79,7 +79,7 @@ impl RunLog {
     /// Writes a turn.
     ///
     /// # Errors
-    /// The file cannot be written, and the run must not continue without the log.
+    /// Fails if the file cannot be written, and the run must not continue without the log.
     pub(crate) fn turn(&mut self, entry: &Entry<'_>) -> io::Result<()> {
         self.t = entry.t;
         self.write(|format| match format {
@@ -100,7 +100,7 @@ impl RunLog {
     /// Passes all data to the system; nothing is written afterwards.
     ///
     /// # Errors
-    /// The file cannot be written, and the run must have a log.
+    /// Fails if the file cannot be written, and the run must have a log.
     pub(crate) fn close(&mut self) -> io::Result<()> {
         self.write(|format| match format {
             Format::Lines(log) => log.flush(),

@@ -11,7 +11,7 @@ pub(crate) struct Panicked(pub(crate) String);
 /// Runs `code`. After a panic its data may be inconsistent, so that the robot may only be stopped.
 ///
 /// # Errors
-/// The code panicked. The panic hook has then reported the place on standard error.
+/// Fails if the code panicked. The panic hook has then reported the place on standard error.
 pub(crate) fn shielded<T>(code: impl FnOnce() -> T) -> Result<T, Panicked> {
     catch_unwind(AssertUnwindSafe(code)).map_err(|payload| {
         let message = text(&*payload);

@@ -24,7 +24,7 @@ const LOOK: Duration = Duration::from_millis(10);
 /// Lets a second signal end the program, with the exit status known at that time. The terminal is restored.
 ///
 /// # Errors
-/// The system does not permit catching a signal, or cannot create a thread.
+/// Fails if the system does not permit catching a signal, or cannot create a thread.
 pub(crate) fn watch(signals: &Signals) -> io::Result<()> {
     let mut incoming = Incoming::new(signals.noted().iter().map(|signal| i32::from(signal.number())))?;
     let signals = signals.share();

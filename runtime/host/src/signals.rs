@@ -106,7 +106,7 @@ impl Signals {
     /// [`Signals::robot_runs`].
     ///
     /// # Errors
-    /// The system does not permit catching a signal.
+    /// Fails if the system does not permit catching a signal.
     pub(crate) fn listen() -> io::Result<Self> {
         let mut signals = Self { deadly: Arc::new(AtomicBool::new(true)), ..Self::unheard() };
         flag::register(Number::USR1.as_raw(), Arc::clone(&signals.timing))?;

@@ -59,7 +59,8 @@ pub trait Target {
     /// steps; when it is made, the robot stops and returns [`Refusal::Ended`].
     ///
     /// # Errors
-    /// An option is invalid (exit status 2), a fault has occurred (exit status 3), or `request` was made.
+    /// Fails if an option is invalid (exit status 2), if a fault has occurred (exit status 3), or if `request` was
+    /// made.
     fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Self::Robot, Refusal>;
 
     /// Returns the files that the target's own options name; the host refuses to write a file that another option also

@@ -55,7 +55,7 @@ impl TurnWatch {
     /// and exit status 3; `leave_screen` restores the terminal.
     ///
     /// # Errors
-    /// The system cannot create a thread.
+    /// Fails if the system cannot create a thread.
     pub(crate) fn begin(err: Aside, leave_screen: fn()) -> io::Result<Self> {
         let watch = Self::default();
         let own = watch.clone();

@@ -58,7 +58,7 @@ pub(crate) fn files(matches: &ArgMatches) -> impl Iterator<Item = NamedFile> {
 /// Returns the views that the options request, if the target does not show them itself.
 ///
 /// # Errors
-/// The robot has no known odometry, a file cannot be written, or there is no terminal.
+/// Fails if the robot has no known odometry, if a file cannot be written, or if there is no terminal.
 pub(crate) fn by_odometry(
     target: &TargetOptions,
     matches: &ArgMatches,

@@ -113,7 +113,7 @@ impl<R: Read> Records<R> {
     /// Reads the beginning of a record.
     ///
     /// # Errors
-    /// The source cannot be read, or is not a record.
+    /// Fails if the source cannot be read, or is not a record.
     pub fn open(source: R) -> Result<(Begin, Self), ReadError> {
         let (parts, messages) = (Parts::new(source), Vec::new());
         let mut records = Self { parts, channels: [None; 4], messages, turns: None, count: 0 };

@@ -11,8 +11,8 @@ pub trait Configuration: Sized {
     /// Returns the values of the configuration file and of `device`, and defaults for all other values.
     ///
     /// # Errors
-    /// The file cannot be read, is not TOML, or has an unknown key or an invalid value. The sentence gives the place
-    /// and reason.
+    /// Fails if the file cannot be read, is not TOML, or has an unknown key or an invalid value. The sentence gives the
+    /// place and reason.
     fn read(file: Option<&Path>, device: Option<&str>) -> Result<(Self, Settings), String>;
 }
 
@@ -28,7 +28,7 @@ impl<C: Configuration> Configured<C> {
     /// Reads the configuration like [`Configuration::read`].
     ///
     /// # Errors
-    /// [`Configuration::read`] failed.
+    /// Fails if [`Configuration::read`] fails.
     pub fn read(file: Option<&Path>, device: Option<&str>) -> Result<Self, String> {
         C::read(file, device).map(|(config, settings)| Self { config, settings })
     }

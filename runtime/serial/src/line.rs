@@ -52,7 +52,7 @@ impl LineFault {
     /// Writes the sentence about this fault for the operator; `robot` names the robot, as in `the Scout`.
     ///
     /// # Errors
-    /// The formatter failed.
+    /// Fails if the formatter failed.
     pub fn tell(&self, robot: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Open(device, why) => {
@@ -71,7 +71,7 @@ impl Line {
     /// Opens a serial port at `speed` bits per second, or `tcp:ADDRESS:PORT`. Nothing is sent.
     ///
     /// # Errors
-    /// The device is missing, busy or not a terminal, or no program listens at the address.
+    /// Fails if the device is missing, busy or not a terminal, or if no program listens at the address.
     pub fn open(device: &str, speed: u32) -> Result<Self, LineFault> {
         let port = match device.strip_prefix("tcp:") {
             Some(address) => connect(address)?,
@@ -83,7 +83,7 @@ impl Line {
     /// Sends all of `bytes`.
     ///
     /// # Errors
-    /// The line is closed, or does not accept all bytes before `deadline`.
+    /// Fails if the line is closed, or does not accept all bytes before `deadline`.
     pub fn write(&self, bytes: &[u8], deadline: Instant) -> Result<(), LineFault> {
         let mut left = bytes;
         while !left.is_empty() {
@@ -100,7 +100,7 @@ impl Line {
     /// Reads the bytes that have arrived, up to the length of `into`; returns their number.
     ///
     /// # Errors
-    /// The line is closed.
+    /// Fails if the line is closed.
     pub fn read(&self, into: &mut [u8]) -> Result<usize, LineFault> {
         match rustix::io::read(&self.port, into) {
             Ok(0) => Err(LineFault::Closed),
@@ -113,7 +113,7 @@ impl Line {
     /// Waits until bytes have arrived.
     ///
     /// # Errors
-    /// No bytes have arrived before `deadline`, or the line failed.
+    /// Fails if no bytes have arrived before `deadline`, or if the line failed.
     pub fn hear(&self, deadline: Instant) -> Result<(), LineFault> {
         self.wait(PollFlags::IN, deadline)
     }

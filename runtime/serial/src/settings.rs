@@ -32,8 +32,8 @@ impl Settings {
     /// `None`.
     ///
     /// # Errors
-    /// The file cannot be read, is not TOML, or has an unknown key or an invalid value. The sentence gives the place
-    /// and reason.
+    /// Fails if the file cannot be read, is not TOML, or has an unknown key or an invalid value. The sentence gives the
+    /// place and reason.
     pub fn read<F: DeserializeOwned + Default>(file: Option<&Path>) -> Result<(F, Self), String> {
         let Some(path) = file else { return Ok((F::default(), Self::default())) };
         let name = path.display().to_string();

@@ -28,7 +28,7 @@ pub trait SerialRobot: Robot<Output = Sensed, Input = Twist, Error: Into<Refusal
     /// Opens the line and prepares the robot, which is at rest.
     ///
     /// # Errors
-    /// There is no line or no robot, the robot cannot be driven, or `request` was made.
+    /// Fails if there is no line or no robot, if the robot cannot be driven, or if `request` was made.
     fn connect(
         config: Self::Config,
         clock: Clock,

@@ -45,8 +45,8 @@ impl<A: EngineAlphabet> Engine<A> {
     /// in stepped time on the thread of the caller.
     ///
     /// # Errors
-    /// A module is refused, or publishes an attribute as another kind than the plan reads (exit status 2), the system
-    /// gives no threads, or the run is asked to end before.
+    /// Fails if a module is refused, or publishes an attribute of another kind than the plan expects (exit status 2),
+    /// if the system gives no threads, or if the run is asked to end before it begins.
     pub fn new(
         plan: LoadedPlan<A>,
         library: &Library<A::Output>,

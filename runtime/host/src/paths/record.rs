@@ -36,7 +36,7 @@ impl<W: Write> Recorder<W> {
     /// Passes the rest to the system.
     ///
     /// # Errors
-    /// A row could not be written.
+    /// Fails if a row could not be written.
     pub(crate) fn close(mut self) -> io::Result<()> {
         self.written?;
         self.file.flush()

@@ -32,7 +32,7 @@ fn greys(grid: &EvidenceGrid) -> Vec<u8> {
 /// Returns the image of the map in a YAML file.
 ///
 /// # Errors
-/// The name does not end in `.yaml` or `.yml`.
+/// Fails if the name does not end in `.yaml` or `.yml`.
 pub(crate) fn image(file: &Path) -> Result<PathBuf, Failure> {
     if file.extension().is_some_and(|extension| extension == "yaml" || extension == "yml") {
         return Ok(file.with_extension("pgm"));
@@ -44,7 +44,8 @@ pub(crate) fn image(file: &Path) -> Result<PathBuf, Failure> {
 /// Reads the grid of the map in a YAML file that `mdle map` has written.
 ///
 /// # Errors
-/// The name does not end in `.yaml` or `.yml`; the image beside the file cannot be read, or is none of such a map.
+/// Fails if the name does not end in `.yaml` or `.yml`, or if the image beside the file cannot be read or does not
+/// belong to such a map.
 pub(crate) fn read_map(file: &Path) -> Result<EvidenceGrid, Failure> {
     let image = image(file)?;
     let bytes = mdle_host::read_file(&image, LARGEST)

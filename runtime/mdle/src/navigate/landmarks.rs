@@ -91,7 +91,7 @@ impl Landmarks {
     /// landmarks.
     ///
     /// # Errors
-    /// A map cannot be read.
+    /// Fails if a map cannot be read.
     pub(super) fn maps(&self, file: &Path, begins: f64) -> Result<Vec<LandmarkMap>, Failure> {
         let maps = self.landmark.iter().filter_map(|landmark| {
             let map = file.with_file_name("").join(landmark.map.as_ref()?);

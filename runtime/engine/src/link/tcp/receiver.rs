@@ -27,7 +27,7 @@ const CONNECTIONS: usize = 4;
 /// Starts the thread that accepts connections.
 ///
 /// # Errors
-/// The system cannot set up the listener or create the thread.
+/// Fails if the system cannot set up the listener or create the thread.
 pub(super) fn listen(listener: TcpListener, shared: &Arc<Shared>) -> io::Result<()> {
     listener.set_nonblocking(true)?;
     let shared = Arc::clone(shared);
