@@ -79,7 +79,7 @@ impl Atrv {
     /// each sonar has pinged.
     ///
     /// # Errors
-    /// There is no line or no robot, its brake is set, or its sonars do not report.
+    /// Fails if there is no line or no robot, if its brake is set, or if its sonars do not report.
     pub fn connect(config: Config, clock: Clock, period: Duration, request: &StopRequest) -> Result<Self, Fault> {
         let line = Line::open(&config.device, SPEED)?;
         let watchdog = match clock {
@@ -178,8 +178,8 @@ impl Atrv {
     /// if its reports are lost.
     ///
     /// # Errors
-    /// No command can be sent, or the robot has not reported within the time limit, or has not reported that it is at
-    /// rest.
+    /// Fails if no command can be sent, or if the robot has not reported within the time limit, or has not reported
+    /// that it is at rest.
     fn stands(&mut self) -> Result<(), Fault> {
         let (begun, limit) = (Instant::now(), self.obedience.time_to_stand(STOPPING));
         // What it has reported before is of another time. If nothing can be read any more, that is found out below.
@@ -214,8 +214,8 @@ impl Atrv {
     /// has stopped itself also reports that it is at rest.
     ///
     /// # Errors
-    /// No command can be sent, or the robot has not answered within the time limit, or has not reported that its brake
-    /// is set.
+    /// Fails if no command can be sent, or if the robot has not answered within the time limit, or has not reported
+    /// that its brake is set.
     fn brakes(&mut self) -> Result<(), Fault> {
         self.hearing.forget_brake();
         let end = Instant::now() + self.clock.patience(BRAKING);

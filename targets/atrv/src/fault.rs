@@ -11,8 +11,7 @@ use crate::report::Unreadable;
 /// Reason why the robot cannot be driven, or can no longer be driven.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fault {
-    /// The run was asked to end while the robot was being prepared. The fault is present if the robot could not be
-    /// stopped.
+    /// The run was asked to end while the robot was being prepared. Contains a fault if the robot could not be stopped.
     Ended(Option<Box<Self>>),
     /// The line cannot be opened, is closed, or no report arrived in time.
     Line(LineFault),

@@ -139,7 +139,7 @@ impl Reader {
     /// Reads the next byte, and returns the packet that the byte completes, if any.
     ///
     /// # Errors
-    /// The bytes so far are not a frame. The reader then waits for the beginning of the next frame.
+    /// Fails if the bytes so far are not a frame. The reader then waits for the beginning of the next frame.
     pub fn take(&mut self, byte: u8) -> Result<Option<Packet<'_>>, Garbled> {
         match (self.place, byte) {
             (ReaderState::Outside { after_escape: true, .. }, START)

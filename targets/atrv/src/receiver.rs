@@ -83,7 +83,7 @@ impl Hearing {
     /// position report has arrived within the last `patience`.
     ///
     /// # Errors
-    /// The line is closed, or the position reports have not arrived within `patience`.
+    /// Fails if the line is closed, or if the position reports have not arrived within `patience`.
     pub(crate) fn take(&mut self, line: &Line, at: Nanos, count: u32, patience: Duration) -> Result<(), Fault> {
         let begun = Instant::now();
         let mut reports = 0;
@@ -107,7 +107,7 @@ impl Hearing {
     /// is kept.
     ///
     /// # Errors
-    /// The line is closed.
+    /// Fails if the line is closed.
     pub(crate) fn forget(&mut self, line: &Line) -> Result<(), Fault> {
         self.drain(line, Nanos::ZERO)?;
         (self.last_report, self.trouble) = (None, None);
@@ -118,7 +118,7 @@ impl Hearing {
     /// velocity in the last position report since [`Self::forget`].
     ///
     /// # Errors
-    /// The line is closed, or no position has been reported since [`Self::forget`].
+    /// Fails if the line is closed, or if no position has been reported since [`Self::forget`].
     pub(crate) fn speed(&mut self, line: &Line, count: u32, deadline: Instant) -> Result<Twist, Fault> {
         let mut reports = 0;
         loop {
@@ -144,8 +144,8 @@ impl Hearing {
     /// Waits until the robot reports that its brake is set.
     ///
     /// # Errors
-    /// The line is closed, or until `deadline` the robot has not reported its brake since [`Self::forget_brake`], or
-    /// has reported that it is not set.
+    /// Fails if the line is closed, or if, until `deadline`, the robot has not reported its brake since
+    /// [`Self::forget_brake`], or has reported that it is not set.
     pub(crate) fn brake(&mut self, line: &Line, deadline: Instant) -> Result<(), Fault> {
         loop {
             self.drain(line, Nanos::ZERO)?;
@@ -177,7 +177,7 @@ impl Hearing {
     /// Checks that the robot can continue at the time `at` of an output.
     ///
     /// # Errors
-    /// The brake is set, the positions leap, or a report is overdue.
+    /// Fails if the brake is set, if the positions leap, or if a report is overdue.
     pub(crate) fn fault(&self, at: Nanos) -> Result<(), Fault> {
         let known = &self.known;
         if known.is_braked == Some(true) {

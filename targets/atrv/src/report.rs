@@ -65,7 +65,7 @@ impl<'a> Report<'a> {
     /// Returns the content of `packet`.
     ///
     /// # Errors
-    /// No rFLEX sends packets of this kind, or the packet is too short for its content.
+    /// Fails if no rFLEX sends packets of this kind, or if the packet is too short for its content.
     pub fn read(packet: &Packet<'a>) -> Result<Self, Unreadable> {
         let short = || Unreadable::Short(packet.port, packet.opcode, packet.data.len());
         match (packet.port, packet.opcode) {

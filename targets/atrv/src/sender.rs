@@ -72,7 +72,7 @@ impl Mouth {
     /// Sends a command that is not a motion.
     ///
     /// # Errors
-    /// The line is closed, or accepts no bytes until `deadline`.
+    /// Fails if the line is closed, or accepts no bytes until `deadline`.
     pub(crate) fn say(&self, frame: &FrameBytes, deadline: Instant) -> Result<(), Fault> {
         // No command of the watchdog's is to come into the middle of it.
         let _watch = self.shared.watch();
@@ -82,7 +82,7 @@ impl Mouth {
     /// Sends a motion command. The watchdog then waits for the next motion command.
     ///
     /// # Errors
-    /// The line is closed or accepts no bytes until `deadline`, or the watchdog has stopped the robot.
+    /// Fails if the line is closed or accepts no bytes until `deadline`, or if the watchdog has stopped the robot.
     pub(crate) fn say_motion(&self, frame: &FrameBytes, deadline: Instant) -> Result<(), Fault> {
         let mut watch = self.shared.watch();
         self.is_in_time(&watch)?;
@@ -93,7 +93,7 @@ impl Mouth {
     /// Checks that the watchdog has no reason to stop the robot.
     ///
     /// # Errors
-    /// The last motion command is too old.
+    /// Fails if the last motion command is too old.
     pub(crate) fn is_awake(&self) -> Result<(), Fault> {
         self.is_in_time(&self.shared.watch())
     }

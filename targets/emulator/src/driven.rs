@@ -32,7 +32,7 @@ impl Drop for SetAtTheEnd<'_> {
 /// Serves the robot's line on a thread while `drive` runs; `drive` receives the path of the line's device.
 ///
 /// # Errors
-/// The system has no more pseudo-terminals.
+/// Fails if the system has no more pseudo-terminals.
 pub fn driven<R: Emulated + Send, T>(
     mut robot: R,
     pace: Pace,

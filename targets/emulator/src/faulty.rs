@@ -30,7 +30,7 @@ impl<R: Emulated> Faulty<R> {
     /// Returns a robot that has just been switched on and will have `faults`.
     ///
     /// # Errors
-    /// The robot cannot have one of the faults.
+    /// Fails if the robot cannot have one of the faults.
     pub fn new(robot: R, faults: &[At]) -> Result<Self, String> {
         let cannot = faults.iter().find(|at| matches!(at.fault, Fault::Body(ailment) if !R::can_suffer(ailment)));
         if let Some(At { fault, .. }) = cannot {

@@ -26,7 +26,7 @@ impl Port {
     /// Opens a new pseudo-terminal.
     ///
     /// # Errors
-    /// The system has no more pseudo-terminals.
+    /// Fails if the system has no more pseudo-terminals.
     pub fn open() -> io::Result<Self> {
         let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         grantpt(&ours)?;
@@ -49,7 +49,7 @@ impl Port {
     /// with the line.
     ///
     /// # Errors
-    /// A file that is not a symbolic link is there, or the link cannot be created.
+    /// Fails if a file that is not a symbolic link is there, or if the link cannot be created.
     pub fn link(&mut self, link: &Path) -> io::Result<()> {
         if fs::symlink_metadata(link).is_ok_and(|known| known.file_type().is_symlink()) {
             fs::remove_file(link)?;
@@ -73,7 +73,7 @@ impl Port {
     /// Waits for bytes until `limit` has passed, and passes them to `take`; returns `true` if bytes arrived.
     ///
     /// # Errors
-    /// The line failed.
+    /// Fails if the line failed.
     pub fn read(&self, limit: Duration, take: &mut dyn FnMut(&[u8])) -> io::Result<bool> {
         let timeout = Timespec { tv_sec: limit.as_secs() as i64, tv_nsec: i64::from(limit.subsec_nanos()) };
         match poll(&mut [PollFd::new(&self.ours, PollFlags::IN)], Some(&timeout)) {
@@ -93,7 +93,7 @@ impl Port {
     /// Sends `bytes`. If nobody reads them, bytes are lost once the line is full, as on a wire.
     ///
     /// # Errors
-    /// The line failed.
+    /// Fails if the line failed.
     pub fn write(&self, mut bytes: &[u8]) -> io::Result<()> {
         while !bytes.is_empty() {
             match rustix::io::write(&self.ours, bytes) {

@@ -30,7 +30,7 @@ impl Presence {
     /// Watches for drivers at `devices` from now on.
     ///
     /// # Errors
-    /// The system cannot watch this number of devices.
+    /// Fails if the system cannot watch this number of devices.
     pub(crate) fn of<'p>(devices: impl Iterator<Item = &'p Path>) -> io::Result<Self> {
         let watch = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
         let events = WatchFlags::OPEN | WatchFlags::CLOSE_WRITE | WatchFlags::CLOSE_NOWRITE;
@@ -48,7 +48,7 @@ impl Presence {
     /// Reads which drivers have connected or disconnected.
     ///
     /// # Errors
-    /// The system no longer reports.
+    /// Fails if the system no longer reports.
     pub(crate) fn look(&mut self) -> io::Result<()> {
         let mut buffer = [MaybeUninit::uninit(); 1024];
         let mut reader = Reader::new(&self.watch, &mut buffer);

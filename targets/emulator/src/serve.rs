@@ -70,7 +70,7 @@ impl Pace {
 /// Serves the robot at this line while `goes_on` returns `true`, and then until it has executed its earlier commands.
 ///
 /// # Errors
-/// The line or the robot's world failed.
+/// Fails if the line or the robot's world failed.
 pub fn serve<R: Emulated>(robot: &mut R, port: &Port, pace: Pace, goes_on: &dyn Fn() -> bool) -> io::Result<()> {
     let mut next = Instant::now() + STEP;
     loop {

@@ -36,7 +36,7 @@ impl<R> Several<R> {
     /// Returns the robots, and watches from now on for drivers at their lines.
     ///
     /// # Errors
-    /// The system cannot watch this number of lines.
+    /// Fails if the system cannot watch this number of lines.
     pub fn of(seats: Vec<Seat<R>>) -> io::Result<Self> {
         let presence = Presence::of(seats.iter().map(|seat| seat.port.path()))?;
         Ok(Self { seats, presence })
@@ -53,7 +53,7 @@ impl<R: Emulated + Embodied> Several<R> {
     /// Serves all robots while `goes_on` returns `true`, and then until they have executed their earlier commands.
     ///
     /// # Errors
-    /// A line or the world of a robot failed.
+    /// Fails if a line or the world of a robot failed.
     pub fn serve(&mut self, pace: Pace, goes_on: &dyn Fn() -> bool) -> io::Result<()> {
         let Self { seats, presence } = self;
         match seats.as_mut_slice() {

@@ -43,7 +43,7 @@ impl<T: Clone + Send + 'static> Staged<T> {
     /// observes.
     ///
     /// # Errors
-    /// The system has no more pseudo-terminals.
+    /// Fails if the system has no more pseudo-terminals.
     pub fn new<R: Emulated + Send + 'static>(robot: R, period: Duration, look: fn(&R) -> T) -> io::Result<Self> {
         let port = Port::open()?;
         let device = port.path().to_owned();

@@ -143,7 +143,7 @@ impl<T: Trial> Stage for OnItsLine<T> {
 /// are enough for each sonar to ping, and for all that does not happen in each turn.
 ///
 /// # Errors
-/// The robot or its driver failed.
+/// Fails if the robot or its driver failed.
 pub fn memory_asked_for<T: Trial>(asked: fn() -> u64) -> Result<u64, String> {
     let world = World::office().map_err(|error| error.to_string())?;
     let robot = switched_on::<T>(&world, world.start, Some(1))?;
@@ -199,7 +199,7 @@ pub(crate) fn ran<T: Trial>(
 /// Returns the result of connecting a driver to a robot that has this fault from the beginning.
 ///
 /// # Errors
-/// There is no such fault, or the line failed.
+/// Fails if there is no such fault, or if the line failed.
 pub(crate) fn started<T: Trial>(fault: &str) -> Result<Result<(), FaultOf<T>>, String> {
     let Driven { result, served, .. } =
         driven(faulty::<T>(&[fault])?, Pace::Lockstep(period::<T>()), |device| connected::<T>(device, PATIENCE))

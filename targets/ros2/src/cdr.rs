@@ -21,7 +21,7 @@ impl Payload {
     /// Encodes `message` as little-endian CDR.
     ///
     /// # Errors
-    /// The message has no CDR representation, for example because it contains a list of unknown length.
+    /// Fails if the message has no CDR representation, for example because it contains a list of unknown length.
     pub fn of<T: Serialize>(message: &T) -> Result<Self, String> {
         let (mut bytes, encoding) = (Vec::new(), RepresentationIdentifier::CDR_LE);
         to_writer_with_rep_id(&mut bytes, message, encoding).map_err(|error| error.to_string())?;

@@ -165,8 +165,8 @@ impl Configured {
     /// Reads the configuration file `file`; without a file, returns the defaults.
     ///
     /// # Errors
-    /// The file cannot be read, is not TOML, or has an unknown key or an invalid value. The sentence gives the place
-    /// and reason.
+    /// Fails if the file cannot be read, is not TOML, or has an unknown key or an invalid value. The sentence gives the
+    /// place and reason.
     pub fn read(file: Option<&Path>) -> Result<Self, String> {
         let (file, mut settings) = Settings::read::<File>(file)?;
         if file.domain.is_none() {

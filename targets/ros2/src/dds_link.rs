@@ -57,7 +57,7 @@ impl DdsLink {
     /// Joins the domain, and waits until all topics of the configuration have been found.
     ///
     /// # Errors
-    /// Topics are missing, or the middleware does not work.
+    /// Fails if topics are missing, or if the middleware does not work.
     pub fn connect(
         config: &Config,
         pacing: Pacing,

@@ -13,19 +13,19 @@ pub trait Link {
     /// Sends a velocity command.
     ///
     /// # Errors
-    /// No program subscribes to velocity commands.
+    /// Fails if no program subscribes to velocity commands.
     fn command(&mut self, twist: Twist) -> Result<(), Fault>;
 
     /// Calls `take` with each message since the last call: the index of its topic, and its bytes.
     ///
     /// # Errors
-    /// `take` failed, or several programs publish the odometry.
+    /// Fails if `take` fails, or if several programs publish the odometry.
     fn receive(&mut self, take: &mut dyn FnMut(usize, &Payload) -> Result<(), Fault>) -> Result<(), Fault>;
 
     /// Sends a zero velocity until all subscribers that acknowledge messages have done so, or until `limit` has passed.
     ///
     /// # Errors
-    /// No subscriber has acknowledged the zero velocity.
+    /// Fails if no subscriber has acknowledged the zero velocity.
     fn halt(&mut self, limit: Duration) -> Result<(), Fault>;
 
     /// Publishes the state of the plan.

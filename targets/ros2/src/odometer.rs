@@ -46,7 +46,7 @@ impl Odometer {
     /// than that.
     ///
     /// # Errors
-    /// The pose is invalid, has jumped, or the time has gone back.
+    /// Fails if the pose is invalid or has jumped, or if the time has gone back.
     pub fn take(&mut self, message: &Odometry, since: f64) -> Result<bool, Fault> {
         let next = Timed { stamp: message.header.stamp.nanos(), pose: pose(message)? };
         if let Some(last) = self.poses.back() {

@@ -66,7 +66,7 @@ impl PlanState {
     /// Returns the messages, with the time stamp `stamp` in nanoseconds.
     ///
     /// # Errors
-    /// A text cannot be encoded.
+    /// Fails if a text cannot be encoded.
     pub fn messages(&self, stamp: i64) -> Result<StateMessages, String> {
         let text = json!({
             "status": self.status, "t": self.t.parse::<f64>().unwrap_or_default(), "plan": self.plan, "atom": self.law,

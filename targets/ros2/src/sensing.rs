@@ -81,7 +81,7 @@ impl Sensing {
     /// A message that cannot be read is rejected: if no other message follows, the topic becomes stale.
     ///
     /// # Errors
-    /// The odometry is invalid, has jumped, or has gone back in time.
+    /// Fails if the odometry is invalid, has jumped, or has gone back in time.
     pub fn take(&mut self, index: usize, payload: &Payload, now: Duration, at: Nanos) -> Result<(), Fault> {
         let Some(seen) = self.seen.get(index) else { return Ok(()) };
         let (source, since) = (seen.input.source, seen.at.map_or(now, |at| now.saturating_sub(at)));
@@ -245,7 +245,7 @@ impl Sensing {
     /// Returns the output of the robot at the time `at`.
     ///
     /// # Errors
-    /// No odometry has arrived yet.
+    /// Fails if no odometry has arrived yet.
     pub fn sensed(&self, at: Nanos) -> Result<Sensed, Fault> {
         let (odometry, velocity) = self.odometer.last().ok_or(Fault::NoPose)?;
         Ok(Sensed {

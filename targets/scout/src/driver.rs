@@ -68,7 +68,7 @@ impl Scout {
     /// sonar has pinged.
     ///
     /// # Errors
-    /// There is no line or no robot, or the robot's emergency stop is pressed.
+    /// Fails if there is no line or no robot, or if the robot's emergency stop is pressed.
     pub fn connect(config: Config, clock: Clock, period: Duration, request: &StopRequest) -> Result<Self, Fault> {
         let line = Line::open(&config.device)?;
         let ring = Ring::new(&config.sonars, Nanos(config.gap.saturating_mul(1_000_000)));
@@ -142,7 +142,8 @@ impl Scout {
     /// Waits until the robot is at rest.
     ///
     /// # Errors
-    /// The robot does not answer, or the state requested at the end of the time limit shows that it still moves.
+    /// Fails if the robot does not answer, or if the state requested at the end of the time limit shows that it still
+    /// moves.
     fn stands(&mut self, begun: Instant, limit: Duration) -> Result<(), Fault> {
         let mut was_slow = false;
         for looks in 1.. {

@@ -72,7 +72,7 @@ impl Frame {
     /// complete.
     ///
     /// # Errors
-    /// The bytes do not begin a frame, whatever bytes follow.
+    /// Fails if the bytes do not begin a frame, whatever bytes follow.
     pub fn read(bytes: &[u8]) -> Result<Option<(Self, usize)>, Garbled> {
         match bytes.first() {
             None => return Ok(None),

@@ -35,7 +35,8 @@ impl Freshness {
     /// Checks the state that arrived at `at` and reports the robot at `pose`.
     ///
     /// # Errors
-    /// The clock has not advanced, or the sonars' ranges have not changed, for longer than the configuration allows.
+    /// Fails if the clock has not advanced, or if the sonars' ranges have not changed, for longer than the
+    /// configuration allows.
     pub(crate) fn take(&mut self, state: &State, at: Nanos, pose: Pose, config: &Config) -> Result<(), Fault> {
         let (_, since) =
             *self.clock.insert(self.clock.filter(|(clock, _)| *clock == state.clock).unwrap_or((state.clock, at)));

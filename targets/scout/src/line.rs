@@ -27,7 +27,7 @@ impl Line {
     /// Opens the serial port `device`, or `tcp:ADDRESS:PORT`. Nothing is sent.
     ///
     /// # Errors
-    /// The device is missing, busy or not a terminal, or no program listens at the address.
+    /// Fails if the device is missing, busy or not a terminal, or if no program listens at the address.
     pub(crate) fn open(device: &str) -> Result<Self, Fault> {
         Ok(Self { line: mdle_serial::Line::open(device, SPEED)?, reader: Reader::default() })
     }
@@ -38,7 +38,7 @@ impl Line {
     /// answer would be taken for the answer to the next command.
     ///
     /// # Errors
-    /// The line is closed, or no complete answer arrived before the deadline.
+    /// Fails if the line is closed, or if no complete answer arrived before the deadline.
     pub(crate) fn ask(&mut self, command: &Command, deadline: Instant) -> Result<Frame, Fault> {
         self.ask_while(command, deadline, &|| Ok(()))
     }
@@ -46,7 +46,7 @@ impl Line {
     /// Sends `command` and waits for its answer like [`Line::ask`], while `go_on` returns no error.
     ///
     /// # Errors
-    /// [`Line::ask`] or `go_on` failed.
+    /// Fails if [`Line::ask`] or `go_on` fails.
     pub(crate) fn ask_while(
         &mut self,
         command: &Command,
@@ -69,7 +69,7 @@ impl Line {
     /// Sends `command` without waiting for the answer.
     ///
     /// # Errors
-    /// The line is closed, or accepts no bytes until `deadline`.
+    /// Fails if the line is closed, or accepts no bytes until `deadline`.
     pub(crate) fn say(&mut self, command: &Command, deadline: Instant) -> Result<(), Fault> {
         Ok(self.line.write(&command.frame().bytes(), deadline)?)
     }

@@ -33,7 +33,7 @@ impl Odometer {
     /// range that wraps.
     ///
     /// # Errors
-    /// The positions leap repeatedly.
+    /// Fails if the positions leap repeatedly.
     pub(crate) fn pose(&mut self, state: &State, at: Nanos, fastest: f64) -> Result<Pose, Fault> {
         let (x, y) = self.last.replace((state.x, state.y)).unwrap_or((0, 0));
         let (x, y) = (unwrapped(x, state.x), unwrapped(y, state.y));

@@ -138,8 +138,8 @@ fn leader(leaders: &mut [u32], mut number: u32) -> u32 {
 }
 
 impl Groups {
-    /// Returns the groups, given the leaders: the leader of a robot is itself if it has the lowest number of
-    /// its group, and otherwise a robot with a lower number in the group.
+    /// Returns the groups. `leaders` has a robot for each robot: the robot itself if it has the lowest number of its
+    /// group, otherwise a robot with a lower number in its group.
     fn of(leaders: &mut [u32]) -> Self {
         let mut sizes = vec![0_u32; leaders.len()];
         for number in 0..leaders.len() as u32 {
