@@ -45,7 +45,7 @@ impl Loaded {
     /// Compiles the plan and reads the script.
     ///
     /// # Errors
-    /// A file cannot be read or contains errors. The text has one line for each error.
+    /// Fails if a file cannot be read or contains errors. The text has one line for each error.
     pub(crate) fn read(launch: &Launch) -> Result<Self, String> {
         let Launch { program, script, target, plan, .. } = launch;
         let settings = Settings::beside(program).map_err(words)?;

@@ -37,7 +37,7 @@ pub enum ServeError {
 /// Serves one client on standard input and output until the client ends the session.
 ///
 /// # Errors
-/// The client violated the protocol or vanished.
+/// Fails if the client violated the protocol or vanished.
 pub fn serve() -> Result<(), ServeError> {
     serve_on(io::stdin(), &mut io::stdout())
 }
@@ -45,7 +45,7 @@ pub fn serve() -> Result<(), ServeError> {
 /// Serves one client until the client ends the session.
 ///
 /// # Errors
-/// The client violated the protocol or vanished.
+/// Fails if the client violated the protocol or vanished.
 pub fn serve_on(input: impl Read + Send + 'static, output: &mut dyn Write) -> Result<(), ServeError> {
     serve::serve(&mut Client::new(BufReader::new(input), output))
 }

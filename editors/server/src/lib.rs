@@ -38,7 +38,7 @@ pub enum ServeError {
 /// Serves one client on standard input and output until the client ends the server.
 ///
 /// # Errors
-/// The client violated the protocol or vanished.
+/// Fails if the client violated the protocol or vanished.
 pub fn serve() -> Result<(), ServeError> {
     let (connection, threads) = lsp_server::Connection::stdio();
     let served = serve_on(&connection);

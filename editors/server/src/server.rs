@@ -39,7 +39,7 @@ pub(crate) struct Server<'c> {
 /// Serves one client until the client ends the server.
 ///
 /// # Errors
-/// The client violated the protocol or vanished.
+/// Fails if the client violated the protocol or vanished.
 pub fn serve_on(connection: &Connection) -> Result<(), ServeError> {
     let options = initialize(connection)?;
     let mut server = Server {

@@ -41,7 +41,8 @@ impl Open<'_> {
     }
 }
 
-/// Reads the word `word`, in the innermost open bracket.
+/// Updates the stack of open brackets for the next word of the text: a bracket opens or closes, and any other word
+/// belongs to the innermost open bracket.
 pub(crate) fn read<'t>(stack: &mut Vec<Open<'t>>, word: &Word<'t>, touches: bool) {
     match word.text {
         "{" | "(" => {

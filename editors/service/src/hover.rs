@@ -74,7 +74,7 @@ fn keyword(text: &str, byte: usize) -> Option<Hover> {
     Some(Hover { range: found.range, text: format!("```text\n{form}\n```\n{meaning}") })
 }
 
-/// Signature, meaning and needs of the quarks of this name.
+/// Returns the signatures, meanings and needs of the quarks of this name.
 pub(crate) fn quark(alphabet: &Alphabet, name: &str, kind: DeclarationKind) -> Option<String> {
     let name = quark_name(alphabet, name, kind);
     let declarations = alphabet.declarations_of(name).filter(|declaration| declaration.kind == kind);

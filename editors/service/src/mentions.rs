@@ -97,7 +97,8 @@ pub fn quark_name<'n>(alphabet: &Alphabet, name: &'n str, kind: DeclarationKind)
     }
 }
 
-/// Returns the declaration of the quark that a call means, by the number of arguments.
+/// Returns the declaration of the called quark. If several declarations have this name, the number of arguments
+/// decides.
 #[must_use]
 pub fn declaration<'a>(alphabet: &'a Alphabet, call: &Call<'_>, kind: DeclarationKind) -> Option<&'a Declaration> {
     let name = quark_name(alphabet, call.name, kind);

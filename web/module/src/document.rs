@@ -140,7 +140,7 @@ impl<'d> Document<'d> {
         found.iter().map(|diagnostic| self.sources.render(diagnostic)).collect::<Vec<_>>().join("\n")
     }
 
-    /// Shows a file to a feature of the language service.
+    /// Calls a feature of the language service with a view of a file.
     pub(crate) fn view<T>(&mut self, source: SourceId, feature: impl FnOnce(&View<'_>) -> T) -> T {
         let alphabet = self.alphabet;
         view(source, self, |document| &document.sources, alphabet, feature)
