@@ -38,7 +38,7 @@ pub fn scripted() -> &'static Alphabet {
 /// Compiles the plan `Main` of a text.
 ///
 /// # Errors
-/// The text with the errors, as a person sees them.
+/// Fails with the errors as text, as they are printed for people.
 pub fn compile(text: &str) -> Result<Compiled, String> {
     compile_plan(text, "Main")
 }
@@ -46,7 +46,7 @@ pub fn compile(text: &str) -> Result<Compiled, String> {
 /// Compiles the plan of this name of a text.
 ///
 /// # Errors
-/// The text with the errors, as a person sees them.
+/// Fails with the errors as text, as they are printed for people.
 pub fn compile_plan(text: &str, name: &str) -> Result<Compiled, String> {
     let (sources, library, source) = placed(text);
     let mut library = Library(library);

@@ -41,7 +41,7 @@ pub fn at_rest(shape: Shape) -> Sensed {
 /// Runs a plan on a robot until one of them ends; prints the line of a trace and the bits of the speeds for each turn.
 ///
 /// # Errors
-/// `out` does not take the text.
+/// Fails if `out` does not take the text.
 pub fn run<P: Plan<Output = Sensed, Input = Twist> + 'static>(
     cell: &'static StaticCell<Machine<P>>,
     plan: fn() -> P,

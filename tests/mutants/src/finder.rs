@@ -23,7 +23,7 @@ pub(crate) struct Change {
 /// All changes of a file.
 ///
 /// # Errors
-/// The text is not Rust.
+/// Fails if the text is not Rust.
 pub(crate) fn changes(text: &str) -> syn::Result<Vec<Change>> {
     let file = syn::parse_file(text)?;
     let mut finder = Finder { text, function: String::new(), changes: Vec::new() };

@@ -39,7 +39,7 @@ impl fmt::Display for Mutant {
 /// Every mutant of a file.
 ///
 /// # Errors
-/// The text is not Rust.
+/// Fails if the text is not Rust.
 pub(crate) fn mutants(area: usize, file: &str, text: &str) -> syn::Result<Vec<Mutant>> {
     let mut seen = BTreeMap::new();
     let mutants = finder::changes(text)?.into_iter().map(|found| {

@@ -59,7 +59,7 @@ impl Schema {
     /// The text with these mutants, each with its number, from 1 on. They are of this file.
     ///
     /// # Errors
-    /// The text is not Rust.
+    /// Fails if the text is not Rust.
     pub(crate) fn new(text: &str, mutants: &[(u32, &Mutant)]) -> syn::Result<Self> {
         let mut bodies = Bodies::default();
         bodies.visit_file(&syn::parse_file(text)?);

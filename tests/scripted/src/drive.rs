@@ -16,7 +16,7 @@ use crate::{Input, LAWS, Output};
 /// there.
 ///
 /// # Errors
-/// When `trace` cannot be written.
+/// Fails if `trace` cannot be written.
 pub fn drive<P>(plan: impl Fn() -> P, script: &[(Nanos, Output)], trace: &mut impl Write) -> fmt::Result
 where
     P: Plan<Output = Output, Input = Input, Entered: PartialEq, Left: PartialEq>,
