@@ -53,7 +53,8 @@ pub(crate) struct Approach {
 }
 
 impl Approach {
-    /// Includes the newest ping of the sonar that faces in the direction `way`.
+    /// Stores the echo of the newest ping of the sonar that faces in the direction `way`; clears the stored echoes if
+    /// there is no echo ahead.
     pub(crate) fn take<Y: SonarRing>(&mut self, y: &Y, here: Pose, way: Radians) {
         let Some(sonar) = looking(here, way) else { return };
         let Some(ping) = y.pings(sonar).newest_first().next() else { return };

@@ -282,12 +282,12 @@ mod tests {
 
     const AHEAD: SonarId = SonarId::new(0);
 
-    /// Takes in the newest pings, of all sonars.
+    /// Updates the map with the newest pings, of all sonars.
     fn take(map: &mut Map, y: &Sensed) {
         (0..THIRDS).for_each(|_| map.take(y, y.pose));
     }
 
-    /// Takes in pings straight ahead, 0.1 s apart.
+    /// Updates the map with pings straight ahead, 0.1 s apart.
     fn heard(ranges: &[Option<f64>], confirmation: usize) -> (Map, Sensed) {
         let (mut y, mut map) = (Sensed { confirmation, ..Sensed::default() }, Map::EMPTY);
         for range in ranges {

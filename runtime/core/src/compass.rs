@@ -106,8 +106,8 @@ impl Compass {
         Radians(if self.error <= BELIEVED && is_sound { drift } else { 0.0 })
     }
 
-    /// Takes in the last pings of a robot of this shape, and its pose by odometry. The odometry of a robot
-    /// whose sonars all ping in every turn is assumed not to drift.
+    /// Updates the drift with the last pings of a robot of this shape, and its pose by odometry. The odometry of a
+    /// robot whose sonars all ping in every turn is assumed not to drift.
     pub fn take(&mut self, pings: &[Pings; SONARS], odometry: Pose, shape: &Shape) {
         if shape.confirmation >= PINGS_KEPT {
             return;
@@ -123,8 +123,8 @@ impl Compass {
         }
     }
 
-    /// Includes a measurement of the drift. The first measurement decides whether walls are parallel to the
-    /// axes of odometry.
+    /// Combines the drift with a measurement. The first measurement decides whether walls are parallel to the axes of
+    /// odometry.
     fn measure(&mut self, drift: f64, error: f64) {
         let off = drift - self.drift;
         if self.askew.is_none() {

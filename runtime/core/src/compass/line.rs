@@ -32,7 +32,7 @@ impl Line {
         Self { last, ..Self::default() }
     }
 
-    /// Includes an echo in the line. The second consecutive echo that does not fit the line begins a new line.
+    /// Adds an echo to the line. The second consecutive echo that does not fit the line begins a new line.
     pub(super) fn take(&mut self, along: f64, across: f64) {
         let slope = if self.squares >= GUESSED { self.products / self.squares } else { 0.0 };
         let line = self.across + slope * (along - self.along);
