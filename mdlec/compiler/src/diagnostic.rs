@@ -217,7 +217,8 @@ pub fn has_errors(diagnostics: &[Diagnostic]) -> bool {
 
 /// Maximum number of diagnostics that people are shown.
 const SHOWN: usize = 100;
-/// Maximum number if more than that are errors of notation: such a file is probably not a plan.
+/// Maximum number of diagnostics that people are shown if more than this number are errors of notation: such a file is
+/// probably not a plan.
 const SHOWN_OF_NO_PLAN: usize = 10;
 
 /// Returns the maximum number of these diagnostics that people are shown.

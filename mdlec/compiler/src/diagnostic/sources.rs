@@ -80,7 +80,8 @@ impl Sources {
 
     /// Line and column of a byte, in characters; both count from 1.
     ///
-    /// Starts from the last place if that is in the same line: a file may be one line with a mistake in every word.
+    /// The search starts from the last place if that is in the same line: a file may be one line with a mistake in
+    /// every word.
     pub(super) fn line_and_column(&self, source: SourceId, byte: usize) -> (usize, usize) {
         let known = self.place_near(source, byte).or_else(|| {
             let at = self.written(source)?.location((), byte).ok()?;

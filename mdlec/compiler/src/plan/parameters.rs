@@ -107,7 +107,7 @@ impl<'s> Parameters<'s> {
         }
     }
 
-    /// Includes the parameters of a behavior.
+    /// Adds the parameters of a behavior.
     pub(super) fn extend(&mut self, others: Self) {
         self.known.extend(others.known);
         self.untyped.extend(others.untyped);

@@ -44,7 +44,7 @@ pub(super) fn end<'s>(tokens: &[Token<'s>], brace: usize, plans: &mut Option<BTr
     Some(groups.next_back().map_or(name, |(at, _)| end_of_group(tokens, at)))
 }
 
-/// Index of the name of the plan whose opening brace is at `brace`: the next token, or in the plan of a group the one
+/// Index of the name of the plan whose opening brace is at `brace`: the next token, or in the plan of a group the token
 /// after its robots; `None` for the brace of a loop, or without a name.
 fn name_of(tokens: &[Token<'_>], brace: usize) -> Option<usize> {
     let mut name = brace + 1;
