@@ -44,7 +44,7 @@ pub(crate) fn plot(arguments: &Plot) -> Result<ExitCode, Failure> {
 
 /// A picture that is drawn while the record is read.
 enum Picture {
-    /// The path before the first output of the record; the name of the record.
+    /// A picture of the path before the first output of the record; contains the name of the record.
     Unbegun(String),
     Path(Box<Drawing>),
     OverTime(Box<TimeChart>),

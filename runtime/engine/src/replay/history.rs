@@ -63,7 +63,7 @@ impl History {
         self.changes.extend(peers);
     }
 
-    /// Notes a path that was recorded in place of the one of its name.
+    /// Records that a recorded path has replaced the path of its name.
     pub(crate) fn replaced(&mut self, StoredPath { name, setpoints }: &StoredPath) {
         self.changes.push(Change::Path { name: (*name).to_owned(), setpoints: setpoints.to_vec() });
     }

@@ -18,8 +18,8 @@ const ENTER: &str = "\x1b[?1049h\x1b[?25l\x1b[2J";
 /// Codes that restore colours, cursor and screen.
 const LEAVE: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
 
-/// Settings of the terminal before its screen was taken, as long as it is taken: a process has one screen, and its
-/// panic hook uses the same.
+/// Settings of the terminal before the program switched to the alternate screen, as long as it uses this screen. A
+/// process has one screen, which its panic hook leaves as well.
 static SETTINGS: Mutex<Option<SavedSettings>> = Mutex::new(None);
 
 struct SavedSettings(Option<Termios>);

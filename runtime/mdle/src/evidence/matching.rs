@@ -27,7 +27,7 @@ pub(crate) struct Fit {
     pub(crate) score: f64,
 }
 
-/// An echo in the axes of odometry: the place that it came from, and one before it.
+/// An echo in the axes of odometry: its place, and a place that the sound has passed on the way there.
 struct Echo {
     at: (f64, f64),
     before: (f64, f64),

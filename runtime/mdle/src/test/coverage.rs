@@ -115,7 +115,7 @@ impl Coverage {
         }
     }
 
-    /// Includes the counts of other runs of the plan.
+    /// Adds the counts of other runs of the plan.
     pub(super) fn add(&mut self, other: &Self) {
         let lists = [
             (&mut self.began, &other.began),

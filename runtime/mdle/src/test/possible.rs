@@ -22,7 +22,7 @@ pub(super) fn possible(expected: &Expected, subject: &Subject) -> Result<(), Tes
     transitions.iter().try_for_each(|(place, wanted)| can_be_made(wanted, place.clone(), subject))
 }
 
-/// Checks that each of the atoms can begin after the one before it.
+/// Checks that each of the atoms can begin at some time after the previous one.
 fn in_order(atoms: &[AtomsNamed], subject: &Subject) -> Result<(), TestFileError> {
     let possible = PossibleTransitions::new(subject.machine());
     let mut before: Option<&AtomsNamed> = None;

@@ -95,7 +95,7 @@ fn meeting(part: Examined, since: Nanos) -> String {
     }
 }
 
-/// Returns for how long, or by how much, an operand that has fired holds; empty if nothing can be said.
+/// Returns for how long, or by how much, an operand that has fired holds; empty if that is not known.
 pub(crate) fn held(condition: &Condition, part: Examined, values: &Values<'_>) -> String {
     let Values { since, way, .. } = *values;
     match condition {

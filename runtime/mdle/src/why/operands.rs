@@ -252,7 +252,7 @@ impl Explaining<'_> {
     }
 }
 
-/// Returns what is said of a part that has fired and has to end.
+/// Returns the words about a part that has fired and has to end.
 fn still(condition: &Condition, held: &str) -> String {
     let is_whole = held.is_empty() || matches!(condition, Condition::Wait { .. });
     if is_whole { held.to_owned() } else { format!("holds {held}") }
