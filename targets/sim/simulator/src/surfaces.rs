@@ -43,8 +43,8 @@ pub(crate) fn ends<'s>(segment: &Segment, others: impl Iterator<Item = &'s Segme
     meeting.ends()
 }
 
-/// The ends of a segment, with the segments found at each so far. It needs the same memory however many there
-/// are.
+/// The ends of a segment, with the segments found at each so far. The memory needed does not depend on the number of
+/// segments.
 pub(crate) struct Meeting {
     segment: Segment,
     ends: [(End, Option<Segment>); 2],
@@ -55,7 +55,7 @@ impl Meeting {
         Self { segment, ends: [(End::Edge, None); 2] }
     }
 
-    /// Includes another segment, which may be given several times.
+    /// Adds a segment that may touch an end; the segment may be given several times.
     pub(crate) fn touched(&mut self, other: &Segment) {
         let places = [self.segment.from, self.segment.to()];
         if *other == self.segment {

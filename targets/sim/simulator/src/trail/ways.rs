@@ -87,7 +87,7 @@ impl Ways {
         }
     }
 
-    /// Includes the path that a robot of a fleet drove, until this time.
+    /// Adds the path that a robot of a fleet drove, until this time.
     pub(crate) fn drove(&mut self, number: u64, name: &str, way: &[Place], until: Nanos) {
         let Some(place) = way.first().copied() else { return };
         self.marks.push(Mark { atom: Some(self.atoms.len()), t: Nanos::ZERO, way: way.to_vec() });
