@@ -102,6 +102,7 @@ fn can_be_read(quoted: &str) -> bool {
         "{ P (Atom (null) _) }",
         "{ P (Atom (wait 5) stop)_ }",
         "{ P (_ (wait 5) stop) }",
+        "{ Group [robot1 robot2] P (_ OR wait 2min) (Atom (wait 5) stop) }",
     ];
     let is_sound = |text: &str| !judged(text).1.iter().any(|found| found.code.is_notation());
     fillings

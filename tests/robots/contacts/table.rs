@@ -62,6 +62,8 @@ pub(super) const TABLE: &[Row] = &[
     row("layout.md", "Dock", "floor, hall"),
     row("loops.md", "Main", "floor, hall").asks("it drives until it touches"),
     row("machines.md", "Rest", "floor, hall, home"),
+    row("many_robots.md", "Idle", "floor, hall, home"),
+    row("many_robots.md", "Square", "floor"),
     row("many_robots.md", "Wander", "floor, hall, office").asks("it turns away where it touches"),
     row("memory.md", "Main", "floor, hall").asks("it drives until it touches"),
     row("microcontroller.md", "Shuttle", "floor, hall, home"),
