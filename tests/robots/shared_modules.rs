@@ -1,4 +1,4 @@
-//! What robots of a scenario tell each other by the link besides their states: attributes of modules, and plans.
+//! Tests that robots of a scenario send each other attributes of modules and plans by the link, besides their states.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -41,7 +41,7 @@ pub(super) fn named<'s>(plan: &Plan<'s>, written: &[Arg<'s>], found: &mut Vec<Di
         let report = Diagnostic::new(Code::E0208, message, span, "no other robot");
         found.push(report.help(format!("for one robot leave the group out: `{{ {name} … }}`")));
     }
-    // The state link of a robot keeps the states of so many others.
+    // The state link of a robot keeps the states of `PEERS` other robots.
     if let Some(extra) = robots.get(1 + PEERS) {
         let (name, count, most) = (plan.name.node, robots.len(), 1 + PEERS);
         let message = format!("the group `{name}` has {count} robots, and a group has {most} at most");

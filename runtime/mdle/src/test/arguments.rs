@@ -48,7 +48,7 @@ pub(crate) fn command() -> Command {
         .arg(
             Arg::new("files")
                 .value_name("FILE")
-                .help("Files of tests, their plans, or folders with files of tests [default: the current folder]")
+                .help("Test files, their plans, or folders with test files [default: the current folder]")
                 .num_args(0..)
                 .value_parser(value_parser!(PathBuf)),
         )
@@ -83,14 +83,11 @@ pub(crate) fn command() -> Command {
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(flag("json").help("Print the results and the coverage as JSON"))
-        .arg(
-            flag("update")
-                .help("Write the atoms, the end and the pose of runs into the files of tests, to be reviewed"),
-        )
+        .arg(flag("update").help("Write the atoms, the end and the pose of runs into the test files, to be reviewed"))
         .arg(flag("watch").help("Run the tests again whenever a file beside them changes").conflicts_with("update"))
         .after_help(
-            "Exit status: 0 if all tests pass; 1 if a test fails or a plan has errors; 2 for wrong usage, or a file of \
-             tests that cannot be read or has errors",
+            "Exit status: 0 if all tests pass; 1 if a test fails or a plan has errors; 2 for wrong usage, or a test \
+             file that cannot be read or has errors",
         )
 }
 

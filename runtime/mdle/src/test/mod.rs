@@ -177,7 +177,7 @@ fn files(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             let mut found = BTreeSet::new();
             collect(path, &mut found);
             if found.is_empty() {
-                let message = format!("there is no file of tests in {}", path.display());
+                let message = format!("there is no test file in {}", path.display());
                 let help = format!("the tests of `dock.mdle` are in `dock{}` beside it", file::ENDING);
                 return Err(Failure::Usage(format!("{message}\nhelp: {help}")));
             }

@@ -179,7 +179,7 @@ impl Subject {
 fn placed(place: Option<Range<usize>>, error: InputError) -> Result<TestFileError, InputError> {
     let Some(place) = place.filter(|_| !matches!(error, InputError::Faulty(_))) else { return Err(error) };
     let message = error.message(Spelling::Entry);
-    let unread = "`plan` names a file, relative to the folder of the file of tests";
+    let unread = "`plan` names a file, relative to the folder of the test file";
     let (message, help) = message.split_once("\nhelp: ").unwrap_or((&message, unread));
     Ok(TestFileError::at(place, message).help(help))
 }

@@ -114,7 +114,7 @@ fn refused(path: &Path, text: &str, error: &TestFileError) -> Failure {
         return Failure::Usage(format!("{}: {}{help}", path.display(), error.message));
     }
     report(path, text, error);
-    failure::error(&format!("the file of tests {} has errors", Printable(&path.display().to_string())));
+    failure::error(&format!("the test file {} has errors", Printable(&path.display().to_string())));
     Failure::TestFile
 }
 
