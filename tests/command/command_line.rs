@@ -161,7 +161,7 @@ fn the_plans_of_a_group_are_printed_and_check() {
     assert!(refused(emit(&["bad.mdle"]), 1).starts_with("error[E0209]"));
     let built = refused(run_mdlec(&folder, &["plan.mdle", "--target", "scout"]), 1);
     assert!(built.contains("error[E0403]: the group `Pair` needs the state link"), "{built}");
-    assert!(built.contains("`mdle run PLAN --target scout --link LINK.toml` runs the part"), "{built}");
+    assert!(built.contains("`mdle run PLAN --target TARGET --link LINK.toml` runs the part"), "{built}");
     let drawn = refused(run_mdlec(&folder, &["plan.mdle", "--emit", "dot"]), 2);
     assert!(drawn.contains("the plan of a group, and has one for each robot: Pair_a, Pair_b"), "{drawn}");
 }

@@ -133,7 +133,7 @@ fn a_triangle_that_fits_through_no_door_stays_outside() {
     let report = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{report}");
     // On the way along the wall a member may touch it, which stops all.
-    let over = report.lines().filter(|line| line.contains("plan over: Triangle")).count();
+    let over = report.lines().filter(|line| line.contains("plan over: wait 2 (triangle.mdle:")).count();
     assert_eq!(over, 3, "{report}");
     assert!(!report.contains("least gap between robots: 0.0 cm"), "{report}");
     let turns = turns(&folder.join("log.jsonl"));
@@ -178,6 +178,7 @@ fn robots_whose_laws_complete_wait_for_the_first() {
     assert!(lines[0].contains("robot2: stop (pair.mdle:2, Pair)  <- completed"), "{report}");
     assert!(lines[1].contains("robot2: stop (pair.mdle:3, Pair)  <- past robot1 2 (pair.mdle:2"), "{report}");
     assert!(lines[2].contains("robot2: advance 1 20 (pair.mdle:4, Pair)  <- past robot1 3 (pair.mdle:3"), "{report}");
+    assert_eq!(report.matches("plan over: wait 2 (pair.mdle").count(), 2, "{report}");
     let turns = turns(&folder.join("log.jsonl"));
     for (robot, start) in [("robot1", 0.0), ("robot2", 2.0)] {
         let y = number(&turns.last().unwrap()[robot], "y");

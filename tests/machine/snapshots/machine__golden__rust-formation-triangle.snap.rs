@@ -285,9 +285,9 @@ mod machine {
         ],
         conditions: runtime::TextList::new(
             concat![
-                "any bumper OR wait 2min", "all rendezvous", "robot1.x > 7m", "Triangle"
+                "any bumper OR wait 2min", "all rendezvous", "robot1.x > 7m", "wait 2"
             ],
-            &[0, 23, 37, 50, 58],
+            &[0, 23, 37, 50, 56],
         ),
         operands: &[
             [0, 4, 0, 0],
@@ -309,9 +309,9 @@ mod machine {
         written: runtime::TextList::new(
             concat![
                 "any bumper", "wait 2min", "past robot2 3", "past robot3 3",
-                "all rendezvous", "all rendezvous", "robot1.x > 7m", "Triangle"
+                "all rendezvous", "all rendezvous", "robot1.x > 7m", "wait 2"
             ],
-            &[10, 19, 32, 45, 59, 73, 86, 94],
+            &[10, 19, 32, 45, 59, 73, 86, 92],
         ),
         values: &[
             runtime::ValueWords {
@@ -571,9 +571,9 @@ mod machine {
         ],
         conditions: runtime::TextList::new(
             concat![
-                "any bumper OR wait 2min", "past robot1 2", "past robot1 3", "Triangle"
+                "any bumper OR wait 2min", "past robot1 2", "past robot1 3", "wait 2"
             ],
-            &[0, 23, 36, 49, 57],
+            &[0, 23, 36, 49, 55],
         ),
         operands: &[
             [0, 4, 0, 0],
@@ -588,9 +588,9 @@ mod machine {
         ),
         written: runtime::TextList::new(
             concat![
-                "any bumper", "wait 2min", "past robot1 2", "past robot1 3", "Triangle"
+                "any bumper", "wait 2min", "past robot1 2", "past robot1 3", "wait 2"
             ],
-            &[10, 19, 32, 45, 53],
+            &[10, 19, 32, 45, 51],
         ),
         values: &[],
     };
@@ -848,9 +848,9 @@ mod machine {
         ],
         conditions: runtime::TextList::new(
             concat![
-                "any bumper OR wait 2min", "past robot1 2", "past robot1 3", "Triangle"
+                "any bumper OR wait 2min", "past robot1 2", "past robot1 3", "wait 2"
             ],
-            &[0, 23, 36, 49, 57],
+            &[0, 23, 36, 49, 55],
         ),
         operands: &[
             [0, 4, 0, 0],
@@ -865,9 +865,9 @@ mod machine {
         ),
         written: runtime::TextList::new(
             concat![
-                "any bumper", "wait 2min", "past robot1 2", "past robot1 3", "Triangle"
+                "any bumper", "wait 2min", "past robot1 2", "past robot1 3", "wait 2"
             ],
-            &[10, 19, 32, 45, 53],
+            &[10, 19, 32, 45, 51],
         ),
         values: &[],
     };

@@ -1,7 +1,7 @@
 //! Makes a plan for each robot of a group. The first robot keeps the group's conditions; an atom of any other robot
 //! ends when the first robot has reached its next atom.
 
-use super::build::Build;
+use super::build::{Build, begin};
 use super::conditions;
 use super::formation::{self, FORMATION};
 use super::part_name;
@@ -84,8 +84,10 @@ impl<'s> Build<'_, 's> {
         let guarded =
             Plan { docs: &[], label: None, group: None, params: &[], condition: guard, elements: body, ..*plan };
         let guarded = Element { primary: Primary::Plan(self.arena.alloc(guarded)), marks: None, span: plan.span };
-        let wait = self.call("wait", &[Arg::Number(Number::new(LAST_STOP, span))], span);
-        let condition = Condition { node: ConditionNode::Call(wait), span };
+        // No text has this condition: reports of runs show its own words.
+        let at = begin(span);
+        let wait = self.call("wait", &[Arg::Number(Number::new(LAST_STOP, at))], at);
+        let condition = Condition { node: ConditionNode::Call(wait), span: at };
         let stop = self.atom(condition, self.call("stop", &[], span), None, span);
         let node = self.arena.alloc_str(&part_name(self.group, robot.node));
         let elements = self.list(&[guarded, stop]);

@@ -48,7 +48,7 @@ pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet)
         let before = plans.len();
         match plan.group {
             None => plans.push(*plan),
-            Some(_) if lacks_link(alphabet) => found.push(no_link(plan, alphabet)),
+            Some(_) if lacks_link(alphabet) => found.push(no_link(plan)),
             Some(written) => match robots::named(plan, written, &mut found) {
                 Some(robots) => {
                     let projected = elements::plans(plan, &robots, arena, alphabet, &mut found);
@@ -84,12 +84,11 @@ fn lacks_link(alphabet: &Alphabet) -> bool {
 }
 
 /// Reports a group whose plan is to become an executable.
-fn no_link(plan: &Plan<'_>, alphabet: &Alphabet) -> Diagnostic {
+fn no_link(plan: &Plan<'_>) -> Diagnostic {
     let name = plan.name.node;
     let message = format!("the group `{name}` needs the state link, and an executable has none");
-    Diagnostic::new(Code::E0403, message, plan.name.span, "needs an engine").help(format!(
-        "`mdle run PLAN --target {} --link LINK.toml` runs the part of the robot that LINK.toml names; `mdle run SCENARIO.toml` \
-         runs all of them, simulated",
-        alphabet.name
-    ))
+    Diagnostic::new(Code::E0403, message, plan.name.span, "needs an engine").help(
+        "`mdle run PLAN --target TARGET --link LINK.toml` runs the part of the robot that LINK.toml names, and `mdle run --help` \
+         lists the targets; `mdle run SCENARIO.toml` runs all of them, simulated",
+    )
 }

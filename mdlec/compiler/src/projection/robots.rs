@@ -39,7 +39,9 @@ pub(super) fn named<'s>(plan: &Plan<'s>, written: &[Arg<'s>], found: &mut Vec<Di
         let (count, span) = robots.first().map_or(("no robot", plan.name.span), |only| ("one robot", only.span));
         let message = format!("the group `{name}` has {count}, and a group has two or more");
         let report = Diagnostic::new(Code::E0208, message, span, "no other robot");
-        found.push(report.help(format!("for one robot leave the group out: `{{ {name} … }}`")));
+        found.push(report.help(format!(
+            "for one robot leave out the group, `any`, `all` and the name of the robot before a dot: `{{ {name} … }}`"
+        )));
     }
     // The state link of a robot keeps the states of `PEERS` other robots.
     if let Some(extra) = robots.get(1 + PEERS) {

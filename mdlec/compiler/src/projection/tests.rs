@@ -93,6 +93,8 @@ fn a_group_has_two_robots_or_more_with_names_of_their_own() {
         "{ Group a b R (wait 5) (Atom (wait 5) stop) }",
         "{ Group [a b] R (v: speed) (wait 2min) (Atom (wait 5) stop) }",
         "{ Group [a b c d e f g h i j k] R (wait 2min) (Atom (wait 5) stop) }",
+        "{ group [a b] R (wait 5) (Atom (wait 5) stop) }",
+        "{ Group R [a b] (wait 5) (Atom (wait 5) stop) }",
     );
 }
 

@@ -27,11 +27,22 @@ pub(super) fn square_brackets(site: &Site<'_, '_>) -> Option<Diagnostic> {
             let name_text = site.name_at(name).unwrap_or("");
             diagnostic.fix("arguments follow the name: {}", site.span(name, end), format!("{name_text} {inside}"))
         }
+        (Some(_), _, Some(before)) if names_group(site, before) => diagnostic.help(super::groups::HEAD),
         (Some(end), Some(inside), _) if site.is_call(site.at + 1, end - 1) => {
             diagnostic.fix("use parentheses: {}", site.span(site.at, end), format!("({inside})"))
         }
         _ => diagnostic.help("conditions and arguments are written in parentheses: `(Atom (bumper) go(5, 0))`"),
     })
+}
+
+/// Returns `true` if the words up to this token are `{ group` or `{ Group Name`, after which robots may follow.
+fn names_group(site: &Site<'_, '_>, before: usize) -> bool {
+    let begins = |word: usize| {
+        let is_named = site.name_at(word).is_some_and(|name| name.eq_ignore_ascii_case("group"));
+        let is_group = is_named || site.kind(word) == Some(Tok::Group);
+        is_group && word.checked_sub(1).is_some_and(|opener| site.kind(opener) == Some(Tok::LBrace))
+    };
+    begins(before) || before.checked_sub(1).is_some_and(begins)
 }
 
 /// Reports a decimal comma, as in `0,5`.

@@ -4,7 +4,7 @@ use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
-const HEAD: &str = "a group begins with its robots and its name: `{ Group [robot1 robot2] Name … }`";
+pub(super) const HEAD: &str = "a group begins with its robots and its name: `{ Group [robot1 robot2] Name … }`";
 
 /// Reports `{ Group [robot1 robot2 Name …` and `{ Group [robot1 robot2] (…`.
 pub(super) fn head_of_group(site: &Site<'_, '_>) -> Option<Diagnostic> {
