@@ -9,7 +9,7 @@ use mdle_runtime::{MetersPerSecond, Nanos, Output as _, Plan, Radians, Robot, Se
 
 use crate::helm::Helm;
 use crate::observer::{Observer, Observes};
-use crate::pilot::{Pilot, PilotFault};
+use crate::pilot::{AfterPlan, Pilot, PilotFault};
 use crate::position::Position;
 use crate::report::Report;
 use crate::run_end::RunEnd;
@@ -64,6 +64,8 @@ pub(crate) trait Drive {
     fn plan(&self) -> (u64, &str);
     /// Ends the plan because of a rule of the supervisor; returns `true` if another plan continues.
     fn ended_by(&mut self, rule: &str) -> bool;
+    /// Returns how the run continues, after a turn in which the current plan has ended.
+    fn after_plan(&mut self) -> AfterPlan;
     /// Calls the supervisor, if there is one, at the break after `turns` turns, the last of them at time `t`.
     fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &Report<'_>) -> Orders;
 
@@ -196,6 +198,10 @@ where
 
     fn ended_by(&mut self, rule: &str) -> bool {
         self.helm.pilot_mut().ended_by(rule)
+    }
+
+    fn after_plan(&mut self) -> AfterPlan {
+        self.helm.pilot_mut().after_plan()
     }
 
     fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &Report<'_>) -> Orders {

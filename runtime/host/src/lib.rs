@@ -105,7 +105,7 @@ pub use passes::{Passes, outwards};
 pub use paths::setpoints;
 use patience::Patience;
 use pilot::PlanAlone;
-pub use pilot::{Moment, Pilot, PilotFault, RunTerms};
+pub use pilot::{AfterPlan, Moment, Pilot, PilotFault, RunTerms};
 pub use position::Texts;
 pub use program::Program;
 pub use progress::Progress;

@@ -46,6 +46,11 @@ pub trait Pilot {
         false
     }
 
+    /// Returns how the run continues, after a turn in which the current plan has ended.
+    fn after_plan(&mut self) -> AfterPlan {
+        AfterPlan::Ends
+    }
+
     /// Returns the current plan with its state, once the plan has begun.
     fn machine(&self) -> Option<&Machine<Self::Plan>>;
 
@@ -86,6 +91,17 @@ pub enum PilotFault {
     Stopped(String),
     /// The plan panicked with this message.
     Panicked(String),
+}
+
+/// Continuation of a run after the end of its current plan.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum AfterPlan {
+    /// The run ends.
+    Ends,
+    /// Another plan begins in the next turn.
+    Continues,
+    /// The run ends before its goal, for the reason in this sentence (exit status 3).
+    Fails(String),
 }
 
 /// Conditions of a run for its pilot and its supervisor.

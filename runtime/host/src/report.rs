@@ -111,6 +111,7 @@ impl<'a> Report<'a> {
     /// another plan for this reason.
     pub(crate) fn begins(&mut self, plan: &dyn Texts, t: Nanos, atom: Option<u32>, reason: &str) {
         self.course = Course { since: reason.to_owned(), ..Course::default() };
+        self.over = None;
         let Some(atom) = atom else { return };
         let (law, place) = (plan.law(atom), place(plan, &self.course.passes, atom));
         let place = if place.is_empty() { place } else { format!(" ({place})") };

@@ -31,6 +31,8 @@ pub(crate) enum RunEnd {
     Over,
     /// The plan has ended, but not as `--require` or `--goal` demand, as the sentence says.
     Otherwise(String),
+    /// The last plan has ended before the pilot's goal, for this reason.
+    Failed(String),
     /// The plan had not ended at this time.
     Timeout(Duration),
     /// The plan had not ended after this number of turns.
@@ -89,6 +91,7 @@ impl RunEnd {
             | Self::Overrun(_)
             | Self::Pilot(_)
             | Self::Suspended { .. }
+            | Self::Failed(_)
             | Self::Bug(_) => FAULT,
         }
     }
@@ -109,6 +112,7 @@ impl RunEnd {
         match self {
             Self::Over
             | Self::Otherwise(_)
+            | Self::Failed(_)
             | Self::Timeout(_)
             | Self::Turns(_)
             | Self::Quit
@@ -126,6 +130,7 @@ impl RunEnd {
         match self {
             Self::Over
             | Self::Otherwise(_)
+            | Self::Failed(_)
             | Self::Timeout(_)
             | Self::Turns(_)
             | Self::Quit
@@ -145,7 +150,7 @@ impl RunEnd {
     /// Returns one or two words for the reason why a run ended before its plan.
     pub(crate) fn brief(&self) -> String {
         match self {
-            Self::Over | Self::Otherwise(_) => "plan over".to_owned(),
+            Self::Over | Self::Otherwise(_) | Self::Failed(_) => "plan over".to_owned(),
             Self::Timeout(_) => "--timeout".to_owned(),
             Self::Turns(_) => "--turns".to_owned(),
             Self::Quit => "quit".to_owned(),
@@ -169,6 +174,7 @@ impl RunEnd {
         match self {
             Self::Over | Self::Quit => {}
             Self::Safety(rule) => say(err, format_args!("stopped by the safety rules: {rule}")),
+            Self::Failed(sentence) => say(err, format_args!("error: {sentence}")),
             Self::Otherwise(sentence) => say(err, format_args!("not as required: {sentence}")),
             Self::Timeout(limit) => {
                 say(err, format_args!("stopped by --timeout: the plan was not over after {} s", limit.as_secs_f64()));

@@ -168,6 +168,7 @@ fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<EndedRun> {
             | RunEnd::Log(fault)
             | RunEnd::Overrun(fault)
             | RunEnd::Pilot(fault)
+            | RunEnd::Failed(fault)
             | RunEnd::Bug(fault),
         ) => Outcome::Failed(fault),
         Ok(RunEnd::Safety(rule)) => Outcome::Failed(format!("the safety rules ended it: {rule}")),

@@ -10,6 +10,7 @@ use crate::drive::Drive;
 use crate::instants::Instants;
 use crate::log::Entry;
 use crate::paths::Recorder;
+use crate::pilot::AfterPlan;
 use crate::position::Position;
 use crate::progress::Progress;
 use crate::record::UnmadeTurn;
@@ -91,12 +92,17 @@ impl OnePlan<'_, '_, '_> {
     /// Returns how the run continues after a turn, as the plan and the supervisor's intervention determine.
     fn step(&mut self, turn: Turn<()>) -> Result<Step, RunEnd> {
         let Supervised { verdict, rule, diverted_by, .. } = &self.supervised;
-        match turn {
+        let after = match turn {
+            Turn::Over => self.drive.after_plan(),
+            Turn::Law(()) | Turn::Cut => AfterPlan::Continues,
+        };
+        match after {
             _ if *verdict == Some(Verdict::Ended) && self.drive.ended_by(rule) => Ok(Step::Next),
             _ if *verdict == Some(Verdict::Ended) => Err(RunEnd::Safety(rule.clone())),
-            Turn::Over if !diverted_by.is_empty() => Err(RunEnd::Safety(diverted_by.clone())),
-            Turn::Over => Ok(Step::Over),
-            Turn::Law(()) | Turn::Cut => Ok(Step::Next),
+            AfterPlan::Continues => Ok(Step::Next),
+            AfterPlan::Fails(sentence) => Err(RunEnd::Failed(sentence)),
+            AfterPlan::Ends if !diverted_by.is_empty() => Err(RunEnd::Safety(diverted_by.clone())),
+            AfterPlan::Ends => Ok(Step::Over),
         }
     }
 }
@@ -164,7 +170,7 @@ impl Turns for OnePlan<'_, '_, '_> {
 
     fn ended(&mut self, ending: &RunEnd, t: Nanos) {
         if let Some(log) = &mut self.witnesses.log {
-            let cause = self.witnesses.report.over().map_or_else(|| ending.brief(), |over| over.cause.clone());
+            let cause = cause(ending, self.witnesses.report);
             log.ended(self.number, t, &cause);
         }
         if let (observer, Some(position)) = self.drive.parts() {
@@ -196,9 +202,18 @@ fn watched(
     }
 }
 
+/// Returns the cause of the end of a run, in words.
+fn cause(ending: &RunEnd, report: &Report<'_>) -> String {
+    match (ending, report.over()) {
+        (RunEnd::Failed(sentence), _) => sentence.clone(),
+        (_, Some(over)) => over.cause.clone(),
+        (_, None) => ending.brief(),
+    }
+}
+
 /// Informs the observer that the turns have ended, with the cause.
 fn ended(observer: &mut dyn Observer, position: &dyn Position, ending: &RunEnd, report: &Report<'_>, t: Nanos) {
-    let by = report.over().map_or_else(|| ending.brief(), |over| over.cause.clone());
+    let by = cause(ending, report);
     observer.ended(&Ended { plan: position.texts().name(0), is_over: *ending == RunEnd::Over, by: &by, t });
 }
 
