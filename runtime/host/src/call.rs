@@ -71,19 +71,24 @@ impl Call {
     /// Returns the command that repeats the run: all words as a shell takes them, without those that ask for its log.
     pub(crate) fn repeating(&self, plan: &str) -> String {
         let settings = self.recorded.settings.iter().map(OsString::from);
-        let words = settings.chain(without_log(&self.options)).map(|word| quoted(&word.to_string_lossy()));
+        let words = settings.chain(determining(&self.options)).map(|word| quoted(&word.to_string_lossy()));
         [self.command(plan)].into_iter().chain(words).collect::<Vec<_>>().join(" ")
     }
 }
 
-/// Returns the options of a run without those that ask for its log.
-pub fn without_log(options: &[OsString]) -> impl Iterator<Item = OsString> {
-    let mut was_log = false;
+/// Options with a value that do not determine a run: they name files that the run writes, or processors.
+const BESIDE: [&str; 8] =
+    ["--log", "--plot", "--record", "--trail", "--trips", "--record-path", "--recorded-paths", "--threads"];
+
+/// Returns the options that determine a run, without those of its log, its pictures and its tables.
+pub fn determining(options: &[OsString]) -> impl Iterator<Item = OsString> {
+    let mut was_beside = false;
     let others = options.iter().filter(move |option| {
         let option = option.to_string_lossy();
-        let is_log = !was_log && option == "--log";
-        let is_value = std::mem::replace(&mut was_log, is_log);
-        !(is_log || is_value || option == "--log-best-effort" || option.starts_with("--log="))
+        let is_beside = !was_beside && BESIDE.contains(&&*option);
+        let is_value = std::mem::replace(&mut was_beside, is_beside);
+        let is_assigned = option.split_once('=').is_some_and(|(name, _)| BESIDE.contains(&name));
+        !(is_beside || is_value || is_assigned || ["--log-best-effort", "--watch"].contains(&&*option))
     });
     others.cloned()
 }
@@ -104,8 +109,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_run_is_repeated_without_its_log() {
-        let options = "--log --log --seed 7 --log=x --log-best-effort --logs".split(' ').map(OsString::from);
+    fn a_run_is_repeated_without_the_files_that_it_writes() {
+        let options = "--log --log --seed 7 --log=x --log-best-effort --logs --plot a.svg --trail=t.csv --threads 2";
+        let options = options.split(' ').map(OsString::from);
         let settings = vec!["--module".to_owned(), "a=b c".to_owned()];
         let call = Call {
             words: ["mdle", "run", "a b"].map(OsString::from).into(),

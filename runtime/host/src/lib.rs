@@ -86,7 +86,7 @@ use std::process::ExitCode;
 
 use background_writer::{Keeps, Outlet};
 pub use batch::Batch;
-pub use call::{Call, RecordedPlan, quoted, without_log};
+pub use call::{Call, RecordedPlan, determining, quoted};
 pub use cause::{CauseText, cause_words, place};
 pub use clap;
 use executable::{Executable, PlanOnTarget};

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
-use mdle_host::{Quantity, is_record, output_format, quoted, without_log};
+use mdle_host::{Quantity, determining, is_record, output_format, quoted};
 
 use crate::arguments::Run;
 use crate::failure::Failure;
@@ -16,7 +16,7 @@ pub(super) struct Options {
     pub(super) timeout: Option<Duration>,
     /// File of the log. If its name is that of a record, the names of the robots' records are derived from it.
     pub(super) log: Option<PathBuf>,
-    /// The command that repeats the run, without its log.
+    /// The command that repeats the run, without the files that it writes.
     pub(super) command: String,
     /// File of the table of poses.
     pub(super) trail: Option<PathBuf>,
@@ -54,7 +54,7 @@ impl Options {
         }
         let words = [std::ffi::OsString::from("mdle run SCENARIO.toml")].into_iter().chain(run.options.clone());
         let matches = command().try_get_matches_from(words).map_err(Failure::Unparsed)?;
-        let repeated = run.words.iter().cloned().chain(without_log(&run.options));
+        let repeated = run.words.iter().cloned().chain(determining(&run.options));
         let repeated: Vec<_> = repeated.map(|word| quoted(&word.to_string_lossy())).collect();
         Ok(Self { command: repeated.join(" "), ..Self::of(&matches) })
     }
