@@ -208,6 +208,15 @@ fn a_scenario_has_the_robots_of_its_group() {
 }
 
 #[test]
+fn a_group_is_tested_by_the_part_that_a_file_names() {
+    let folder = pair("formation_tested", &["robot1", "robot2"], "");
+    let test = "[[test]]\nname = \"begins\"\ntimeout = \"1s\"\n";
+    fs::write(folder.join("pair.test.toml"), test).unwrap();
+    let unnamed = refused(&folder, &["test", "pair.test.toml"]);
+    assert!(unnamed.contains("name one of them, as in `name = \"Pair_robot1\"` before the first test"), "{unnamed}");
+}
+
+#[test]
 fn a_part_of_a_group_runs_by_the_name_of_its_robot() {
     let folder = pair("formation_parts", &[], "");
     let link = |name: &str| format!("name = \"{name}\"\nlisten = \"127.0.0.1:0\"\nkey = \"k\"\nrobot = []\n");

@@ -70,6 +70,8 @@ pub enum Spelling {
     BuildScript,
     /// Entries of a TOML file: `target = "sim"`.
     Entry,
+    /// Entries of a test file, in which `plan` is a file, and `name` the name of a plan.
+    TestEntry,
 }
 
 impl Spelling {
@@ -78,8 +80,18 @@ impl Spelling {
         match self {
             Self::CommandLine => format!("--{name} {value}"),
             Self::BuildScript => format!(".{name}({value:?})"),
-            Self::Entry => format!("{name} = {value:?}"),
+            Self::TestEntry if name == "plan" => format!("name = {value:?}"),
+            Self::Entry | Self::TestEntry => format!("{name} = {value:?}"),
         }
+    }
+
+    /// Returns the words that choose a plan of a file.
+    fn plan(self, name: &str) -> String {
+        let place = match self {
+            Self::TestEntry => " before the first test",
+            Self::CommandLine | Self::BuildScript | Self::Entry => "",
+        };
+        format!("`{}`{place}", self.option("plan", name))
     }
 }
 
@@ -125,21 +137,21 @@ impl InputError {
                 format!("`{file}` has no plan `{name}`{near}\nhelp: its plans are {}", plans.join(", "))
             }
             Self::Group { file, plans } => format!(
-                "`{file}` is the plan of a group, and has one for each robot: {}\nhelp: name one of them, as in `{}`; \
+                "`{file}` is the plan of a group, and has one for each robot: {}\nhelp: name one of them, as in {}; \
                  `mdle run SCENARIO.toml` runs all of them, simulated",
                 plans.join(", "),
-                spelling.option("plan", plans.first().map_or("NAME", String::as_str)),
+                spelling.plan(plans.first().map_or("NAME", String::as_str)),
             ),
             Self::NotOnePlan { file, plans } => match plans.first() {
                 None => format!(
-                    "every plan of `{file}` is used by another or takes parameters\nhelp: name one of them, as in `{}`, \
+                    "every plan of `{file}` is used by another or takes parameters\nhelp: name one of them, as in {}, \
                      or write a plan that uses it",
-                    spelling.option("plan", "NAME"),
+                    spelling.plan("NAME"),
                 ),
                 Some(first) => format!(
-                    "`{file}` contains several plans that no other plan uses: {}\nhelp: name one of them, as in `{}`",
+                    "`{file}` contains several plans that no other plan uses: {}\nhelp: name one of them, as in {}",
                     plans.join(", "),
-                    spelling.option("plan", first),
+                    spelling.plan(first),
                 ),
             },
         }

@@ -91,7 +91,8 @@ impl Subject {
             return Err(Failure::Plan);
         }
         let named = plans.into_iter().map(|compiled| (compiled.plan.root.name.clone(), compiled));
-        let compiled = input.only(named.collect())?;
+        let compiled = input.only(named.collect());
+        let compiled = compiled.map_err(|error| Failure::Usage(error.message(Spelling::TestEntry)))?;
         let words = fsm::words(&compiled.machine, &input.sources, &target.alphabet);
         let loaded = match target_name == SIM {
             true => Some(Arc::new(load::load(&compiled.machine, &input.sources, &target.alphabet)?)),
@@ -178,7 +179,7 @@ impl Subject {
 /// Fails with the error itself otherwise.
 fn placed(place: Option<Range<usize>>, error: InputError) -> Result<TestFileError, InputError> {
     let Some(place) = place.filter(|_| !matches!(error, InputError::Faulty(_))) else { return Err(error) };
-    let message = error.message(Spelling::Entry);
+    let message = error.message(Spelling::TestEntry);
     let unread = "`plan` names a file, relative to the folder of the test file";
     let (message, help) = message.split_once("\nhelp: ").unwrap_or((&message, unread));
     Ok(TestFileError::at(place, message).help(help))
