@@ -217,6 +217,36 @@ fn a_group_is_tested_by_the_part_that_a_file_names() {
 }
 
 #[test]
+fn a_crowd_has_no_robots_of_a_group() {
+    let folder = pair("formation_crowd", &["robot1", "robot2"], "");
+    let crowd = "[crowd]\nrobots = 2\nfile = \"pair.mdle\"\n";
+    fs::write(folder.join("crowd.toml"), crowd).unwrap();
+    let crowd = refused(&folder, &["run", "crowd.toml"]);
+    assert!(crowd.contains("the robots of the group `Pair` have names, and those of a crowd have none"), "{crowd}");
+    assert!(crowd.contains("crowd.toml:3:8") && crowd.contains("write a `[[robot]]` with this file"), "{crowd}");
+}
+
+#[test]
+fn a_scenario_places_its_errors() {
+    let folder = pair("formation_places", &["robot1", "robot2"], "");
+    let speed = refused(&folder, &["run", "formation.toml", "--speed", "max"]);
+    assert!(speed.contains("--speed is for one robot, and a scenario always runs as fast as possible"), "{speed}");
+    let paths = refused(&folder, &["run", "formation.toml", "--recorded-paths", "paths"]);
+    assert!(paths.contains("no robot of the scenario records a path"), "{paths}");
+    let text = fs::read_to_string(folder.join("formation.toml")).unwrap();
+    let changed = |from: &str, to: &str| {
+        fs::write(folder.join("other.toml"), text.replacen(from, to, 1)).unwrap();
+        refused(&folder, &["run", "other.toml"])
+    };
+    let missing = changed("pair.mdle", "none.mdle");
+    assert!(missing.contains("there is no file") && missing.contains("other.toml:3:8"), "{missing}");
+    let unknown = changed("file = \"pair.mdle\"", "file = \"pair.mdle\"\nplan = \"Pear\"");
+    assert!(unknown.contains("has no plan `Pear`") && unknown.contains("other.toml:4:8"), "{unknown}");
+    let killed = changed("[[robot]]", "timeout = \"5s\"\n[[robot]]\nkilled = \"9s\"");
+    assert!(killed.contains("the scenario ends after 5 s, before the robot is killed at 9 s"), "{killed}");
+}
+
+#[test]
 fn a_part_of_a_group_runs_by_the_name_of_its_robot() {
     let folder = pair("formation_parts", &[], "");
     let link = |name: &str| format!("name = \"{name}\"\nlisten = \"127.0.0.1:0\"\nkey = \"k\"\nrobot = []\n");

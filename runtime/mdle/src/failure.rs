@@ -3,6 +3,8 @@
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
+use clap::builder::StyledStr;
+use clap::error::{ContextKind, ContextValue};
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use mdle_compiler::diagnostic::{Diagnostic, Sources};
 use mdle_compiler::load::LoadError;
@@ -46,6 +48,19 @@ impl From<LoadError> for Failure {
 }
 
 impl Failure {
+    /// Returns the failure of a command line, without the tip to write an option after `--`, which never helps.
+    pub(crate) fn unparsed(mut error: clap::Error) -> Self {
+        let is_tip = |tip: &StyledStr| tip.to_string().contains("'-- ");
+        let tips = match error.remove(ContextKind::Suggested) {
+            Some(ContextValue::StyledStrs(tips)) => tips.into_iter().filter(|tip| !is_tip(tip)).collect(),
+            Some(_) | None => Vec::new(),
+        };
+        if !tips.is_empty() {
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tips));
+        }
+        Self::Unparsed(error)
+    }
+
     /// Prints the message, if there is one, and returns the exit status.
     pub(crate) fn tell(self) -> ExitCode {
         ExitCode::from(self.tell_status())

@@ -52,8 +52,13 @@ impl Options {
             let sentence = "is for one robot, and a scenario names the plan of each";
             return Err(Failure::Usage(format!("{name} {sentence}\nhelp: leave it out")));
         }
+        let is_speed = |option: &std::ffi::OsString| option.to_string_lossy().split('=').next() == Some("--speed");
+        if run.options.iter().any(is_speed) {
+            let sentence = "--speed is for one robot, and a scenario always runs as fast as possible";
+            return Err(Failure::Usage(format!("{sentence}\nhelp: leave it out")));
+        }
         let words = [std::ffi::OsString::from("mdle run SCENARIO.toml")].into_iter().chain(run.options.clone());
-        let matches = command().try_get_matches_from(words).map_err(Failure::Unparsed)?;
+        let matches = command().try_get_matches_from(words).map_err(Failure::unparsed)?;
         let repeated = run.words.iter().cloned().chain(determining(&run.options));
         let repeated: Vec<_> = repeated.map(|word| quoted(&word.to_string_lossy())).collect();
         Ok(Self { command: repeated.join(" "), ..Self::of(&matches) })

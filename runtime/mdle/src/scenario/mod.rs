@@ -57,6 +57,10 @@ pub(crate) fn run(arguments: &Run, library: &Library<Sensed>) -> Result<ExitCode
     }
     options.check_robots()?;
     let scenario = Scenario::read(file, path, options.seed).map_err(refused)?;
+    if options.recorded_paths.is_some() && scenario.members.iter().all(|member| member.records.is_none()) {
+        let help = "name a path that the plan replays, as in `records = \"NAME\"`, or leave the option out";
+        return Err(Failure::Usage(format!("--recorded-paths: no robot of the scenario records a path\nhelp: {help}")));
+    }
     let mut output = Output::open(&options, &scenario).map_err(Failure::Usage)?;
     let timeout = options.timeout.unwrap_or(scenario.timeout);
     let fleet = Fleet::new(scenario, library, output.records()).map_err(Failure::Usage)?;

@@ -1,5 +1,6 @@
 //! A scenario that is ready to run: its plans are compiled, and its robots are in their world.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -8,7 +9,7 @@ use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::diagnostic::judged;
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::link::Faults;
-use mdle_files::{Group, Settings, Target, read_plan};
+use mdle_files::{Group, InputError, Settings, Spelling, Target, read_plan};
 use mdle_host::{Quantity, Target as _, read_file, read_text, setpoints};
 use mdle_runtime::{Nanos, Plan as _, Pose, Setpoint};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
@@ -147,6 +148,11 @@ impl Scenario {
         let records = text.records.as_ref().map(|records| recorded(records, plan.paths())).transpose()?;
         let paths = paths(text, path, plan.paths(), records)?;
         let killed = text.killed.as_ref().map(|killed| duration(killed, 0.0, 1e9)).transpose()?;
+        if let (Some(killed), Some(place)) = (killed.filter(|killed| *killed > self.timeout), &text.killed) {
+            let [killed, end] = [killed, self.timeout].map(|time| time.as_secs_f64());
+            let message = format!("the scenario ends after {end} s, before the robot is killed at {killed} s");
+            return Err(ScenarioError::at(place.span(), message).help("give `timeout` a later time").into());
+        }
         let killed = killed.map(|killed| Nanos(u64::try_from(killed.as_nanos()).unwrap_or(u64::MAX)));
         let ears = text.ears.as_ref().map(|ears| self.ears(ears, seed.unwrap_or_default())).transpose()?;
         for other in &text.plans_from {
@@ -185,19 +191,25 @@ pub(super) type PlanWithFiles = (Arc<Loaded<SimAlphabet>>, Vec<(String, String)>
 /// of all robots of the scenario.
 pub(super) fn plan(
     file: &At<PathBuf>,
-    name: Option<&At<String>>,
+    plan_name: Option<&At<String>>,
     path: &Path,
     robot: Option<(&RobotText, &[&str])>,
 ) -> Result<PlanWithFiles, SetupError> {
-    let file = path.with_file_name("").join(file.get_ref());
+    let (place, file) = (file.span(), path.with_file_name("").join(file.get_ref()));
     let target = Settings::beside(&file)?.target(Some(SIM))?;
-    let mut input = read_plan(&file, &target)?;
-    let named = name.map(|plan| plan.get_ref().as_str());
+    let mut input = read_plan(&file, &target).map_err(|error| placed(place.clone(), error))?;
+    let named = plan_name.map(|plan| plan.get_ref().as_str());
+    if let (None, Some(group)) = (robot, input.group(named)) {
+        let message = format!("the robots of the group `{}` have names, and those of a crowd have none", group.name);
+        let help = "write a `[[robot]]` with this file for each of them, in place of the crowd";
+        return Err(ScenarioError::at(place, message).help(help).into());
+    }
     let group = robot.and_then(|robot| Some((robot, input.group(named)?)));
     let part = group.map(|((text, names), group)| part(text, names, &group)).transpose()?;
     let wanted = part.as_deref().or(named);
     if let Some(name) = wanted {
-        input.must_have(name)?;
+        let place = plan_name.map_or(place.clone(), At::span);
+        input.must_have(name).map_err(|error| placed(place, error))?;
     }
     let (plans, diagnostics) = input.compile(&target.alphabet, wanted);
     failure::print(&input.sources, &diagnostics);
@@ -206,8 +218,18 @@ pub(super) fn plan(
         return Err(SetupError::Plan(Failure::Plan));
     }
     let named = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine)).collect();
-    let machine = input.only(named)?;
+    let machine = input.only(named).map_err(|error| placed(place, error))?;
     Ok((Arc::new(load::load(&machine, &input.sources, &target.alphabet)?), texts(&input)))
+}
+
+/// Returns the error at its place in the scenario, unless it is in the plan's own file.
+fn placed(place: Range<usize>, error: InputError) -> SetupError {
+    if let InputError::Faulty(_) | InputError::NamedAt { .. } = error {
+        return SetupError::Plan(error.into());
+    }
+    let message = error.message(Spelling::Entry);
+    let (message, help) = message.split_once("\nhelp: ").unwrap_or((&message, ""));
+    ScenarioError::at(place, message).help(help).into()
 }
 
 /// Returns the name of a robot's part of a group's plan. The scenario must have all robots of the group.

@@ -114,7 +114,8 @@ impl Turns {
         let count = |is_so: fn(&Member) -> bool| self.each().filter(|member| is_so(member)).count();
         let (over, touched) = (count(|member| member.is_over), count(|member| member.has_touched));
         let (all, way) = (self.members.len(), self.each().map(|member| member.way).sum::<f64>());
-        let mut text = format!("{all} robots for {:.1} s\n", t.seconds());
+        let robots = if all == 1 { "robot" } else { "robots" };
+        let mut text = format!("{all} {robots} for {:.1} s\n", t.seconds());
         // Writing to a string cannot fail.
         let _ = writeln!(text, "plans that are over: {over}");
         let _ = writeln!(text, "robots that touched something: {touched}");
