@@ -151,7 +151,31 @@ fn ears_are_for_one_robot() {
 }
 
 #[test]
-fn a_recorder_that_ends_stops_the_robot() {
+fn a_plan_goes_on_after_its_sound() {
+    let folder = folder("sound_ends");
+    copy_plan(&folder);
+    let spec = WavSpec { channels: 2, sample_rate: 44_100, bits_per_sample: 16, sample_format: SampleFormat::Int };
+    let mut writer = WavWriter::create(folder.join("noise.wav"), spec).unwrap();
+    let mut noise: u32 = 1;
+    for _ in 0..4 * 44_100 {
+        noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        // The same at both ears: straight ahead.
+        (0..2).for_each(|_| writer.write_sample((noise >> 18) as i16).unwrap());
+    }
+    writer.finalize().unwrap();
+    let output = run(&folder, "--world hall --ears noise.wav");
+    assert!(refusal(&output).starts_with("[0] ") && refusal(&output).contains("module `heading` has ended"));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("plan over: wait 60s"), "{output:?}");
+    let plan = fs::read_to_string(folder.join("sound_following.mdle")).unwrap();
+    let ends = plan.replace("wait 60s", "wait 60s OR age(heading module) > 2s");
+    fs::write(folder.join("sound_following.mdle"), ends).unwrap();
+    let output = run(&folder, "--world hall --ears noise.wav");
+    let report = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(report.starts_with("6.") && report.contains("plan over: age(heading module)"), "{report}");
+}
+
+#[test]
+fn a_recorder_that_ends_at_once_stops_the_robot() {
     let folder = folder("recorder");
     copy_plan(&folder);
     let message = refusal(&run(&folder, "--world hall --ears -"));

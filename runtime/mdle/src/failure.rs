@@ -126,6 +126,11 @@ pub(crate) fn error(message: &str) {
     let _ = writeln!(io::stderr().lock(), "error: {}", PrintableLines(message));
 }
 
+/// Prints a warning.
+pub(crate) fn warning(message: &str) {
+    let _ = writeln!(io::stderr().lock(), "warning: {}", PrintableLines(message));
+}
+
 /// Prints diagnostics, in colours on a terminal.
 pub(crate) fn print(sources: &Sources, diagnostics: &[Diagnostic]) {
     let choice = if io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };

@@ -13,7 +13,7 @@ use mdle_runtime::Sensed;
 use crate::arguments::Run;
 use crate::failure::{self, Failure};
 use crate::link::LinkFile;
-use crate::modules::{self, AudioSource, SoundInput};
+use crate::modules::{self, AudioSource, HEADING, SoundInput};
 use crate::plans::texts;
 use crate::safety::SafetyFile;
 use crate::scenario;
@@ -42,6 +42,10 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
     let part = group.map(|(link, group)| link.part(&group)).transpose()?;
     let wanted = part.as_deref().or(named);
     let (plan, mut ready) = compiled(&arguments, wanted, &linked, &target, &mut input, safety.as_ref())?;
+    if ready.reads(HEADING) && arguments.lacks_heading(library) {
+        let help = "`--ears robot` loads one that hears sounds, and `--point X,Y` one that knows a point";
+        failure::warning(&format!("the plan reads the module `{HEADING}`, and none is loaded\nhelp: {help}"));
+    }
     ready.hears(arguments.hearing()?);
     let linked_by = link.as_ref().map(|link| link.path().to_owned());
     ready.link(link)?;
@@ -76,6 +80,11 @@ fn no_call() -> Call {
 }
 
 impl Run {
+    /// Returns `true` if no module `heading` is loaded before a run without a session, which may load one.
+    fn lacks_heading(&self, library: &Library<Sensed>) -> bool {
+        self.ears.is_none() && self.session.is_none() && library.admits(HEADING).is_ok()
+    }
+
     /// Opens the sound of `--ears`.
     fn hearing(&self) -> Result<Option<SoundInput>, Failure> {
         let Some(ears) = &self.ears else { return Ok(None) };

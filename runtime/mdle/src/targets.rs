@@ -58,6 +58,9 @@ pub(crate) trait Ready {
     /// Returns `true` if the plan reads attributes of modules.
     fn reads_modules(&self) -> bool;
 
+    /// Returns `true` if the plan reads an attribute of the module of this name.
+    fn reads(&self, module: &str) -> bool;
+
     /// Returns the texts of the safety rules.
     fn safety(&self) -> Option<&SafetyTexts>;
 
@@ -200,6 +203,10 @@ where
 {
     fn reads_modules(&self) -> bool {
         !self.loaded.plan().reads().is_empty()
+    }
+
+    fn reads(&self, module: &str) -> bool {
+        self.loaded.plan().reads().iter().any(|read| read.module == module)
     }
 
     fn safety(&self) -> Option<&SafetyTexts> {

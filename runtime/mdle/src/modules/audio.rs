@@ -115,6 +115,9 @@ fn wav(path: &Path) -> Result<Vec<[f32; 2]>, String> {
         SampleFormat::Int => reader.into_samples::<i32>().map(|value| value.map(|value| value as f32)).collect(),
     };
     let samples = pairs(&values.map_err(refused)?);
+    if samples.is_empty() {
+        return Err(format!("--ears {shown}: the file has no samples"));
+    }
     for (ear, name) in ["left", "right"].into_iter().enumerate() {
         let is_heard = |sample: &[f32; 2]| sample.get(ear).is_some_and(|value| *value != 0.0);
         if !samples.iter().any(is_heard) {
@@ -228,6 +231,7 @@ mod tests {
             written("one.wav", 44_100, 1, &[1, 2]),
             written("silent.wav", 44_100, 2, &[0; 8]),
             written("left.wav", 44_100, 2, &[7, 0, 7, 0]),
+            written("empty.wav", 44_100, 2, &[]),
         ]
         .map(|path| refusal(&path));
         let expected = [
@@ -237,6 +241,7 @@ mod tests {
              help: a bearing is the delay between two ears, the left one first",
             "--ears FOLDER/silent.wav: the left channel is silent: each of its samples is 0",
             "--ears FOLDER/left.wav: the right channel is silent: each of its samples is 0",
+            "--ears FOLDER/empty.wav: the file has no samples",
         ];
         assert_eq!(refusals, expected);
         assert!(refusal(&env::temp_dir().join("no_such_file.wav")).contains("cannot be read"));

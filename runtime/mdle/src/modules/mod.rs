@@ -17,8 +17,8 @@ use ears::EarsModule;
 use heading::Heading;
 use sensors::Sensors;
 
-/// Name of the module that `--point` loads.
-const HEADING: &str = "heading";
+/// Name of the module that `--point` and `--ears` load.
+pub(crate) const HEADING: &str = "heading";
 
 /// Registers the modules of every run.
 pub(crate) fn shipped(library: &mut Library<Sensed>) {
