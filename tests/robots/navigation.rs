@@ -182,11 +182,46 @@ fn a_graph_without_the_way_is_refused() {
 
     $ b d
     route: b -> d (BToD)
+    2.0 s  plan over: wait 2s (graph.mdle:3, of "bumper OR wait 2s")
     at b
-    error: a fault stopped the robot: the way from b to d is not done: `BToD` was ended by `bumper OR wait 2`
+    error: the way from b to d is not done: `BToD` was ended by `wait 2s`
     [3]
 
     "#);
+}
+
+/// Runs `mdle` on a record, and expects success; returns the text.
+fn read(folder: &Path, words: &[&str]) -> String {
+    let output = run(folder, words);
+    assert_eq!(output.status.code(), Some(0), "{words:?}: {}", text(&output));
+    text(&output)
+}
+
+#[test]
+fn a_record_has_the_plan_of_each_leg() {
+    let folder = folder("navigation_record");
+    let graph = "Γ_a^b = { AToB (Atom (wait 2s) (go 20 0)) }\nΓ_b^c = { BToC (Atom (wait 3s) (go 10 0)) }\n";
+    fs::write(folder.join("graph.mdle"), graph).unwrap();
+    read(&folder, &["navigate", "graph.mdle", "a", "c", "--target", "sim", "--speed", "max", "--log", "n.mcap"]);
+    assert!(read(&folder, &["replay", "n.mcap"]).contains("52 turns"));
+    let of_second_leg = read(&folder, &["why", "n.mcap", "3"]);
+    assert!(of_second_leg.contains("go 10 0") && of_second_leg.contains("wait 3s"), "{of_second_leg}");
+    read(&folder, &["why", "n.mcap", "--not", "go 10 0"]);
+    read(&folder, &["plot", "n.mcap", "n.svg"]);
+    read(&folder, &["plot", "n.mcap", "over.svg", "--over-time"]);
+    assert!(fs::read_to_string(folder.join("over.svg")).unwrap().contains("go 10 0"));
+}
+
+#[test]
+fn the_record_of_a_way_that_is_cut_short_says_by_what() {
+    let folder = small_graph("navigation_cut_short");
+    let words = ["navigate", "graph.mdle", "b", "d", "--target", "sim", "--speed", "max", "--log", "n.mcap"];
+    assert_eq!(run(&folder, &words).status.code(), Some(3));
+    read(&folder, &["replay", "n.mcap"]);
+    let last = read(&folder, &["why", "n.mcap", "2"]);
+    assert!(last.contains("wait 2s"), "{last}");
+    let before = read(&folder, &["why", "n.mcap", "1"]);
+    assert!(before.contains("plan over") || before.contains("wait 2s"), "{before}");
 }
 
 #[test]

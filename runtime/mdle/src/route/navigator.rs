@@ -8,7 +8,7 @@ use std::sync::Arc;
 use mdle_compiler::load::{self, LoadedPlan};
 use mdle_engine::{Engine, EngineAlphabet, Library, StoredPlan};
 use mdle_files::Target;
-use mdle_host::{Call, Moment, Pilot, PilotFault, RunTerms, Transitions};
+use mdle_host::{AfterPlan, Call, Moment, Pilot, PilotFault, RunTerms, Transitions};
 use mdle_record::Change;
 use mdle_runtime::{Cause, Machine, Nanos, Plan as _, Printable, Radians, Robot, Sensed, Turn, Twist};
 
@@ -44,6 +44,8 @@ struct Navigator<'l, A: EngineAlphabet> {
     heard: Option<Heard>,
     /// Angle by which odometry has turned the axes of the floor, as far as landmarks have shown.
     drift: Radians,
+    /// Continuation of the run after the last turn, if a plan has ended in it.
+    after: AfterPlan,
     messages: Vec<String>,
 }
 
@@ -94,7 +96,7 @@ impl<A: EngineAlphabet> ReadyLeg<A> {
     /// Returns the plan of the leg for a robot with this heading by odometry, which has turned the axes of the floor by
     /// `drift`: direction 0 of a plan that begins during a run is the heading with which it begins. The texts are those
     /// that were read before the run.
-    fn plan_at(&self, heading: Radians, drift: Radians) -> Result<StoredPlan<A>, PilotFault> {
+    fn plan_at(&self, heading: Radians, drift: Radians) -> Result<StoredPlan<A>, String> {
         let turned = libm::round((self.turned + drift.degrees() - heading.degrees()) * 100.0) / 100.0;
         let name = &self.plan.name;
         let mut files = self.plan.files.to_vec();
@@ -103,7 +105,7 @@ impl<A: EngineAlphabet> ReadyLeg<A> {
         }
         let loaded = recorded_files::compiled(&files, Some(name), &self.target)
             .and_then(|(machine, sources)| Ok(load::load::<A>(&machine, &sources, &self.target.alphabet)?));
-        let loaded = loaded.map_err(|_| PilotFault::Stopped(format!("{name} cannot be turned by {turned} degrees")))?;
+        let loaded = loaded.map_err(|_| format!("{name} cannot be turned by {turned} degrees"))?;
         Ok(StoredPlan { name: Arc::clone(name), files: files.into(), loaded: Arc::new(loaded) })
     }
 }
@@ -113,7 +115,8 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         // A leg that is over cannot go on.
         engine.plans_mut().set_trial(Nanos::ZERO);
         let (legs, drift) = (legs.iter().collect(), Radians(0.0));
-        let mut navigator = Self { engine, legs, look, heard: None, drift, messages: Vec::new() };
+        let after = AfterPlan::Ends;
+        let mut navigator = Self { engine, legs, look, heard: None, drift, after, messages: Vec::new() };
         if let Some(leg) = navigator.legs.front().copied() {
             navigator.stands(&leg.edge.from, None);
         }
@@ -130,44 +133,45 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Some(&look.plan)
     }
 
-    /// Goes on after a plan is over; returns `true` if there is another one.
-    fn goes_on(&mut self, y: &Sensed, transitions: &Transitions) -> Result<bool, PilotFault> {
+    /// Begins the next plan after a plan is over; returns `true` if there is another one.
+    ///
+    /// # Errors
+    /// Fails with a sentence if the robot is not where it should be, or if the next plan cannot begin.
+    fn goes_on(&mut self, y: &Sensed, transitions: &Transitions) -> Result<bool, String> {
         match self.heard.take() {
             Some(heard) => self.has_looked(&heard, transitions)?,
             None => {
                 if let Some(look) = self.arrives(y, transitions)? {
-                    self.engine.plans_mut().follow(look).map_err(PilotFault::Stopped)?;
+                    self.engine.plans_mut().follow(look)?;
                     return Ok(true);
                 }
             }
         }
         let Some(next) = self.legs.front() else { return Ok(false) };
         let plan = next.plan_at(y.odometry.theta, self.drift)?;
-        self.engine.plans_mut().follow(&plan).map_err(PilotFault::Stopped)?;
+        self.engine.plans_mut().follow(&plan)?;
         Ok(true)
     }
 
     /// Notes that the plan of a leg is over; returns the plan of the look around, if there is one.
-    fn arrives(&mut self, y: &Sensed, transitions: &Transitions) -> Result<Option<&'l StoredPlan<A>>, PilotFault> {
+    fn arrives(&mut self, y: &Sensed, transitions: &Transitions) -> Result<Option<&'l StoredPlan<A>>, String> {
         let Some(leg) = self.legs.pop_front() else { return Ok(None) };
         let Edge { from, to, plan } = &leg.edge;
         if let Some(cause) = self.cut_short(plan, transitions) {
             let (from, to) = (Printable(from), Printable(to));
-            let sentence = format!("the way from {from} to {to} is not done: `{plan}` was ended by `{cause}`");
-            return Err(PilotFault::Stopped(sentence));
+            return Err(format!("the way from {from} to {to} is not done: `{plan}` was ended by `{cause}`"));
         }
         Ok(self.stands(to, Some(y)))
     }
 
     /// Judges a look around: the robot has to be where it should be, and its frame is set by the landmark.
-    fn has_looked(&mut self, heard: &Heard, transitions: &Transitions) -> Result<(), PilotFault> {
+    fn has_looked(&mut self, heard: &Heard, transitions: &Transitions) -> Result<(), String> {
         let landmark = Printable(heard.expected());
         if let Some(cause) = self.cut_short(LOOK, transitions) {
-            let sentence = format!("the turn at {landmark} is not done: it was ended by `{cause}`");
-            return Err(PilotFault::Stopped(sentence));
+            return Err(format!("the turn at {landmark} is not done: it was ended by `{cause}`"));
         }
         let maps = self.look.map_or(&[][..], |look| look.maps);
-        let Stand { off: (x, y), drift } = heard.stand(maps, self.drift).map_err(PilotFault::Stopped)?;
+        let Stand { off: (x, y), drift } = heard.stand(maps, self.drift)?;
         let turned = Radians(drift.0 - self.drift.0).wrapped().degrees();
         // Minus zero is zero.
         let [x, y] = [x, y].map(|metres| libm::round(metres.0 * 100.0) / 100.0 + 0.0);
@@ -178,13 +182,16 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Ok(())
     }
 
-    /// Returns the cause by which the plan of an edge ended, if that is the plan's own condition and not its
-    /// last element.
+    /// Returns the operands by which the plan of an edge ended, if they are of the plan's own condition and its last
+    /// element did not end it.
     fn cut_short(&self, edge: &str, transitions: &Transitions) -> Option<String> {
-        let (last, _) = transitions.iter().last()?;
+        let (last, operands) = transitions.iter().last()?;
         let plan = self.engine.machine()?.plan();
         let is_own = matches!(last.cause, Cause::Fired(_)) && plan.name(last.scope) == edge;
-        is_own.then(|| plan.condition(last.scope).to_owned())
+        let source = plan.source();
+        let fired = operands.iter().filter_map(|(number, _)| source.operand(last.scope, *number));
+        let fired = fired.map(|words| words.written).collect::<Vec<_>>().join(" and ");
+        is_own.then(|| if fired.is_empty() { plan.condition(last.scope).to_owned() } else { fired })
     }
 }
 
@@ -205,7 +212,18 @@ impl<A: EngineAlphabet<Output = Sensed>> Pilot for Navigator<'_, A> {
             heard.take(y);
         }
         let turn = self.engine.turn(moment, transitions)?;
-        Ok(if matches!(turn, Turn::Over) && self.goes_on(y, transitions)? { Turn::Cut } else { turn })
+        if matches!(turn, Turn::Over) {
+            self.after = match self.goes_on(y, transitions) {
+                Ok(true) => AfterPlan::Continues,
+                Ok(false) => AfterPlan::Ends,
+                Err(sentence) => AfterPlan::Fails(sentence),
+            };
+        }
+        Ok(turn)
+    }
+
+    fn after_plan(&mut self) -> AfterPlan {
+        std::mem::replace(&mut self.after, AfterPlan::Ends)
     }
 
     fn divert(&mut self, plan: LoadedPlan<A>, moment: Moment<'_, Sensed>) {
