@@ -35,12 +35,15 @@ fn landmarks(output: &Output) -> String {
     text.lines().filter(is_about).collect::<Vec<_>>().join("\n")
 }
 
-/// Graph of four landmarks in a folder of its own: a plan that ends, one that never ends, and one that is cut short.
+/// Graph of four landmarks in a folder of its own: a plan that ends, one that never ends, one that is cut short, and
+/// two that only their own conditions can end.
 fn small_graph(test: &str) -> std::path::PathBuf {
     let folder = folder(test);
     let graph = "Γ_a^b = { AToB (bumper) (Atom (wait 1s) (go 20 0)) }\n\
                  Γ_b^c = { BToC (Atom (null) (go 0 0)) (Atom (wait 1s) (go 20 0)) }\n\
-                 Γ_b^d = { BToD (bumper OR wait 2s) (Atom (wait 1min) (go 0 0.1)) }\n";
+                 Γ_b^d = { BToD (bumper OR wait 2s) (Atom (x > 100m) (go 5 0)) }\n\
+                 Γ_c^d = { CToD (bumper) (Atom (null) (go 5 0)) }\n\
+                 Γ_d^b = { DToB (wait 2h) ExecPlan inf { (Atom (wait 1) (go 5 0.5)) } }\n";
     fs::write(folder.join("graph.mdle"), graph).unwrap();
     folder
 }
@@ -140,20 +143,16 @@ fn a_robot_turns_at_landmarks_and_names_them() {
 #[test]
 fn a_graph_without_the_way_is_refused() {
     let folder = small_graph("navigation_refused");
-    let answers = [["c", "a"], ["d", "b"], ["b", "a"], ["a", "lab"], ["A", "b"], ["a", "a"], ["a", "c"], ["b", "d"]]
-        .map(|[from, to]| {
-            let output = run(&folder, &["navigate", "graph.mdle", from, to, "--target", "sim", "--speed", "max"]);
-            format!("$ {from} {to}\n{}", text(&output))
-        });
+    let routes =
+        ["c a", "b a", "a lab", "A b", "a a", "a c", "b d", "c d", "d b"].map(|route| route.split_once(' ').unwrap());
+    let answers = routes.map(|(from, to)| {
+        let output = run(&folder, &["navigate", "graph.mdle", from, to, "--target", "sim", "--speed", "max"]);
+        format!("$ {from} {to}\n{}", text(&output))
+    });
     insta::assert_snapshot!(answers.join("\n"), @r#"
     $ c a
     error: graph.mdle has no route from c to a
-    help: no plan begins at c
-    [1]
-
-    $ d b
-    error: graph.mdle has no route from d to b
-    help: no plan begins at d
+    help: routes lead from c to b, d
     [1]
 
     $ b a
@@ -186,6 +185,16 @@ fn a_graph_without_the_way_is_refused() {
     at b
     error: the way from b to d is not done: `BToD` was ended by `wait 2s`
     [3]
+
+    $ c d
+    error: the plan `CToD` from c to d never arrives: only its own condition `bumper` can end it
+    help: end its last element where the landmark is, as in `(Atom (wait 10s) …)`
+    [1]
+
+    $ d b
+    error: the plan `DToB` from d to b never arrives: only its own condition `wait 7200` can end it
+    help: end its last element where the landmark is, as in `(Atom (wait 10s) …)`
+    [1]
 
     "#);
 }
@@ -249,12 +258,16 @@ fn faulty_landmarks_are_refused() {
     let folder = small_graph("navigation_landmarks");
     fs::write(folder.join("own.toml"), "[[landmark]]\nname = \"e\"\naxis = \"0\"\n").unwrap();
     fs::write(folder.join("none.mdle"), "{ P (Atom (wait 1s) stop) }\n").unwrap();
+    let parameter = "Γ_a^b = { AToB(d: length) (Atom (null) (advance d)) }\n";
+    fs::write(folder.join("parameter.mdle"), parameter).unwrap();
     let answers = [
         &["graph.mdle", "a", "b", "--landmarks", "own.toml"][..],
         &["graph.mdle", "a", "b", "--landmarks", "missing.toml"],
         &["none.mdle", "a", "b"],
         &["missing.mdle", "a", "b"],
         &["graph.mdle", "a", "--seed", "1"],
+        &["graph.mdle", "a", "b", "--safety", "rules.toml"],
+        &["parameter.mdle", "a", "b"],
     ]
     .map(|words| text(&run(&folder, &[&["navigate"], words, &["--target", "sim"]].concat())));
     insta::assert_snapshot!(answers.join("\n"), @r#"
@@ -271,9 +284,17 @@ fn faulty_landmarks_are_refused() {
     error: there is no file `missing.mdle`
     [2]
 
-    error: `--seed` comes before the landmarks
+    error: `--seed` comes before the landmark to which the robot is to go
     help: the options of a run follow the landmarks, as in `mdle navigate GRAPH FROM TO --seed …`
     [2]
+
+    error: `--safety` is for one plan, and a route has several
+    help: leave it out
+    [2]
+
+    error: the plan `AToB` from a to b takes parameters, and a route gives it none
+    help: label a plan that uses it: `Γ_a^b = { Name AToB(…) }`
+    [1]
 
     "#);
 }

@@ -151,6 +151,13 @@ impl Input {
         files.plans.iter().filter_map(named).collect()
     }
 
+    /// Returns `true` if a plan of the file, or of a file that it uses, takes parameters.
+    pub fn takes_parameters(&mut self, name: &str) -> bool {
+        let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
+        let (files, _) = syntax::parse_with(self.source, &text, &arena, self);
+        files.plans.iter().any(|plan| plan.name.node == name && !plan.params.is_empty())
+    }
+
     /// Checks that the file, or a file that it uses, has a plan of this name.
     ///
     /// # Errors

@@ -7,6 +7,7 @@ mod locate;
 mod log;
 mod manual;
 mod map;
+mod module_options;
 mod navigate;
 mod new_module;
 mod plot;
@@ -20,7 +21,6 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use clap_complete::Shell;
 
 use mdle_engine::tree::Role;
-use mdle_quantity::Quantity;
 
 use crate::Failure;
 use crate::new_module::NewModule;
@@ -29,6 +29,7 @@ pub(crate) use ears::{EarsOption, head};
 pub(crate) use locate::Locate;
 pub(crate) use log::Log;
 pub(crate) use map::MakeMap;
+use module_options::{module, point};
 pub(crate) use navigate::Navigate;
 pub(crate) use plot::Plot;
 pub(crate) use replay::Replay;
@@ -127,6 +128,8 @@ const WITH_VALUE: [&str; 13] = [
     "--commands",
     "--role",
 ];
+/// Options of `mdle navigate` itself.
+const OF_ROUTES: [&str; 2] = ["--landmarks", "--target"];
 /// Options that ask for help.
 const HELP: [&str; 2] = ["-h", "--help"];
 /// Options of `mdle` itself without a value.
@@ -143,7 +146,7 @@ pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
         Some(_) | None => 0,
     };
     let (own, options) = if words > 0 { apart(arguments, words)? } else { (arguments, Vec::new()) };
-    let matches = command().try_get_matches_from(&own).map_err(Failure::Unparsed)?;
+    let matches = command().try_get_matches_from(&own).map_err(Failure::unparsed)?;
     match matches.subcommand() {
         Some(("run", run)) => Ok(of(run, own, options, None)),
         Some(("shell", shell)) => Ok(of(shell, own, options, Some(session(shell)))),
@@ -210,6 +213,11 @@ fn apart(arguments: Vec<OsString>, mut missing: usize) -> Result<(Vec<OsString>,
         rest = others;
         let text = first.to_str().unwrap_or_default();
         let name = text.split_once('=').map_or(text, |(name, _)| name);
+        let navigates = own.get(1).is_some_and(|command| command == "navigate");
+        if navigates && (WITH_VALUE.contains(&name) || FLAGS.contains(&text)) && !OF_ROUTES.contains(&name) {
+            let sentence = "is for one plan, and a route has several";
+            return Err(Failure::Usage(format!("`{name}` {sentence}\nhelp: leave it out")));
+        }
         if WITH_VALUE.contains(&name) || FLAGS.contains(&text) {
             own.push(first.clone());
             if name == text && !FLAGS.contains(&text) {
@@ -222,13 +230,15 @@ fn apart(arguments: Vec<OsString>, mut missing: usize) -> Result<(Vec<OsString>,
         } else {
             let is_word = !text.starts_with('-') || text == "-";
             if !is_word && !HELP.contains(&text) {
-                let navigates = own.get(1).is_some_and(|command| command == "navigate");
-                let (before, form) = match navigates {
-                    true => ("the landmarks", "navigate GRAPH FROM TO"),
-                    false => ("the plan", "run PLAN"),
+                let (before, after, form) = match (navigates, missing) {
+                    (true, 1) => {
+                        ("the landmark to which the robot is to go", "the landmarks", "navigate GRAPH FROM TO")
+                    }
+                    (true, _) => ("the landmarks", "the landmarks", "navigate GRAPH FROM TO"),
+                    (false, _) => ("the plan", "the plan", "run PLAN"),
                 };
                 return Err(Failure::Usage(format!(
-                    "`{text}` comes before {before}\nhelp: the options of a run follow {before}, as in `mdle {form} {text} …`"
+                    "`{text}` comes before {before}\nhelp: the options of a run follow {after}, as in `mdle {form} {text} …`"
                 )));
             }
             missing -= usize::from(is_word);
@@ -374,20 +384,6 @@ fn with_plan(command: Command) -> Command {
         .arg(
             Arg::new("deny-warnings").long("deny-warnings").action(ArgAction::SetTrue).help("Treat warnings as errors"),
         )
-}
-
-/// Reads the name and the command line of a module.
-fn module(text: &str) -> Result<(String, String), String> {
-    let split = text.split_once('=').filter(|(name, command)| !name.is_empty() && !command.trim().is_empty());
-    let (name, command) = split.ok_or("write NAME=COMMAND, as in `--module 'ears=python3 ears.py'`")?;
-    Ok((name.to_owned(), command.to_owned()))
-}
-
-/// Reads a point, in metres.
-fn point(text: &str) -> Result<(f64, f64), String> {
-    let (x, y) = text.split_once(',').ok_or("write X,Y, as in `--point 3,0.5`")?;
-    let metres = |text: &str| Quantity::Length.read(text.trim(), "m");
-    Ok((metres(x)?, metres(y)?))
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ pub use walk::Reach;
 use walk::{BracketFacts, Outcome};
 
 use crate::diagnostic::Diagnostic;
-use crate::fsm::{ElementKind, Machine};
+use crate::fsm::{Element, ElementKind, Machine};
 use crate::plan::{Condition, condition_text};
 
 /// Facts about every run of a plan.
@@ -144,6 +144,14 @@ pub fn analyze(machine: &Machine) -> Analysis {
         scopes: answers.scopes,
         atoms: answers.atoms,
     }
+}
+
+/// Returns `true` if a scope of a machine can end because its last element ends, and not only by its own condition.
+#[must_use]
+pub fn body_ends(machine: &Machine, scope: Element<'_>) -> bool {
+    let most = transitions::most(machine);
+    let walked = ended::walk_with_records(machine, !most.is_cut);
+    walked.found.get(scope.index()).is_some_and(|found| found.body_ends)
 }
 
 /// Returns the maximum number of turns from the firing of an interrupt to the input of the next atom. This input is

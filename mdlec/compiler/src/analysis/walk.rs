@@ -35,6 +35,8 @@ pub(super) struct BracketFacts {
     pub(super) operands: Vec<Outcome>,
     /// `true` if the bracket can end because its law completes.
     pub(super) completes: bool,
+    /// `true` if the bracket can end because its last element ends.
+    pub(super) body_ends: bool,
     /// Reason why the bracket is always skipped, if it is.
     pub(super) skipped: Option<Skip>,
     /// The element before this one, if this one is never reached because of it, and the text alone does not show that.
@@ -155,6 +157,7 @@ impl<'l> Walk<'l> {
             reach,
             operands: vec![Outcome::Unread; condition.operands().len()],
             completes: false,
+            body_ends: false,
             skipped: (reach == Reach::Skipped).then_some(Skip::Inside),
             cut_off_by: self.before.filter(|_| is_cut_off),
         };
@@ -234,6 +237,7 @@ impl<'l> Walk<'l> {
     fn leave(&mut self, element: Element<'l>) {
         let Some(open) = self.open.pop() else { return };
         let inside = self.clock.filter(|_| element.atom().is_none());
+        self.found[element.index()].body_ends = inside.is_some();
         let ends_by_itself = element.completes() || *element.condition() != Condition::Null;
         self.written = open.written
             && match element.kind() {

@@ -37,6 +37,13 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
     let mut input = read_plan(&arguments.graph, &target)?;
     let graph = LandmarkGraph::of(input.labels());
     let route = route(&graph, &arguments)?;
+    for Edge { from, to, plan } in &route {
+        if input.takes_parameters(plan) {
+            let help = format!("label a plan that uses it: `Γ_{from}^{to} = {{ Name {plan}(…) }}`");
+            let sentence = format!("the plan `{plan}` from {from} to {to} takes parameters, and a route gives it none");
+            return Err(Failure::OtherPlan(format!("{sentence}\nhelp: {help}")));
+        }
+    }
     let (beside, known) = (arguments.graph.with_file_name(LANDMARKS), graph.landmarks());
     let file = arguments.landmarks.as_deref();
     let file = (file.unwrap_or(&beside), file.is_some());

@@ -7,7 +7,7 @@ mod navigator;
 
 use std::path::{Path, PathBuf};
 
-use mdle_compiler::analysis::analyze;
+use mdle_compiler::analysis::{analyze, body_ends};
 use mdle_compiler::diagnostic::judged;
 use mdle_compiler::fsm::Machine;
 use mdle_files::{Input, Target, plan};
@@ -63,6 +63,14 @@ pub(crate) fn leg(edge: &Edge, number: usize, turned: f64, graph: &Path, target:
         let Edge { from, to, plan } = edge;
         let help = format!("`mdlec analyze {} --plan {plan}` says why", graph.display());
         return Err(Failure::OtherPlan(format!("the plan `{plan}` from {from} to {to} never ends\nhelp: {help}")));
+    }
+    let own = machine.elements().find(|element| element.is_scope() && element.name() == edge.plan);
+    if let Some(own) = own.filter(|own| !body_ends(&machine, *own)) {
+        let (Edge { from, to, plan }, by) = (edge, own.condition_text());
+        let help = "end its last element where the landmark is, as in `(Atom (wait 10s) …)`";
+        return Err(Failure::OtherPlan(format!(
+            "the plan `{plan}` from {from} to {to} never arrives: only its own condition `{by}` can end it\nhelp: {help}"
+        )));
     }
     let graph = graph.to_owned();
     Ok(Leg { edge: edge.clone(), turned, graph, name, machine, input })
