@@ -234,6 +234,41 @@ fn the_record_of_a_way_that_is_cut_short_says_by_what() {
 }
 
 #[test]
+fn a_robot_that_is_elsewhere_is_refused() {
+    let folder = mapped("navigation_elsewhere");
+    let seed = ["--seed", "9870500"];
+    // Further off than the search goes: 80 cm along the hallway, 40 degrees, and at no landmark.
+    for start in ["8.25,0.4,180", "7.45,0.4,220", "4,0.6,90"] {
+        let output = by_maps(&folder, &["lab1", "office", "--start", start, "--seed", "9870500"]);
+        assert_eq!(output.status.code(), Some(3), "{start}: {}", text(&output));
+        assert!(text(&output).contains("not at lab1, by its map"), "{start}: {}", text(&output));
+    }
+    let turn = "{ Turn (bumper OR wait 1min) (Atom (null) turn 360) }\n";
+    fs::write(folder.join("turn.mdle"), turn).unwrap();
+    let locate = |start: &str, log: &str| {
+        let words = ["run", "turn.mdle", "--target", "sim", "--speed", "max", "--body", "scout", "--start", start];
+        read(&folder, &[&words[..], &["--log", log], &seed[..]].concat());
+        run(&folder, &["locate", log, "lab1.yaml", "lab2.yaml", "office.yaml"])
+    };
+    let there = locate("7.45,0.4,180", "there.mcap");
+    assert_eq!(there.status.code(), Some(0), "{}", text(&there));
+    assert!(
+        text(&there).starts_with("lab1: score ") && text(&there).matches("not there: ").count() == 2,
+        "{}",
+        text(&there)
+    );
+    let nowhere = locate("4,0.6,90", "nowhere.mcap");
+    assert_eq!(nowhere.status.code(), Some(1), "{}", text(&nowhere));
+    assert_eq!(text(&nowhere).matches("; not there: ").count(), 3, "{}", text(&nowhere));
+    // One map alone does not tell landmarks apart.
+    let alone = "[[landmark]]\nname = \"lab2\"\naxis = \"0deg\"\nmap = \"lab2.yaml\"\n";
+    fs::write(folder.join("landmarks.toml"), alone).unwrap();
+    let output = by_maps(&folder, &["lab2", "lab1", "--start", "7.45,0.4,180", "--seed", "9870500"]);
+    assert_eq!(output.status.code(), Some(3), "{}", text(&output));
+    assert!(text(&output).contains("warning: lab2 is the only landmark with a map"), "{}", text(&output));
+}
+
+#[test]
 fn a_graph_that_vanishes_is_not_read_again() {
     let folder = folder("navigation_vanishes");
     let graph = "Γ_a^b = { AToB (Atom (wait 2s) (go 20 0)) }\nΓ_b^c = { BToC (Atom (wait 1s) (go 20 0)) }\n";
@@ -315,6 +350,7 @@ fn a_map_shows_the_walls_at_lab_2() {
     negate: 0
     occupied_thresh: 0.65
     free_thresh: 0.35
+    least_score: 2.45
 
     "#);
     let map = fs::read(folder.join("lab2.pgm")).unwrap();

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 
+use crate::evidence::USUAL_POSE;
+
 /// The arguments of `mdle locate`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Locate {
@@ -34,7 +36,8 @@ pub(super) fn locate() -> Command {
         .long_about(
             "Name the landmark at which a robot turned, by the maps of landmarks\n\nPrints a line for each map, the best \
              first: its name, the mean evidence for an echo, and the pose at which the record began in the axes of the map, \
-             which is looked for up to 40 cm and 24 degrees off --at.",
+             which is looked for up to 40 cm and 24 degrees off --at. The line says if the robot was not there: the evidence \
+             is less than the map's least score, or the best pose is at the edge of the search.",
         )
         .arg(path("log").value_name("RECORD").help("Record of a full turn on the spot; `-` reads standard input"))
         .arg(path("maps").value_name("MAP.yaml").help("Maps that `mdle map` has made").num_args(1..))
@@ -44,7 +47,7 @@ pub(super) fn locate() -> Command {
                 .value_name("X,Y,DEG")
                 .help("Pose near which the record began, in the axes of each map, in metres and degrees")
                 .allow_hyphen_values(true)
-                .default_value("-0.75,0,0"),
+                .default_value(USUAL_POSE),
         )
-        .after_help("Exit status: 0; 1 if the record is damaged, 2 for wrong usage or a file that cannot be read")
+        .after_help("Exit status: 0; 1 if the robot was at none of the landmarks, or the record is damaged; 2 for wrong usage or a file that cannot be read")
 }

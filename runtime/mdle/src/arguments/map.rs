@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 
+use crate::evidence::USUAL_POSE;
+
 /// The arguments of `mdle map`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct MakeMap {
@@ -44,7 +46,7 @@ pub(super) fn map() -> Command {
                 .value_name("X,Y,DEG")
                 .help("Pose of the robot at the start of the record, in the axes of the map, in metres and degrees")
                 .allow_hyphen_values(true)
-                .default_value("0,0,0"),
+                .default_value(USUAL_POSE),
         )
         .arg(
             Arg::new("png")

@@ -15,6 +15,8 @@ const COARSE: (f64, f64) = (0.10, 3.0 * DEGREE);
 const COARSE_ANGLES: i16 = 8;
 /// Steps of the searches around the best pose so far.
 const FINE: [(f64, f64); 3] = [(0.05, 1.5 * DEGREE), (0.025, 0.75 * DEGREE), (0.0125, 0.5 * DEGREE)];
+/// Distance from an edge of the search, in metres or radians, within which sums of steps are at the edge.
+const ROUNDING: f64 = 1e-9;
 /// A degree, in radians.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
@@ -25,6 +27,8 @@ pub(crate) struct Fit {
     pub(crate) origin: Pose,
     /// Mean evidence for each echo.
     pub(crate) score: f64,
+    /// `true` if no pose further inside the search is as good: the best pose may lie outside.
+    pub(crate) is_at_edge: bool,
 }
 
 /// An echo in the axes of odometry: its place, and a place that the sound has passed on the way there.
@@ -42,19 +46,29 @@ impl Echo {
     }
 }
 
-/// Returns the best pose near `origin`: up to `ways` times 10 cm along each axis and 24° off it. The pings are in the
-/// axes of odometry; `None` if none has an echo.
-pub(crate) fn fit(grid: &EvidenceGrid, pings: &[GridPing], origin: Pose, ways: i16) -> Option<Fit> {
+/// Returns the best pose near `near`: up to `ways` times 10 cm along each axis and 24° off it. The pings are in the
+/// axes of odometry, and a search turns them around the origin of these axes. `None` if no ping has an echo.
+pub(crate) fn fit(grid: &EvidenceGrid, pings: &[GridPing], near: Pose, ways: i16) -> Option<Fit> {
     let echoes: Vec<Echo> = pings.iter().filter_map(Echo::of).collect();
     if echoes.is_empty() {
         return None;
     }
-    let scored = |origin: Pose| Fit { origin, score: score(grid, &echoes, &origin) };
-    let mut best = better(scored(origin), origin, COARSE, (ways, COARSE_ANGLES), &scored);
+    let scored = |origin: Pose| Fit { origin, score: score(grid, &echoes, &origin), is_at_edge: false };
+    let mut best = better(scored(near), near, COARSE, (ways, COARSE_ANGLES), &scored);
     for steps in FINE {
         best = better(best, best.origin, steps, (1, 1), &scored);
     }
-    Some(best)
+    let reaches = [f64::from(ways) * COARSE.0, f64::from(ways) * COARSE.0, f64::from(COARSE_ANGLES) * COARSE.1];
+    let Pose { x, y, theta } = best.origin;
+    let off = [x.0 - near.x.0, y.0 - near.y.0, theta.0 - near.theta.0];
+    let is_at_edge = off.iter().zip(reaches).any(|(off, reach)| off.abs() > reach - ROUNDING);
+    Some(Fit { is_at_edge, ..best })
+}
+
+/// Returns the mean evidence for echoes that are in the axes of the grid; `None` if no ping has an echo.
+pub(crate) fn own_score(grid: &EvidenceGrid, pings: &[GridPing]) -> Option<f64> {
+    let echoes: Vec<Echo> = pings.iter().filter_map(Echo::of).collect();
+    (!echoes.is_empty()).then(|| score(grid, &echoes, &Pose::ORIGIN))
 }
 
 /// Returns the best fit on a lattice around a pose, or `best` if no fit is better.
@@ -122,6 +136,17 @@ mod tests {
             let off = libm::hypot(origin.x.0 - x, origin.y.0 - y);
             let turned = (origin.theta.0 - there.theta.0).abs() / DEGREE;
             assert!(off < 0.05 && turned < 2.0, "({x}, {y}, {degrees}): {off} m and {turned} degrees off");
+        }
+    }
+
+    #[test]
+    fn a_pose_outside_the_search_is_at_its_edge() {
+        let mut grid = EvidenceGrid::new();
+        turn(Pose::ORIGIN).iter().for_each(|ping| grid.take(ping));
+        let is_at_edge = |x, y, degrees| fit(&grid, &turn(pose(x, y, degrees)), Pose::ORIGIN, 4).unwrap().is_at_edge;
+        assert!(!is_at_edge(0.3, -0.3, 20.0));
+        for (x, y, degrees) in [(0.5, 0.0, 0.0), (0.0, -0.5, 0.0), (0.0, 0.0, 30.0), (0.0, 0.0, -30.0)] {
+            assert!(is_at_edge(x, y, degrees), "({x}, {y}, {degrees})");
         }
     }
 

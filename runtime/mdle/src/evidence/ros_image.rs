@@ -6,8 +6,6 @@ use super::grid::{CELLS, EvidenceGrid};
 use super::png::png;
 use crate::failure::Failure;
 
-/// Maximum size of an image, in bytes.
-const LARGEST: u64 = 1_000_000;
 /// Grey of what is free.
 const WHITE: f64 = 255.0;
 
@@ -41,22 +39,11 @@ pub(crate) fn image(file: &Path) -> Result<PathBuf, Failure> {
     Err(Failure::Usage(format!("{} is no name of a map: it has to end in .yaml\nhelp: {help}", file.display())))
 }
 
-/// Reads the grid of the map in a YAML file that `mdle map` has written.
-///
-/// # Errors
-/// Fails if the name does not end in `.yaml` or `.yml`, or if the image beside the file cannot be read or does not
-/// belong to such a map.
-pub(crate) fn read_map(file: &Path) -> Result<EvidenceGrid, Failure> {
-    let image = image(file)?;
-    let bytes = mdle_host::read_file(&image, LARGEST)
-        .map_err(|error| Failure::Usage(format!("the map {} cannot be read: {error}", image.display())))?;
-    let greys = bytes.strip_prefix(head().as_bytes()).filter(|greys| greys.len() == CELLS * CELLS);
-    let greys = greys.ok_or_else(|| {
-        let help = "`mdle map RECORD MAP.yaml` makes one";
-        Failure::Usage(format!("{} is no map of a landmark\nhelp: {help}", image.display()))
-    })?;
+/// Returns the grid of an image; `None` if the bytes are no image of a landmark's map.
+pub(super) fn grid(bytes: &[u8]) -> Option<EvidenceGrid> {
+    let greys = bytes.strip_prefix(head().as_bytes()).filter(|greys| greys.len() == CELLS * CELLS)?;
     let rows = greys.chunks_exact(CELLS).rev().flatten();
-    Ok(EvidenceGrid::of(rows.map(|grey| 1.0 - f64::from(*grey) / WHITE)))
+    Some(EvidenceGrid::of(rows.map(|grey| 1.0 - f64::from(*grey) / WHITE)))
 }
 
 fn head() -> String {

@@ -6,13 +6,16 @@ use mdle_runtime::Printable;
 
 use super::{pings, pose};
 use crate::arguments::Locate;
-use crate::evidence::{Fit, fit, read_map};
+use crate::evidence::{Fit, SavedMap, fit};
 use crate::failure::{self, Failure};
 
 /// Steps of 10 cm to either side in which the pose is searched.
 const WAYS: i16 = 4;
 
-/// Prints how well a record fits each map, the best first.
+/// Exit status if the robot is at none of the landmarks.
+const NOWHERE: u8 = 1;
+
+/// Prints how well a record fits each map: first those at whose landmarks the robot may be, the best first.
 ///
 /// # Errors
 /// Fails if the record or a map cannot be read, or if the record has no echo.
@@ -23,16 +26,23 @@ pub(crate) fn locate(arguments: &Locate) -> Result<ExitCode, Failure> {
     let mut fits = Vec::new();
     for map in &arguments.maps {
         let name = map.file_stem().unwrap_or_default().display().to_string();
-        let fit = fit(&read_map(map)?, &heard, near, WAYS);
-        fits.push((name, fit.ok_or_else(|| Failure::Usage("the record has no echo of a sonar".to_owned()))?));
+        let map = SavedMap::read(map)?;
+        let fit = fit(&map.grid, &heard, near, WAYS);
+        let fit = fit.ok_or_else(|| Failure::Usage("the record has no echo of a sonar".to_owned()))?;
+        fits.push((name, map.objection(&fit), fit));
     }
-    fits.sort_by(|(_, one), (_, other)| other.score.total_cmp(&one.score));
-    for (name, Fit { origin, score }) in &fits {
+    fits.sort_by(|(_, not_one, one), (_, not_other, other)| {
+        not_one.is_some().cmp(&not_other.is_some()).then(other.score.total_cmp(&one.score))
+    });
+    for (name, objection, Fit { origin, score, .. }) in &fits {
         let (x, y, heading) = (origin.x.0, origin.y.0, origin.theta.wrapped().degrees());
         // Minus zero is zero.
         let [x, y] = [x, y].map(|metres| libm::round(metres * 100.0) / 100.0 + 0.0);
         let (heading, score) = (libm::round(heading * 10.0) / 10.0 + 0.0, libm::round(score * 100.0) / 100.0 + 0.0);
-        failure::print_line(&format!("{}: score {score:.2}, began at {x:.2},{y:.2},{heading:.1}", Printable(name)))?;
+        let not = objection.as_ref().map_or_else(String::new, |why| format!("; not there: {why}"));
+        let line = format!("{}: score {score:.2}, began at {x:.2},{y:.2},{heading:.1}{not}", Printable(name));
+        failure::print_line(&line)?;
     }
-    Ok(outcome)
+    let is_nowhere = fits.iter().all(|(_, objection, _)| objection.is_some());
+    Ok(if is_nowhere { ExitCode::from(NOWHERE) } else { outcome })
 }

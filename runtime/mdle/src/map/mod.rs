@@ -11,7 +11,7 @@ use mdle_runtime::Pose;
 use mdle_sim::Start;
 
 use crate::arguments::MakeMap;
-use crate::evidence::{EvidenceGrid, GridPing, PingOrder};
+use crate::evidence::{EvidenceGrid, GridPing, PingOrder, SavedMap, own_score};
 use crate::failure::Failure;
 use crate::log::damaged;
 use crate::replay;
@@ -23,9 +23,13 @@ pub(crate) use locate::locate;
 /// Fails if the record cannot be read, or if the map cannot be written.
 pub(crate) fn map(arguments: &MakeMap) -> Result<ExitCode, Failure> {
     let origin = pose(&arguments.at)?;
-    let mut grid = EvidenceGrid::new();
-    let outcome = pings(&arguments.log, origin, &mut |ping| grid.take(ping))?;
-    ros_map::save(&grid, &arguments.file, arguments.png.as_deref())?;
+    let (mut grid, mut heard) = (EvidenceGrid::new(), Vec::new());
+    let outcome = pings(&arguments.log, origin, &mut |ping| {
+        grid.take(ping);
+        heard.push(*ping);
+    })?;
+    let own_score = own_score(&grid, &heard);
+    ros_map::save(&SavedMap::of(grid, own_score), &arguments.file, arguments.png.as_deref())?;
     Ok(outcome)
 }
 

@@ -10,7 +10,7 @@ use mdle_sim::Start;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::evidence::read_map;
+use crate::evidence::{SavedMap, USUAL_POSE};
 use crate::failure::Failure;
 use crate::route::LandmarkMap;
 
@@ -96,10 +96,10 @@ impl Landmarks {
         let maps = self.landmark.iter().filter_map(|landmark| {
             let map = file.with_file_name("").join(landmark.map.as_ref()?);
             let name = landmark.name.get_ref().clone();
-            let at = landmark.at.as_ref().and_then(|at| at.get_ref().parse().ok());
-            let at = at.map_or(Pose::ORIGIN, |Start(pose)| pose);
+            let at = landmark.at.as_ref().map_or(USUAL_POSE, |at| at.get_ref().as_str());
+            let at = at.parse().map_or(Pose::ORIGIN, |Start(pose)| pose);
             let turned = self.axis(&name) - begins;
-            Some(read_map(&map).map(|grid| LandmarkMap { name, turned, at, grid }))
+            Some(SavedMap::read(&map).map(|map| LandmarkMap { name, turned, at, map }))
         });
         maps.collect()
     }

@@ -15,7 +15,7 @@ use mdle_runtime::{Printable, Sensed};
 use crate::arguments::Navigate;
 use crate::failure::{self, Failure};
 use crate::plans::texts;
-use crate::route::{Edge, LandmarkGraph, Leg, Look, Route, leg};
+use crate::route::{Edge, LandmarkGraph, LandmarkMap, Leg, Look, Route, leg};
 use crate::targets;
 use landmarks::Landmarks;
 
@@ -57,6 +57,9 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
     failure::print_line(&format!("route: {}", words(&route)))?;
     let maps = landmarks.maps(file.0, landmarks.axis(&arguments.from))?;
     let look = (!maps.is_empty()).then(|| Look::of(maps, &arguments.graph, &target)).transpose()?;
+    if let Some(sentence) = look.as_ref().and_then(|look| lonely(&look.maps)) {
+        failure::warning(&sentence);
+    }
     let looks = look.as_ref().filter(|look| look.maps.iter().any(|map| map.name == arguments.from));
     let program = Program { plan: &first.name, version: "" };
     let given: Vec<_> = arguments.options.iter().map(|option| option.to_string_lossy().into_owned()).collect();
@@ -70,6 +73,13 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
     let recorded = RecordedPlan { files, ..RecordedPlan::default() };
     let read = input.inputs(&target);
     (linked.navigate)(&Route { legs, look }, &target, Call { recorded, read, ..call(&arguments, options) }, library)
+}
+
+/// Returns a warning if only one landmark has a map.
+fn lonely(maps: &[LandmarkMap]) -> Option<String> {
+    let [LandmarkMap { name, .. }] = maps else { return None };
+    let (name, help) = (Printable(name), "name a `map` of each landmark that a robot may mistake for it");
+    Some(format!("{name} is the only landmark with a map: a robot at another one may pass as at {name}\nhelp: {help}"))
 }
 
 fn call(arguments: &Navigate, options: Vec<OsString>) -> Call {

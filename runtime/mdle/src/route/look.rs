@@ -8,7 +8,7 @@ use mdle_compiler::fsm::Machine;
 use mdle_files::{Input, Target, plan};
 use mdle_runtime::{Meters, Pose, Printable, Radians, Sensed};
 
-use crate::evidence::{EvidenceGrid, Fit, GridPing, PingOrder, fit};
+use crate::evidence::{Fit, GridPing, PingOrder, SavedMap, fit};
 use crate::failure::{self, Failure};
 
 /// Name of the plan of a look around.
@@ -26,7 +26,7 @@ pub(crate) struct LandmarkMap {
     pub(crate) turned: f64,
     /// Pose in the axes of the map of a robot that is at the landmark and heads along its first axis.
     pub(crate) at: Pose,
-    pub(crate) grid: EvidenceGrid,
+    pub(crate) map: SavedMap,
 }
 
 /// The plan of a look around, compiled, and the maps by which landmarks are named.
@@ -102,43 +102,43 @@ impl Heard {
     /// Returns how the robot stands at the landmark, after odometry has turned by about `drift`.
     ///
     /// # Errors
-    /// Fails with a sentence if the robot is at another landmark, or if no sonar heard anything.
+    /// Fails with a sentence if the robot is not at the landmark, or if no sonar heard anything.
     pub(super) fn stand(&self, maps: &[LandmarkMap], drift: Radians) -> Result<Stand, String> {
         let expected = Printable(&self.expected);
-        let fits = maps.iter().filter_map(|map| {
+        let pings: Vec<GridPing> = self.pings.iter().map(|ping| self.around_the_robot(ping)).collect();
+        let fits = maps.iter().filter_map(|landmark| {
             // Odometry knows the axes of all landmarks once it knows those of one.
-            let turned = if self.has_driven { map.turned } else { 0.0 };
+            let turned = if self.has_driven { landmark.turned } else { 0.0 };
             let axis = Radians::from_degrees(turned).0 + drift.0;
-            Some((map, fit(&map.grid, &self.pings, origin(map.at, axis, self.here), WAYS)?))
+            let near = Pose { theta: Radians(landmark.at.theta.0 - axis), ..landmark.at };
+            Some((landmark, fit(&landmark.map.grid, &pings, near, WAYS)?))
         });
-        let fits: Vec<(&LandmarkMap, Fit)> = fits.collect();
-        let best = fits.iter().reduce(|best, other| if other.1.score > best.1.score { other } else { best });
-        let here = fits.iter().find(|(map, _)| map.name == self.expected);
-        let (Some((there, Fit { score: most, .. })), Some((map, Fit { origin, score }))) = (best, here) else {
+        let (own, others): (Vec<_>, Vec<_>) = fits.partition(|(landmark, _)| landmark.name == self.expected);
+        let Some((landmark, fit)) = own.first() else {
             return Err(format!("no sonar has heard anything at {expected}: nothing says that the robot is there"));
         };
-        if *most > score + MARGIN {
-            let there = Printable(&there.name);
+        let (LandmarkMap { map, at, turned, .. }, Fit { origin, score, .. }) = (landmark, fit);
+        if let Some((other, Fit { score: most, .. })) = best(&others).filter(|(_, best)| best.score > score + MARGIN) {
+            let other = Printable(&other.name);
             let scores = format!("their scores are {most:.2} and {score:.2}");
-            return Err(format!("the robot is at {there} and not at {expected}, by its maps: {scores}"));
+            return Err(format!("the robot is at {other} and not at {expected}, by its maps: {scores}"));
         }
-        let (sin, cos) = libm::sincos(origin.theta.0);
-        let (x, y) = (self.here.x.0, self.here.y.0);
-        let off =
-            (Meters(origin.x.0 + x * cos - y * sin - map.at.x.0), Meters(origin.y.0 + x * sin + y * cos - map.at.y.0));
-        let axis = map.at.theta.0 - origin.theta.0;
-        Ok(Stand { off, drift: Radians(axis - Radians::from_degrees(map.turned).0).wrapped() })
+        if let Some(why) = map.objection(fit) {
+            return Err(format!("the robot is not at {expected}, by its map: {why}"));
+        }
+        let off = (Meters(origin.x.0 - at.x.0), Meters(origin.y.0 - at.y.0));
+        let axis = at.theta.0 - origin.theta.0;
+        Ok(Stand { off, drift: Radians(axis - Radians::from_degrees(*turned).0).wrapped() })
+    }
+
+    /// Returns a ping with its place measured from the robot, around which a search turns.
+    fn around_the_robot(&self, ping: &GridPing) -> GridPing {
+        GridPing { x: ping.x - self.here.x.0, y: ping.y - self.here.y.0, ..*ping }
     }
 }
 
-/// Returns the pose in the axes of a map at which the odometry of a robot was zero that is now at `here` by odometry,
-/// if it is at `at` and the landmark's first axis has this direction by odometry.
-fn origin(at: Pose, axis: f64, here: Pose) -> Pose {
-    let theta = at.theta.0 - axis;
-    let (sin, cos) = libm::sincos(theta);
-    Pose {
-        x: Meters(at.x.0 - (here.x.0 * cos - here.y.0 * sin)),
-        y: Meters(at.y.0 - (here.x.0 * sin + here.y.0 * cos)),
-        theta: Radians(theta),
-    }
+/// Returns the best fit to a landmark at which the robot may be.
+fn best<'f>(fits: &'f [(&'f LandmarkMap, Fit)]) -> Option<&'f (&'f LandmarkMap, Fit)> {
+    let fits = fits.iter().filter(|(landmark, fit)| landmark.map.objection(fit).is_none());
+    fits.reduce(|best, other| if other.1.score > best.1.score { other } else { best })
 }
