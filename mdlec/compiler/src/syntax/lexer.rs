@@ -162,9 +162,9 @@ impl<'s> Reader<'s> {
     fn dot(&mut self, place: Place) {
         let is_name = self.touches == place.start && self.after_name();
         let rest = self.source.text.get(place.end..).unwrap_or("");
-        let behind = rest.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_').trim_start();
-        let is_label = behind.len() == rest.len() || behind.starts_with(':');
-        match self.dots.as_mut().filter(|dots| is_name && !is_label && dots.depth > 0) {
+        let behind = rest.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_');
+        let is_signal = behind.len() < rest.len() && !behind.trim_start().starts_with(':');
+        match self.dots.as_mut().filter(|dots| is_name && is_signal && dots.depth > 0) {
             Some(dots) => dots.last = Some(place),
             None => self.character(place),
         }
