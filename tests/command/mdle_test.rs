@@ -151,6 +151,17 @@ fn a_test_has_the_modules_of_its_plan() {
 }
 
 #[test]
+fn a_script_has_the_words_of_a_group() {
+    let plan = "{ Group [a b] Pair (any bumper OR wait 20)\n  (Atom (all rendezvous) stop)\n  (Atom (a.x > 10cm) (go 20 0))\n}\n";
+    let test = "name = \"Pair_a\"\n[[test]]\nname = \"meets\"\nscript = [{ t = 0 }, { t = 1, fired = [\"all rendezvous\"] }, \
+                { t = 2, fired = [\"a.x > 10cm\"] }, { t = 4.5 }]\nexpect.end = \"wait 2s\"\n[[test]]\nname = \"touches\"\n\
+                script = [{ t = 0 }, { t = 1, fired = [\"any bumper\"] }, { t = 4.5 }]\n\
+                expect.transitions = [{ by = \"any bumper\" }]\nexpect.end = \"wait 2s\"\n";
+    let tested = report(&with("test_group", plan, test), &[]);
+    assert!(tested.contains("2 passed"), "{tested}");
+}
+
+#[test]
 fn faulty_files_of_tests_have_a_help() {
     let tests = [
         "wrold = \"room\"",

@@ -64,7 +64,7 @@ impl Loaded {
         let compiled: Compiled = input.only(named).map_err(words)?;
         let text = mdle_files::read_text(script, LARGEST_DATA).map_err(words)?;
         let script = Script::read(&text)
-            .and_then(|script| script.in_words_of(&compiled.plan, &target.alphabet))
+            .and_then(|script| compiled.worded(script, &target.alphabet))
             .map_err(|error| format!("{}:{}: {}", launch.script.display(), error.line, error.message))?;
         if script.turns().is_empty() {
             return Err(format!(

@@ -38,6 +38,21 @@ pub struct Compiled {
     pub part: Option<projection::Part>,
 }
 
+impl Compiled {
+    /// Converts a script to the texts of the plan ([`trace::Script::in_words_of`]). For the plan of a robot of a group,
+    /// the script may have the words of the group.
+    ///
+    /// # Errors
+    /// Fails at the first name that is neither an interrupt of the plan nor a law of the plan that completes.
+    pub fn worded(&self, script: trace::Script, alphabet: &Alphabet) -> Result<trace::Script, trace::ScriptError> {
+        let script = match &self.part {
+            Some(part) => script.renamed(|text| part.own_words(text)),
+            None => script,
+        };
+        script.in_words_of(&self.plan, alphabet)
+    }
+}
+
 /// Compiles a text to state machines: the plan `wanted`, or every plan that no other plan uses; [`rust::emit`] turns a
 /// machine into Rust. Returns no plan if there is an error.
 #[must_use]
@@ -112,21 +127,22 @@ fn stages(
         let is_only = plans.len() == 1;
         for plan in plans {
             let kept = limit.map(|_| plan.clone());
+            let part = parts.iter().find(|part| part.plan == plan.root.name);
+            let mut warned = |warnings: Vec<Diagnostic>| found.extend(of_part(warnings, part));
             let (nondegenerate, warnings) = plan::remove_degeneracy(plan);
-            found.extend(warnings);
+            warned(warnings);
             if let Some(Err(too_large)) = limit.filter(|_| is_only).map(|limit| limit(&nondegenerate)) {
-                found.push(too_large);
+                warned(vec![too_large]);
                 continue;
             }
-            found.extend(plan::lints::lints(&nondegenerate));
+            warned(plan::lints::lints(&nondegenerate));
             match fsm::lower(&nondegenerate) {
                 Ok(machine) => {
-                    found.extend(analysis::lints(&machine));
-                    let part = kept.as_ref().and_then(|plan| parts.iter().find(|part| part.plan == plan.root.name));
+                    warned(analysis::lints(&machine));
                     let part = part.cloned();
                     compiled.extend(kept.map(|plan| Compiled { plan, nondegenerate, machine, part }));
                 }
-                Err(too_large) => found.push(too_large),
+                Err(too_large) => warned(vec![too_large]),
             }
         }
     }
@@ -135,6 +151,14 @@ fn stages(
     }
     diagnostic::sort(&mut found);
     (compiled, once_each(found))
+}
+
+/// Removes the texts to type from the diagnostics of a part of a group: they are words of its robot, not of the group.
+fn of_part(mut found: Vec<Diagnostic>, part: Option<&projection::Part>) -> Vec<Diagnostic> {
+    if part.is_some() {
+        found.iter_mut().for_each(|diagnostic| diagnostic.help.retain(|help| help.edit.is_none()));
+    }
+    found
 }
 
 /// Leaves out the repetitions among sorted diagnostics: what several plans copy is found in each of them.

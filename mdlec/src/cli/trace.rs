@@ -23,7 +23,7 @@ pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
     let compiled = super::compiled::compile_one(&mut input, &target, options.name.as_deref(), false, limit)?;
     let text = mdle_files::read_text(&options.script, LARGEST_DATA)?;
     let script = Script::read(&text)
-        .and_then(|script| script.in_words_of(&compiled.plan, &target.alphabet))
+        .and_then(|script| compiled.worded(script, &target.alphabet))
         .map_err(|error| Failure::usage(format!("{}:{}: {}", options.script.display(), error.line, error.message)))?;
     let too_large = |found| {
         report::diagnostics(&input.sources, &[found], false);

@@ -76,7 +76,7 @@ pub(crate) fn draw(document: &mut Document<'_>, plan: Option<&str>) -> Result<Va
 /// Returns the trace of a plan on a script.
 pub(crate) fn trace(document: &mut Document<'_>, plan: Option<&str>, script: &str) -> Result<Value, String> {
     let compiled = document.compile(plan, |_| Ok(()))?;
-    let script = Script::read(script).and_then(|script| script.in_words_of(&compiled.plan, document.alphabet));
+    let script = Script::read(script).and_then(|script| compiled.worded(script, document.alphabet));
     let script = script.map_err(|error| format!("line {} of the script: {}", error.line, error.message))?;
     let mut text = String::new();
     for line in run(Counted::new(&compiled.machine), &script) {

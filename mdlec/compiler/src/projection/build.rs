@@ -1,5 +1,7 @@
 //! Makes the nodes of projected plans.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use crate::alphabet::Alphabet;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::syntax::Arena;
@@ -18,6 +20,10 @@ pub(super) struct Build<'b, 's> {
     pub(super) numbers: Vec<usize>,
     /// Number of atoms that have been projected.
     pub(super) done: usize,
+    /// Meetings of the first robot as they are written, with the interrupts that it reads.
+    pub(super) meetings: BTreeMap<String, BTreeSet<String>>,
+    /// For each label of an atom, the number of atoms before that atom.
+    pub(super) labels: BTreeMap<&'s str, usize>,
 }
 
 /// Returns the empty span at the start of a span.

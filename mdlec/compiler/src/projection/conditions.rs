@@ -135,12 +135,25 @@ impl<'s> Build<'_, 's> {
             ConditionNode::Call(call) => return self.quark(call, place, robot, span),
             ConditionNode::Comparison(compared) => self.comparison(compared, place, robot),
             ConditionNode::After(after) => {
-                let cause = after.cause.map(|cause| self.read(&cause, place, robot));
-                ConditionNode::After(self.arena.alloc(After { cause, ..*after }))
+                let cause = after.cause.map(|cause| self.cause(after.label.node, &cause, place, robot));
+                match cause {
+                    // It was reported.
+                    Some(Condition { node: ConditionNode::Broken, .. }) => ConditionNode::Broken,
+                    Some(_) | None => ConditionNode::After(self.arena.alloc(After { cause, ..*after })),
+                }
             }
             ConditionNode::Null | ConditionNode::Broken => condition.node,
         };
         Condition { node, span }
+    }
+
+    /// Projects the cause after a label as in the condition of the atom with this label.
+    fn cause(&mut self, label: &str, cause: &Condition<'s>, place: Place, robot: usize) -> Condition<'s> {
+        let labelled = self.labels.get(label).copied().unwrap_or(self.done);
+        let done = std::mem::replace(&mut self.done, labelled);
+        let cause = self.read(cause, place, robot);
+        self.done = done;
+        cause
     }
 
     fn all_of(
@@ -185,6 +198,12 @@ impl<'s> Build<'_, 's> {
             Ok(robots) => {
                 let number = self.own_number();
                 let robots = self.robots.get(robots).unwrap_or(&[]);
+                let whose = match (owner, robots) {
+                    (Owner::One(_), [one]) => format!("{}.", one.node),
+                    _ => "all ".to_owned(),
+                };
+                let interrupts = robots.iter().map(|robot| format!("past {} {number}", robot.node));
+                self.meetings.entry(format!("{whose}{MEETING}")).or_default().extend(interrupts);
                 let there: Vec<_> = robots.iter().map(|robot| self.past(robot, number, span)).collect();
                 Some(self.join(&there, span, ConditionNode::And))
             }

@@ -1,6 +1,8 @@
 //! Makes a plan for each robot of a group. The first robot keeps the group's conditions; an atom of any other robot
 //! ends when the first robot has reached its next atom.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::build::{Build, begin};
 use super::conditions;
 use super::formation::{self, FORMATION};
@@ -19,37 +21,44 @@ const LAST_STOP: &str = "2s";
 /// Elements of each robot, in the order of the group.
 type Parts<'s> = Vec<Vec<Element<'s>>>;
 
-/// Returns the plans of the robots, in the order of the group.
+/// Returns the plans of the robots, in the order of the group, and the meetings of the first one.
 pub(super) fn plans<'s>(
     plan: &Plan<'s>,
     robots: &[Name<'s>],
     arena: &'s Arena,
     alphabet: &Alphabet,
     found: &mut Vec<Diagnostic>,
-) -> Vec<Plan<'s>> {
-    let mut numbers = vec![1];
-    number(plan.elements, alphabet, &mut numbers);
-    let mut build = Build { arena, robots, found, alphabet, group: plan.name.node, numbers, done: 0 };
+) -> (Vec<Plan<'s>>, BTreeMap<String, BTreeSet<String>>) {
+    let (mut numbers, mut labels) = (vec![1], BTreeMap::new());
+    number(plan.elements, alphabet, &mut numbers, &mut labels);
+    let (group, meetings) = (plan.name.node, BTreeMap::new());
+    let mut build = Build { arena, robots, found, alphabet, group, numbers, done: 0, meetings, labels };
     let guards = conditions::guards(plan, &mut build);
     let parts = build.elements(plan.elements);
     let mut plans = Vec::new();
     for ((robot, guard), elements) in robots.iter().zip(guards).zip(parts) {
         plans.push(build.plan(plan, *robot, guard, &elements));
     }
-    plans
+    (plans, build.meetings)
 }
 
-/// Adds, for each atom, the number of the atom after it. An atom whose law may complete counts as two: a waiting atom
-/// follows it.
-fn number(elements: &[Element<'_>], alphabet: &Alphabet, numbers: &mut Vec<usize>) {
+/// Adds, for each atom, the number of the atom after it, and its label. An atom whose law may complete counts as two: a
+/// waiting atom follows it.
+fn number<'s>(
+    elements: &[Element<'s>],
+    alphabet: &Alphabet,
+    numbers: &mut Vec<usize>,
+    labels: &mut BTreeMap<&'s str, usize>,
+) {
     for element in elements {
         match element.primary {
             Primary::Atom(atom) => {
+                labels.extend(element.label().map(|label| (label.node, numbers.len().saturating_sub(1))));
                 let atoms = 1 + usize::from(completes(alphabet, atom.control.name));
                 numbers.push(numbers.last().map_or(1, |last| last + atoms));
             }
-            Primary::Plan(plan) => number(plan.elements, alphabet, numbers),
-            Primary::String(body) => number(body, alphabet, numbers),
+            Primary::Plan(plan) => number(plan.elements, alphabet, numbers, labels),
+            Primary::String(body) => number(body, alphabet, numbers, labels),
             Primary::Ref(_) | Primary::Exec(_) | Primary::Formal(_) | Primary::Broken => {}
         }
     }

@@ -1,12 +1,14 @@
 //! Formations: `formation SHAPE SPACING (LAW)` becomes the law of the first robot, and a slot for each of the others.
 
 use super::build::Build;
-use crate::alphabet::{Kind, Unit, did_you_mean};
+use crate::alphabet::{Alphabet, Kind, Param, Unit, did_you_mean};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Arg, Call};
 
 /// Name of the word that begins a formation.
 pub(super) const FORMATION: &str = "formation";
+/// The law of a first robot that leaves room for the others.
+const LEAD: &str = "lead";
 /// Height of a triangle with sides of length 1.
 const HEIGHT: f64 = 0.866_025_403_784_438_6;
 /// Minimum distance of the robots, in metres.
@@ -70,9 +72,10 @@ pub(super) fn read<'s>(call: &Call<'s>, build: &mut Build<'_, 's>) -> Option<For
     };
     let room = build.length(shape.width(others) * metres, span);
     let first = match law.name {
-        "goAvoid" => {
+        // Errors of arguments are reported of the law that is written.
+        "goAvoid" if fit(law.args, build.alphabet) => {
             let args: Vec<_> = std::iter::once(room).chain(law.args.iter().copied()).collect();
-            build.call("lead", &args, law.span)
+            build.call(LEAD, &args, law.span)
         }
         _ => build.call(law.name, law.args, law.span),
     };
@@ -82,6 +85,23 @@ pub(super) fn read<'s>(call: &Call<'s>, build: &mut Build<'_, 's>) -> Option<For
         build.call("slot", &args, call.span)
     });
     Some(Formation { first, others: slots.collect() })
+}
+
+/// Returns `true` if these arguments of `goAvoid` fit those that `lead` takes after its width.
+fn fit(args: &[Arg<'_>], alphabet: &Alphabet) -> bool {
+    let fits = |arg: &Arg<'_>, param: &Param| match arg {
+        Arg::Number(number) => {
+            let unit = number.unit().map(Unit::from_name);
+            unit.is_none_or(|unit| unit.is_some_and(|unit| unit.kind == param.kind))
+        }
+        Arg::Infinity(_) | Arg::String(_) | Arg::Name(_) | Arg::Module(_) => false,
+    };
+    alphabet.declarations_of(LEAD).any(|lead| {
+        let params = lead.params.get(1..).unwrap_or(&[]);
+        args.len() <= params.len()
+            && params.iter().skip(args.len()).all(|param| param.default.is_some())
+            && args.iter().zip(params).all(|(arg, param)| fits(arg, param))
+    })
 }
 
 /// Reports a formation that lacks a part.

@@ -13,6 +13,8 @@ mod robots;
 #[cfg(test)]
 mod tests;
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use crate::alphabet::{Alphabet, Capability};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::Plan;
@@ -29,6 +31,24 @@ pub struct Part {
     pub robot: String,
     /// Name of the robot's own plan.
     pub plan: String,
+    /// Meetings of the first robot as they are written, such as `all rendezvous`, with the interrupts that it reads.
+    pub meetings: BTreeMap<String, BTreeSet<String>>,
+}
+
+impl Part {
+    /// Returns the texts of the robot's own quarks that a text of the group names: that of `x > 7m` for `a.x > 7m`, and
+    /// all of a meeting.
+    #[must_use]
+    pub fn own_words(&self, text: &str) -> Vec<String> {
+        let words: Vec<_> = text.split_whitespace().collect();
+        if let Some(meeting) = self.meetings.get(&words.join(" ")) {
+            return meeting.iter().cloned().collect();
+        }
+        let text = text.trim();
+        let of_robot = text.strip_prefix(&*self.robot).and_then(|rest| rest.strip_prefix('.'));
+        let of_any = text.strip_prefix(owners::ANY).filter(|rest| rest.starts_with(char::is_whitespace));
+        vec![of_robot.or(of_any).map_or(text, str::trim_start).to_owned()]
+    }
 }
 
 /// Replaces the plan of each group by the plans of its robots; returns those plans' names, and the errors of the
@@ -51,11 +71,13 @@ pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet)
             Some(_) if lacks_link(alphabet) => found.push(no_link(plan)),
             Some(written) => match robots::named(plan, written, &mut found) {
                 Some(robots) => {
-                    let projected = elements::plans(plan, &robots, arena, alphabet, &mut found);
+                    let (projected, mut meetings) = elements::plans(plan, &robots, arena, alphabet, &mut found);
                     parts.extend(projected.iter().zip(&robots).map(|(own, robot)| Part {
                         group: plan.name.node.to_owned(),
                         robot: robot.node.to_owned(),
                         plan: own.name.node.to_owned(),
+                        // The others have no meetings.
+                        meetings: std::mem::take(&mut meetings),
                     }));
                     plans.extend(projected);
                 }

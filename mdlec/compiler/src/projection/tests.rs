@@ -135,6 +135,50 @@ fn no_robot_reads_that_none_of_them_has_a_quark() {
 }
 
 #[test]
+fn causes_are_those_of_the_labelled_atom() {
+    insta::assert_snapshot!(plans(
+        "{ Group [a b c] R (wait 1min)
+  x: (Atom (all rendezvous OR b.rendezvous OR wait 5) stop)
+  (Atom (after x (all rendezvous) OR after x b.rendezvous OR after x (wait 5)) stop) }"
+    ));
+    assert_refused!(
+        "{ Group [a b] R (wait 1min)
+  x: (Atom (all rendezvous OR wait 5) stop) (Atom (after x (past b 1) OR after x (b.bumper)) stop) }",
+    );
+}
+
+#[test]
+fn a_part_knows_the_words_of_its_group() {
+    let text = "{ Group [a b c] R (any bumper OR wait 20)
+  (Atom (all rendezvous) stop) (Atom (b.rendezvous) stop) (Atom (all rendezvous) stop) }";
+    let (compiled, found) = compile(SourceId(0), text, &alphabet(None), None);
+    assert_eq!(found, []);
+    let part = |robot: usize| compiled[robot].part.as_ref().unwrap();
+    let own = |text: &'static str| part(0).own_words(text).join(", ");
+    assert_eq!(own(" all  rendezvous "), "past b 1, past b 3, past c 1, past c 3");
+    assert_eq!([own("b.rendezvous"), own("c.rendezvous")], ["past b 2", "c.rendezvous"]);
+    assert_eq!([own("any bumper"), own("a.x > 10cm"), own("anything")], ["bumper", "x > 10cm", "anything"]);
+    assert_eq!(part(1).own_words("b.bumper"), ["bumper"]);
+    assert_eq!(part(1).own_words("all rendezvous"), ["all rendezvous"]);
+}
+
+#[test]
+fn lints_propose_no_words_of_a_single_robot() {
+    assert_refused!(
+        "{ Group [a b] R (wait 1min) (Atom (a.bumper) stop) (Atom (a.bumper) stop) (Atom (a.t < 30s) (go 20 0)) }",
+    );
+}
+
+#[test]
+fn wrong_arguments_are_those_of_the_law_as_written() {
+    assert_refused!(
+        "{ Group [a b] R (wait 1min)
+  (Atom (wait 3) formation line 1m (goAvoid 0)) (Atom (wait 3) formation line 1m (goAvoid 0 7m 20 5))
+  (Atom (wait 3) formation line 1m (goAvoid 0 7s)) (Atom (wait 3) formation line 1m (goAvoid inf 7m)) }",
+    );
+}
+
+#[test]
 fn no_robot_of_a_group_names_itself() {
     assert_refused!(
         "{ Group [a b c] R (wait 1min) (Atom (wait 3) (Follow b)) (Atom (wait 3) formation line 1m (Follow a)) }",

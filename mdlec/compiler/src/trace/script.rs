@@ -144,6 +144,16 @@ impl Script {
         Ok(Self { turns, lines })
     }
 
+    /// Returns the script with each interrupt replaced by those that `words` returns for it.
+    #[must_use]
+    pub fn renamed(mut self, words: impl Fn(&str) -> Vec<String>) -> Self {
+        for reports in &mut self.turns {
+            let fired = std::mem::take(&mut reports.fired);
+            reports.fired = fired.iter().flat_map(|text| words(text)).collect();
+        }
+        self
+    }
+
     /// Converts the script to the texts of a plan: `r0<60cm` becomes `r0 < 0.6`.
     ///
     /// # Errors

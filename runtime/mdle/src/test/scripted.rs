@@ -23,7 +23,7 @@ pub(super) fn script(turns: &At<Vec<At<ScriptTurn>>>, subject: &Subject) -> Resu
     }
     let lines = turns.get_ref().iter().map(|turn| serde_json::to_string(turn.get_ref()).unwrap_or_default());
     let script = Script::read(&lines.collect::<Vec<_>>().join("\n"));
-    let script = script.and_then(|script| script.in_words_of(&subject.compiled.plan, &subject.target.alphabet));
+    let script = script.and_then(|script| subject.compiled.worded(script, &subject.target.alphabet));
     let script = script.map_err(|error| {
         TestFileError::at(turn(error.line), error.message.replace("previous line", "previous turn"))
     })?;
