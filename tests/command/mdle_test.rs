@@ -162,6 +162,21 @@ fn a_script_has_the_words_of_a_group() {
 }
 
 #[test]
+fn a_refused_module_is_loaded_once() {
+    let plan = "{ Near (bumper OR wait 5s OR range(ears module) < 50cm)\n  (Atom (null) (go 20 0))\n}\n";
+    let test = "[[test]]\nname = \"one\"\nworld = \"hall\"\nseeds = 9\nexpect.end = \"wait 5s\"\n";
+    let folder = with("test_refused_module", plan, test);
+    let starts = folder.join("starts");
+    let ears = format!("echo one >> '{}'; exec false", starts.display());
+    fs::write(folder.join("mdle.toml"), format!("target = \"sim\"\n\n[modules]\nears = \"\"\"{ears}\"\"\"\n")).unwrap();
+    let tested = report(&folder, &["--jobs", "1"]);
+    let sentence =
+        "the run could not be made: module `ears` cannot be loaded: its process has ended (exit status: 1)\n";
+    assert!(tested.contains(sentence) && tested.contains("9 of 9 seeds failed"), "{tested}");
+    assert_eq!(fs::read_to_string(starts).unwrap(), "one\n");
+}
+
+#[test]
 fn faulty_files_of_tests_have_a_help() {
     let tests = [
         "wrold = \"room\"",

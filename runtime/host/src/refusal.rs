@@ -1,5 +1,7 @@
 //! Reasons why a target does not begin a run.
 
+use std::fmt;
+
 /// Reason why a robot could not be opened.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Refusal {
@@ -10,4 +12,14 @@ pub enum Refusal {
     /// The run was asked to end while the robot was being opened. The robot was stopped; if not, the sentence gives the
     /// reason (exit status 3).
     Ended(Result<(), String>),
+}
+
+/// Writes the sentence about the refusal.
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Usage(sentence) | Self::Fault(sentence) | Self::Ended(Err(sentence)) => sentence,
+            Self::Ended(Ok(())) => "the run was asked to end before it began",
+        })
+    }
 }

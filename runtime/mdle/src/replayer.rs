@@ -125,10 +125,7 @@ where
 }
 
 fn refused(refusal: Refusal) -> Failure {
-    Failure::Usage(match refusal {
-        Refusal::Usage(sentence) | Refusal::Fault(sentence) | Refusal::Ended(Err(sentence)) => sentence,
-        Refusal::Ended(Ok(())) => "the run was asked to end before it began".to_owned(),
-    })
+    Failure::Usage(refusal.to_string())
 }
 
 struct ReplayOf<A: EngineAlphabet<Output = Sensed, Input = Twist>> {

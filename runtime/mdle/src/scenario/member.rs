@@ -7,8 +7,8 @@ use mdle_compiler::load::{Loaded, LoadedPlan};
 use mdle_engine::link::{Air, StateLink};
 use mdle_engine::{Engine, Library, Recorder as _};
 use mdle_host::{
-    Microphones, Moment, Pace, Passes, Pilot as _, PilotFault, Refusal, RobotTurn, RunTerms, StopRequest, Target as _,
-    Time, Transitions, cause_words, place,
+    Microphones, Moment, Pace, Passes, Pilot as _, PilotFault, RobotTurn, RunTerms, StopRequest, Target as _, Time,
+    Transitions, cause_words, place,
 };
 use mdle_record::Change;
 use mdle_runtime::{Machine, Nanos, PathStore, Plan as _, Robot as _, Sensed, Setpoint, StoredPath, Turn, Twist};
@@ -95,11 +95,12 @@ impl Runner {
         let plan = Loaded::plan(&loaded);
         let hearing = ears.as_ref().map(|(_, radius)| SoundInput { source: AudioSource::Robot, radius: *radius });
         let added = hearing.map(|hearing| hearing.added(library, &microphones));
-        let engine = Engine::new(plan, added.as_ref().unwrap_or(library), &terms).map_err(sentence)?;
+        let engine = Engine::new(plan, added.as_ref().unwrap_or(library), &terms);
+        let engine = engine.map_err(|refusal| refusal.to_string())?;
         let takes_plans = !plans_from.is_empty();
         let link =
             StateLink::new(Box::new(air), &name, start).sharing(&shares).exchanging_plans(plans_from, Vec::new());
-        let mut engine = engine.linked(link).map_err(|refusal| format!("the robot `{name}`: {}", sentence(refusal)))?;
+        let mut engine = engine.linked(link).map_err(|refusal| format!("the robot `{name}`: {refusal}"))?;
         if takes_plans {
             plans::begin_at_once(engine.plans_mut(), &scenario.target);
         }
@@ -257,14 +258,6 @@ impl Runner {
                 None
             }
         }
-    }
-}
-
-/// Returns the reason of a refusal.
-fn sentence(refusal: Refusal) -> String {
-    match refusal {
-        Refusal::Usage(sentence) | Refusal::Fault(sentence) => sentence,
-        Refusal::Ended(_) => "the run was asked to end".to_owned(),
     }
 }
 

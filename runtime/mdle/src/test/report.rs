@@ -124,9 +124,13 @@ fn failed(test: &Tested<'_>) {
     match &first.result {
         RunResult::Crashed(sentence) => {
             let label = Label::primary(test.suite.source, test.case.text.name.span());
-            let message = format!("{}: the run could not be made: {sentence}", title(test, first.job));
+            // Help follows the sentence in lines of its own.
+            let mut lines = sentence.lines();
+            let reason = lines.next().unwrap_or_default();
+            let message = format!("{}: the run could not be made: {reason}", title(test, first.job));
             let report = Diagnostic::error().with_message(message).with_labels(vec![label]);
-            messages::write(sources, report.with_notes(vec![format!("again: {}", test.again(first.job))]));
+            let again = format!("again: {}", test.again(first.job));
+            messages::write(sources, report.with_notes(lines.map(str::to_owned).chain([again]).collect()));
         }
         RunResult::Judged(course, failures) => {
             let mut told = None;

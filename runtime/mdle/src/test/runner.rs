@@ -4,6 +4,7 @@
 use std::io::{self, IsTerminal as _};
 use std::num::NonZeroUsize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::channel;
 use std::thread;
@@ -17,6 +18,7 @@ use super::course::Course;
 use super::coverage::Coverage;
 use super::judge::{Failure, judge};
 use super::scripted;
+use super::simulated::RunError;
 use super::suite::{Case, RunsOn, Suite};
 
 /// A run to be made.
@@ -76,15 +78,16 @@ pub(super) fn run(
     let next = AtomicUsize::new(0);
     let fresh = || suites.iter().map(|suite| Coverage::new(suite.subject.machine())).collect::<Vec<_>>();
     let (mut made, mut coverage) = (Vec::new(), fresh());
+    let refused: Vec<_> = suites.iter().map(|_| OnceLock::new()).collect();
     thread::scope(|scope| {
         let (sender, receiver) = channel();
         let (reached, workers) = channel();
         for _ in 0..threads.get().min(jobs.len()) {
-            let (sender, reached, next, fresh) = (sender.clone(), reached.clone(), &next, &fresh);
+            let (sender, reached, next, fresh, refused) = (sender.clone(), reached.clone(), &next, &fresh, &refused);
             scope.spawn(move || {
                 let mut coverage = fresh();
                 while let Some((number, job)) = taken(next, jobs) {
-                    let result = one(suites, *job, library, &mut coverage);
+                    let result = one(suites, *job, library, &mut coverage, refused);
                     // The runner listens until all threads have ended.
                     let _ = sender.send((number, Made { job: *job, result }));
                 }
@@ -114,14 +117,26 @@ fn taken<'j>(next: &AtomicUsize, jobs: &'j [Job]) -> Option<(usize, &'j Job)> {
     jobs.get(number).map(|job| (number, job))
 }
 
-/// Makes a run. A panic fails only this run.
-fn one(suites: &[Suite], job: Job, library: &Library<Sensed>, coverage: &mut [Coverage]) -> RunResult {
-    let (Some(suite), Some(coverage)) = (suites.get(job.suite), coverage.get_mut(job.suite)) else {
+/// Makes a run. A panic fails only this run; a module that is refused is not loaded again in the other runs of its
+/// suite, since a process may take long to be refused: `refused` has the sentence for each suite.
+fn one(
+    suites: &[Suite],
+    job: Job,
+    library: &Library<Sensed>,
+    coverage: &mut [Coverage],
+    refused: &[OnceLock<String>],
+) -> RunResult {
+    let (Some(suite), Some(coverage), Some(refused)) =
+        (suites.get(job.suite), coverage.get_mut(job.suite), refused.get(job.suite))
+    else {
         return RunResult::Crashed("there is no such test".to_owned());
     };
     let Some(case) = suite.cases.get(job.case) else {
         return RunResult::Crashed("there is no such test".to_owned());
     };
+    if let (RunsOn::Simulation(_), Some(sentence)) = (&case.runs_on, refused.get()) {
+        return RunResult::Crashed(sentence.clone());
+    }
     let mut own = coverage.clone();
     own.begins();
     match shielded(|| course(suite, case, job.seed, library, &mut own)) {
@@ -135,16 +150,17 @@ fn one(suites: &[Suite], job: Job, library: &Library<Sensed>, coverage: &mut [Co
             }
             RunResult::Judged(Box::new(course), failures)
         }
-        Err(sentence) => RunResult::Crashed(sentence),
+        Err(RunError::Module(sentence)) => RunResult::Crashed(refused.get_or_init(|| sentence).clone()),
+        Err(RunError::Own(sentence)) => RunResult::Crashed(sentence),
     }
 }
 
 /// Makes a run; a panic in its code becomes a sentence.
-fn shielded(run: impl FnOnce() -> Result<Course, String>) -> Result<Course, String> {
+fn shielded(run: impl FnOnce() -> Result<Course, RunError>) -> Result<Course, RunError> {
     catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|payload| {
         let words = payload.downcast_ref::<&str>().map(|words| (*words).to_owned());
         let words = words.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
-        Err(format!("a panic, which is a bug: {words}"))
+        Err(RunError::Own(format!("a panic, which is a bug: {words}")))
     })
 }
 
@@ -154,7 +170,7 @@ fn course(
     seed: Option<u64>,
     library: &Library<Sensed>,
     coverage: &mut Coverage,
-) -> Result<Course, String> {
+) -> Result<Course, RunError> {
     match &case.runs_on {
         RunsOn::Script(script) => Ok(scripted::run(&suite.subject, &case.expected, script, coverage)),
         RunsOn::Simulation(simulation) => simulation.run(&suite.subject, &case.expected, seed, library, coverage),
@@ -167,8 +183,8 @@ mod tests {
 
     #[test]
     fn a_panic_crashes_one_run() {
-        let sentence = "a panic, which is a bug: no wheel 3";
-        assert_eq!(shielded(|| panic!("no wheel {}", 3)), Err(sentence.to_owned()));
-        assert_eq!(shielded(|| Err("no start".to_owned())), Err("no start".to_owned()));
+        let own = |sentence: &str| Err(RunError::Own(sentence.to_owned()));
+        assert_eq!(shielded(|| panic!("no wheel {}", 3)), own("a panic, which is a bug: no wheel 3"));
+        assert_eq!(shielded(|| own("no start")), own("no start"));
     }
 }

@@ -36,6 +36,15 @@ pub(super) struct Simulation {
     pub(super) timeout: Duration,
 }
 
+/// Reason why a run could not be made: a sentence.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum RunError {
+    /// A module is refused, as it is in every run of the plan.
+    Module(String),
+    /// The robot of this run could not be made, or the code panicked.
+    Own(String),
+}
+
 /// The conditions of a test in a run; each is a plan that never leaves its only atom.
 type Watched = Vec<Option<Machine<LoadedPlan<SimAlphabet>>>>;
 
@@ -83,7 +92,7 @@ impl Simulation {
     /// Runs the plan on the robot of a seed.
     ///
     /// # Errors
-    /// Fails with a sentence if the run cannot begin.
+    /// Fails if the run cannot begin.
     pub(super) fn run(
         &self,
         subject: &Subject,
@@ -91,18 +100,19 @@ impl Simulation {
         seed: Option<u64>,
         library: &Library<Sensed>,
         coverage: &mut Coverage,
-    ) -> Result<Course, String> {
+    ) -> Result<Course, RunError> {
         let terms = RunTerms {
             time: Time::Stepped(Pace::Max),
             period: self.trials.period,
             request: StopRequest::default(),
             microphones: Microphones::default(),
         };
-        let library = subject.modules(library)?;
-        let engine = Engine::new(self.loaded.plan(), &library, &terms).map_err(|refusal| format!("{refusal:?}"))?;
+        let library = subject.modules(library).map_err(RunError::Module)?;
+        let engine = Engine::new(self.loaded.plan(), &library, &terms);
+        let engine = engine.map_err(|refusal| RunError::Module(refusal.to_string()))?;
         let mut drive = Driven {
             simulation: self,
-            robot: self.trials.robot(seed)?,
+            robot: self.trials.robot(seed).map_err(RunError::Own)?,
             engine,
             input: Twist::default(),
             transitions: Transitions::default(),
