@@ -155,6 +155,10 @@ fn each_robot_of_a_crowd_has_a_record() {
         let text = String::from_utf8(output.unwrap().stdout).unwrap();
         assert_eq!(text, "the same to the bit, 61 turns\n", "{robot}");
     }
+    fs::create_dir(folder.join("less.3.mcap")).unwrap();
+    let refused = run(&folder, "crowd.toml --timeout 1s --log less.mcap");
+    assert_eq!(refused.status.code(), Some(2), "{}", String::from_utf8_lossy(&refused.stderr));
+    assert!(!folder.join("less.1.mcap").exists() && !folder.join("less.2.mcap").exists());
     crowd(&folder, "robots = 300\nbody = \"scout\"\nspacing = \"80cm\"\n");
     let refused = run(&folder, "crowd.toml --timeout 1s --log more.mcap");
     let error = String::from_utf8(refused.stderr).unwrap();

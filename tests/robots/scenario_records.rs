@@ -206,3 +206,45 @@ fn records_that_cannot_be_written_end_a_scenario() {
     let (_, err, status) = run(&folder, "run two.toml --log none/run.mcap");
     assert!(err.starts_with("error: none/run.ada.mcap cannot be written: ") && status == 2, "{err}");
 }
+
+/// A robot that is killed before its first turn has a record without turns.
+#[test]
+fn a_robot_without_turns_has_a_record() {
+    let folder = prepared("no-turns");
+    fs::write(folder.join("two.toml"), SCENARIO.replace("15s", "0s").replace("30s", "1s")).unwrap();
+    run(&folder, "run two.toml --log run.mcap");
+    let (out, err, status) = run(&folder, "log info run.bob.mcap");
+    assert!(out.starts_with("plan         Bob (meet.mdle, ahead.mdle)\n") && status == 0, "{out}{err}");
+    let (out, err, status) = run(&folder, "replay run.bob.mcap");
+    assert_eq!((out.as_str(), status), ("the same to the bit, 0 turns\n", 0), "{err}");
+}
+
+/// A run that cannot begin leaves no records.
+#[test]
+fn a_refused_scenario_leaves_no_records() {
+    let folder = prepared("refused");
+    fs::create_dir(folder.join("run.bob.mcap")).unwrap();
+    let (_, err, status) = run(&folder, "run two.toml --log run.mcap");
+    assert!(err.starts_with("error: run.bob.mcap cannot be written: ") && status == 2, "{err}");
+    assert!(!folder.join("run.ada.mcap").exists());
+    let (_, err, status) = run(&folder, "run two.toml --log log.mcap --trail none/trail.csv");
+    assert!(err.starts_with("error: none/trail.csv cannot be written: ") && status == 2, "{err}");
+    assert!(!folder.join("log.ada.mcap").exists());
+}
+
+/// A sentence and its help are lines of their own in the report, and the sentence alone ends the record.
+#[test]
+fn a_fault_with_help_has_two_lines() {
+    let folder = prepared("two-lines");
+    let plan = "{ Near (range(ears module) < 50cm OR wait 9) (Atom (null) (go 20 0)) }\n";
+    fs::write(folder.join("near.mdle"), plan).unwrap();
+    let scenario = "timeout = \"6s\"\n[[robot]]\nname = \"ada\"\nfile = \"near.mdle\"\nstart = \"0, 0, 0\"\n";
+    fs::write(folder.join("near.toml"), scenario).unwrap();
+    let (out, err, status) = run(&folder, "run near.toml --log run.mcap");
+    let sentence = "the plan reads /usr/ears/range, which no module has published within 2 s";
+    let report = format!("2.0 s  ada: error: {sentence}\nhelp: `sensors` publishes ");
+    assert!(out.starts_with(&report) && status == 3, "{out}{err}");
+    let record = fs::read(folder.join("run.ada.mcap")).unwrap();
+    let end = format!("\"kind\":\"end\",\"text\":\"failed: {sentence}\"}}");
+    assert!(record.windows(end.len()).any(|bytes| bytes == end.as_bytes()), "the end is another one");
+}

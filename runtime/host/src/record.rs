@@ -97,6 +97,23 @@ impl<W: Write> Record<W> {
         self.written(unmade)
     }
 
+    /// Writes the beginning, unless a turn was written.
+    ///
+    /// # Errors
+    /// Fails if the file cannot be written.
+    pub(crate) fn begins(&mut self, y: &Sensed) -> io::Result<()> {
+        self.bytes.clear();
+        self.begin(y);
+        self.file.write_all(&self.bytes)
+    }
+
+    /// Adds the beginning to the bytes, before the first turn.
+    fn begin(&mut self, y: &Sensed) {
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.frames.begin(&self.begin, y, &mut self.bytes);
+        }
+    }
+
     /// Writes the part of a turn that a replay needs.
     fn exact(&mut self, turn: &UnmadeTurn<'_>, (applied, state): (Applied, u64), steps: Vec<Step>) -> io::Result<()> {
         let Some((y, asked, sent)) = self.exact.take() else {
@@ -104,9 +121,7 @@ impl<W: Write> Record<W> {
         };
         let UnmadeTurn { number, t, plan, supervised } = *turn;
         self.bytes.clear();
-        if !std::mem::replace(&mut self.has_begun, true) {
-            self.frames.begin(&self.begin, &y, &mut self.bytes);
-        }
+        self.begin(&y);
         let overruled = supervised.intervention();
         let overruled = overruled.map(|Intervention { rule, .. }| Overruled { asked, rule: rule.to_owned() });
         let (changes, overruled) = (self.changes.as_slice(), overruled.as_ref());

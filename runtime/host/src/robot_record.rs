@@ -77,11 +77,13 @@ impl RobotRecord {
         }
     }
 
-    /// Completes the record, whose last turn had this number, with the cause of the end.
+    /// Completes the record, whose last turn had this number, with the cause of the end. The output at this time
+    /// begins a record without turns.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
-    pub fn end(mut self, number: u64, t: Nanos, cause: &str) -> io::Result<()> {
+    pub fn end(mut self, number: u64, (y, t): (&Sensed, Nanos), cause: &str) -> io::Result<()> {
+        self.0.begins(y)?;
         self.0.ended(number, t, cause)?;
         self.0.close()
     }

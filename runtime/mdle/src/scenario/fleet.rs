@@ -59,7 +59,7 @@ impl Fleet {
             }
             let are_driven = self.runners.iter().any(|runner| runner.standing == Standing::Drives);
             if !are_driven || t.0 >= timeout || output.has_failed() || interruption.is_made() {
-                self.ends(t, output);
+                self.ends(&outputs, t, output);
                 break;
             }
         }
@@ -104,12 +104,12 @@ impl Fleet {
         }
     }
 
-    /// Reports the end of a run at time `t`, and stops the robots that still drive.
-    fn ends(&mut self, t: Nanos, output: &mut Output) {
-        for runner in &mut self.runners {
+    /// Reports the end of a run at time `t` with these outputs, and stops the robots that still drive.
+    fn ends(&mut self, outputs: &[Sensed], t: Nanos, output: &mut Output) {
+        for (runner, y) in self.runners.iter_mut().zip(outputs) {
             let law = runner.law();
             if runner.standing == Standing::Drives {
-                output.ends(runner, t, law.as_deref());
+                output.ends(runner, (y, t), law.as_deref());
             }
             runner.stop();
         }

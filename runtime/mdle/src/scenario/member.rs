@@ -268,7 +268,8 @@ impl Standing {
             Self::Drives => "still runs".to_owned(),
             Self::Over => "plan over".to_owned(),
             Self::Killed => "killed".to_owned(),
-            Self::Failed(sentence) => format!("failed: {sentence}"),
+            // Help follows the sentence in lines of its own.
+            Self::Failed(sentence) => format!("failed: {}", sentence.lines().next().unwrap_or_default()),
         };
         if let (Self::Drives, Some(law)) = (self, law) {
             // Writing to a string cannot fail.

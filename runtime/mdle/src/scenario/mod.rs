@@ -63,7 +63,13 @@ pub(crate) fn run(arguments: &Run, library: &Library<Sensed>) -> Result<ExitCode
     }
     let mut output = Output::open(&options, &scenario).map_err(Failure::Usage)?;
     let timeout = options.timeout.unwrap_or(scenario.timeout);
-    let fleet = Fleet::new(scenario, library, output.records()).map_err(Failure::Usage)?;
+    let fleet = match Fleet::new(scenario, library, output.records()) {
+        Ok(fleet) => fleet,
+        Err(sentence) => {
+            output.discard();
+            return Err(Failure::Usage(sentence));
+        }
+    };
     let uncaught = |error| Failure::Usage(format!("signals cannot be caught: {error}"));
     let interruption = Interruption::listen().map_err(uncaught)?;
     let status = fleet.run(timeout, &interruption, &mut output);

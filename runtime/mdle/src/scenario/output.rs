@@ -52,14 +52,12 @@ impl Output {
     pub(super) fn open(options: &Options, scenario: &Scenario) -> Result<Self, String> {
         let table = |path: &Option<PathBuf>| path.as_deref().map(Table::create).transpose();
         let title = setup(scenario);
-        let (records, log) = match &options.log {
-            Some(log) if is_record(log) => (Some(Records::create(log, scenario, &options.command)?), None),
-            log => (None, table(log)?),
-        };
+        let record = options.log.as_deref().filter(|log| is_record(log));
+        let log = options.log.clone().filter(|log| !is_record(log));
         let mut output = Self {
             out: BufWriter::new(io::stdout()),
-            log,
-            records,
+            log: table(&log)?,
+            records: None,
             trail: table(&options.trail)?,
             plot: options.plot.clone().map(|path| (path, FleetDrawing::of(&scenario.world, &title))),
             trips: options.trips.clone().map(|path| (path, TripDrawing::of(&title))),
@@ -73,6 +71,8 @@ impl Output {
             // A missing folder is reported now, and not after the run.
             File::create(path).map_err(|error| unwritten(path, &error))?;
         }
+        // Records are created last: no other file can then fail and leave them without a run.
+        output.records = record.map(|log| Records::create(log, scenario, &options.command)).transpose()?;
         Ok(output)
     }
 
@@ -87,7 +87,7 @@ impl Output {
             let written = match &runner.standing {
                 Standing::Drives => written,
                 ended @ (Standing::Over | Standing::Killed | Standing::Failed(_)) => {
-                    written.and_then(|()| records.end(&runner.name, t, &ended.words(None)))
+                    written.and_then(|()| records.end(&runner.name, (y, t), &ended.words(None)))
                 }
             };
             self.note(written);
@@ -125,13 +125,18 @@ impl Output {
         }
     }
 
-    /// Records the end of the run at time `t`, at which a robot still runs this law.
-    pub(super) fn ends(&mut self, runner: &Runner, t: Nanos, law: Option<&str>) {
+    /// Records the end of the run at time `t` with the output `y`, at which a robot still runs this law.
+    pub(super) fn ends(&mut self, runner: &Runner, (y, t): (&Sensed, Nanos), law: Option<&str>) {
         self.line(t, &runner.name, &runner.standing.words(law));
         if let Some(records) = &mut self.records {
-            let ended = records.end(&runner.name, t, "end of the scenario");
+            let ended = records.end(&runner.name, (y, t), "end of the scenario");
             self.note(ended);
         }
+    }
+
+    /// Removes the records of a run that cannot begin.
+    pub(super) fn discard(self) {
+        self.records.into_iter().for_each(Records::remove);
     }
 
     /// Returns `true` if the robots are recorded.

@@ -1,12 +1,13 @@
 //! The records of the robots of a scenario: one file for each robot, which commands read like the record of any run.
 
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use mdle_compiler::load::LoadedPlan;
 use mdle_host::{RobotRecord, RobotTurn, Target as _};
 use mdle_record::Begin;
-use mdle_runtime::{Nanos, Plan as _};
+use mdle_runtime::{Nanos, Plan as _, Sensed};
 use mdle_sim::Sim;
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 
@@ -31,15 +32,30 @@ impl Records {
     /// `ada`.
     ///
     /// # Errors
-    /// Fails with a sentence if a record cannot be written.
+    /// Fails with a sentence if a record cannot be written; the records before it are removed.
     pub(super) fn create(log: &Path, scenario: &Scenario, command: &str) -> Result<Self, String> {
-        let created = scenario.members.iter().map(|member| {
+        let mut created = Self(Vec::new());
+        for member in &scenario.members {
             let path = log.with_extension(format!("{}.mcap", member.name));
-            let record = RobotRecord::create(&path, of_member(member, scenario, command));
-            let record = record.map_err(|error| unwritten(&path, &error))?;
-            Ok(MemberRecord { robot: member.name.clone(), path, record: Some(record), turn: 0 })
-        });
-        created.collect::<Result<_, _>>().map(Self)
+            match RobotRecord::create(&path, of_member(member, scenario, command)) {
+                Ok(record) => {
+                    created.0.push(MemberRecord { robot: member.name.clone(), path, record: Some(record), turn: 0 });
+                }
+                Err(error) => {
+                    created.remove();
+                    return Err(unwritten(&path, &error));
+                }
+            }
+        }
+        Ok(created)
+    }
+
+    /// Removes the records of a run that cannot begin.
+    pub(super) fn remove(self) {
+        for MemberRecord { path, record, .. } in self.0 {
+            drop(record);
+            remove(&path);
+        }
     }
 
     /// Writes a turn of a robot.
@@ -54,12 +70,13 @@ impl Records {
         })
     }
 
-    /// Completes the record of a robot, unless it is complete, with the cause of its end.
+    /// Completes the record of a robot with the output `y` at time `t`, unless it is complete, with the cause of its
+    /// end.
     ///
     /// # Errors
     /// Fails with a sentence if the record cannot be written.
-    pub(super) fn end(&mut self, robot: &str, t: Nanos, cause: &str) -> Result<(), String> {
-        self.write(robot, |record, last| record.take().map_or(Ok(()), |record| record.end(*last, t, cause)))
+    pub(super) fn end(&mut self, robot: &str, (y, t): (&Sensed, Nanos), cause: &str) -> Result<(), String> {
+        self.write(robot, |record, last| record.take().map_or(Ok(()), |record| record.end(*last, (y, t), cause)))
     }
 
     fn write(
@@ -71,6 +88,12 @@ impl Records {
         let Some(MemberRecord { path, record, turn, .. }) = member else { return Ok(()) };
         write(record, turn).map_err(|error| unwritten(path, &error))
     }
+}
+
+/// Removes the file of a record that holds no run.
+pub(super) fn remove(path: &Path) {
+    // The error that is reported is the one that kept the run from beginning.
+    let _ = fs::remove_file(path);
 }
 
 /// Returns the sentence about a file that cannot be written.

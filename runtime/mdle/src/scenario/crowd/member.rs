@@ -43,13 +43,16 @@ impl Member {
         self.robot.pose()
     }
 
-    /// Moves the robot for one period among these other robots.
-    pub(super) fn moves(&mut self, others: &mut Others) {
+    /// Moves the robot for the period that ends at time `t`, among these other robots.
+    pub(super) fn moves(&mut self, t: Nanos, others: &mut Others) {
         let before = self.pose();
         self.robot.swap_others(others);
-        if self.robot.moves(&self.input).is_err() {
+        if let Err(fault) = self.robot.moves(&self.input) {
             // The input was not a number: the plan is stopped, as on any robot.
             self.ends();
+            if let Some(record) = &mut self.record {
+                record.end((&self.robot.senses(), t), &format!("failed: {fault}"));
+            }
         }
         self.robot.swap_others(others);
         self.way += self.pose().distance(&before).0;
@@ -72,7 +75,7 @@ impl Member {
                 let turn = machine.turn(&y, t, &mut record.transitions);
                 record.turn(machine, (&y, t), &turn);
                 if turn == Turn::Over {
-                    record.end(t, "plan over");
+                    record.end((&y, t), "plan over");
                 }
                 turn
             }
@@ -96,7 +99,38 @@ impl Member {
         // A simulated robot always obeys.
         let _ = self.robot.stop();
         if let Some(record) = &mut self.record {
-            record.end(t, "end of the scenario");
+            record.end((&self.robot.senses(), t), "end of the scenario");
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+    use std::{env, fs, process};
+
+    use mdle_record::Begin;
+    use mdle_runtime::MetersPerSecond;
+    use mdle_sim::{Body, Make};
+
+    use super::super::places::{Places, hall};
+    use super::*;
+
+    #[test]
+    fn an_input_that_is_no_number_ends_the_record() {
+        let world = hall(1, 2.0).map_err(|error| error.message).unwrap();
+        let start = Places::of(&world, 2.0, 0).next().unwrap();
+        let make = Make { body: Body::Ideal, without: Vec::new(), seed: None };
+        let robot = Simulated::with(&make, &world, start, Duration::from_millis(100)).unwrap();
+        let log = env::temp_dir().join(format!("mdle-crowd-{}.mcap", process::id()));
+        let mut member = Member::new(robot, RecordedMember::create(&log, 1, Begin::default()).ok());
+        member.input.v = MetersPerSecond(f64::NAN);
+        member.moves(Nanos(100_000_000), &mut Others::default());
+        member.stop(Nanos(200_000_000));
+        let path = log.with_extension("1.mcap");
+        let record = fs::read(&path).unwrap();
+        let _ = fs::remove_file(path);
+        let has = |text: &str| record.windows(text.len()).any(|bytes| bytes == text.as_bytes());
+        assert!(member.is_over && has("\"text\":\"failed: ") && !has("end of the scenario"));
     }
 }

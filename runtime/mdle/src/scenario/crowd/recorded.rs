@@ -8,7 +8,7 @@ use mdle_record::Begin;
 use mdle_runtime::{Machine, Nanos, Sensed, Turn, Twist};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 
-use super::super::records::unwritten;
+use super::super::records::{remove, unwritten};
 
 /// A record that is being written.
 pub(super) struct RecordedMember {
@@ -59,9 +59,16 @@ impl RecordedMember {
         }
     }
 
-    /// Completes the record at time `t`, unless it is complete, with the cause of the end.
-    pub(super) fn end(&mut self, t: Nanos, cause: &str) {
-        let ended = self.record.take().map_or(Ok(()), |record| record.end(self.next.saturating_sub(1), t, cause));
+    /// Removes the record of a run that cannot begin.
+    pub(super) fn remove(self) {
+        drop(self.record);
+        remove(&self.path);
+    }
+
+    /// Completes the record with the output `y` at time `t`, unless it is complete, with the cause of the end.
+    pub(super) fn end(&mut self, (y, t): (&Sensed, Nanos), cause: &str) {
+        let last = self.next.saturating_sub(1);
+        let ended = self.record.take().map_or(Ok(()), |record| record.end(last, (y, t), cause));
         if let Err(error) = ended {
             self.fault = Some(unwritten(&self.path, &error));
         }

@@ -73,7 +73,8 @@ impl CrowdSetup {
     /// Creates a record for each robot of a crowd that this command repeats, named after its number from 1.
     ///
     /// # Errors
-    /// Fails with a sentence if there are too many robots, or if a record cannot be written.
+    /// Fails with a sentence if there are too many robots, or if a record cannot be written; the records before it are
+    /// removed.
     pub(super) fn records(&self, log: &Path, command: &str) -> Result<Vec<RecordedMember>, String> {
         let count = self.robots.len();
         if count > RECORDED_MOST {
@@ -83,7 +84,17 @@ impl CrowdSetup {
             ));
         }
         let begin = begin(&self.plan.plan(), &self.files, command, self.period);
-        (1..=count).map(|number| RecordedMember::create(log, number, begin.clone())).collect()
+        let mut records = Vec::new();
+        for number in 1..=count {
+            match RecordedMember::create(log, number, begin.clone()) {
+                Ok(record) => records.push(record),
+                Err(sentence) => {
+                    records.into_iter().for_each(RecordedMember::remove);
+                    return Err(sentence);
+                }
+            }
+        }
+        Ok(records)
     }
 }
 

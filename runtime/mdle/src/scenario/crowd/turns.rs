@@ -147,7 +147,7 @@ impl Shared<'_> {
             let Some(member) = members.get_mut(place) else { continue };
             self.hear(*number, others);
             self.touch(*number, numbers, &bodies, others);
-            member.moves(others);
+            member.moves(self.t, others);
             if let Some(body) = bodies.get_mut(place) {
                 *body = member.footprint();
             }
