@@ -46,7 +46,7 @@ mod tests {
     use super::Guard;
 
     fn sleep(guard: &Guard) -> Child {
-        Command::new("sleep").arg("600").process_group(guard.group().as_raw_nonzero().get()).spawn().unwrap()
+        Command::new("sleep").arg("20").process_group(guard.group().as_raw_nonzero().get()).spawn().unwrap()
     }
 
     #[test]
