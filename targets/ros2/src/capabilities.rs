@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn quarks_are_read_from_the_alphabets() {
-        assert_eq!(quarks("sonar[16]"), ["goAvoid", "atIsection", "align", "r", "age"]);
+        assert_eq!(quarks("sonar[16]"), ["goAvoid", "atIsection", "align", "lead", "r", "age"]);
         assert_eq!(quarks("bumper"), ["bumper"]);
         assert_eq!(quarks("power"), ["lowBattery", "charger", "battery"]);
         assert!(quarks("diff_drive").starts_with(&["go", "advance", "goAvoid"]));

@@ -3,6 +3,7 @@
 import contextlib
 import itertools
 import os
+import signal
 import subprocess
 import time
 from pathlib import Path
@@ -25,6 +26,9 @@ PLANS = {
     "until_low": "{ Until (wait 10min) (Atom (lowBattery) (go 10 0)) }",
     "shy": "{ Shy (wait 10min) ((Atom (r0 < 60cm) (go 10 0)) (Atom (r0 > 60cm) (go -10 0)))^1000000 }",
 }
+
+# Under nohup the tests, and all that they start, would take no hangup.
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 _domains = itertools.count(60)
 
