@@ -51,9 +51,11 @@ impl Group {
 }
 
 impl Input {
-    /// Uses the texts of an editor instead of the files to which they will be saved.
+    /// Uses these texts instead of the files at their paths.
     #[must_use]
-    pub fn with_unsaved(self, unsaved: Unsaved) -> Self {
+    pub fn with_unsaved(mut self, unsaved: Unsaved) -> Self {
+        let own = self.path(self.source).and_then(|path| unsaved.place(path).ok());
+        self.read.extend(own.map(|place| (place, self.source)));
         Self { unsaved, ..self }
     }
 

@@ -1,32 +1,65 @@
-//! Texts that an editor has not saved yet, which are read instead of the files.
+//! Texts that are read instead of files: those that an editor has not saved yet, or all files of a plan.
 
 use std::collections::BTreeMap;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-/// Texts of an editor, by the canonical paths of their files.
+/// Texts in place of files.
 #[derive(Debug, Clone, Default)]
-pub struct Unsaved(BTreeMap<PathBuf, Arc<str>>);
+pub struct Unsaved {
+    /// The texts by the canonical paths of their files.
+    texts: BTreeMap<PathBuf, Arc<str>>,
+    /// `true` if there are no other files; a canonical path is then one without `.` and, where possible, `..`.
+    are_all: bool,
+}
 
 impl Unsaved {
+    /// Returns these texts, each with the path of its file, in place of all files: none is read.
+    #[must_use]
+    pub fn all(texts: impl IntoIterator<Item = (PathBuf, String)>) -> Self {
+        let texts = texts.into_iter().map(|(path, text)| (normal(&path), text.into())).collect();
+        Self { texts, are_all: true }
+    }
+
     /// Uses `text` instead of the file `path` from now on. A path whose folder does not exist has no effect,
     /// since no plan can use it.
     pub fn insert(&mut self, path: &Path, text: &str) {
         if let Ok(place) = place(path) {
-            self.0.insert(place, text.into());
+            self.texts.insert(place, text.into());
         }
     }
 
     /// Returns the text for this canonical path, if the editor has one.
     pub(crate) fn text(&self, place: &Path) -> Option<&str> {
-        self.0.get(place).map(AsRef::as_ref)
+        self.texts.get(place).map(AsRef::as_ref)
     }
 
     /// Returns the canonical path of a file that is on the disk or among these texts.
     pub(crate) fn place(&self, path: &Path) -> io::Result<PathBuf> {
-        path.canonicalize().or_else(|error| place(path).ok().filter(|place| self.0.contains_key(place)).ok_or(error))
+        let is_here = |place: &PathBuf| self.texts.contains_key(place);
+        if self.are_all {
+            return Some(normal(path)).filter(is_here).ok_or_else(|| io::ErrorKind::NotFound.into());
+        }
+        path.canonicalize().or_else(|error| place(path).ok().filter(is_here).ok_or(error))
     }
+}
+
+/// Returns a path without `.`, and without `..` after the name of a folder.
+fn normal(path: &Path) -> PathBuf {
+    let mut normal = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(normal.components().next_back(), Some(Component::Normal(_))) => {
+                normal.pop();
+            }
+            Component::Prefix(_) | Component::RootDir | Component::ParentDir | Component::Normal(_) => {
+                normal.push(component);
+            }
+        }
+    }
+    normal
 }
 
 /// Returns the canonical path of a file. The file need not exist, but its folder must.
@@ -59,6 +92,18 @@ mod tests {
         let target = target(None).unwrap();
         let mut input = plan(&folder.join("main.mdle"), MAIN.into(), &target).unwrap().with_unsaved(unsaved.clone());
         input.check(&target.alphabet).iter().map(|found| found.code.name()).collect()
+    }
+
+    #[test]
+    fn all_texts_are_read_without_any_file() {
+        let folder = Path::new("no/such/../folder");
+        let leg = "use \"../no/folder/./main.mdle\"\n{ Leg (Atom (wait 1) stop) }";
+        let files = [("main.mdle", MAIN), ("leg.mdle", leg)];
+        let texts = files.map(|(name, text)| (folder.join(name), text.to_owned()));
+        assert_eq!(codes(folder, &Unsaved::all(texts)), [""; 0]);
+        assert_eq!(codes(folder, &Unsaved::all([])), ["E0205"]);
+        let outside = [(PathBuf::from("../../leg.mdle"), "{ Leg (Atom (wait 1) stop) }".to_owned())];
+        assert_eq!(codes(Path::new("../.."), &Unsaved::all(outside)), [""; 0]);
     }
 
     #[test]

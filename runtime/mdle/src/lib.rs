@@ -1,7 +1,8 @@
 //! The program `mdle`: it compiles a plan, loads it, and runs it as an executable of `mdlec` would, together
 //! with modules.
 //!
-//! A program with modules of its own calls [`main_with`].
+//! A program with modules of its own calls [`main_with`]; mdlec builds the executables of scenarios by
+//! [`scenario_files`] and [`run_scenario`].
 #![forbid(unsafe_code)]
 
 mod arguments;
@@ -45,7 +46,9 @@ use arguments::Asked;
 use failure::Failure;
 pub use mdle_engine as engine;
 use mdle_engine::Library;
+pub use mdle_host::Program;
 use mdle_runtime::Sensed;
+pub use scenario::{is_scenario, run_scenario, scenario_files};
 
 /// Runs the command line of this process. The exit status of a run is that of an executable; 1 means that the plan has
 /// errors, and 2 wrong usage or a file that cannot be read.

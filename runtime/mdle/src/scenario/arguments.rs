@@ -4,10 +4,13 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
-use mdle_host::{Quantity, determining, is_record, output_format, quoted};
+use mdle_host::{Program, Quantity, determining, is_record, output_format, quoted};
 
 use crate::arguments::Run;
 use crate::failure::Failure;
+
+/// Name of the command without an executable.
+const MDLE: &str = "mdle run SCENARIO.toml";
 
 /// The options of a scenario.
 #[derive(Debug, Default)]
@@ -31,12 +34,12 @@ pub(super) struct Options {
 }
 
 impl Options {
-    /// Reads the options of a scenario.
+    /// Reads the options of a scenario, which the executable `program` contains, or `mdle` reads.
     ///
     /// # Errors
     /// Fails if an option is unknown, has a wrong value, or applies only to a plan, or if the options ask for
     /// help.
-    pub(super) fn read(run: &Run) -> Result<Self, Failure> {
+    pub(super) fn read(run: &Run, program: Option<Program<'_>>) -> Result<Self, Failure> {
         let of_a_plan = [
             (run.target.is_some(), "--target"),
             (run.plan.is_some(), "--plan"),
@@ -57,8 +60,14 @@ impl Options {
             let sentence = "--speed is for one robot, and a scenario always runs as fast as possible";
             return Err(Failure::Usage(format!("{sentence}\nhelp: leave it out")));
         }
-        let words = [std::ffi::OsString::from("mdle run SCENARIO.toml")].into_iter().chain(run.options.clone());
-        let matches = command().try_get_matches_from(words).map_err(Failure::unparsed)?;
+        let words = [std::ffi::OsString::from(MDLE)].into_iter().chain(run.options.clone());
+        let command = match program {
+            None => command(MDLE).override_usage("mdle run <SCENARIO.toml> [OPTIONS]"),
+            Some(Program { plan, version }) => {
+                command(plan).override_usage(format!("{plan} [OPTIONS]")).version(version.to_owned())
+            }
+        };
+        let matches = command.try_get_matches_from(words).map_err(Failure::unparsed)?;
         let repeated = run.words.iter().cloned().chain(determining(&run.options));
         let repeated: Vec<_> = repeated.map(|word| quoted(&word.to_string_lossy())).collect();
         Ok(Self { command: repeated.join(" "), ..Self::of(&matches) })
@@ -108,13 +117,12 @@ impl Options {
     }
 }
 
-fn command() -> Command {
+fn command(name: &str) -> Command {
     let option = |name: &'static str, value: &'static str, help: &'static str| {
         Arg::new(name).long(name).value_name(value).help(help)
     };
-    Command::new("mdle run SCENARIO.toml")
+    Command::new(name.to_owned())
         .about("Run the robots of a scenario in one world, as fast as possible")
-        .override_usage("mdle run <SCENARIO.toml> [OPTIONS]")
         .arg(
             option("seed", "SEED", "Random seed for the errors of all robots and of the link [default: that of the file]")
                 .value_parser(value_parser!(u64)),
@@ -166,6 +174,6 @@ fn timeout(text: &str) -> Result<Duration, String> {
 mod tests {
     #[test]
     fn the_options_are_sound() {
-        super::command().debug_assert();
+        super::command(super::MDLE).debug_assert();
     }
 }

@@ -1,7 +1,7 @@
 //! A scenario file: its keys and values, as written (docs/src/many_robots.md).
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use mdle_compiler::alphabet::did_you_mean;
@@ -11,7 +11,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 /// Maximum size of a scenario file, in bytes.
-const LARGEST: u64 = 4_000_000;
+pub(super) const LARGEST: u64 = 4_000_000;
 
 /// A value with its place in the file.
 pub(super) type At<T> = Spanned<T>;
@@ -139,14 +139,6 @@ pub(super) fn duration(text: &At<String>, least: f64, most: f64) -> Result<Durat
     let [least, most] = [least, most].map(Duration::from_secs_f64);
     let read = Quantity::duration(text.get_ref(), "s", least, most);
     read.map_err(|sentence| ScenarioError::at(text.span(), sentence))
-}
-
-/// Returns the text of a file of a scenario.
-///
-/// # Errors
-/// Fails with a sentence if the file cannot be read.
-pub(super) fn text(path: &Path) -> Result<String, String> {
-    mdle_host::read_text(path, LARGEST).map_err(|error| format!("{} cannot be read: {error}", path.display()))
 }
 
 /// Reads a scenario file.

@@ -1,8 +1,12 @@
 //! `mdle run SCENARIO.toml`: several robots in one world and one process (docs/src/many_robots.md).
+//!
+//! The executable of a scenario runs the same functions on copies of the scenario's files ([`embedded`]).
 
 mod arguments;
 mod crowd;
+mod embedded;
 mod file;
+mod files;
 mod fleet;
 mod member;
 mod output;
@@ -24,7 +28,9 @@ use crate::arguments::Run;
 use crate::failure::{self, Failure};
 use arguments::Options;
 use crowd::CrowdSetup;
+pub use embedded::{run_scenario, scenario_files};
 use file::ScenarioError;
+use files::Files;
 use fleet::Fleet;
 use output::Output;
 use setup::{Scenario, SetupError};
@@ -33,7 +39,8 @@ use setup::{Scenario, SetupError};
 const FAULT: u8 = 3;
 
 /// Returns `true` if this file is a scenario rather than a plan.
-pub(crate) fn is_scenario(file: &Path) -> bool {
+#[must_use]
+pub fn is_scenario(file: &Path) -> bool {
     file.extension().is_some_and(|extension| extension == "toml")
 }
 
@@ -42,26 +49,51 @@ pub(crate) fn is_scenario(file: &Path) -> bool {
 /// # Errors
 /// Fails if the scenario cannot be run.
 pub(crate) fn run(arguments: &Run, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
-    let options = Options::read(arguments)?;
-    let path = &arguments.file;
-    let text = file::text(path).map_err(Failure::Usage)?;
-    let refused = |error| match error {
-        SetupError::Plan(failure) => failure,
-        SetupError::File(error) => refused(path, &text, &error),
-    };
-    let file = file::read(&text).map_err(SetupError::File).map_err(refused)?;
-    if let Some(crowd) = &file.crowd {
-        options.check_crowd()?;
-        let crowd = CrowdSetup::read(crowd, &file, path, &options).map_err(refused)?;
-        return crowd::run(crowd, &options);
+    let options = Options::read(arguments, None)?;
+    run_with(&options, &Files::of_system(&arguments.file), library)
+}
+
+/// Runs the scenario in these files.
+fn run_with(options: &Options, files: &Files, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
+    match Ready::read(files, options)? {
+        Ready::Crowd(crowd) => crowd::run(crowd, options),
+        Ready::Robots(scenario) => run_robots(scenario, options, library),
     }
-    options.check_robots()?;
-    let scenario = Scenario::read(file, path, options.seed).map_err(refused)?;
+}
+
+/// A scenario that is ready to run.
+enum Ready {
+    Crowd(CrowdSetup),
+    Robots(Scenario),
+}
+
+impl Ready {
+    /// Reads the scenario in these files, for a run with these options. Messages go to standard error.
+    fn read(files: &Files, options: &Options) -> Result<Self, Failure> {
+        let path = &files.path;
+        let text = files.text(path, file::LARGEST);
+        let text = text.map_err(|error| Failure::Usage(format!("{} cannot be read: {error}", path.display())))?;
+        let refused = |error| match error {
+            SetupError::Plan(failure) => failure,
+            SetupError::File(error) => refused(path, &text, &error),
+        };
+        let file = file::read(&text).map_err(SetupError::File).map_err(refused)?;
+        if let Some(crowd) = &file.crowd {
+            options.check_crowd()?;
+            return CrowdSetup::read(crowd, &file, files, options).map(Self::Crowd).map_err(refused);
+        }
+        options.check_robots()?;
+        Scenario::read(file, files, options.seed).map(Self::Robots).map_err(refused)
+    }
+}
+
+/// Runs the robots of a scenario.
+fn run_robots(scenario: Scenario, options: &Options, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
     if options.recorded_paths.is_some() && scenario.members.iter().all(|member| member.records.is_none()) {
         let help = "name a path that the plan replays, as in `records = \"NAME\"`, or leave the option out";
         return Err(Failure::Usage(format!("--recorded-paths: no robot of the scenario records a path\nhelp: {help}")));
     }
-    let mut output = Output::open(&options, &scenario).map_err(Failure::Usage)?;
+    let mut output = Output::open(options, &scenario).map_err(Failure::Usage)?;
     let timeout = options.timeout.unwrap_or(scenario.timeout);
     let fleet = match Fleet::new(scenario, library, output.records()) {
         Ok(fleet) => fleet,

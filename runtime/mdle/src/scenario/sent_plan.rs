@@ -1,14 +1,12 @@
 //! Plans that robots of a scenario send each other at given times.
 
-use std::path::Path;
-
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_engine::When;
 use mdle_engine::link::LONGEST_TEXT;
-use mdle_host::read_text;
 use mdle_runtime::Nanos;
 
 use super::file::{ScenarioError, ScenarioText, SentPlanText, duration};
+use super::files::Files;
 
 /// A plan that a robot sends.
 #[derive(Debug, Clone)]
@@ -26,7 +24,7 @@ pub(super) struct SentPlan {
 ///
 /// # Errors
 /// A value is invalid, or a file cannot be read.
-pub(super) fn sent_by(own: &str, file: &ScenarioText, path: &Path) -> Result<Vec<SentPlan>, ScenarioError> {
+pub(super) fn sent_by(own: &str, file: &ScenarioText, files: &Files) -> Result<Vec<SentPlan>, ScenarioError> {
     let names: Vec<&str> = file.robot.iter().map(|robot| robot.name.get_ref().as_str()).collect();
     let mut plans = Vec::new();
     for text in &file.sent_plan {
@@ -41,18 +39,18 @@ pub(super) fn sent_by(own: &str, file: &ScenarioText, path: &Path) -> Result<Vec
             return Err(ScenarioError::at(text.to.span(), "a robot sends no plan to itself"));
         }
         if text.from.get_ref() == own {
-            plans.push(sent_plan(text, path)?);
+            plans.push(sent_plan(text, files)?);
         }
     }
     plans.sort_by_key(|plan: &SentPlan| plan.at);
     Ok(plans)
 }
 
-fn sent_plan(text: &SentPlanText, path: &Path) -> Result<SentPlan, ScenarioError> {
+fn sent_plan(text: &SentPlanText, files: &Files) -> Result<SentPlan, ScenarioError> {
     let at = duration(&text.at, 0.0, 1e9)?;
-    let file = path.with_file_name("").join(text.file.get_ref());
+    let file = files.named(text.file.get_ref());
     let unread = |error| format!("the plan {} cannot be read: {error}", file.display());
-    let plan = read_text(&file, LONGEST_TEXT as u64);
+    let plan = files.text(&file, LONGEST_TEXT as u64);
     let plan = plan.map_err(|error| ScenarioError::at(text.file.span(), unread(error)))?;
     let when = match &text.when {
         None => When::Now,

@@ -9,13 +9,14 @@ use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::diagnostic::judged;
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::link::Faults;
-use mdle_files::{Group, InputError, Settings, Spelling, Target, read_plan};
-use mdle_host::{Quantity, Target as _, read_file, read_text, setpoints};
+use mdle_files::{Group, InputError, Spelling, Target};
+use mdle_host::{Quantity, Target as _, setpoints};
 use mdle_runtime::{Nanos, Plan as _, Pose, Setpoint};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Body, Make, RobotEars, Sim, Simulated, Start, StartNoise, Walls, World};
 
 use super::file::{At, LinkText, RobotText, ScenarioError, ScenarioText, duration};
+use super::files::Files;
 use super::sent_plan::{SentPlan, sent_by};
 use crate::arguments::head;
 use crate::failure::{self, Failure};
@@ -26,7 +27,7 @@ const LARGEST: u64 = 10_000_000;
 /// Time after which a scenario ends by default.
 pub(super) const TIMEOUT: Duration = Duration::from_secs(3600);
 /// Name of the target of all robots.
-const SIM: &str = "sim";
+pub(super) const SIM: &str = "sim";
 
 /// A scenario.
 pub(super) struct Scenario {
@@ -89,16 +90,16 @@ impl<F: Into<Failure>> From<F> for SetupError {
 }
 
 impl Scenario {
-    /// Creates the robots of the scenario in the file at `path`. Messages about plans go to standard error.
+    /// Creates the robots of the scenario in these files. Messages about plans go to standard error.
     ///
     /// # Errors
     /// Fails if a value of the file is invalid, if a file that it names cannot be read, or if a plan has
     /// errors.
-    pub(super) fn read(text: ScenarioText, path: &Path, seed: Option<u64>) -> Result<Self, SetupError> {
+    pub(super) fn read(text: ScenarioText, files: &Files, seed: Option<u64>) -> Result<Self, SetupError> {
         let seed = seed.or(text.seed.as_ref().map(|seed| *seed.get_ref()));
         let period = text.period.as_ref().map(|period| duration(period, 0.001, 1.0)).transpose()?;
         let timeout = text.timeout.as_ref().map(|timeout| duration(timeout, 0.0, 1e9)).transpose()?;
-        let (world, world_name) = world(text.world.as_ref(), path)?;
+        let (world, world_name) = world(text.world.as_ref(), files)?;
         let faults = faults(&text.link)?;
         let mut scenario = Self {
             world,
@@ -108,21 +109,21 @@ impl Scenario {
             period: period.unwrap_or(Sim::PERIOD),
             faults,
             members: Vec::new(),
-            target: Arc::new(Settings::beside(path)?.target(Some(SIM))?),
+            target: Arc::new(files.target(&files.path)?),
         };
         let names: Vec<&str> = text.robot.iter().map(|robot| robot.name.get_ref().as_str()).collect();
         for robot in &text.robot {
-            let mut member = scenario.member(robot, path, &names)?;
-            member.sends = sent_by(&member.name, &text, path)?;
+            let mut member = scenario.member(robot, files, &names)?;
+            member.sends = sent_by(&member.name, &text, files)?;
             scenario.members.push(member);
         }
         Ok(scenario)
     }
 
     /// Creates a robot, which must not overlap with the robots before it.
-    fn member(&self, text: &RobotText, path: &Path, names: &[&str]) -> Result<Member, SetupError> {
+    fn member(&self, text: &RobotText, from: &Files, names: &[&str]) -> Result<Member, SetupError> {
         let name = text.name.get_ref();
-        let (loaded, files) = plan(&text.file, text.plan.as_ref(), path, Some((text, names)))?;
+        let (loaded, files) = plan(&text.file, text.plan.as_ref(), from, Some((text, names)))?;
         let plan = loaded.plan();
         for other in plan.robots() {
             if other == name || !names.contains(other) {
@@ -146,7 +147,7 @@ impl Scenario {
             return Err(ScenarioError::at(text.start.span(), message).help(help).into());
         }
         let records = text.records.as_ref().map(|records| recorded(records, plan.paths())).transpose()?;
-        let paths = paths(text, path, plan.paths(), records)?;
+        let paths = paths(text, from, plan.paths(), records)?;
         let killed = text.killed.as_ref().map(|killed| duration(killed, 0.0, 1e9)).transpose()?;
         if let (Some(killed), Some(place)) = (killed.filter(|killed| *killed > self.timeout), &text.killed) {
             let [killed, end] = [killed, self.timeout].map(|time| time.as_secs_f64());
@@ -192,12 +193,12 @@ pub(super) type PlanWithFiles = (Arc<Loaded<SimAlphabet>>, Vec<(String, String)>
 pub(super) fn plan(
     file: &At<PathBuf>,
     plan_name: Option<&At<String>>,
-    path: &Path,
+    files: &Files,
     robot: Option<(&RobotText, &[&str])>,
 ) -> Result<PlanWithFiles, SetupError> {
-    let (place, file) = (file.span(), path.with_file_name("").join(file.get_ref()));
-    let target = Settings::beside(&file)?.target(Some(SIM))?;
-    let mut input = read_plan(&file, &target).map_err(|error| placed(place.clone(), error))?;
+    let (place, file) = (file.span(), files.named(file.get_ref()));
+    let target = files.target(&file)?;
+    let mut input = files.plan(&file, &target).map_err(|error| placed(place.clone(), error))?;
     let named = plan_name.map(|plan| plan.get_ref().as_str());
     if let (None, Some(group)) = (robot, input.group(named)) {
         let message = format!("the robots of the group `{}` have names, and those of a crowd have none", group.name);
@@ -212,7 +213,7 @@ pub(super) fn plan(
         input.must_have(name).map_err(|error| placed(place, error))?;
     }
     let (plans, diagnostics) = input.compile(&target.alphabet, wanted);
-    failure::print(&input.sources, &diagnostics);
+    files.compiled(&input, &diagnostics);
     if let Err(sentence) = judged(&diagnostics, false) {
         failure::error(&sentence);
         return Err(SetupError::Plan(Failure::Plan));
@@ -272,7 +273,7 @@ fn unknown_peer(text: &RobotText, other: &str, names: &[&str]) -> ScenarioError 
 }
 
 /// Returns the world of this name or file, and its name.
-pub(super) fn world(text: Option<&At<String>>, path: &Path) -> Result<(World, String), ScenarioError> {
+pub(super) fn world(text: Option<&At<String>>, files: &Files) -> Result<(World, String), ScenarioError> {
     let Some(text) = text else {
         let world = World::parse("the empty floor", "");
         let world =
@@ -281,10 +282,10 @@ pub(super) fn world(text: Option<&At<String>>, path: &Path) -> Result<(World, St
     };
     let refused = |message: String| ScenarioError::at(text.span(), message);
     let name = text.get_ref();
-    let file = path.with_file_name(name);
-    let world = match World::named(name).filter(|_| !file.exists()) {
+    let file = files.path.with_file_name(name);
+    let world = match World::named(name).filter(|_| !files.exists(&file)) {
         Some(world) => world,
-        None if !file.exists() => {
+        None if !files.exists(&file) => {
             let worlds = World::names().collect::<Vec<_>>();
             let near = did_you_mean(name, &worlds);
             let message = format!("there is no world or file `{name}`{near}");
@@ -293,7 +294,7 @@ pub(super) fn world(text: Option<&At<String>>, path: &Path) -> Result<(World, St
         None => {
             let shown = file.display().to_string();
             let text =
-                read_text(&file, LARGEST).map_err(|error| refused(format!("{shown} cannot be read: {error}")))?;
+                files.text(&file, LARGEST).map_err(|error| refused(format!("{shown} cannot be read: {error}")))?;
             World::parse(&shown, &text)
         }
     };
@@ -350,23 +351,22 @@ fn recorded(text: &At<String>, replayed: &[&'static str]) -> Result<&'static str
 /// Reads the paths that a plan replays. A path that is recorded may be missing.
 fn paths(
     text: &RobotText,
-    path: &Path,
+    files: &Files,
     names: &[&'static str],
     records: Option<&'static str>,
 ) -> Result<Vec<(&'static str, Vec<Setpoint>)>, ScenarioError> {
-    let folder = path.with_file_name("");
-    let folder = text.paths.as_ref().map_or(folder.clone(), |own| folder.join(own.get_ref()));
+    let folder = files.named(text.paths.as_ref().map_or(Path::new(""), |own| own.get_ref()));
     let place = text.paths.as_ref().map_or(text.file.span(), At::span);
     let Some(fastest) = Sim::PATHS.map(|replays| replays.fastest) else { return Ok(Vec::new()) };
     let mut paths = Vec::new();
     for name in names {
         let file =
             folder.join(if Path::new(name).extension().is_some() { (*name).to_owned() } else { format!("{name}.csv") });
-        if !file.exists() && records == Some(name) {
+        if !files.exists(&file) && records == Some(name) {
             continue;
         }
         let shown = file.display().to_string();
-        let bytes = read_file(&file, LARGEST).map_err(|error| {
+        let bytes = files.read(&file, LARGEST).map_err(|error| {
             let message = format!("the path {shown} cannot be read: {error}");
             ScenarioError::at(place.clone(), message).help("the plan replays it; `paths = \"FOLDER\"` says where it is")
         })?;

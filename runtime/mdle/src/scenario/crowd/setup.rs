@@ -12,6 +12,7 @@ use mdle_sim::{Make, Sim, Simulated};
 
 use super::super::arguments::Options;
 use super::super::file::{At, CrowdText, ScenarioError, ScenarioText, duration};
+use super::super::files::Files;
 use super::super::records::begin;
 use super::super::setup::{self, SetupError};
 use super::places::{Places, hall};
@@ -36,7 +37,7 @@ pub(in super::super) struct CrowdSetup {
 }
 
 impl CrowdSetup {
-    /// Creates the robots of the crowd in the file at `path`. Messages about the plan go to standard error.
+    /// Creates the robots of the crowd in these files. Messages about the plan go to standard error.
     ///
     /// # Errors
     /// Fails if a value of the file is invalid, if a file that it names cannot be read, if the plan has errors
@@ -44,7 +45,7 @@ impl CrowdSetup {
     pub(in super::super) fn read(
         crowd: &CrowdText,
         file: &ScenarioText,
-        path: &Path,
+        from: &Files,
         options: &Options,
     ) -> Result<Self, SetupError> {
         let count = *crowd.robots.get_ref();
@@ -52,13 +53,13 @@ impl CrowdSetup {
             let message = format!("a crowd has from 1 to {ROBOTS_MOST} robots");
             return Err(ScenarioError::at(crowd.robots.span(), message).into());
         }
-        let (plan, files) = setup::plan(&crowd.file, crowd.plan.as_ref(), path, None)?;
+        let (plan, files) = setup::plan(&crowd.file, crowd.plan.as_ref(), from, None)?;
         check(&plan, crowd)?;
         let period = file.period.as_ref().map(|period| duration(period, 0.001, 1.0)).transpose()?;
         let period = period.unwrap_or(Sim::PERIOD);
         let timeout = file.timeout.as_ref().map(|timeout| duration(timeout, 0.0, 1e9)).transpose()?;
         let seed = options.seed.or(file.seed.as_ref().map(|seed| *seed.get_ref()));
-        let robots = robots(crowd, file, path, seed, period)?;
+        let robots = robots(crowd, file, from, seed, period)?;
         let processors = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         Ok(Self {
             robots,
@@ -122,7 +123,7 @@ fn check(plan: &Arc<Loaded<SimAlphabet>>, crowd: &CrowdText) -> Result<(), Scena
 fn robots(
     crowd: &CrowdText,
     file: &ScenarioText,
-    path: &Path,
+    from: &Files,
     seed: Option<u64>,
     period: Duration,
 ) -> Result<Vec<Simulated>, SetupError> {
@@ -137,7 +138,7 @@ fn robots(
         return Err(ScenarioError::at(text.span(), message).into());
     }
     let world = match &file.world {
-        Some(_) => setup::world(file.world.as_ref(), path)?.0,
+        Some(_) => setup::world(file.world.as_ref(), from)?.0,
         None => hall(count, spacing)?,
     };
     let mut places = Places::of(&world, spacing, seed.unwrap_or_default());

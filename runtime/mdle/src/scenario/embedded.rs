@@ -1,0 +1,64 @@
+//! Scenarios inside executables: `mdlec SCENARIO.toml --target sim` copies all files that a scenario reads into an
+//! executable, which runs the scenario as `mdle run` does.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use mdle_engine::Library;
+use mdle_host::Program;
+
+use super::arguments::Options;
+use super::files::Files;
+use super::{Ready, run_with};
+use crate::arguments::{Asked, parse};
+use crate::failure::Failure;
+use crate::modules;
+
+/// Returns the names and contents of all files that the scenario in the file at `path` reads, that file first.
+///
+/// # Errors
+/// Fails if the scenario cannot be run, or if the name of a file is not UTF-8; prints the error and returns the exit
+/// status.
+pub fn scenario_files(path: &Path) -> Result<Vec<(String, Vec<u8>)>, u8> {
+    read(path).map_err(Failure::tell_status)
+}
+
+fn read(path: &Path) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    let files = Files::of_system(path);
+    Ready::read(&files, &Options::default())?;
+    let contents = files.into_contents();
+    // What reads the copies finds each by its name, whatever links and folders there are.
+    Ready::read(&Files::inside(path, contents.clone()), &Options::default())?;
+    let is_other = |(file, _): &(PathBuf, _)| file != path;
+    let (mut others, mut own): (Vec<_>, Vec<_>) = contents.into_iter().partition(is_other);
+    own.append(&mut others);
+    let named = |(file, bytes): (PathBuf, Vec<u8>)| match file.into_os_string().into_string() {
+        Ok(name) => Ok((name, bytes)),
+        Err(file) => {
+            let sentence = "is no UTF-8 text, and an executable has its files by their names";
+            Err(Failure::Usage(format!("the path {} {sentence}\nhelp: rename it", file.display())))
+        }
+    };
+    own.into_iter().map(named).collect()
+}
+
+/// Runs the scenario in these files, as [`scenario_files`] returns them, with the options of this process, as `mdle run`
+/// does; returns the exit status.
+#[must_use]
+pub fn run_scenario(program: Program<'_>, files: &[(&str, &[u8])]) -> ExitCode {
+    run(program, files).unwrap_or_else(Failure::tell)
+}
+
+fn run(program: Program<'_>, files: &[(&str, &[u8])]) -> Result<ExitCode, Failure> {
+    let path = files.first().map_or("", |(path, _)| *path);
+    // The command of records is the one that repeats the run from the scenario's file.
+    let words = ["mdle", "run", path].map(OsString::from).into_iter().chain(std::env::args_os().skip(1));
+    let Asked::Run(arguments) = parse(words.collect())? else { return Ok(ExitCode::SUCCESS) };
+    let options = Options::read(&arguments, Some(program))?;
+    let contents: BTreeMap<_, _> = files.iter().map(|(file, bytes)| (PathBuf::from(file), bytes.to_vec())).collect();
+    let mut library = Library::new();
+    modules::shipped(&mut library);
+    run_with(&options, &Files::inside(Path::new(path), contents), &library)
+}

@@ -1,0 +1,108 @@
+//! The files that a scenario reads: those of the system, or copies of them inside an executable.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use mdle_compiler::diagnostic::Diagnostic;
+use mdle_files::{Input, InputError, Settings, Target, Unsaved, plan, read_plan, target, without_mark};
+use mdle_host::read_file;
+
+use super::setup::SIM;
+use crate::failure;
+
+/// The files of a scenario, by the names that the scenario and its plans give them.
+pub(super) struct Files {
+    /// Path of the scenario's own file.
+    pub(super) path: PathBuf,
+    /// Contents of the files that were read, or of all files inside an executable.
+    contents: RefCell<BTreeMap<PathBuf, Vec<u8>>>,
+    /// `true` for copies inside an executable: no other file is read.
+    are_inside: bool,
+}
+
+impl Files {
+    /// Returns the files of the system for the scenario in the file at `path`.
+    pub(super) fn of_system(path: &Path) -> Self {
+        Self { path: path.to_owned(), contents: RefCell::default(), are_inside: false }
+    }
+
+    /// Returns copies of files for the scenario whose file is called `path`.
+    pub(super) fn inside(path: &Path, contents: BTreeMap<PathBuf, Vec<u8>>) -> Self {
+        Self { path: path.to_owned(), contents: RefCell::new(contents), are_inside: true }
+    }
+
+    /// Returns the contents of all files that were read.
+    pub(super) fn into_contents(self) -> BTreeMap<PathBuf, Vec<u8>> {
+        self.contents.into_inner()
+    }
+
+    /// Returns the path of a file that the scenario names.
+    pub(super) fn named(&self, name: impl AsRef<Path>) -> PathBuf {
+        self.path.with_file_name("").join(name)
+    }
+
+    /// Returns `true` if there is a file at this path.
+    pub(super) fn exists(&self, path: &Path) -> bool {
+        if self.are_inside { self.contents.borrow().contains_key(path) } else { path.exists() }
+    }
+
+    /// Returns the contents of a file of at most `most` bytes.
+    ///
+    /// # Errors
+    /// Fails if the file cannot be read.
+    pub(super) fn read(&self, path: &Path, most: u64) -> io::Result<Vec<u8>> {
+        if self.are_inside {
+            return self.contents.borrow().get(path).cloned().ok_or_else(|| io::ErrorKind::NotFound.into());
+        }
+        let bytes = read_file(path, most)?;
+        self.contents.borrow_mut().insert(path.to_owned(), bytes.clone());
+        Ok(bytes)
+    }
+
+    /// Returns the text of a file of at most `most` bytes.
+    ///
+    /// # Errors
+    /// Fails if the file cannot be read, or is not UTF-8 text.
+    pub(super) fn text(&self, path: &Path, most: u64) -> io::Result<String> {
+        String::from_utf8(self.read(path, most)?).map_err(|_| io::Error::other("it is not UTF-8 text"))
+    }
+
+    /// Returns the simulated robot, for a plan in the file at `path`.
+    ///
+    /// # Errors
+    /// Fails if the `mdle.toml` beside the plan has errors.
+    pub(super) fn target(&self, path: &Path) -> Result<Target, InputError> {
+        if self.are_inside { target(Some(SIM)) } else { Settings::beside(path)?.target(Some(SIM)) }
+    }
+
+    /// Returns the plan in the file at `path`, which is compiled by [`Files::compiled`].
+    ///
+    /// # Errors
+    /// Fails if the file cannot be read or is not text.
+    pub(super) fn plan(&self, path: &Path, target: &Target) -> Result<Input, InputError> {
+        if !self.are_inside {
+            return read_plan(path, target);
+        }
+        let contents = self.contents.borrow();
+        let text = |bytes: &[u8]| String::from_utf8_lossy(&without_mark(bytes.to_vec())).into_owned();
+        let own = contents.get(path).map(|own| text(own)).ok_or_else(|| no_file(path))?;
+        let others = contents.iter().map(|(path, bytes)| (path.clone(), text(bytes)));
+        Ok(plan(path, own, target)?.with_unsaved(Unsaved::all(others)))
+    }
+
+    /// Keeps the files of a plan that has been compiled, and prints its diagnostics. For a plan inside an executable,
+    /// the build did so.
+    pub(super) fn compiled(&self, input: &Input, diagnostics: &[Diagnostic]) {
+        if !self.are_inside {
+            let files = input.files().map(Path::to_owned).zip(input.texts().map(|text| text.as_bytes().to_vec()));
+            self.contents.borrow_mut().extend(files);
+            failure::print(&input.sources, diagnostics);
+        }
+    }
+}
+
+fn no_file(path: &Path) -> InputError {
+    InputError::Unusable(format!("there is no file `{}`", path.display()))
+}
