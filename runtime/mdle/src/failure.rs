@@ -1,6 +1,8 @@
 //! Reasons why a plan cannot be run, as messages on standard error with an exit status.
 
+use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::builder::StyledStr;
@@ -111,6 +113,16 @@ pub(crate) fn unprinted(error: &io::Error) -> Failure {
         return Failure::Closed;
     }
     Failure::Usage(format!("standard output cannot be written: {error}"))
+}
+
+/// Returns the failure for a file that exists.
+pub(crate) fn exists(path: &Path) -> Failure {
+    Failure::Usage(format!("{} exists already", path.display()))
+}
+
+/// Returns the failure for a file or stream that cannot be written.
+pub(crate) fn unwritten(name: &dyn Display, error: &io::Error) -> Failure {
+    Failure::Usage(format!("{name} cannot be written: {error}"))
 }
 
 /// Prints a line to standard output.

@@ -11,8 +11,8 @@ use mdle_sim::{Drawing, SignalCurve, TimeChart};
 
 use crate::arguments::Plot;
 use crate::examined::{ExaminedPlan, ExaminedRun, ExaminedTurn};
-use crate::failure::Failure;
-use crate::log::{created, unwritten};
+use crate::failure::{Failure, unwritten};
+use crate::log::created;
 use crate::replay::{self, WantedPlan};
 
 /// Draws a record.

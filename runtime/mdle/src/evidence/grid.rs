@@ -67,13 +67,12 @@ impl EvidenceGrid {
 
     /// Returns the log-odds at a position; 0 outside the grid.
     pub(super) fn odds_at(&self, x: f64, y: f64) -> f64 {
-        let cell = |at: f64| libm::floor((at + HALF) / CELL);
-        let (column, row) = (cell(x), cell(y));
-        let inside = 0.0..CELLS as f64;
-        if !inside.contains(&column) || !inside.contains(&row) {
-            return 0.0;
-        }
-        self.odds.get(row as usize * CELLS + column as usize).copied().unwrap_or_default()
+        cell_at(x, y).and_then(|cell| self.odds.get(cell)).copied().unwrap_or_default()
+    }
+
+    /// Returns the log-odds of all cells, by rows along the second axis.
+    pub(super) fn odds(&self) -> impl Iterator<Item = f64> {
+        self.odds.iter().copied()
     }
 
     /// Returns the probability that a cell is occupied, by its column along the first axis and its row along the
@@ -82,6 +81,13 @@ impl EvidenceGrid {
         let odds = self.odds.get(row * CELLS + column).copied().unwrap_or_default();
         1.0 / (1.0 + libm::exp(-odds))
     }
+}
+
+/// Returns the number of the cell at a position, by rows along the second axis; `None` outside the grid.
+pub(super) fn cell_at(x: f64, y: f64) -> Option<usize> {
+    let [column, row] = [x, y].map(|at| libm::floor((at + HALF) / CELL));
+    let inside = 0.0..CELLS as f64;
+    (inside.contains(&column) && inside.contains(&row)).then_some(row as usize * CELLS + column as usize)
 }
 
 /// Returns the position of the middle of a cell along an axis, in metres.

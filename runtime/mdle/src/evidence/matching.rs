@@ -8,7 +8,7 @@ use super::grid::{EvidenceGrid, GridPing};
 /// Fraction of a range at which there should be free space.
 const BEFORE: f64 = 0.6;
 /// Weight of the evidence at that fraction of a range.
-const BEFORE_WEIGHT: f64 = 0.3;
+pub(super) const BEFORE_WEIGHT: f64 = 0.3;
 /// Steps of the first search, in metres and radians.
 const COARSE: (f64, f64) = (0.10, 3.0 * DEGREE);
 /// Number of angles to either side in the first search.
@@ -32,13 +32,13 @@ pub(crate) struct Fit {
 }
 
 /// An echo in the axes of odometry: its place, and a place that the sound has passed on the way there.
-struct Echo {
-    at: (f64, f64),
-    before: (f64, f64),
+pub(super) struct Echo {
+    pub(super) at: (f64, f64),
+    pub(super) before: (f64, f64),
 }
 
 impl Echo {
-    fn of(ping: &GridPing) -> Option<Self> {
+    pub(super) fn of(ping: &GridPing) -> Option<Self> {
         let range = ping.range?;
         let (ahead, left) = (range * libm::cos(ping.theta), range * libm::sin(ping.theta));
         let at = (ping.x + ahead, ping.y + left);
@@ -63,12 +63,6 @@ pub(crate) fn fit(grid: &EvidenceGrid, pings: &[GridPing], near: Pose, ways: i16
     let off = [x.0 - near.x.0, y.0 - near.y.0, theta.0 - near.theta.0];
     let is_at_edge = off.iter().zip(reaches).any(|(off, reach)| off.abs() > reach - ROUNDING);
     Some(Fit { is_at_edge, ..best })
-}
-
-/// Returns the mean evidence for echoes that are in the axes of the grid; `None` if no ping has an echo.
-pub(crate) fn own_score(grid: &EvidenceGrid, pings: &[GridPing]) -> Option<f64> {
-    let echoes: Vec<Echo> = pings.iter().filter_map(Echo::of).collect();
-    (!echoes.is_empty()).then(|| score(grid, &echoes, &Pose::ORIGIN))
 }
 
 /// Returns the best fit on a lattice around a pose, or `best` if no fit is better.

@@ -10,14 +10,14 @@ use crate::failure::Failure;
 const WHITE: f64 = 255.0;
 
 /// Returns the image: its first row has the greatest second coordinate.
-pub(crate) fn pixels(grid: &EvidenceGrid) -> Vec<u8> {
+pub(super) fn pixels(grid: &EvidenceGrid) -> Vec<u8> {
     let mut bytes = head().into_bytes();
     bytes.extend(greys(grid));
     bytes
 }
 
 /// Returns the same image as PNG.
-pub(crate) fn png_pixels(grid: &EvidenceGrid) -> Vec<u8> {
+pub(super) fn png_pixels(grid: &EvidenceGrid) -> Vec<u8> {
     png(CELLS, &greys(grid))
 }
 
@@ -31,7 +31,7 @@ fn greys(grid: &EvidenceGrid) -> Vec<u8> {
 ///
 /// # Errors
 /// Fails if the name does not end in `.yaml` or `.yml`.
-pub(crate) fn image(file: &Path) -> Result<PathBuf, Failure> {
+pub(super) fn image(file: &Path) -> Result<PathBuf, Failure> {
     if file.extension().is_some_and(|extension| extension == "yaml" || extension == "yml") {
         return Ok(file.with_extension("pgm"));
     }

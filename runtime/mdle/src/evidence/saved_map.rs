@@ -2,6 +2,9 @@
 
 use std::path::Path;
 
+use mdle_runtime::Pose;
+use mdle_sim::Start;
+
 use super::grid::EvidenceGrid;
 use super::matching::Fit;
 use super::ros_image;
@@ -17,6 +20,12 @@ const KEY: &str = "least_score";
 const USUAL: f64 = 1.7;
 /// Fraction of the score of a map's own echoes that a robot at the landmark has at least.
 const FRACTION: f64 = 0.7;
+
+/// Reads the pose that is the value of an option.
+pub(crate) fn pose(option: &str, text: &str) -> Result<Pose, Failure> {
+    let read: Result<Start, _> = text.parse();
+    read.map(|Start(pose)| pose).map_err(|error| Failure::Usage(format!("{option} {text}: {error}")))
+}
 
 /// The map of a landmark.
 #[derive(Debug, Clone, PartialEq)]

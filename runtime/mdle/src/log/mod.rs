@@ -13,7 +13,7 @@ use std::process::ExitCode;
 use mdle_record::ReadError;
 
 use crate::arguments::Log;
-use crate::failure::{self, Failure};
+use crate::failure::{self, Failure, exists, unwritten};
 use crate::run_time::run_time;
 
 /// Exit status for a record that was changed or is damaged.
@@ -43,15 +43,6 @@ pub(crate) fn created(path: &Path) -> Result<File, Failure> {
         }
         unwritten(&path.display(), &error)
     })
-}
-
-/// Returns the failure for a file that exists.
-pub(crate) fn exists(path: &Path) -> Failure {
-    Failure::Usage(format!("{} exists already", path.display()))
-}
-
-pub(crate) fn unwritten(name: &dyn std::fmt::Display, error: &io::Error) -> Failure {
-    Failure::Usage(format!("{name} cannot be written: {error}"))
 }
 
 /// Reports that the rest of a record cannot be read; returns the exit status.

@@ -4,9 +4,9 @@ use std::process::ExitCode;
 
 use mdle_runtime::Printable;
 
-use super::{pings, pose};
+use super::pings;
 use crate::arguments::Locate;
-use crate::evidence::{Fit, SavedMap, fit};
+use crate::evidence::{Fit, SavedMap, fit, pose};
 use crate::failure::{self, Failure};
 
 /// Steps of 10 cm to either side in which the pose is searched.
@@ -20,7 +20,7 @@ const NOWHERE: u8 = 1;
 /// # Errors
 /// Fails if the record or a map cannot be read, or if the record has no echo.
 pub(crate) fn locate(arguments: &Locate) -> Result<ExitCode, Failure> {
-    let near = pose(&arguments.at)?;
+    let near = pose("--at", &arguments.at)?;
     let mut heard = Vec::new();
     let outcome = pings(&arguments.log, mdle_runtime::Pose::ORIGIN, &mut |ping| heard.push(*ping))?;
     let mut fits = Vec::new();

@@ -2,16 +2,14 @@
 //! determines in which of several maps a robot was.
 
 mod locate;
-mod ros_map;
 
 use std::path::Path;
 use std::process::ExitCode;
 
 use mdle_runtime::Pose;
-use mdle_sim::Start;
 
 use crate::arguments::MakeMap;
-use crate::evidence::{EvidenceGrid, GridPing, PingOrder, SavedMap, own_score};
+use crate::evidence::{GridPing, MapFiles, MapMaker, PingOrder, pose};
 use crate::failure::Failure;
 use crate::log::damaged;
 use crate::replay;
@@ -22,21 +20,12 @@ pub(crate) use locate::locate;
 /// # Errors
 /// Fails if the record cannot be read, or if the map cannot be written.
 pub(crate) fn map(arguments: &MakeMap) -> Result<ExitCode, Failure> {
-    let origin = pose(&arguments.at)?;
-    let (mut grid, mut heard) = (EvidenceGrid::new(), Vec::new());
-    let outcome = pings(&arguments.log, origin, &mut |ping| {
-        grid.take(ping);
-        heard.push(*ping);
-    })?;
-    let own_score = own_score(&grid, &heard);
-    ros_map::save(&SavedMap::of(grid, own_score), &arguments.file, arguments.png.as_deref())?;
+    let origin = pose("--at", &arguments.at)?;
+    let files = MapFiles::new(&arguments.file, arguments.png.as_deref())?;
+    let mut maker = MapMaker::new();
+    let outcome = pings(&arguments.log, origin, &mut |ping| maker.take(ping))?;
+    files.save(&maker.map()).map_err(Failure::Usage)?;
     Ok(outcome)
-}
-
-/// Reads the value of `--at`.
-fn pose(text: &str) -> Result<Pose, Failure> {
-    let read: Result<Start, _> = text.parse();
-    read.map(|Start(pose)| pose).map_err(|error| Failure::Usage(format!("--at {text}: {error}")))
 }
 
 /// Calls `take` with each ping of a record. `origin` is the pose on the map at which the robot's odometry was zero.
