@@ -9,8 +9,8 @@ use std::{env, fs};
 
 use crate::targets::{checkout, manifest, targets};
 
-/// The packages that targets share; the targets come on top.
-const SHARED: [&str; 9] = [
+/// The packages that targets share, and that scenarios need; the targets come on top.
+const SHARED: [&str; 13] = [
     "runtime/core",
     "runtime/quantity",
     "runtime/sound",
@@ -20,6 +20,10 @@ const SHARED: [&str; 9] = [
     "atoms",
     "atoms/conformance",
     "targets/sim/simulator",
+    "runtime/engine",
+    "runtime/mdle",
+    "mdlec/compiler",
+    "mdlec/files",
 ];
 
 /// Folders that no build of an executable reads; a folder with a package of its own is left out as well.

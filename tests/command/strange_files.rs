@@ -32,11 +32,15 @@ fn ended(mut command: Command) -> Output {
 fn prepared(test: &str) -> PathBuf {
     let folder = folder(test);
     let strange = folder.join("strange");
-    fs::create_dir_all(strange.join("folder.toml")).unwrap();
-    symlink("/dev/zero", strange.join("zero.toml")).unwrap();
-    symlink("/proc/kmsg", strange.join("kmsg.toml")).unwrap();
-    assert!(Command::new("mkfifo").arg(strange.join("pipe.toml")).status().unwrap().success());
-    File::create(strange.join("sparse.toml")).unwrap().set_len(1 << 40).unwrap();
+    // As settings, and as plans: a TOML file in the place of a plan is a scenario.
+    for ending in ["toml", "mdle"] {
+        let named = |name: &str| strange.join(name).with_extension(ending);
+        fs::create_dir_all(named("folder")).unwrap();
+        symlink("/dev/zero", named("zero")).unwrap();
+        symlink("/proc/kmsg", named("kmsg")).unwrap();
+        assert!(Command::new("mkfifo").arg(named("pipe")).status().unwrap().success());
+        File::create(named("sparse")).unwrap().set_len(1 << 40).unwrap();
+    }
     fs::write(folder.join("plan.mdle"), "{ P (Atom (wait 1) stop) }\n").unwrap();
     fs::write(folder.join("uses.mdle"), "use \"STRANGE\"\n{ P (Atom (wait 1) stop) }\n").unwrap();
     folder
@@ -47,12 +51,12 @@ const KINDS: [&str; 5] = ["folder.toml", "zero.toml", "pipe.toml", "kmsg.toml", 
 /// Asserts the kind of a refusal, without the name of the file.
 fn assert_refused(output: &Output, kind: &str) {
     let error = String::from_utf8(output.stderr.clone()).unwrap();
-    let expected = match kind {
-        "folder.toml" => "is a folder",
-        "zero.toml" => "is a device",
-        "pipe.toml" => "is a pipe",
+    let expected = match kind.split('.').next().unwrap() {
+        "folder" => "is a folder",
+        "zero" => "is a device",
+        "pipe" => "is a pipe",
         // Not everybody may open it.
-        "kmsg.toml" => "",
+        "kmsg" => "",
         _ => "is larger than",
     };
     assert!(error.contains(expected) && error.contains(kind), "{kind}: {error}");
@@ -72,11 +76,15 @@ fn mdlec_reads_regular_files_only() {
             &["draw", file],
             &["decompile", file],
             &["bind", file],
-            &[file, "--emit", "plan"],
             &["trace", "plan.mdle", "--script", file],
             &["trace", file, "--script", "plan.mdle"],
         ] {
             assert_refused(&ended(command(&folder, arguments)), kind);
+        }
+        let plan = format!("strange/{}", kind.replace("toml", "mdle"));
+        for arguments in [&["check", &plan][..], &["trace", &plan, "--script", "plan.mdle"], &[&plan, "--emit", "plan"]]
+        {
+            assert_refused(&ended(command(&folder, arguments)), &kind.replace("toml", "mdle"));
         }
         let text = fs::read_to_string(folder.join("uses.mdle")).unwrap().replace("STRANGE", file);
         fs::write(folder.join("used.mdle"), text).unwrap();
@@ -108,8 +116,8 @@ fn standard_input_is_read_up_to_a_size() {
 #[test]
 fn a_pipe_in_the_place_of_a_plan_is_answered_with_what_to_type() {
     let folder = prepared("strange_pipe");
-    let error = run_mdlec(&folder, &["check", "strange/pipe.toml"]).stderr;
-    let expected = "error: `strange/pipe.toml` is a pipe, not a file\nhelp: `-` in its place reads standard input\n";
+    let error = run_mdlec(&folder, &["check", "strange/pipe.mdle"]).stderr;
+    let expected = "error: `strange/pipe.mdle` is a pipe, not a file\nhelp: `-` in its place reads standard input\n";
     assert_eq!(String::from_utf8(error).unwrap(), expected);
 }
 

@@ -8,3 +8,4 @@ mod machines;
 mod own_module;
 mod own_target;
 mod random_runs;
+mod scenario_executables;

@@ -42,7 +42,19 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("editors/service", &["mdle-compiler"]),
     ("editors/server", &["mdle-runtime", "mdle-compiler", "mdle-files", "mdle-language-service"]),
     ("editors/debugger", &["mdle-runtime", "mdle-compiler", "mdle-files", "mdle-language-service"]),
-    ("mdlec", &["mdle-runtime", "mdle-compiler", "mdle-theory", "mdle-files", "mdle-language-server", "mdle-debugger"]),
+    // `mdle` reads the scenarios whose executables mdlec builds.
+    (
+        "mdlec",
+        &[
+            "mdle",
+            "mdle-runtime",
+            "mdle-compiler",
+            "mdle-theory",
+            "mdle-files",
+            "mdle-language-server",
+            "mdle-debugger",
+        ],
+    ),
     ("targets/sim/simulator", &["mdle-runtime", "mdle-quantity", "mdle-sound", "mdle-atoms"]),
     // The conformance of robots is there for their tests alone.
     ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-simulator", "mdle-conformance"]),

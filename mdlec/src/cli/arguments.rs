@@ -226,7 +226,7 @@ pub(super) struct Build {
 /// The plan that an executable is built of, and for which robot.
 #[derive(Debug, Args)]
 pub(super) struct Executable {
-    /// File of the plan; `-` for standard input
+    /// File of the plan, or of a scenario (FILE.toml); `-` for standard input
     #[arg(required = true)]
     pub(super) plan: Option<PathBuf>,
     /// Robot to compile for: a name from `mdlec targets`, or a folder
@@ -249,7 +249,7 @@ pub(super) struct Executable {
 /// Arguments of `mdlec check`.
 #[derive(Debug, Args)]
 pub(super) struct Check {
-    /// Files of the plans
+    /// Files of the plans and scenarios
     #[arg(required = true)]
     pub(super) plans: Vec<PathBuf>,
     /// Robot to check for, or `all` for a table of all robots [default: that of mdle.toml, or one with every

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::compiled::{compile_one, needs_target};
 use super::executable::{self, Runnable};
-use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, matrices, report};
+use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, matrices, report, scenario};
 use crate::link;
 use mdle_compiler::syntax::outline;
 use mdle_compiler::{Limit, fsm, picture, rust, syntax};
@@ -45,6 +45,10 @@ pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
     }
     if kind == EmitKind::Exe {
         return executable::build(about, path, file, machine.as_deref()).map(Some);
+    }
+    if scenario::is_scenario(path) {
+        let sentence = "is a scenario, and `--emit` prints a form of a plan\nhelp: name the plan of a robot";
+        return Err(Failure::usage(format!("`{}` {sentence}", path.display())));
     }
     if machine.is_some() {
         return Err(Failure::usage("`--machine` is for executables, and this `--emit` makes none"));

@@ -1,4 +1,4 @@
-//! `mdlec check`: prints the diagnostics of plans.
+//! `mdlec check`: prints the diagnostics of plans, and the errors of scenarios.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -6,13 +6,16 @@ use std::path::Path;
 
 use super::each::each;
 use super::everywhere::{ALL, everywhere};
-use super::{Check, Failure, report};
+use super::{Check, Failure, report, scenario};
 use crate::link;
 use mdle_compiler::diagnostic::has_errors;
 use mdle_files::{Settings, Target, file_beside};
 
 /// Checks each plan file and prints its diagnostics.
 pub(super) fn check(options: &Check) -> Result<(), Failure> {
+    let mut scenarios = options.plans.iter().filter(|path| scenario::is_scenario(path));
+    let robot = options.target.as_deref().unwrap_or(scenario::SIM);
+    scenarios.try_for_each(|path| scenario::must_be_simulated(path, robot))?;
     if options.target.as_deref() == Some(ALL) {
         return everywhere(options);
     }
@@ -20,6 +23,9 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
     // Without the option each folder may have another one.
     let mut beside = BTreeMap::new();
     each(&options.plans, |path| {
+        if scenario::is_scenario(path) {
+            return scenario::check(path, options.deny_warnings);
+        }
         let target = match (&named, beside.entry(file_beside(path))) {
             (Some(named), _) => named,
             (None, Entry::Occupied(known)) => known.into_mut(),

@@ -11,10 +11,10 @@ use mdle_runtime::Printable;
 
 use super::compiled::{Emitted, emitted, needs_target};
 use super::version::version;
-use super::{EmitKind, Executable, Failure, Run, endings, report};
-use crate::link::{self, Cache, Package, Progress, TargetCrate};
+use super::{EmitKind, Executable, Failure, Run, endings, report, scenario};
+use crate::link::{self, Built, Cache, Entry, Package, Progress, TargetCrate};
 use mdle_compiler::rust;
-use mdle_files::{RunOption, SafetyEntry, Settings, Target};
+use mdle_files::{RunOption, SafetyEntry, Settings};
 
 /// Builds the executable of a plan and becomes it.
 pub(super) fn run(options: &Run) -> Result<(), Failure> {
@@ -30,7 +30,8 @@ pub(super) fn run(options: &Run) -> Result<(), Failure> {
 /// Checks, before the build, the options that a run with the arguments `args` takes from an `mdle.toml`, which may name
 /// no safety rules: an executable has none.
 pub(super) fn settings_fit(options: &Executable, args: &[String]) -> Result<(), Failure> {
-    let Some(path) = &options.plan else { return Ok(()) };
+    // A scenario takes none.
+    let Some(path) = options.plan.as_ref().filter(|path| !scenario::is_scenario(path)) else { return Ok(()) };
     let settings = Settings::beside(path)?;
     if let Some(SafetyEntry { place, .. }) = settings.safety() {
         let sentence = format!("{place}: `mdlec run` has no safety rules\nhelp: use `mdle run {}`", path.display());
@@ -54,8 +55,9 @@ pub(super) fn take_signals() -> Result<(), Failure> {
 
 /// An executable that was built, with the settings of its plan.
 pub(super) struct Runnable {
-    path: PathBuf,
-    settings: Settings,
+    pub(super) path: PathBuf,
+    /// The settings; empty for a scenario, which takes none.
+    pub(super) settings: Settings,
 }
 
 /// Builds the executable of the plan in `path` for a machine, by default in the current folder and for this machine.
@@ -65,6 +67,9 @@ pub(super) fn build(
     output: Option<PathBuf>,
     machine: Option<&str>,
 ) -> Result<Runnable, Failure> {
+    if scenario::is_scenario(path) {
+        return scenario::build(options, path, output, machine);
+    }
     let started = Instant::now();
     let settings = Settings::beside(path)?;
     needs_target(settings.names_target(options.target.as_deref()))?;
@@ -83,33 +88,44 @@ pub(super) fn build(
     let plan_type = rust::plan_type(&plan_name);
     let package = Package {
         plan_name: &plan_name,
-        version: &version(&input, &target),
+        version: &version(input.texts().map(str::as_bytes), &target),
         plan_file: path,
         inputs: &input.inputs(&target),
-        plan_type: &plan_type,
+        entry: Entry::Plan(&plan_type),
         rust: &rust,
         target: &target_crate,
         machine,
     };
-    let mut shown = ProgressOutput::default();
-    let built = Cache::of_user()
-        .and_then(|cache| link::build(&cache, &package, &output, &mut |progress| shown.progress(&progress)));
-    shown.close();
-    if !built.as_ref().is_ok_and(|built| built.fresh) {
-        note_ignored(path, &target);
-    }
-    let built = built?;
-    let seconds = started.elapsed().as_secs_f64();
-    let size = built.size as f64 / 1e6;
-    report::note(format_args!("{}: built in {seconds:.2} s, {size:.1} MB", output.display()));
+    build_package(&package, &output, target.folder.as_deref(), started)?;
     Ok(Runnable { path: output, settings })
 }
 
-/// Prints a note about a configuration file near the target or the plan that mdlec ignores although cargo would
-/// read it.
-fn note_ignored(plan: &Path, target: &Target) {
+/// Builds a package, whose target may be in a folder, shows the progress, and prints a note about the executable.
+pub(super) fn build_package(
+    package: &Package<'_>,
+    output: &Path,
+    target: Option<&Path>,
+    started: Instant,
+) -> Result<(), Failure> {
+    let mut shown = ProgressOutput::default();
+    let built = Cache::of_user()
+        .and_then(|cache| link::build(&cache, package, output, &mut |progress| shown.progress(&progress)));
+    shown.close();
+    if !built.as_ref().is_ok_and(|built| built.fresh) {
+        note_ignored(package.plan_file, target);
+    }
+    let Built { size, .. } = built?;
+    let seconds = started.elapsed().as_secs_f64();
+    let size = size as f64 / 1e6;
+    report::note(format_args!("{}: built in {seconds:.2} s, {size:.1} MB", output.display()));
+    Ok(())
+}
+
+/// Prints a note about a configuration file near the plan, or in the folder of its target, that mdlec ignores although
+/// cargo would read it.
+fn note_ignored(plan: &Path, target: Option<&Path>) {
     let beside = plan.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let folders: Vec<&Path> = target.folder.as_deref().into_iter().chain([beside]).collect();
+    let folders: Vec<&Path> = target.into_iter().chain([beside]).collect();
     if let Some(file) = link::ignored_configuration(&folders) {
         report::note(format_args!(
             "{} has no effect: builds read the configuration in cargo's home only",

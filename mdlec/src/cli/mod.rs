@@ -25,6 +25,7 @@ mod matrices;
 mod mistyped;
 mod new_target;
 mod report;
+mod scenario;
 mod trace;
 mod version;
 mod words;

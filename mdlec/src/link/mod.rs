@@ -1,4 +1,5 @@
-//! Builds a static executable from emitted Rust: writes a cargo package and runs cargo.
+//! Builds a static executable from emitted Rust, or from the files of a scenario: writes a cargo package and runs
+//! cargo.
 //!
 //! Everything happens in the [`Cache`]. The sources of executables are part of mdlec and unpacked there once, so that
 //! an installed mdlec needs no checkout and, once cargo has fetched the libraries, no network:
@@ -69,25 +70,34 @@ use sources::Sources;
 use target::Dependencies;
 use toolchain::Toolchain;
 
-/// A plan as Rust code, with the data for its executable.
+/// A plan as Rust code, or a scenario as its files, with the data for its executable.
 #[derive(Debug, Clone, Copy)]
 pub struct Package<'a> {
-    /// Name of the plan, which the executable shows.
+    /// Name of the plan or of the scenario, which the executable shows.
     pub plan_name: &'a str,
     /// Texts on which the executable depends, for its answer to `--version`.
     pub version: &'a str,
-    /// Plan file that contains the plan.
+    /// File of the plan or of the scenario.
     pub plan_file: &'a Path,
-    /// Files from which the plan was read; the executable must not overwrite them.
+    /// Files that were read; the executable must not overwrite them.
     pub inputs: &'a [PathBuf],
-    /// Type that implements the plan, in the emitted text.
-    pub plan_type: &'a str,
+    /// Item of the emitted text that the executable runs.
+    pub entry: Entry<'a>,
     /// Emitted text, without inner attributes.
     pub rust: &'a str,
     /// Crate of the robot.
     pub target: &'a TargetCrate<'a>,
     /// Machine that will run the executable, as a target triple or a short name; `None` for this machine.
     pub machine: Option<&'a str>,
+}
+
+/// Item of an emitted text that an executable runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Entry<'a> {
+    /// Type that implements a plan.
+    Plan(&'a str),
+    /// Constant `FILES`, the names and contents of a scenario's files.
+    Scenario,
 }
 
 /// A built executable.
@@ -117,7 +127,10 @@ pub fn build(
     let toolchain = Toolchain::find()?;
     let machine = Machine::find(package.machine, &toolchain.host)?;
     let sources = Sources::unpack(cache)?;
-    let dependencies = target::dependencies(package.target, &sources)?;
+    let dependencies = match package.entry {
+        Entry::Plan(_) => target::dependencies(package.target, &sources)?,
+        Entry::Scenario => target::scenario_dependencies(&sources),
+    };
     let plan = package::write(cache, package, &dependencies, &toolchain, &machine)?;
     superseded::remove_before(cache, package.plan_file, &machine, &plan)?;
     let job = Job { cache, machine: &machine, plan: &plan };

@@ -9,7 +9,7 @@ use super::machine::Machine;
 use super::plan_package::PlanPackage;
 use super::target::{Dependencies, utf8};
 use super::toolchain::Toolchain;
-use super::{Cache, LinkError, Package, build_record, sources};
+use super::{Cache, Entry, LinkError, Package, build_record, sources};
 
 /// Writes the package of `package`; unchanged files keep their times, which cargo compares.
 pub(super) fn write(
@@ -112,15 +112,23 @@ fn manifest(name: &str, dependencies: &Dependencies) -> Result<String, LinkError
 
 /// Returns the text of `src/main.rs`.
 fn main(package: &Package<'_>, version: &str) -> String {
-    let (target, plan, name) = (package.target.crate_name(), package.plan_type, package.plan_name);
+    let (target, name) = (package.target.crate_name(), package.plan_name);
+    let (does, program, run) = match package.entry {
+        Entry::Plan(plan) => (
+            "the plan on its target",
+            "::mdle_host::Program",
+            format!("::mdle_host::run::<::{target}::Target, _>(program, plan::{plan}::new)"),
+        ),
+        Entry::Scenario => ("a scenario", "::mdle::Program", "::mdle::run_scenario(program, plan::FILES)".to_owned()),
+    };
     format!(
-        "//! Made by mdlec: runs the plan on its target.\n\n\
+        "//! Made by mdlec: runs {does}.\n\n\
          // Included, as a build script's output is: emitted text must be fit for both.\n\
          #[forbid(unsafe_code)]\n\
          mod plan {{\n    include!(\"plan.rs\");\n}}\n\n\
          fn main() -> ::std::process::ExitCode {{\n    \
-             let program = ::mdle_host::Program {{ plan: {name:?}, version: {version:?} }};\n    \
-             ::mdle_host::run::<::{target}::Target, _>(program, plan::{plan}::new)\n\
+             let program = {program} {{ plan: {name:?}, version: {version:?} }};\n    \
+             {run}\n\
          }}\n"
     )
 }
@@ -136,7 +144,7 @@ mod tests {
     use std::path::{Path, PathBuf};
 
     use super::super::tests::cache;
-    use super::super::{Cache, Package, TargetCrate, build_record};
+    use super::super::{Cache, Entry, Package, TargetCrate, build_record};
     use super::{Dependencies, Machine, PlanPackage, Toolchain, manifest};
 
     const HOST: &str = "x86_64-unknown-linux-gnu";
@@ -147,7 +155,7 @@ mod tests {
             plan_name: "Nap",
             version: "text 0, target sim",
             plan_file: Path::new(plan_file),
-            plan_type: "Nap",
+            entry: Entry::Plan("Nap"),
             inputs: &[],
             rust,
             target: &TARGET,
@@ -181,6 +189,12 @@ mod tests {
     #[test]
     fn the_program_runs_the_plan_on_its_target() {
         insta::assert_snapshot!(super::main(&package("nap.mdle", ""), "(text 0)"));
+    }
+
+    #[test]
+    fn the_program_of_a_scenario_runs_its_files() {
+        let package = Package { plan_name: "two \"robots\"", entry: Entry::Scenario, ..package("two.toml", "") };
+        insta::assert_snapshot!(super::main(&package, "(text 0)"));
     }
 
     #[test]

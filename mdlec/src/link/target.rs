@@ -102,6 +102,18 @@ fn builtin(name: &str, crate_name: &str, sources: &Sources) -> Result<Dependenci
     })
 }
 
+/// Returns the dependencies of a scenario: the package that runs scenarios has all robots and the compiler.
+pub(super) fn scenario_dependencies(sources: &Sources) -> Dependencies {
+    let (name, folder) = sources::RUNNER;
+    Dependencies {
+        packages: vec![(name.to_owned(), sources.folder.join(folder))],
+        patches: Vec::new(),
+        lock: sources::text(sources::LOCK).to_owned(),
+        identity: "scenario".to_owned(),
+        ours: sources.folder.clone(),
+    }
+}
+
 /// Returns the dependencies of the emulator of `robot`.
 pub(super) fn emulator_dependencies(robot: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
     let (folder, package) = sources::emulator(robot).ok_or_else(|| LinkError::NoSuchTarget(robot.to_owned()))?;
