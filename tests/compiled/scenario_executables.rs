@@ -13,8 +13,8 @@ use std::process::Command;
 use mdle_tests::elf::sections;
 use mdle_tests::executable::{folder, mdle, run_mdlec};
 
-/// Robots that name a file of every kind: a world, plans that use a plan, a path that is replayed and recorded, and a plan
-/// that is sent.
+/// Robots that name a file of every kind: a world, plans that use a plan, a path that is replayed and recorded, and a
+/// plan that is sent.
 const SCENARIO: &str = "world = \"square.toml\"
 seed = 3
 timeout = \"20s\"

@@ -5,121 +5,8 @@
 use std::collections::BTreeSet;
 use std::process::Command;
 
+use crate::packages::PACKAGES;
 use mdle_tests::repository::{TextFile, files, names_from, root};
-
-/// Packages of the workspace that each package may use. A folder that is not listed may not hold a package.
-const PACKAGES: &[(&str, &[&str])] = &[
-    ("runtime/core", &[]),
-    ("runtime/quantity", &["mdle-runtime"]),
-    ("runtime/record", &["mdle-runtime"]),
-    ("runtime/host", &["mdle-runtime", "mdle-quantity", "mdle-record", "mdle-simulator"]),
-    ("runtime/engine", &["mdle-runtime", "mdle-host", "mdle-compiler", "mdle-quantity", "mdle-record"]),
-    (
-        "runtime/mdle",
-        &[
-            "mdle-runtime",
-            "mdle-host",
-            "mdle-engine",
-            "mdle-compiler",
-            "mdle-files",
-            "mdle-quantity",
-            "mdle-record",
-            "mdle-sim",
-            "mdle-sound",
-            "mdle-scout",
-            "mdle-atrv",
-        ],
-    ),
-    ("runtime/serial", &["mdle-runtime", "mdle-host"]),
-    ("runtime/sound", &[]),
-    ("runtime/template", &["mdle", "mdle-runtime"]),
-    ("atoms", &["mdle-runtime"]),
-    ("atoms/conformance", &["mdle-runtime"]),
-    ("mdlec/compiler", &["mdle-runtime"]),
-    ("mdlec/theory", &["mdle-runtime", "mdle-compiler"]),
-    ("mdlec/files", &["mdle-runtime", "mdle-compiler"]),
-    ("mdlec/embed", &["mdle-runtime", "mdle-compiler", "mdle-files"]),
-    ("editors/service", &["mdle-compiler"]),
-    ("editors/server", &["mdle-runtime", "mdle-compiler", "mdle-files", "mdle-language-service"]),
-    ("editors/debugger", &["mdle-runtime", "mdle-compiler", "mdle-files", "mdle-language-service"]),
-    // `mdle` reads the scenarios whose executables mdlec builds.
-    (
-        "mdlec",
-        &[
-            "mdle",
-            "mdle-runtime",
-            "mdle-compiler",
-            "mdle-theory",
-            "mdle-files",
-            "mdle-language-server",
-            "mdle-debugger",
-        ],
-    ),
-    ("targets/sim/simulator", &["mdle-runtime", "mdle-quantity", "mdle-sound", "mdle-atoms"]),
-    // The conformance of robots is there for their tests alone.
-    ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-simulator", "mdle-conformance"]),
-    ("targets/scout", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
-    ("targets/atrv", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
-    // The simulator and the conformance are there for its tests alone.
-    ("targets/ros2", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms", "mdle-simulator", "mdle-conformance"]),
-    ("targets/template", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-conformance"]),
-    // The runtime, the line and the conformance are there for the tests of robots alone.
-    ("targets/emulator", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-simulator", "mdle-conformance"]),
-    // The drivers and the conformance of robots are there for their tests alone: they share no word of the language.
-    (
-        "targets/scout/emulator",
-        &["mdle-runtime", "mdle-host", "mdle-conformance", "mdle-simulator", "mdle-emulator", "mdle-scout"],
-    ),
-    (
-        "targets/atrv/emulator",
-        &["mdle-runtime", "mdle-host", "mdle-conformance", "mdle-simulator", "mdle-emulator", "mdle-atrv"],
-    ),
-    (
-        "tests",
-        &[
-            "mdle",
-            "mdle-runtime",
-            "mdle-host",
-            "mdle-engine",
-            "mdle-atoms",
-            "mdle-sim",
-            "mdle-emulator",
-            "mdle-scout-emulator",
-            "mdle-scout",
-            "mdle-atrv",
-            "mdle-atrv-emulator",
-            "mdle-scripted",
-            "mdle-compiler",
-            "mdle-theory",
-            "mdle-files",
-            "mdle-record",
-            "mdle-benchmarks",
-        ],
-    ),
-    ("editors/test", &["mdle-compiler", "mdle-tests"]),
-    ("tests/scripted", &["mdle-runtime"]),
-    (
-        "tests/benchmarks",
-        &[
-            "mdle",
-            "mdle-engine",
-            "mdle-host",
-            "mdle-record",
-            "mdle-runtime",
-            "mdle-sim",
-            "mdle-tests",
-            "mdle-compiler",
-            "mdle-language-server",
-        ],
-    ),
-    ("tests/benchmarks/turn", &["mdle-runtime", "mdle-compiler"]),
-    ("tests/bare", &["mdle-runtime", "mdle-atoms"]),
-    ("tests/board", &["mdle-runtime", "mdle-atoms", "mdle-simulator"]),
-    ("tests/application", &["mdle-runtime", "mdle-host", "mdle-sim", "mdle-embed"]),
-    ("tests/mutants", &[]),
-    ("web/module", &["mdle-runtime", "mdle-quantity", "mdle-compiler", "mdle-language-service", "mdle-simulator"]),
-    ("tests/fuzz", &["mdle-tests"]),
-];
 
 /// Packages that need no operating system, so that a browser or a robot's own program can have them.
 const PURE: &[&str] = &[
@@ -203,7 +90,7 @@ fn packages_use_only_those_below_them() {
     for manifest in files(&["Cargo.toml"]) {
         let Some(folder) = manifest.path.strip_suffix("/Cargo.toml") else { continue };
         match PACKAGES.iter().find(|(package, _)| *package == folder) {
-            None => breaches.push(format!("{folder}: say in tests/repository/directions.rs what it may use")),
+            None => breaches.push(format!("{folder}: say in tests/repository/packages.rs what it may use")),
             Some((_, allowed)) => breaches.extend(
                 ours(&manifest)
                     .filter(|name| !allowed.contains(name))

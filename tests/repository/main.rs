@@ -6,6 +6,7 @@ mod codes;
 mod coverage;
 mod directions;
 mod manifests;
+mod packages;
 mod readme;
 mod tidy;
 mod versions;

@@ -1,6 +1,6 @@
 //! `mdlec clean`: empties the cache.
 
-use super::executable::ProgressOutput;
+use super::progress::ProgressOutput;
 use super::{Failure, report};
 use crate::link::{self, Cache};
 

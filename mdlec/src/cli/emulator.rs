@@ -3,7 +3,8 @@
 use std::os::unix::process::CommandExt;
 use std::process::Command;
 
-use super::executable::{ProgressOutput, become_program, take_signals};
+use super::executable::{become_program, take_signals};
+use super::progress::ProgressOutput;
 use super::{Emulator, Failure};
 use crate::link::{self, Cache};
 

@@ -1,18 +1,15 @@
-//! `mdlec run`: builds the executable of a plan, shows the progress, and runs the executable in place of this
-//! process.
+//! `mdlec run`: builds the executable of a plan, and runs it in place of this process.
 
-use std::io::{self, IsTerminal, Write};
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use mdle_runtime::Printable;
-
 use super::compiled::{Emitted, emitted, needs_target};
+use super::progress::{ProgressOutput, build_package};
 use super::version::version;
-use super::{EmitKind, Executable, Failure, Run, endings, report, scenario};
-use crate::link::{self, Built, Cache, Entry, Package, Progress, TargetCrate};
+use super::{EmitKind, Executable, Failure, Run, endings, scenario};
+use crate::link::{self, Entry, Package, TargetCrate};
 use mdle_compiler::rust;
 use mdle_files::{RunOption, SafetyEntry, Settings};
 
@@ -55,9 +52,9 @@ pub(super) fn take_signals() -> Result<(), Failure> {
 
 /// An executable that was built, with the settings of its plan.
 pub(super) struct Runnable {
-    pub(super) path: PathBuf,
+    path: PathBuf,
     /// The settings; empty for a scenario, which takes none.
-    pub(super) settings: Settings,
+    settings: Settings,
 }
 
 /// Builds the executable of the plan in `path` for a machine, by default in the current folder and for this machine.
@@ -68,7 +65,8 @@ pub(super) fn build(
     machine: Option<&str>,
 ) -> Result<Runnable, Failure> {
     if scenario::is_scenario(path) {
-        return scenario::build(options, path, output, machine);
+        let path = scenario::build(options, path, output, machine)?;
+        return Ok(Runnable { path, settings: Settings::default() });
     }
     let started = Instant::now();
     let settings = Settings::beside(path)?;
@@ -100,40 +98,6 @@ pub(super) fn build(
     Ok(Runnable { path: output, settings })
 }
 
-/// Builds a package, whose target may be in a folder, shows the progress, and prints a note about the executable.
-pub(super) fn build_package(
-    package: &Package<'_>,
-    output: &Path,
-    target: Option<&Path>,
-    started: Instant,
-) -> Result<(), Failure> {
-    let mut shown = ProgressOutput::default();
-    let built = Cache::of_user()
-        .and_then(|cache| link::build(&cache, package, output, &mut |progress| shown.progress(&progress)));
-    shown.close();
-    if !built.as_ref().is_ok_and(|built| built.fresh) {
-        note_ignored(package.plan_file, target);
-    }
-    let Built { size, .. } = built?;
-    let seconds = started.elapsed().as_secs_f64();
-    let size = size as f64 / 1e6;
-    report::note(format_args!("{}: built in {seconds:.2} s, {size:.1} MB", output.display()));
-    Ok(())
-}
-
-/// Prints a note about a configuration file near the plan, or in the folder of its target, that mdlec ignores although
-/// cargo would read it.
-fn note_ignored(plan: &Path, target: Option<&Path>) {
-    let beside = plan.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let folders: Vec<&Path> = target.into_iter().chain([beside]).collect();
-    if let Some(file) = link::ignored_configuration(&folders) {
-        report::note(format_args!(
-            "{} has no effect: builds read the configuration in cargo's home only",
-            file.display()
-        ));
-    }
-}
-
 impl Runnable {
     /// Becomes the executable, with the options of `mdle.toml` before `args`; `target` is the target on the
     /// command line.
@@ -162,42 +126,4 @@ fn must_fit(option: &RunOption, program: &Path) -> Result<(), Failure> {
 pub(super) fn become_program(command: &mut Command) -> Result<(), Failure> {
     let error = command.exec();
     Err(Failure::usage(format!("cannot run `{}`: {error}", Path::new(command.get_program()).display())))
-}
-
-/// Progress output: a line that is overwritten on a terminal, and otherwise a line for each new step.
-#[derive(Default)]
-pub(super) struct ProgressOutput {
-    open: bool,
-}
-
-impl ProgressOutput {
-    pub(super) fn progress(&mut self, progress: &Progress) {
-        if report::is_json() {
-            return;
-        }
-        let mut out = io::stderr().lock();
-        // A closed standard error has nobody to wait for the build.
-        let _ = if out.is_terminal() {
-            self.open = true;
-            write!(out, "\r\x1b[K{}", Printable(progress))
-        } else if progress.is_first() {
-            writeln!(out, "{}", Printable(progress))
-        } else {
-            Ok(())
-        };
-    }
-
-    pub(super) fn close(&mut self) {
-        if std::mem::take(&mut self.open) {
-            Self::wipe();
-        }
-    }
-
-    /// Clears the current line of the terminal.
-    fn wipe() {
-        let mut out = io::stderr().lock();
-        if out.is_terminal() {
-            let _ = write!(out, "\r\x1b[K");
-        }
-    }
 }

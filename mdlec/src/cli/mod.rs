@@ -24,6 +24,7 @@ mod manual;
 mod matrices;
 mod mistyped;
 mod new_target;
+mod progress;
 mod report;
 mod scenario;
 mod trace;

@@ -1,5 +1,5 @@
-//! Scenarios of several robots, `mdlec SCENARIO.toml`: the executable has all files of the scenario inside, and runs them
-//! as `mdle run SCENARIO.toml` does.
+//! Scenarios of several robots, `mdlec SCENARIO.toml`: the executable has all files of the scenario inside, and runs
+//! them as `mdle run SCENARIO.toml` does.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use std::time::Instant;
 pub(super) use mdle::is_scenario;
 
 use super::compiled::needs_target;
-use super::executable::{Runnable, build_package};
+use super::progress::build_package;
 use super::version::version;
 use super::{Executable, Failure, report};
 use crate::link::{Entry, Package, TargetCrate};
@@ -17,13 +17,13 @@ use mdle_files::{Settings, target};
 /// The robot of scenarios.
 pub(super) const SIM: &str = "sim";
 
-/// Builds the executable of the scenario in the file at `path`.
+/// Builds the executable of the scenario in the file at `path`, and returns the path of the executable.
 pub(super) fn build(
     options: &Executable,
     path: &Path,
     output: Option<PathBuf>,
     machine: Option<&str>,
-) -> Result<Runnable, Failure> {
+) -> Result<PathBuf, Failure> {
     let started = Instant::now();
     must_fit(options, path)?;
     let files = files(path)?;
@@ -42,7 +42,7 @@ pub(super) fn build(
     };
     let output = output.unwrap_or_else(|| PathBuf::from(&name));
     build_package(&package, &output, None, started)?;
-    Ok(Runnable { path: output, settings: Settings::default() })
+    Ok(output)
 }
 
 /// Checks a scenario, its plans and its other files.

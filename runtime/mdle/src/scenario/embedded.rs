@@ -44,8 +44,8 @@ fn read(path: &Path) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     own.into_iter().map(named).collect()
 }
 
-/// Runs the scenario in these files, as [`scenario_files`] returns them, with the options of this process, as `mdle run`
-/// does; returns the exit status.
+/// Runs the scenario in these files, as [`scenario_files`] returns them, with the options of this process, as
+/// `mdle run` does; returns the exit status.
 #[must_use]
 pub fn run_scenario(program: Program<'_>, files: &[(&str, &[u8])]) -> ExitCode {
     run(program, files).unwrap_or_else(Failure::tell)

@@ -9,8 +9,10 @@ use mdle_compiler::diagnostic::Diagnostic;
 use mdle_files::{Input, InputError, Settings, Target, Unsaved, plan, read_plan, target, without_mark};
 use mdle_host::read_file;
 
-use super::setup::SIM;
 use crate::failure;
+
+/// Name of the target of all robots.
+const SIM: &str = "sim";
 
 /// The files of a scenario, by the names that the scenario and its plans give them.
 pub(super) struct Files {

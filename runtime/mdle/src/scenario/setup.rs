@@ -26,8 +26,6 @@ use crate::plans::texts;
 const LARGEST: u64 = 10_000_000;
 /// Time after which a scenario ends by default.
 pub(super) const TIMEOUT: Duration = Duration::from_secs(3600);
-/// Name of the target of all robots.
-pub(super) const SIM: &str = "sim";
 
 /// A scenario.
 pub(super) struct Scenario {

@@ -1,0 +1,82 @@
+//! Builds of packages, with their progress on standard error.
+
+use std::io::{self, IsTerminal, Write};
+use std::path::Path;
+use std::time::Instant;
+
+use mdle_runtime::Printable;
+
+use super::{Failure, report};
+use crate::link::{self, Built, Cache, Package, Progress};
+
+/// Builds a package, whose target may be in a folder, shows the progress, and prints a note about the executable.
+pub(super) fn build_package(
+    package: &Package<'_>,
+    output: &Path,
+    target: Option<&Path>,
+    started: Instant,
+) -> Result<(), Failure> {
+    let mut shown = ProgressOutput::default();
+    let built = Cache::of_user()
+        .and_then(|cache| link::build(&cache, package, output, &mut |progress| shown.progress(&progress)));
+    shown.close();
+    if !built.as_ref().is_ok_and(|built| built.fresh) {
+        note_ignored(package.plan_file, target);
+    }
+    let Built { size, .. } = built?;
+    let seconds = started.elapsed().as_secs_f64();
+    let size = size as f64 / 1e6;
+    report::note(format_args!("{}: built in {seconds:.2} s, {size:.1} MB", output.display()));
+    Ok(())
+}
+
+/// Prints a note about a configuration file near the plan, or in the folder of its target, that mdlec ignores although
+/// cargo would read it.
+fn note_ignored(plan: &Path, target: Option<&Path>) {
+    let beside = plan.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let folders: Vec<&Path> = target.into_iter().chain([beside]).collect();
+    if let Some(file) = link::ignored_configuration(&folders) {
+        report::note(format_args!(
+            "{} has no effect: builds read the configuration in cargo's home only",
+            file.display()
+        ));
+    }
+}
+
+/// Progress output: a line that is overwritten on a terminal, and otherwise a line for each new step.
+#[derive(Default)]
+pub(super) struct ProgressOutput {
+    open: bool,
+}
+
+impl ProgressOutput {
+    pub(super) fn progress(&mut self, progress: &Progress) {
+        if report::is_json() {
+            return;
+        }
+        let mut out = io::stderr().lock();
+        // A closed standard error has nobody to wait for the build.
+        let _ = if out.is_terminal() {
+            self.open = true;
+            write!(out, "\r\x1b[K{}", Printable(progress))
+        } else if progress.is_first() {
+            writeln!(out, "{}", Printable(progress))
+        } else {
+            Ok(())
+        };
+    }
+
+    pub(super) fn close(&mut self) {
+        if std::mem::take(&mut self.open) {
+            Self::wipe();
+        }
+    }
+
+    /// Clears the current line of the terminal.
+    pub(super) fn wipe() {
+        let mut out = io::stderr().lock();
+        if out.is_terminal() {
+            let _ = write!(out, "\r\x1b[K");
+        }
+    }
+}
