@@ -12,6 +12,7 @@ mod emulators;
 mod formation;
 mod lab_tour;
 mod late_plans;
+mod live_maps;
 mod loaded;
 mod meetings;
 mod module_faults;

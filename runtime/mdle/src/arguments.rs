@@ -7,9 +7,11 @@ mod locate;
 mod log;
 mod manual;
 mod map;
+mod map_option;
 mod module_options;
 mod navigate;
 mod new_module;
+mod plan;
 mod plot;
 mod replay;
 mod why;
@@ -29,8 +31,9 @@ pub(crate) use ears::{EarsOption, head};
 pub(crate) use locate::Locate;
 pub(crate) use log::Log;
 pub(crate) use map::MakeMap;
-use module_options::{module, point};
+pub(crate) use map_option::MapOption;
 pub(crate) use navigate::Navigate;
+use plan::with_plan;
 pub(crate) use plot::Plot;
 pub(crate) use replay::Replay;
 pub(crate) use why::{Question, Why};
@@ -87,6 +90,8 @@ pub(crate) struct Run {
     pub(crate) ears: Option<EarsOption>,
     /// Radius of the head with the ears, in metres.
     pub(crate) head: f64,
+    /// The map to make; `None` if there is to be none.
+    pub(crate) map: Option<MapOption>,
     /// `true` if warnings count as errors.
     pub(crate) deny_warnings: bool,
     /// Program and arguments of this call, without the options of the run.
@@ -113,7 +118,7 @@ pub(crate) struct SessionOptions {
 }
 
 /// Options of `mdle` itself that have a value.
-const WITH_VALUE: [&str; 13] = [
+const WITH_VALUE: [&str; 15] = [
     "--landmarks",
     "--target",
     "--plan",
@@ -124,6 +129,8 @@ const WITH_VALUE: [&str; 13] = [
     "--point",
     "--ears",
     "--head",
+    map_option::OPTIONS[0],
+    map_option::OPTIONS[1],
     "-c",
     "--commands",
     "--role",
@@ -192,8 +199,9 @@ fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: O
         point: run.get_one("point").copied(),
         ears,
         head,
+        map: MapOption::of(run),
         deny_warnings: run.get_flag("deny-warnings"),
-        words,
+        words: map_option::without_map(words),
         options,
         session,
     }))
@@ -280,7 +288,7 @@ fn shell() -> Command {
         )
         .override_usage("mdle shell [OPTIONS] <PLAN> [OPTIONS OF THE RUN]");
     let flag = |name: &'static str| Arg::new(name).action(ArgAction::SetTrue);
-    ears::with_ears(with_plan(command))
+    map_option::with_map(ears::with_ears(with_plan(command)))
         .arg(
             Arg::new("commands")
                 .short('c')
@@ -310,7 +318,7 @@ const AFTER: &str = "Exit status: that of the executable; 1 if the plan has erro
                      be read, 6 if a safety rule ended the plan";
 
 fn run() -> Command {
-    ears::with_ears(with_plan(run_alone()))
+    map_option::with_map(ears::with_ears(with_plan(run_alone())))
 }
 
 fn run_alone() -> Command {
@@ -322,68 +330,6 @@ fn run_alone() -> Command {
         )
         .override_usage("mdle run [OPTIONS] <PLAN> [OPTIONS OF THE RUN]")
         .after_help(AFTER)
-}
-
-/// Defines the arguments for the plan and for its compilation.
-fn with_plan(command: Command) -> Command {
-    command
-        .arg(
-            Arg::new("file")
-                .value_name("PLAN")
-                .help("Plan to run, or a scenario of several robots (FILE.toml); `-` reads standard input")
-                .required(true)
-                .value_parser(value_parser!(PathBuf)),
-        )
-        .arg(
-            Arg::new("target")
-                .long("target")
-                .value_name("TARGET")
-                .help("Robot to run on: atrv, scout or sim [default: the target of the `mdle.toml` beside the plan]"),
-        )
-        .arg(
-            Arg::new("plan")
-                .long("plan")
-                .value_name("NAME")
-                .help("Plan of the file to run [default: the only plan that no other plan uses]"),
-        )
-        .arg(
-            Arg::new("safety")
-                .long("safety")
-                .value_name("FILE")
-                .help("File of safety rules, which lie between the plan and the robot [default: none]")
-                .value_parser(value_parser!(PathBuf)),
-        )
-        .arg(
-            Arg::new("link")
-                .long("link")
-                .value_name("FILE")
-                .help("File of the link to other robots: their addresses, and a key [default: none]")
-                .value_parser(value_parser!(PathBuf)),
-        )
-        .arg(
-            Arg::new("records").long("records").value_name("PATH").help(
-                "Name of a path of the plan that the way back of each `path` and `Follow` replaces [default: none]",
-            ),
-        )
-        .arg(
-            Arg::new("module")
-                .long("module")
-                .value_name("NAME=COMMAND")
-                .help("Child process to load as a module, which speaks lines of JSON; may be repeated")
-                .action(ArgAction::Append)
-                .value_parser(module),
-        )
-        .arg(
-            Arg::new("point")
-                .long("point")
-                .value_name("X,Y")
-                .help("Point to which the module `heading` publishes bearing and range, in metres or as in `3m,50cm`")
-                .allow_hyphen_values(true)
-                .value_parser(point),
-        )
-        .arg(
-            Arg::new("deny-warnings").long("deny-warnings").action(ArgAction::SetTrue).help("Treat warnings as errors"),
-        )
 }
 
 #[cfg(test)]

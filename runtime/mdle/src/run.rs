@@ -10,15 +10,19 @@ use mdle_files::{Input, InputError, Known, SafetyEntry, Settings, Target, read_p
 use mdle_host::{Call, Program, RecordedPlan};
 use mdle_runtime::Sensed;
 
-use crate::arguments::Run;
+use crate::arguments::{MapOption, Run};
+use crate::evidence::{MapFiles, pose};
 use crate::failure::{self, Failure};
 use crate::link::LinkFile;
-use crate::modules::{self, AudioSource, HEADING, SoundInput};
+use crate::modules::{self, AudioSource, HEADING, MapRun, Saved, SoundInput};
 use crate::plans::texts;
 use crate::safety::SafetyFile;
 use crate::scenario;
 use crate::session;
 use crate::targets::{self, LinkedTarget, Ready};
+
+/// Exit status if a map could not be written.
+const FAULT: u8 = 3;
 
 /// Runs a plan with these modules, and with the modules that its settings name; returns the exit status of the
 /// run.
@@ -30,6 +34,10 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
         return scenario::run(&arguments, library);
     }
     let settings = Settings::beside(&arguments.file)?;
+    let map = arguments.map.as_ref().map(map_run).transpose()?;
+    if let Some(map) = &map {
+        map.register(library);
+    }
     modules::of_settings(&settings, &arguments, library)?;
     let name = settings.name_of_target(arguments.target.as_deref()).ok_or(InputError::NoTarget)?;
     let linked = targets::linked(&name).map_err(Failure::Usage)?;
@@ -65,12 +73,40 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
         settings: determining(&arguments, &settings, &name),
     };
     options.extend(arguments.options);
+    if map.is_some() && options.iter().any(|option| option.to_string_lossy().split('=').next() == Some("--runs")) {
+        let sentence = "--map is for one run, and `--runs` makes several\nhelp: leave one of them out";
+        return Err(Failure::Usage(sentence.to_owned()));
+    }
     let read = input.inputs(&target).into_iter().chain(safety.iter().flat_map(SafetyFile::files)).chain(linked_by);
     let read = read.collect();
     drop(input);
     let call = Call { words: arguments.words, options, read, recorded, later_path: arguments.records };
-    let Some(session) = &arguments.session else { return Ok(ready.run(&plan, call, library)) };
-    session::held(session, &arguments.file, |seat| ready.session(&plan, call, library, seat))
+    let status = match &arguments.session {
+        None => ready.run(&plan, call, library),
+        Some(session) => session::held(session, &arguments.file, |seat| ready.session(&plan, call, library, seat))?,
+    };
+    Ok(map.map_or(status, |map| saved(&map, status)))
+}
+
+/// Returns the map of a run.
+fn map_run(map: &MapOption) -> Result<MapRun, Failure> {
+    let origin = pose("--map-at", &map.at)?;
+    Ok(MapRun::new(origin, MapFiles::new(&map.file, Some(&map.file.with_extension("png")))?))
+}
+
+/// Saves the map of a run that has ended with this status; returns the exit status.
+fn saved(map: &MapRun, status: ExitCode) -> ExitCode {
+    match map.save() {
+        Ok(Saved::Map | Saved::NoTurn) => status,
+        Ok(Saved::NoPing) => {
+            failure::warning("no sonar has pinged, so there is no map to save");
+            status
+        }
+        Err(sentence) => {
+            failure::error(&format!("the map {sentence}"));
+            ExitCode::from(FAULT)
+        }
+    }
 }
 
 /// Returns a call without arguments.

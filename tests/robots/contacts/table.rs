@@ -70,6 +70,7 @@ pub(super) const TABLE: &[Row] = &[
     row("names.md", "Tour", "floor, hall"),
     row("names.md", "Patrol", "floor, hall"),
     row("names.md", "Corridor", "floor, hall"),
+    row("navigation.md", "Around", "floor, hall, office"),
     row("own_loop.md", "Shuttle", "floor, hall, home"),
     row("own_plan.md", "Side", "floor, hall, room, office, home"),
     row("own_plan.md", "Square", "floor"),

@@ -11,16 +11,18 @@ pub(crate) struct MapMaker {
     /// Weight of each cell in the score of the pings' own echoes.
     weights: Vec<f64>,
     echoes: u64,
+    pings: u64,
 }
 
 impl MapMaker {
     /// Returns a map that knows nothing.
     pub(crate) fn new() -> Self {
-        Self { grid: EvidenceGrid::new(), weights: vec![0.0; CELLS * CELLS], echoes: 0 }
+        Self { grid: EvidenceGrid::new(), weights: vec![0.0; CELLS * CELLS], echoes: 0, pings: 0 }
     }
 
     /// Takes a ping.
     pub(crate) fn take(&mut self, ping: &GridPing) {
+        self.pings = self.pings.saturating_add(1);
         self.grid.take(ping);
         let Some(Echo { at, before }) = Echo::of(ping) else { return };
         self.echoes = self.echoes.saturating_add(1);
@@ -29,6 +31,16 @@ impl MapMaker {
                 *sum += weight;
             }
         }
+    }
+
+    /// Returns the number of pings that were taken.
+    pub(crate) const fn pings(&self) -> u64 {
+        self.pings
+    }
+
+    /// Returns the number of cells that a ping has changed.
+    pub(crate) fn cells(&self) -> usize {
+        self.grid.odds().filter(|odds| *odds != 0.0).count()
     }
 
     /// Returns the map.
@@ -49,12 +61,14 @@ mod tests {
     #[test]
     fn its_score_is_that_of_a_fit_where_it_was_made() {
         let mut maker = MapMaker::new();
-        assert_eq!(maker.map().least.to_bits(), 1.7_f64.to_bits());
+        assert_eq!((maker.cells(), maker.map().least.to_bits()), (0, 1.7_f64.to_bits()));
         let range = |number: u32| (number % 7 != 0).then(|| 1.0 + 0.01 * f64::from(number));
         let pings: Vec<GridPing> = (0..72)
             .map(|number| GridPing { x: 0.1, y: -0.2, theta: f64::from(number) * 0.0873, range: range(number) })
             .collect();
         pings.iter().for_each(|ping| maker.take(ping));
+        assert_eq!(maker.pings(), 72);
+        assert!(maker.cells() > 1000, "{}", maker.cells());
         let map = maker.map();
         let best = fit(&map.grid, &pings, Pose::ORIGIN, 1).unwrap().score;
         let own = map.least / 0.7;

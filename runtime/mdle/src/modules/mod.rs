@@ -3,6 +3,7 @@
 mod audio;
 mod ears;
 mod heading;
+mod map;
 mod sensors;
 
 use mdle_engine::Library;
@@ -15,6 +16,7 @@ use crate::failure::Failure;
 pub(crate) use audio::AudioSource;
 use ears::EarsModule;
 use heading::Heading;
+pub(crate) use map::{MapRun, Saved};
 use sensors::Sensors;
 
 /// Name of the module that `--point` and `--ears` load.

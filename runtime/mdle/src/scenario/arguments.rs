@@ -50,6 +50,7 @@ impl Options {
             (!run.modules.is_empty(), "--module"),
             (run.point.is_some(), "--point"),
             (run.ears.is_some(), "--ears"),
+            (run.map.is_some(), "--map"),
         ];
         if let Some((_, name)) = of_a_plan.into_iter().find(|(is_given, _)| *is_given) {
             let sentence = "is for one robot, and a scenario names the plan of each";
