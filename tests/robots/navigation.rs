@@ -354,10 +354,13 @@ fn a_map_shows_the_walls_at_lab_2() {
 
     "#);
     let map = fs::read(folder.join("lab2.pgm")).unwrap();
-    // The rows of the PNG, each after its filter, are those of the map.
-    let png = fs::read(folder.join("lab2.png")).unwrap();
-    let begins = png.windows(4).position(|name| name == b"IDAT").unwrap() + 4 + 7;
-    let rows: Vec<u8> = png[begins..].chunks(151).take(150).flat_map(|row| row[1..].to_vec()).collect();
+    // The PNG is the image of the map.
+    let png = fs::File::open(folder.join("lab2.png")).unwrap();
+    let mut png = png::Decoder::new(std::io::BufReader::new(png)).read_info().unwrap();
+    let mut rows = vec![0; png.output_buffer_size().unwrap()];
+    let frame = png.next_frame(&mut rows).unwrap();
+    assert_eq!((frame.width, frame.height), (150, 150));
+    assert_eq!((frame.color_type, frame.bit_depth), (png::ColorType::Grayscale, png::BitDepth::Eight));
     assert_eq!(rows, map[map.len() - 150 * 150..]);
     let grey = |x: f64, y: f64| {
         let cell = |at: f64| ((at + 1.905) / 0.0254) as usize;

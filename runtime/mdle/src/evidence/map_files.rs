@@ -56,7 +56,10 @@ impl MapFiles {
         );
         write(&self.image, &pixels(&map.grid))?;
         write(&self.yaml, text.as_bytes())?;
-        self.picture.as_ref().map_or(Ok(()), |picture| write(picture, &png_pixels(&map.grid)))
+        let Some(picture) = &self.picture else { return Ok(()) };
+        let pixels = png_pixels(&map.grid);
+        let pixels = pixels.map_err(|error| format!("{} cannot be written: {error}", picture.display()))?;
+        write(picture, &pixels)
     }
 }
 

@@ -5,7 +5,6 @@ mod map_files;
 mod map_maker;
 mod matching;
 mod pings;
-mod png;
 mod ros_image;
 mod saved_map;
 

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use png::{BitDepth, ColorType, Encoder, EncodingError};
+
 use super::grid::{CELLS, EvidenceGrid};
-use super::png::png;
 use crate::failure::Failure;
 
 /// Grey of what is free.
@@ -17,8 +18,18 @@ pub(super) fn pixels(grid: &EvidenceGrid) -> Vec<u8> {
 }
 
 /// Returns the same image as PNG.
-pub(super) fn png_pixels(grid: &EvidenceGrid) -> Vec<u8> {
-    png(CELLS, &greys(grid))
+///
+/// # Errors
+/// Fails if the image cannot be encoded.
+pub(super) fn png_pixels(grid: &EvidenceGrid) -> Result<Vec<u8>, EncodingError> {
+    let mut file = Vec::new();
+    let mut encoder = Encoder::new(&mut file, CELLS as u32, CELLS as u32);
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_depth(BitDepth::Eight);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&greys(grid))?;
+    writer.finish()?;
+    Ok(file)
 }
 
 /// Returns the grey of each cell, by rows, the row with the greatest second coordinate first.
