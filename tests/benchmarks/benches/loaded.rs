@@ -1,8 +1,10 @@
-//! A simulated robot as fast as possible: turns a second of `mdle run`, which loads a plan, beside the plan's
-//! executable. Both are built with `--release`, which takes minutes the first time.
+//! `mdle run`, which loads a plan, beside the plan's executable: turns a second of a simulated robot as fast as
+//! possible, and the instructions of both, which Callgrind counts; and the time from a text to its first turn. Both
+//! programs are built with `--release`, which takes minutes the first time.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -11,19 +13,41 @@ use std::{env, fs};
 use mdle_tests::executable::target;
 use mdle_tests::repository::root;
 
-/// Plans that go on until a time is over: their names, and texts.
-const PLANS: [(&str, &str); 2] = [
-    ("one law", "{ Round (wait 9h) (Atom (null) (goAvoid 90 40 20)) }\n"),
-    (
-        "a transition each second",
-        "{ Waver (wait 9h)\n  { Both (null) (Atom (wait 1s OR r0 < 20cm) (go 10 0.3)) (Atom (wait 1s) (go 10 -0.3)) }^10000\n}\n",
-    ),
+/// A plan whose runs are compared.
+struct Workload {
+    name: &'static str,
+    text: &'static str,
+    /// World, and end of a run that is timed and of one whose instructions are counted.
+    world: &'static str,
+    timed: &'static str,
+    counted: &'static str,
+}
+
+/// The plans: two go on until a time is over.
+const WORKLOADS: [Workload; 3] = [
+    Workload {
+        name: "one law",
+        text: "{ Round (wait 9h) (Atom (null) (goAvoid 90 40 20)) }\n",
+        world: "hall",
+        timed: "3600s",
+        counted: "300s",
+    },
+    Workload {
+        name: "a transition each second",
+        text: "{ Waver (wait 9h)\n  { Both (null) (Atom (wait 1s OR r0 < 20cm) (go 10 0.3)) (Atom (wait 1s) (go 10 -0.3)) }^10000\n}\n",
+        world: "hall",
+        timed: "3600s",
+        counted: "300s",
+    },
+    Workload {
+        name: "the lab tour",
+        text: include_str!("../../../plans/lab_tour.mdle"),
+        world: "office",
+        timed: "1h",
+        counted: "1h",
+    },
 ];
-/// Simulated time of a run, in seconds.
-const TIME: u32 = 3600;
-/// Turns in a simulated second.
-const RATE: f64 = 10.0;
-/// Maximum number of runs of each; the median counts.
+/// Maximum number of runs of each; the fastest counts.
 const RUNS: usize = 7;
 /// Minimum number of runs of each, however long they take.
 const FEWEST: usize = 3;
@@ -32,28 +56,42 @@ const LONGEST: Duration = Duration::from_secs(20);
 
 fn main() {
     let [mdle, mdlec] = ["mdle", "mdlec"].map(built);
-    println!("{:<28}{:>20}{:>16}{:>8}", "turns a second", "executable", "mdle run", "ratio");
+    println!("{:<44}{:>12}{:>12}{:>8}", "", "executable", "mdle run", "ratio");
     let [plan, executable] = ["loaded-benchmark.mdle", "loaded-benchmark"].map(|file| target().join(file));
-    for (name, text) in PLANS {
+    for Workload { name, text, world, timed, counted } in WORKLOADS {
         fs::write(&plan, text).expect("a folder to write to");
         let mut build = Command::new(&mdlec);
         build.arg(&plan).args(["--target", "sim", "-o"]).arg(&executable).current_dir(root());
         assert!(build.status().expect("mdlec runs").success(), "{name}: no executable");
-        let emitted = || Command::new(&executable);
-        let loaded = || {
-            let mut command = Command::new(&mdle);
-            command.arg("run").arg(&plan).args(["--target", "sim"]);
-            command
-        };
-        let (mut slow, mut quick) = (Vec::new(), Vec::new());
-        let begun = Instant::now();
-        while slow.len() < FEWEST || slow.len() < RUNS && begun.elapsed() < LONGEST {
-            quick.push(speed(emitted()));
-            slow.push(speed(loaded()));
-        }
-        let [quick, slow] = [quick, slow].map(median);
-        println!("{name:<28}{quick:>20.0}{slow:>16.0}{:>8.2}", slow / quick);
+        let options = ["--world", world, "--seed", "1", "--speed", "max", "--timeout"];
+        let emitted = vec![executable.clone()];
+        let loaded = vec![mdle.clone(), "run".into(), plan.clone(), "--target".into(), "sim".into()];
+        let programs = [emitted, loaded].map(|mut words: Vec<PathBuf>| {
+            words.extend(options.map(PathBuf::from));
+            words
+        });
+        let [quick, slow] = seconds(&programs, timed);
+        println!("{:<44}{quick:>12.3}{slow:>12.3}{:>8.2}", format!("{name}, {timed}: seconds"), slow / quick);
+        let [few, many] = [0, 1].map(|program| instructions(&programs[program], counted));
+        println!("{:<44}{few:>12.1}{many:>12.1}{:>8.3}", format!("{name}, {counted}: 10^6 instructions"), many / few);
     }
+    for atoms in [1, 10_000] {
+        fs::write(&plan, long(atoms)).expect("a folder to write to");
+        let words = [mdle.clone(), "run".into(), plan.clone(), "--target".into(), "sim".into()];
+        let words: Vec<_> =
+            words.into_iter().chain(["--speed", "max", "--turns", "1", "--timeout"].map(Into::into)).collect();
+        let times = (0..RUNS).map(|_| run(&words, "1h")).min().expect("runs");
+        println!("{:<44}{:>24.1}", format!("text to first turn, {atoms} atoms: ms"), times.as_secs_f64() * 1e3);
+    }
+}
+
+/// Returns a plan of this number of atoms.
+fn long(atoms: usize) -> String {
+    let mut text = String::from("{ Long (bumper)\n");
+    for atom in 0..atoms {
+        writeln!(text, "  (Atom (wait {}s AND NOT (x > 1000m)) (go 30 0))", 1000 + atom).expect("a text");
+    }
+    text + "}\n"
 }
 
 /// Builds a binary of the workspace, with cargo's own reports; returns its path.
@@ -65,23 +103,47 @@ fn built(binary: &str) -> PathBuf {
     Path::new(&target()).join("release").join(binary)
 }
 
-/// Runs a plan; returns the number of its turns in a second.
-fn speed(mut command: Command) -> f64 {
-    command.args(["--world", "hall", "--seed", "1", "--speed", "max", "--timeout", &TIME.to_string()]);
-    command.stdout(Stdio::null()).stderr(Stdio::piped()).current_dir(root());
+/// Runs two programs by turns until this time of the run; returns the seconds that the fastest run of each took.
+fn seconds(programs: &[Vec<PathBuf>], timeout: &str) -> [f64; 2] {
+    let mut times = [Duration::MAX; 2];
     let begun = Instant::now();
-    let output = command.output().expect("a run");
-    let seconds = begun.elapsed().as_secs_f64();
-    // The time is over before the plan.
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.code() == Some(TIMED_OUT), "{:?}: {errors}", output.status);
-    f64::from(TIME) * RATE / seconds
+    for number in 0..RUNS {
+        if number >= FEWEST && begun.elapsed() >= LONGEST {
+            break;
+        }
+        for (time, words) in times.iter_mut().zip(programs) {
+            *time = run(words, timeout).min(*time);
+        }
+    }
+    times.map(|time| time.as_secs_f64())
+}
+
+/// Runs a program until this time of the run; returns the time that it took.
+fn run(words: &[PathBuf], timeout: &str) -> Duration {
+    let mut command = Command::new(&words[0]);
+    command.args(&words[1..]).arg(timeout);
+    let begun = Instant::now();
+    ended(command);
+    begun.elapsed()
+}
+
+/// Runs a program under Callgrind until this time of the run; returns its instructions, in millions.
+fn instructions(words: &[PathBuf], timeout: &str) -> f64 {
+    let mut command = Command::new("valgrind");
+    command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).args(words).arg(timeout);
+    let report = ended(command);
+    let collected = report.lines().find_map(|line| line.split_once("Collected :")?.1.trim().parse::<f64>().ok());
+    collected.unwrap_or_else(|| panic!("{report}")) / 1e6
+}
+
+/// Runs a command to its end; returns its messages.
+fn ended(mut command: Command) -> String {
+    let output = command.stdout(Stdio::null()).stderr(Stdio::piped()).current_dir(root()).output().expect("a run");
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    // A plan is over, or its time is.
+    assert!(matches!(output.status.code(), Some(0 | TIMED_OUT)), "{:?}: {errors}", output.status);
+    errors
 }
 
 /// Exit status of a run whose time is over.
 const TIMED_OUT: i32 = 4;
-
-fn median(mut numbers: Vec<f64>) -> f64 {
-    numbers.sort_by(f64::total_cmp);
-    numbers.get(numbers.len() / 2).copied().unwrap_or_default()
-}

@@ -21,6 +21,10 @@ fn main() {
         write(&format!("statig_{atoms}.rs"), peers::statig(atoms));
         write(&format!("smlang_{atoms}.rs"), peers::smlang(atoms));
     }
+    for (name, text) in [("rows_8", plan::written_out(8)), ("rows_rising_8", plan::rising(8))] {
+        write(&format!("{name}.rs"), plan::rows(&text));
+        write(&format!("{name}.mdle"), text);
+    }
     if thousands {
         for atoms in [100, 10_000, 100_000] {
             write(&format!("plan_{atoms}.rs"), plan::emitted(&plan::written_out(atoms)));

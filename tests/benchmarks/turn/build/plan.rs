@@ -4,13 +4,18 @@ use std::fmt::Write;
 
 use mdle_compiler::alphabet::{self, Alphabet};
 use mdle_compiler::diagnostic::Sources;
-use mdle_compiler::rust::{Header, emit};
+use mdle_compiler::rust::{Header, Shape, emit_as};
 
 const ALPHABET: &str = include_str!("../alphabet.mdle");
 
 /// The text of T(N): a plan-level interrupt over N atoms, each with an end condition and a law that writes two numbers.
 pub fn written_out(atoms: u32) -> String {
     format!("{{ T (halt)\n{}}}\n", lines(0..atoms))
+}
+
+/// The text of T(N) in which the plan's interrupt fires only where the switch is turned on.
+pub fn rising(atoms: u32) -> String {
+    format!("{{ T (RISING halt)\n{}}}\n", lines(0..atoms))
 }
 
 /// The text of a plan that passes `passes` times through two atoms.
@@ -33,8 +38,17 @@ fn robot() -> Alphabet {
     alphabet
 }
 
-/// The Rust of plan T of this text.
+/// The Rust of plan T of this text, in the shape that suits its size.
 pub fn emitted(text: &str) -> String {
+    emitted_as(None, text)
+}
+
+/// The Rust of plan T of this text, as rows of tables.
+pub fn rows(text: &str) -> String {
+    emitted_as(Some(Shape::Rows), text)
+}
+
+fn emitted_as(shape: Option<Shape>, text: &str) -> String {
     let robot = robot();
     let mut sources = Sources::default();
     sources.add("alphabet.mdle", ALPHABET);
@@ -42,5 +56,6 @@ pub fn emitted(text: &str) -> String {
     let (compiled, found) = mdle_compiler::compile(source, text, &robot, Some("T"));
     let messages: String = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();
     let compiled = compiled.first().unwrap_or_else(|| panic!("{messages}"));
-    emit(&compiled.machine, Header { sources: &sources, file: "T.mdle", plan: "T" }, &robot)
+    let shape = shape.unwrap_or_else(|| Shape::of(&compiled.machine));
+    emit_as(shape, &compiled.machine, Header { sources: &sources, file: "T.mdle", plan: "T" }, &robot)
 }

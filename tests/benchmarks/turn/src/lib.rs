@@ -1,5 +1,4 @@
 //! The robot of workload T(N), one measurement, one switch, two numbers to write, and the machines compared on it.
-#![no_std]
 #![forbid(unsafe_code)]
 
 // What mdlec emits names this crate as any other package would.

@@ -3,7 +3,8 @@
 use mdle_runtime::{Nanos, Turn};
 use mdle_workload::machines::Robot;
 use mdle_workload::machines::by_hand::{Match8, NestedMatch8, Table};
-use mdle_workload::machines::plan::Plan8;
+use mdle_workload::machines::loaded::{Loaded8, LoadedRising8};
+use mdle_workload::machines::plan::{Plan8, Rows8, RowsRising8};
 use mdle_workload::machines::smlang::Smlang8;
 use mdle_workload::machines::statig::Statig8;
 use mdle_workload::{Input, Output};
@@ -50,8 +51,16 @@ fn machines_of_8_atoms_write_the_same() {
     assert_same::<Match8, 8>(2);
     assert_same::<NestedMatch8, 8>(2);
     assert_same::<Plan8, 8>(2);
+    assert_same::<Rows8, 8>(2);
+    assert_same::<Loaded8, 8>(2);
     assert_same::<Statig8, 8>(2);
     assert_same::<Smlang8, 8>(2);
+}
+
+#[test]
+fn rows_with_a_memory_write_the_same() {
+    let script = script(2);
+    assert!(turns::<RowsRising8>(&script) == turns::<LoadedRising8>(&script));
 }
 
 #[cfg(feature = "thousands")]

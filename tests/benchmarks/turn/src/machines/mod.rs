@@ -1,6 +1,7 @@
 //! T(N) in several forms: each machine does the same job, as `tests/same.rs` asserts.
 
 pub mod by_hand;
+pub mod loaded;
 pub mod plan;
 pub mod smlang;
 pub mod statig;

@@ -15,7 +15,7 @@ macro_rules! emitted {
     )+};
 }
 
-emitted!(plan_8 "/plan_8.rs");
+emitted!(plan_8 "/plan_8.rs", rows_8 "/rows_8.rs", rows_rising_8 "/rows_rising_8.rs");
 #[cfg(feature = "thousands")]
 emitted!(plan_1000 "/plan_1000.rs", plan_100000 "/plan_100000.rs");
 
@@ -25,6 +25,10 @@ pub struct Compiled<P: Plan>(Machine<P>);
 
 /// T(8): emitted as code with an arm for each atom.
 pub type Plan8 = Compiled<plan_8::T>;
+/// T(8): emitted as rows of tables.
+pub type Rows8 = Compiled<rows_8::T>;
+/// T(8) whose own interrupt has a memory: emitted as rows of tables.
+pub type RowsRising8 = Compiled<rows_rising_8::T>;
 /// T(1000): emitted as rows of tables.
 #[cfg(feature = "thousands")]
 pub type Plan1000 = Compiled<plan_1000::T>;
