@@ -137,6 +137,10 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
     /// Moves to the successor of a scope that has ended at time `t`, as [`Fsm::follows`] computed it beforehand.
     pub fn follow(&mut self, follows: Follows, t: Nanos) {
         self.atom = follows.atom;
+        // Most plans without timers store no level.
+        if self.entered.is_empty() {
+            return;
+        }
         for level in follows.from..follows.to {
             self.entered.note(level, t);
         }

@@ -86,25 +86,31 @@ impl<P: Plan> Machine<P> {
     /// Makes a turn with output `y` at time `t`: transitions until no enclosing interrupt fires, then the current
     /// atom's law.
     pub fn turn<W: Watch>(&mut self, y: &P::Output, t: Nanos, watch: &mut W) -> Turn<P::Input> {
-        let observes = self.plan.observes();
-        if observes {
+        if self.plan.observes() { self.run::<true, W>(y, t, watch) } else { self.run::<false, W>(y, t, watch) }
+    }
+
+    /// Makes a turn. `OBSERVES` is the value of [`Plan::observes`]: a plan that asks for it when it runs, not when
+    /// it is compiled, has two copies of this loop, and the one for plans without memories asks nothing.
+    fn run<const OBSERVES: bool, W: Watch>(&mut self, y: &P::Output, t: Nanos, watch: &mut W) -> Turn<P::Input> {
+        if OBSERVES {
             self.cursor.observe(y, self.plan.stalled(y, t));
         }
         let mut transitions: u32 = 0;
-        while !self.is_over() {
+        let mut is_over = self.is_over();
+        while !is_over {
             match self.plan.next(&self.cursor, y, t) {
                 Some(ending) if transitions < TRANSITIONS_PER_TURN => {
-                    self.step(ending, y, t, watch);
+                    is_over = self.step::<OBSERVES, W>(ending, y, t, watch);
                     transitions = transitions.saturating_add(1);
                 }
                 Some(_) => {
-                    if observes {
+                    if OBSERVES {
                         self.plan.settle(&self.cursor, y, t);
                     }
                     return Turn::Cut;
                 }
                 None => {
-                    if observes {
+                    if OBSERVES {
                         self.plan.settle(&self.cursor, y, t);
                     }
                     return Turn::Law(self.plan.input(y, t));
@@ -114,14 +120,16 @@ impl<P: Plan> Machine<P> {
         Turn::Over
     }
 
-    /// Leaves the scope that ends, and enters the atom that follows, if there is one.
+    /// Leaves the scope that ends, and enters the atom that follows. Returns `true` if none follows: the plan is over.
     ///
     /// The function is inlined, so that a plan whose code names the atom that follows needs no table to enter
     /// it.
     #[inline(always)]
-    fn step<W: Watch>(&mut self, ending: Ending, y: &P::Output, t: Nanos, watch: &mut W) {
+    fn step<const OBSERVES: bool, W: Watch>(&mut self, ending: Ending, y: &P::Output, t: Nanos, watch: &mut W) -> bool {
         let looked = W::LOOKS.then(|| self.look(ending.cause, y, t, watch));
-        self.plan.leave(&self.cursor, ending.cause, y, t);
+        if OBSERVES {
+            self.plan.leave(&self.cursor, ending.cause, y, t);
+        }
         match ending.follows {
             Some(follows) => self.cursor.follow(follows, t),
             None => {
@@ -132,9 +140,11 @@ impl<P: Plan> Machine<P> {
             let to = self.cursor.state(self.plan.fsm());
             watch.transition(Transition { from, scope, cause: ending.cause, atom: self.atom(), to });
         }
-        if !self.is_over() {
+        let is_over = self.is_over();
+        if !is_over {
             self.plan.enter(self.cursor.atom(), y, self.cursor.begins(Begin { now: t, frame: self.frame }));
         }
+        is_over
     }
 
     /// Passes the operands that have fired to `watch`, and returns the state and the scope that are about to be left.

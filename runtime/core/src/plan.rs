@@ -27,8 +27,9 @@ pub trait Plan {
     /// atom continues.
     fn next(&self, cursor: &Cursor<Self::Entered, Self::Left>, y: &Self::Output, t: Nanos) -> Option<Ending>;
 
-    /// Returns `false` if the plan keeps neither odometry, progress nor memories: the machine then calls neither
-    /// [`Entries::observe`] nor [`Plan::settle`] in a turn. The value never changes while the plan runs.
+    /// Returns `false` if the plan keeps neither odometry, progress nor memories: the machine then calls none of
+    /// [`Entries::observe`], [`Plan::leave`] and [`Plan::settle`] in a turn. The value never changes while the plan
+    /// runs.
     #[inline(always)]
     fn observes(&self) -> bool {
         true

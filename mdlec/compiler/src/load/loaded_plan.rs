@@ -16,6 +16,8 @@ pub struct LoadedPlan<A: Alphabet> {
     looked_at: Option<Box<LookedAt<A>>>,
     /// `true` if the plan is observed, or keeps odometry, progress or memories.
     observes: bool,
+    /// `true` if the plan keeps odometry or progress.
+    has_stamps: bool,
 }
 
 /// The observed moments of a plan.
@@ -24,8 +26,6 @@ struct LookedAt<A: Alphabet> {
     machine: Arc<Machine>,
     /// Storage for the entry of each level of scopes, including levels without timers.
     entered: Entered,
-    /// Number of the current atom, as written, from 0.
-    atom: u32,
     /// Time of the last turn; `None` before the first turn.
     t: Option<Nanos>,
     /// The moments of the last turn, in order.
@@ -46,10 +46,10 @@ impl<A: Alphabet> LoadedPlan<A> {
         let looked_at = machine.map(|machine| {
             let loaded = Arc::clone(loaded);
             let entered = Entered::observed(&machine);
-            Box::new(LookedAt { loaded, machine, entered, atom: 0, t: None, moments: Vec::new() })
+            Box::new(LookedAt { loaded, machine, entered, t: None, moments: Vec::new() })
         });
         let observes = looked_at.is_some() || loaded.observes();
-        Self { rows, looked_at, observes }
+        Self { rows, looked_at, observes, has_stamps: loaded.has_stamps() }
     }
 
     /// Returns the plan, which no longer records the moments of its turns.
@@ -70,22 +70,17 @@ impl<A: Alphabet> LoadedPlan<A> {
     pub fn again(&self) -> Option<Self> {
         self.looked_at.as_ref().map(|looked_at| looked_at.loaded.plan())
     }
+}
 
-    /// Records the end of a scope.
-    #[inline(never)]
-    fn leave_observed(&mut self, cursor: &Position, cause: Cause, y: &A::Output, t: Nanos) {
-        self.note(cursor, Some(cause), y, t);
-        self.rows.leave(cursor, cause, y, t);
-    }
-
-    fn note(&mut self, cursor: &Position, cause: Option<Cause>, y: &A::Output, t: Nanos) {
-        let Some(looked_at) = &mut self.looked_at else { return };
+impl<A: Alphabet> LookedAt<A> {
+    /// Records the moment before a transition, or at the end of a turn.
+    fn note(&mut self, rows: &LoadedRows<A>, cursor: &Position, cause: Option<Cause>, y: &A::Output, t: Nanos) {
         // A plan that goes on after a suspension may make a turn of the same time again.
-        let is_settled = looked_at.moments.last().is_some_and(|last| last.cause.is_none());
-        if looked_at.t.replace(t) != Some(t) || is_settled {
-            looked_at.moments.clear();
+        let is_settled = self.moments.last().is_some_and(|last| last.cause.is_none());
+        if self.t.replace(t) != Some(t) || is_settled {
+            self.moments.clear();
         }
-        looked_at.moments.push(moment(&self.rows, cursor, looked_at.atom, cause, y, t));
+        self.moments.push(moment(rows, cursor, cause, y, t));
     }
 }
 
@@ -107,9 +102,6 @@ impl<A: Alphabet> Plan for LoadedPlan<A> {
 
     #[inline(always)]
     fn enter(&mut self, atom: u32, y: &A::Output, begin: Begin) {
-        if let Some(looked_at) = &mut self.looked_at {
-            looked_at.atom = atom;
-        }
         self.rows.enter(atom, y, begin);
     }
 
@@ -123,22 +115,24 @@ impl<A: Alphabet> Plan for LoadedPlan<A> {
         self.observes
     }
 
-    // Neither this nor `settle` is inlined: the turn of a plan that calls neither would be longer.
-    #[inline(never)]
+    #[inline(always)]
     fn stalled(&self, y: &A::Output, t: Nanos) -> Option<Nanos> {
-        self.rows.stalled(y, t)
+        if self.has_stamps { self.rows.stalled(y, t) } else { None }
     }
 
     #[inline(always)]
     fn leave(&mut self, cursor: &Position, cause: Cause, y: &A::Output, t: Nanos) {
-        if self.observes {
-            self.leave_observed(cursor, cause, y, t);
+        if let Some(looked_at) = &mut self.looked_at {
+            looked_at.note(&self.rows, cursor, Some(cause), y, t);
         }
+        self.rows.leave(cursor, cause, y, t);
     }
 
-    #[inline(never)]
+    #[inline(always)]
     fn settle(&mut self, cursor: &Position, y: &A::Output, t: Nanos) {
-        self.note(cursor, None, y, t);
+        if let Some(looked_at) = &mut self.looked_at {
+            looked_at.note(&self.rows, cursor, None, y, t);
+        }
         self.rows.settle(cursor, y, t);
     }
 

@@ -50,16 +50,15 @@ pub struct ScopeMoment {
     pub leads_to: Option<u32>,
 }
 
-/// Returns the moment of an atom before a transition with this cause, or at the end of a turn.
+/// Returns the moment of the current atom before a transition with this cause, or at the end of a turn.
 pub(super) fn moment<A: Alphabet>(
     rows: &LoadedRows<A>,
     cursor: &Position,
-    atom: u32,
     cause: Option<Cause>,
     y: &A::Output,
     t: Nanos,
 ) -> Moment {
-    let fsm = rows.fsm();
+    let (fsm, atom) = (rows.fsm(), cursor.atom());
     let own = fsm.atoms.get(atom as usize).map_or(0, |atom| atom.scope);
     let mut scopes: Vec<_> = fsm
         .outwards(own)

@@ -76,7 +76,12 @@ impl<A: Alphabet> Loaded<A> {
 
     /// Returns `true` if a run keeps odometry, progress or memories.
     pub(super) fn observes(&self) -> bool {
-        self.entered.has_stamps() || self.memories() > 0
+        self.has_stamps() || self.memories() > 0
+    }
+
+    /// Returns `true` if a run keeps odometry or progress.
+    pub(super) fn has_stamps(&self) -> bool {
+        self.entered.has_stamps()
     }
 
     /// Returns the machine of the plan; `None` if the plan is not observed.
