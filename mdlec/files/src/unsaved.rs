@@ -97,8 +97,8 @@ mod tests {
     #[test]
     fn all_texts_are_read_without_any_file() {
         let folder = Path::new("no/such/../folder");
-        let leg = "use \"../no/folder/./main.mdle\"\n{ Leg (Atom (wait 1) stop) }";
-        let files = [("main.mdle", MAIN), ("leg.mdle", leg)];
+        let leg = "use \"../folder/./foot.mdle\"\n{ Leg Foot }";
+        let files = [("main.mdle", MAIN), ("leg.mdle", leg), ("foot.mdle", "{ Foot (Atom (wait 1) stop) }")];
         let texts = files.map(|(name, text)| (folder.join(name), text.to_owned()));
         assert_eq!(codes(folder, &Unsaved::all(texts)), [""; 0]);
         assert_eq!(codes(folder, &Unsaved::all([])), ["E0205"]);
