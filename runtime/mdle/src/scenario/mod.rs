@@ -57,14 +57,14 @@ pub(crate) fn run(arguments: &Run, library: &Library<Sensed>) -> Result<ExitCode
 fn run_with(options: &Options, files: &Files, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
     match Ready::read(files, options)? {
         Ready::Crowd(crowd) => crowd::run(crowd, options),
-        Ready::Robots(scenario) => run_robots(scenario, options, library),
+        Ready::Robots(scenario) => run_robots(*scenario, options, library),
     }
 }
 
 /// A scenario that is ready to run.
 enum Ready {
     Crowd(CrowdSetup),
-    Robots(Scenario),
+    Robots(Box<Scenario>),
 }
 
 impl Ready {
@@ -83,7 +83,7 @@ impl Ready {
             return CrowdSetup::read(crowd, &file, files, options).map(Self::Crowd).map_err(refused);
         }
         options.check_robots()?;
-        Scenario::read(file, files, options.seed).map(Self::Robots).map_err(refused)
+        Scenario::read(file, files, options.seed).map(Box::new).map(Self::Robots).map_err(refused)
     }
 }
 
