@@ -14,25 +14,25 @@ use mdle_scripted::{INTERRUPTS, LAWS, Output};
 use mdle_tests::pipeline::{compile, scripted, sources};
 
 /// Loads the plan `Main` of a text.
-fn loaded(text: &str) -> Result<Arc<Loaded<Alphabet>>, String> {
+pub(crate) fn loaded(text: &str) -> Result<Arc<Loaded<Alphabet>>, String> {
     let machine = compile(text)?.machine;
     load::load(&machine, &sources(text), scripted()).map(Arc::new).map_err(|error| error.to_string())
 }
 
 /// An engine in stepped time.
-struct Run {
-    engine: Engine<Alphabet>,
-    turns: u64,
+pub(crate) struct Run {
+    pub(crate) engine: Engine<Alphabet>,
+    pub(crate) turns: u64,
     /// Reading of the robot's odometer.
-    way: Nanometers,
-    journal: Vec<PlanEvent>,
+    pub(crate) way: Nanometers,
+    pub(crate) journal: Vec<PlanEvent>,
 }
 
 const FIRST: &str = "{ Main (b) (Atom (a) seek) (Atom (d OR wait 1) climb) (Atom (e) idle) }";
 const SECOND: &str = "{ Main (c OR wait 5) (Atom (f) drift) }";
 
 impl Run {
-    fn of(text: &str) -> Self {
+    pub(crate) fn of(text: &str) -> Self {
         let terms = RunTerms {
             time: Time::Stepped(Pace::Max),
             period: Duration::from_millis(100),
@@ -43,13 +43,13 @@ impl Run {
         Self { engine, turns: 0, way: Nanometers::ZERO, journal: Vec::new() }
     }
 
-    fn plans(&mut self) -> &mut Plans<Alphabet> {
+    pub(crate) fn plans(&mut self) -> &mut Plans<Alphabet> {
         self.engine.plans_mut()
     }
 
     /// Makes a turn in which this interrupt fires, and returns the law that is applied: the time at which its atom
     /// began by the clock of its plan, and the number of inputs that it has computed.
-    fn turn(&mut self, interrupt: &str) -> String {
+    pub(crate) fn turn(&mut self, interrupt: &str) -> String {
         let bit = INTERRUPTS.iter().position(|known| *known == interrupt);
         let y = Output { fired: bit.map_or(0, |bit| 1 << bit), way: self.way, ..Output::default() };
         let t = Nanos(self.turns * 100_000_000);

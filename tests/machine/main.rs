@@ -10,5 +10,6 @@ mod loaded;
 mod matrices;
 mod pictures;
 mod scxml;
+mod sent_plans;
 mod theorem;
 mod validation;

@@ -75,6 +75,19 @@ pub enum PlanEvent {
 }
 
 impl PlanEvent {
+    /// Returns the number of the request if this is its last event before a plan begins, or that a plan begins.
+    pub(super) fn last_of(&self) -> Option<u32> {
+        match self {
+            Self::Refused(ticket, _)
+            | Self::Stored(ticket, _)
+            | Self::Superseded(ticket)
+            | Self::Replaced(ticket, _)
+            | Self::Cancelled(ticket)
+            | Self::Began(ticket) => Some(*ticket),
+            Self::Warned(..) | Self::Armed(_) | Self::Accepted(_) | Self::RolledBack { .. } => None,
+        }
+    }
+
     /// Returns the number of a request for a plan to take over, and the decision about it, if the event is one; `armed`
     /// says when the plan that is armed takes over.
     pub(crate) fn decision(&self, armed: &str) -> Option<(u32, Result<String, String>)> {

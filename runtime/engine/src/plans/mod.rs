@@ -8,6 +8,7 @@ mod changes;
 mod compiler;
 mod event;
 mod flight;
+mod peers;
 pub(crate) mod reads;
 mod requests;
 mod running;
@@ -25,6 +26,7 @@ use flight::{Desk, Flight};
 use mdle_compiler::load::LoadedPlan;
 use mdle_record::Change;
 use mdle_runtime::{Machine, ModuleRead, Nanos, Plan as _};
+use peers::PeerRequests;
 pub use running::EngineAlphabet;
 use running::Running;
 use stored::Store;
@@ -55,6 +57,9 @@ pub struct Plans<A: EngineAlphabet> {
     last: u32,
     /// Number of the last plan that has begun.
     begun: u32,
+    /// Number of the last request before a safety rule replaced the plan; 0 if no rule has.
+    overruled: u32,
+    peers: PeerRequests,
     driving: Driving,
     /// Reason why the active plan has replaced another plan.
     reason: String,
@@ -97,6 +102,8 @@ impl<A: EngineAlphabet> Plans<A> {
             paths,
             last: 1,
             begun: 1,
+            overruled: 0,
+            peers: PeerRequests::default(),
             reason: String::new(),
             events: Vec::new(),
             spent: Vec::new(),
@@ -191,6 +198,12 @@ impl<A: EngineAlphabet> Plans<A> {
     pub(crate) fn driving_reads(&self) -> &'static [ModuleRead] {
         let driving = self.current.as_ref().filter(|flight| flight.current.machine.is_some());
         driving.map_or(&[], |flight| flight.current.reads)
+    }
+
+    /// Reports an event of a request.
+    fn tell(&mut self, event: PlanEvent) {
+        self.peers.note(&event);
+        self.events.push(event);
     }
 
     fn discard(&mut self, plan: Running<A>) {

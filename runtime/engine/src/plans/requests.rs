@@ -131,11 +131,11 @@ impl<A: EngineAlphabet> Plans<A> {
     pub(super) fn take_back(&mut self) {
         let waiting = self.compiler.as_ref().and_then(Compiler::take_back);
         if let Some(order) = waiting {
-            self.events.push(PlanEvent::Cancelled(order.ticket));
+            self.tell(self.peers.cancelled(order.ticket));
             self.spent.push(Box::new(order));
         }
         if let Some((plan, _)) = self.armed.take() {
-            self.events.push(PlanEvent::Cancelled(plan.ticket));
+            self.tell(self.peers.cancelled(plan.ticket));
             self.discard(plan);
         }
     }
@@ -151,17 +151,20 @@ impl<A: EngineAlphabet> Plans<A> {
     fn order(&mut self, task: Task<A>) -> u32 {
         self.last = self.last.saturating_add(1);
         let ticket = self.last;
+        if matches!(task, Task::Compile(PlanSource::Peer { .. }, _)) {
+            self.peers.add(ticket);
+        }
         let given = match &mut self.compiler {
             Some(compiler) => compiler.order(Order { ticket, task }),
             None => Err("this engine has no compiler".to_owned()),
         };
         match given {
             Ok(Some(superseded)) => {
-                self.events.push(PlanEvent::Superseded(superseded.ticket));
+                self.tell(PlanEvent::Superseded(superseded.ticket));
                 self.spent.push(Box::new(superseded));
             }
             Ok(None) => {}
-            Err(sentence) => self.events.push(PlanEvent::Refused(ticket, sentence)),
+            Err(sentence) => self.tell(PlanEvent::Refused(ticket, sentence)),
         }
         ticket
     }
@@ -180,16 +183,16 @@ impl<A: EngineAlphabet> Plans<A> {
         let missing = plan.paths().iter().find(|path| !self.paths.contains(path));
         if let Some(path) = missing {
             let sentence = format!("the plan replays the path `{path}`, which the first plan of the run does not");
-            self.events.push(PlanEvent::Refused(ticket, sentence));
+            self.tell(PlanEvent::Refused(ticket, sentence));
             return self.discard(Running::new(ticket, plan));
         }
         if let Some(changes) = &mut self.changes {
             changes.armed(&files, plan.name(0), when);
         }
         if let Some((old, _)) = self.armed.replace((Running::new(ticket, plan), when)) {
-            self.events.push(PlanEvent::Replaced(old.ticket, Arc::clone(&old.name)));
+            self.tell(PlanEvent::Replaced(old.ticket, Arc::clone(&old.name)));
             self.discard(old);
         }
-        self.events.push(PlanEvent::Armed(ticket));
+        self.tell(PlanEvent::Armed(ticket));
     }
 }

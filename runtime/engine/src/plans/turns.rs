@@ -65,7 +65,7 @@ impl<A: EngineAlphabet> Plans<A> {
             Ok(Some(published)) => return Some((next, when, published)),
             Ok(None) => self.armed = Some((next, when)),
             Err(sentence) => {
-                self.events.push(PlanEvent::Refused(next.ticket, sentence));
+                self.tell(PlanEvent::Refused(next.ticket, sentence));
                 self.discard(next);
             }
         }
@@ -88,7 +88,7 @@ impl<A: EngineAlphabet> Plans<A> {
             && let Some((old, _)) = self.suspended.take()
         {
             self.discard(old);
-            self.events.push(PlanEvent::Accepted(flight.current.ticket));
+            self.tell(PlanEvent::Accepted(flight.current.ticket));
         }
         // A request may have come while the turn was late.
         let armed = flight.next.take();
@@ -104,17 +104,29 @@ impl<A: EngineAlphabet> Plans<A> {
         let old = self.events.len().saturating_sub(MOST_EVENTS);
         self.events.drain(..old);
         let Some(Outcome { ticket, product }) = self.compiler.as_mut().and_then(Compiler::done) else { return };
+        let product = match self.peers.barred(ticket) {
+            Some(reason) => {
+                self.spent.push(Box::new(product));
+                Err(reason.to_owned())
+            }
+            None => product,
+        };
         let product = product.and_then(|Product { compiled, next }| {
             if !compiled.warnings.is_empty() {
-                self.events.push(PlanEvent::Warned(ticket, compiled.warnings));
+                self.tell(PlanEvent::Warned(ticket, compiled.warnings));
             }
             let names = compiled.plans.iter().map(|plan| Arc::clone(&plan.name)).collect();
             self.store_all(compiled.plans).map(|()| (names, next))
         });
         match product {
+            // It was asked for before the rule, and compiled after it.
+            Ok((_, Some(next))) if ticket <= self.overruled => {
+                self.spent.push(Box::new(next));
+                self.tell(PlanEvent::Cancelled(ticket));
+            }
             Ok((_, Some(next))) => self.arm_plan(ticket, next),
-            Ok((names, None)) => self.events.push(PlanEvent::Stored(ticket, names)),
-            Err(diagnostics) => self.events.push(PlanEvent::Refused(ticket, diagnostics)),
+            Ok((names, None)) => self.tell(PlanEvent::Stored(ticket, names)),
+            Err(diagnostics) => self.tell(PlanEvent::Refused(ticket, diagnostics)),
         }
     }
 
@@ -129,13 +141,16 @@ impl<A: EngineAlphabet> Plans<A> {
         let from = self.drives(&old, "rolled back".to_owned());
         let to = old.ticket;
         self.take_over(old);
-        self.events.push(PlanEvent::RolledBack { from, to, why: why.to_owned() });
+        self.tell(PlanEvent::RolledBack { from, to, why: why.to_owned() });
         Ok(())
     }
 
-    /// Replaces the active plan at once and without a trial, for a supervisor; an armed plan is cancelled.
+    /// Replaces the active plan at once and without a trial, for a supervisor. Plans that were to take over are
+    /// cancelled, also those that are being compiled, and plans of other robots are barred.
     pub(crate) fn divert(&mut self, plan: LoadedPlan<A>) {
+        self.peers.bar(self.last, "a safety rule has replaced the plan");
         self.take_back();
+        self.overruled = self.last;
         self.last = self.last.saturating_add(1);
         let mut plan = Running::new(self.last, plan);
         plan.number = self.next_number();
@@ -145,7 +160,17 @@ impl<A: EngineAlphabet> Plans<A> {
             self.discard(old);
         }
         self.resumes = None;
-        self.events.push(PlanEvent::Began(self.last));
+        self.tell(PlanEvent::Began(self.last));
+    }
+
+    /// Refuses the plans of other robots for this reason until a plan begins that the operator requests after this
+    /// call. Returns `true` if such a plan was armed.
+    pub(crate) fn bar_peers(&mut self, reason: &'static str) -> bool {
+        self.peers.bar(self.last, reason);
+        let Some((plan, _)) = self.armed.take_if(|(plan, _)| self.peers.has(plan.ticket)) else { return false };
+        self.tell(PlanEvent::Refused(plan.ticket, reason.to_owned()));
+        self.discard(plan);
+        true
     }
 
     /// Returns `true` while the turn of the active plan is late, or after the plan has panicked.
@@ -182,7 +207,10 @@ impl<A: EngineAlphabet> Plans<A> {
         }
         self.trial_ends = Nanos(now.0.saturating_add(self.trial.0));
         self.drives(new, format!("main set to {}", new.name));
-        self.events.push(PlanEvent::Began(new.ticket));
+        if !self.peers.has(new.ticket) {
+            self.peers.lift(new.ticket);
+        }
+        self.tell(PlanEvent::Began(new.ticket));
     }
 
     fn next_number(&mut self) -> u32 {

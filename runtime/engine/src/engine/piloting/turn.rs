@@ -104,7 +104,12 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
     }
 
     fn ended_by(&mut self, rule: &str) -> bool {
-        self.ends_trial(&format!("the safety rule {rule} ends it")).is_ok()
+        let goes_on = self.ends_trial(&format!("the safety rule {rule} ends it")).is_ok();
+        // A replay finds by itself that the trial ends, and knows no requests of other robots.
+        if self.plans.bar_peers("a safety rule has ended a plan") {
+            self.plans.note(Change::Cancelled);
+        }
+        goes_on
     }
 
     fn machine(&self) -> Option<&Machine<LoadedPlan<A>>> {

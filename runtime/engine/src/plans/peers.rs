@@ -1,0 +1,68 @@
+//! Requests of other robots for plans to take over. None of them undoes what a safety rule has done.
+
+use super::PlanEvent;
+
+/// The requests of other robots that are not decided, and the bar that a safety rule has set to them.
+#[derive(Debug, Default)]
+pub(super) struct PeerRequests {
+    /// Numbers of the requests whose plans have neither begun nor been refused.
+    open: Vec<u32>,
+    bar: Option<Bar>,
+}
+
+/// A bar to plans of other robots.
+#[derive(Debug)]
+struct Bar {
+    /// Number of the last request before the bar.
+    last: u32,
+    /// Reason, as a sentence.
+    reason: &'static str,
+    /// `true` if a later plan of the operator has begun: requests after the bar pass.
+    is_lifted: bool,
+}
+
+impl PeerRequests {
+    /// Adds the request of this number.
+    pub(super) fn add(&mut self, ticket: u32) {
+        self.open.push(ticket);
+    }
+
+    /// Returns `true` if another robot has made the request of this number, which is not decided.
+    pub(super) fn has(&self, ticket: u32) -> bool {
+        self.open.contains(&ticket)
+    }
+
+    /// Notes an event of any request.
+    pub(super) fn note(&mut self, event: &PlanEvent) {
+        if let Some(ticket) = event.last_of() {
+            self.open.retain(|open| *open != ticket);
+        }
+    }
+
+    /// Bars the requests up to this number, and those that follow, for this reason.
+    pub(super) fn bar(&mut self, last: u32, reason: &'static str) {
+        self.bar = Some(Bar { last, reason, is_lifted: false });
+    }
+
+    /// Lifts the bar, since the plan of a request of this number, which no robot has made, has begun.
+    pub(super) fn lift(&mut self, ticket: u32) {
+        if let Some(bar) = self.bar.as_mut().filter(|bar| ticket > bar.last) {
+            bar.is_lifted = true;
+        }
+    }
+
+    /// Returns the reason why the plan of this request must not take over, if another robot has made the request and it
+    /// is barred.
+    pub(super) fn barred(&self, ticket: u32) -> Option<&'static str> {
+        let bar = self.bar.as_ref().filter(|bar| !bar.is_lifted || ticket <= bar.last)?;
+        self.has(ticket).then_some(bar.reason)
+    }
+
+    /// Returns the event of a request that is taken back.
+    pub(super) fn cancelled(&self, ticket: u32) -> PlanEvent {
+        match self.barred(ticket) {
+            Some(reason) => PlanEvent::Refused(ticket, reason.to_owned()),
+            None => PlanEvent::Cancelled(ticket),
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! Plans that other robots send while the robot runs: who they replace, and what is answered.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex};
+
+use mdle_engine::link::{Content, Letter, Link, State, StateLink};
+use mdle_engine::{CompiledPlans, PlanSource, StoredPlan, When};
+use mdle_host::{Moment, Pilot};
+use mdle_runtime::{Nanos, Pose};
+use mdle_scripted::Output;
+use mdle_scripted::alphabet::Alphabet;
+
+use crate::engine::{Run, loaded};
+
+/// The letters of one robot.
+#[derive(Default)]
+struct Mail {
+    arrived: Vec<Letter>,
+    sent: Vec<Letter>,
+}
+
+/// A link over which a test sends letters.
+struct Post(Arc<Mutex<Mail>>);
+
+impl Link for Post {
+    fn send(&mut self, _: &State, _: Nanos) {}
+
+    fn receive(&mut self, _: Nanos, _: &mut dyn FnMut(State)) {}
+
+    fn post(&mut self, _: &str, letter: &Letter, _: Nanos) -> Result<(), String> {
+        self.0.lock().unwrap().sent.push(letter.clone());
+        Ok(())
+    }
+
+    fn letters(&mut self, _: Nanos, take: &mut dyn FnMut(Letter)) {
+        self.0.lock().unwrap().arrived.drain(..).for_each(take);
+    }
+}
+
+/// The robot `bob`, who runs a plan and takes plans of `ada`.
+struct Bob {
+    run: Run,
+    mail: Arc<Mutex<Mail>>,
+    letters: u64,
+}
+
+const FIRST: &str = "{ Main (b) (Atom (a) seek) (Atom (null) climb) }";
+const DRIFT: &str = "{ Main (c) (Atom (f) drift) }";
+const IDLE: &str = "{ Main (e) (Atom (null) idle) }";
+
+/// Compiles the plan `Main` of a text.
+fn compiled(source: &PlanSource) -> Result<CompiledPlans<Alphabet>, String> {
+    let (PlanSource::Text(text) | PlanSource::Peer { text, .. }) = source else {
+        return Err("there is no such file".to_owned());
+    };
+    let files = [("main".to_owned(), text.clone())].into();
+    let plan = StoredPlan { name: "Main".into(), files, loaded: loaded(text)? };
+    Ok(CompiledPlans { plans: vec![plan], warnings: String::new() })
+}
+
+impl Bob {
+    fn new() -> Self {
+        let mail = Arc::default();
+        let link = StateLink::new(Box::new(Post(Arc::clone(&mail))), "bob", Pose::ORIGIN);
+        let link = link.exchanging_plans(vec!["ada".to_owned()], Vec::new());
+        let Run { engine, turns, way, journal } = Run::of(FIRST);
+        let run = Run { engine: engine.linked(link).unwrap(), turns, way, journal };
+        let mut bob = Self { run, mail, letters: 0 };
+        bob.run.plans().compile_at_once_with(Box::new(compiled));
+        bob
+    }
+
+    /// Returns the robot with a compiler that sends a message when it begins, and compiles when it gets one.
+    fn compiling_for(begun: Sender<()>, gate: Receiver<()>) -> Self {
+        let mut bob = Self::new();
+        let compile = move |source: &PlanSource| {
+            let _ = (begun.send(()), gate.recv());
+            compiled(source)
+        };
+        bob.run.plans().compile_with(Box::new(compile)).unwrap();
+        bob
+    }
+
+    /// Lets a plan of `ada` arrive before the end of the next turn.
+    fn gets(&mut self, text: &str, when: When) {
+        self.letters += 1;
+        let content = Content::Plan { when, text: text.to_owned() };
+        self.mail.lock().unwrap().arrived.push(Letter { from: "ada".to_owned(), number: self.letters, content });
+    }
+
+    /// Returns the answers since the last call, each with the number of the plan and `true` if the plan is accepted.
+    fn answers(&mut self) -> Vec<(u64, bool, String)> {
+        let sent: Vec<_> = self.mail.lock().unwrap().sent.drain(..).collect();
+        let answer = |letter: Letter| match letter.content {
+            Content::Answer { of, is_accepted, sentence } => (of, is_accepted, sentence),
+            Content::Plan { text, .. } => panic!("{text}"),
+        };
+        sent.into_iter().map(answer).collect()
+    }
+
+    /// Makes a turn; returns its law.
+    fn turn(&mut self) -> String {
+        let turn = self.run.turn("");
+        turn.split(' ').nth(1).unwrap_or(&turn).to_owned()
+    }
+
+    /// Makes turns until an answer has been sent; returns the answer.
+    fn answered(&mut self) -> (u64, bool, String) {
+        loop {
+            self.turn();
+            if let Some(answer) = self.answers().pop() {
+                return answer;
+            }
+            std::thread::yield_now();
+        }
+    }
+
+    /// Lets a safety rule replace the plan.
+    fn retreats(&mut self) {
+        let y = Output::default();
+        let t = Nanos(self.run.turns * 100_000_000);
+        self.run.engine.divert(loaded(IDLE).unwrap().plan(), Moment { y: &y, t, number: self.run.turns });
+    }
+}
+
+/// The refusal of a plan.
+fn refused(of: u64, reason: &str) -> (u64, bool, String) {
+    (of, false, reason.to_owned())
+}
+
+const REPLACED: &str = "a safety rule has replaced the plan";
+const ENDED: &str = "a safety rule has ended a plan";
+
+#[test]
+fn no_sent_plan_replaces_that_of_a_safety_rule() {
+    let mut bob = Bob::new();
+    bob.turn();
+    bob.retreats();
+    for (number, when) in (1..).zip([When::Now, When::AtomEnds, When::PlanEnds]) {
+        bob.gets(DRIFT, when);
+        assert_eq!([bob.turn(), bob.turn()], ["idle", "idle"], "{when:?}");
+        assert_eq!(bob.answers(), [refused(number, REPLACED)]);
+    }
+    // The operator takes over again.
+    bob.run.plans().replace(loaded(FIRST).unwrap().plan(), When::Now);
+    assert_eq!(bob.turn(), "seek");
+    bob.gets(DRIFT, When::Now);
+    assert_eq!([bob.turn(), bob.turn()], ["seek", "drift"]);
+}
+
+#[test]
+fn a_safety_rule_overrules_plans_that_wait() {
+    let mut bob = Bob::new();
+    bob.turn();
+    bob.gets(DRIFT, When::PlanEnds);
+    bob.turn();
+    bob.answers();
+    bob.retreats();
+    assert_eq!([bob.turn(), bob.run.turn("e"), bob.turn()], ["idle", "over", "over"]);
+    assert_eq!(bob.run.plans().armed(), None);
+}
+
+#[test]
+fn a_safety_rule_overrules_plans_being_compiled() {
+    let ((compile, gate), (begun, begins)) = (channel(), channel());
+    let mut bob = Bob::compiling_for(begun, gate);
+    bob.gets(DRIFT, When::Now);
+    bob.turn();
+    begins.recv().unwrap();
+    bob.retreats();
+    bob.turn();
+    compile.send(()).unwrap();
+    assert_eq!(bob.answered(), refused(1, REPLACED));
+    assert_eq!([bob.turn(), bob.turn()], ["idle", "idle"]);
+    // A text of the operator neither, and nothing is left that could take over later.
+    let mut bob = Bob::compiling_for(channel().0, channel().1);
+    bob.run.plans().swap(PlanSource::Text(DRIFT.to_owned()), When::Now);
+    bob.retreats();
+    while !bob.run.journal.contains(&mdle_engine::PlanEvent::Cancelled(2)) {
+        assert_eq!(bob.turn(), "idle");
+    }
+    assert_eq!([bob.turn(), bob.turn()], ["idle", "idle"]);
+}
+
+#[test]
+fn a_robot_whose_plan_was_ended_takes_no_other() {
+    let mut bob = Bob::new();
+    bob.gets(DRIFT, When::Now);
+    assert_eq!([bob.turn(), bob.turn()], ["seek", "drift"]);
+    bob.gets(IDLE, When::AtomEnds);
+    bob.turn();
+    bob.answers();
+    assert!(bob.run.engine.ended_by("contact"), "the plan before goes on");
+    assert_eq!([bob.turn(), bob.run.turn("a"), bob.turn()], ["seek", "1 climb since 0.2 input 1", "climb"]);
+    bob.answers();
+    for number in 3..5 {
+        bob.gets(DRIFT, When::Now);
+        assert_eq!([bob.turn(), bob.turn()], ["climb", "climb"]);
+        assert_eq!(bob.answers(), [refused(number, ENDED)]);
+    }
+    assert!(!bob.run.engine.ended_by("contact"), "no plan is on trial");
+}
