@@ -74,7 +74,7 @@ impl Run {
     }
 
     /// Makes turns in which nothing fires.
-    fn turns(&mut self, count: u64) -> String {
+    pub(crate) fn turns(&mut self, count: u64) -> String {
         (0..count).map(|_| self.turn("")).last().unwrap()
     }
 }

@@ -202,3 +202,19 @@ fn a_robot_whose_plan_was_ended_takes_no_other() {
     }
     assert!(!bob.run.engine.ended_by("contact"), "no plan is on trial");
 }
+
+#[test]
+fn sent_plans_are_not_stored() {
+    let mut bob = Bob::new();
+    let own = StoredPlan { name: "Main".into(), files: [].into(), loaded: loaded(IDLE).unwrap() };
+    bob.run.plans().store(own).unwrap();
+    for text in [DRIFT, FIRST].into_iter().cycle().take(70) {
+        bob.gets(text, When::Now);
+        bob.run.turns(11);
+        assert!(bob.answers().iter().all(|(_, is_accepted, _)| *is_accepted));
+    }
+    // That of the operator is as it was.
+    assert_eq!(bob.run.plans().stored().map(|plan| &*plan.name).collect::<Vec<_>>(), ["Main"]);
+    bob.run.plans().run("Main", When::Now).unwrap();
+    assert_eq!([bob.turn(), bob.turn()].last().unwrap(), "idle");
+}

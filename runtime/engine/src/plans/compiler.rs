@@ -52,8 +52,8 @@ pub(crate) struct Order<A: EngineAlphabet> {
 }
 
 pub(crate) enum Task<A: EngineAlphabet> {
-    /// Compile plans, which are then stored. If a moment is given, the plan takes over at that moment, provided
-    /// that the text has only one plan.
+    /// Compile plans, which are then stored, except those of another robot. If a moment is given, the plan takes over
+    /// at that moment, provided that the text has only one plan.
     Compile(PlanSource, Option<When>),
     /// Prepare a stored plan to take over at this moment.
     Begin(StoredPlan<A>, When),
@@ -233,7 +233,7 @@ impl<A: EngineAlphabet> Task<A> {
     fn carry_out(self, compile: &Compile<A>) -> Result<Product<A>, String> {
         match self {
             Self::Compile(source, when) => {
-                let compiled = compile(&source)?;
+                let mut compiled = compile(&source)?;
                 let next = match (when, compiled.plans.as_slice()) {
                     (None, _) => None,
                     (Some(when), [only]) => Some(Next::of(only, when)),
@@ -242,6 +242,10 @@ impl<A: EngineAlphabet> Task<A> {
                         return Err(format!("the text has several plans, and one of them can drive: {names}"));
                     }
                 };
+                // Only the operator stores plans, who can delete them.
+                if matches!(source, PlanSource::Peer { .. }) {
+                    compiled.plans.clear();
+                }
                 Ok(Product { compiled, next })
             }
             Self::Begin(plan, when) => {

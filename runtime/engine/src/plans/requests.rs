@@ -77,10 +77,10 @@ impl<A: EngineAlphabet> Plans<A> {
         self.order(Task::Compile(source, None))
     }
 
-    /// Requests that the plan of a text be stored and take over; returns the number of the request. The answer
-    /// is [`PlanEvent::Refused`] or [`PlanEvent::Armed`] at a later break, and then [`PlanEvent::Began`]. A
-    /// request that is not compiled when the next one comes is superseded; a plan that is armed and has not
-    /// begun is replaced.
+    /// Requests that the plan of a text be stored, unless another robot has sent it, and take over; returns the
+    /// number of the request. The answer is [`PlanEvent::Refused`] or [`PlanEvent::Armed`] at a later break, and then
+    /// [`PlanEvent::Began`]. A request that is not compiled when the next one comes is superseded; a plan that is armed
+    /// and has not begun is replaced.
     pub fn swap(&mut self, source: PlanSource, when: When) -> u32 {
         self.order(Task::Compile(source, Some(when)))
     }
