@@ -132,6 +132,7 @@ fn refused(of: u64, reason: &str) -> (u64, bool, String) {
 
 const REPLACED: &str = "a safety rule has replaced the plan";
 const ENDED: &str = "a safety rule has ended a plan";
+const TAKEN: &str = "another plan takes its place";
 
 #[test]
 fn no_sent_plan_replaces_that_of_a_safety_rule() {
@@ -217,4 +218,27 @@ fn sent_plans_are_not_stored() {
     assert_eq!(bob.run.plans().stored().map(|plan| &*plan.name).collect::<Vec<_>>(), ["Main"]);
     bob.run.plans().run("Main", When::Now).unwrap();
     assert_eq!([bob.turn(), bob.turn()].last().unwrap(), "idle");
+}
+
+#[test]
+fn a_robot_takes_one_plan_a_second_of_another() {
+    let mut bob = Bob::new();
+    let mut accepted = |turns: u64| {
+        let mut accepted = Vec::new();
+        for _ in 0..turns {
+            bob.gets(DRIFT, When::PlanEnds);
+            bob.turn();
+            // Each plan that waits is replaced by the next one.
+            let answers = bob.answers().into_iter().filter(|(_, _, sentence)| sentence != TAKEN);
+            accepted.extend(answers.map(|(_, is_accepted, sentence)| {
+                let is_pace = sentence == "it sends more than one plan a second: send it again later";
+                assert!(is_accepted != is_pace, "{sentence}");
+                is_accepted
+            }));
+        }
+        accepted
+    };
+    assert_eq!(accepted(6), [true, true, true, true, false, false]);
+    assert_eq!(accepted(10).iter().filter(|is_accepted| **is_accepted).count(), 1);
+    assert_eq!(accepted(100).iter().filter(|is_accepted| **is_accepted).count(), 10);
 }

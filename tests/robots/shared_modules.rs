@@ -108,6 +108,10 @@ fn a_plan_of_another_robot_takes_over() {
 fn a_plan_that_does_not_check_changes_nothing() {
     let folder = folder("sent_faulty");
     fs::write(folder.join("secret.mdle"), "{ Secret (wait 1s) (Atom (null) stop) }").unwrap();
+    // Texts of a kilobyte that would take gigabytes.
+    let doubling = (1..=13).map(|n| format!("{{ P{n} (wait {n}) P{} P{} }}\n", n - 1, n - 1));
+    let doubled = doubling.collect::<String>() + "{ P0 (wait 9) (Atom (wait 1) stop) }";
+    let roots = (0..500).map(|n| format!("{{ R{n} (wait 9) P13 }}\n")).collect::<String>() + &doubled;
     let cases = [
         ("{ Go (wait 2s) (Atom (null) (goo 10 0)) }", "there is no law called `goo`"),
         ("{ Go (wait 2s", "error"),
@@ -117,6 +121,8 @@ fn a_plan_that_does_not_check_changes_nothing() {
             "the plan comes without other files, so `secret.mdle` is not read",
         ),
         ("{ Go (wait 2s) (Atom (null) path(way)) }", "the plan replays the path `way`"),
+        (&doubled, "atoms, scopes and loops, and one that is sent has 10000 at most"),
+        (&roots, "the text has several plans, and one of them can drive: R0, R1…"),
     ];
     for (text, words) in cases {
         fs::write(folder.join("go.mdle"), text).unwrap();

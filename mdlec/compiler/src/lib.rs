@@ -105,6 +105,16 @@ pub fn check_with(
     stages(source, text, alphabet, None, loader, None).1
 }
 
+/// Returns the names of the plans that [`compile_with`] compiles of a file. This takes far less time and memory,
+/// however often the plans use other plans.
+#[must_use]
+pub fn roots(source: SourceId, text: &str, alphabet: &Alphabet, loader: &mut dyn syntax::Loader) -> Vec<String> {
+    let arena = syntax::arena_for(text);
+    let (mut files, _) = syntax::parse_with(source, text, &arena, loader);
+    let _ = projection::project(&mut files, &arena, alphabet);
+    plan::roots(&files, alphabet)
+}
+
 /// Runs all stages, one plan after the other, and keeps the compiled plans if there is a limit for them.
 fn stages(
     source: SourceId,

@@ -8,7 +8,7 @@ use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources};
 use mdle_compiler::projection::{Part, part_name, projected};
 use mdle_compiler::rust::{self, Header};
 use mdle_compiler::syntax::tree::{Arg, Plan};
-use mdle_compiler::{Compiled, Limit, check_with, compile_within, syntax};
+use mdle_compiler::{Compiled, Limit, check_with, compile_within, roots, syntax};
 
 use crate::read::Unread;
 use crate::text::{read_text, shown, without_mark};
@@ -87,6 +87,12 @@ impl Input {
         let compiled = compile_within(self.source, &text, alphabet, wanted, self, limit);
         self.parts = compiled.0.iter().filter_map(|compiled| compiled.part.clone()).collect();
         compiled
+    }
+
+    /// Returns the names of the plans that [`Input::compile`] compiles, without compiling them.
+    pub fn roots(&mut self, alphabet: &Alphabet) -> Vec<String> {
+        let text = self.sources.text(self.source).to_owned();
+        roots(self.source, &text, alphabet, self)
     }
 
     /// Returns the plans of the robots of the file's groups as MDLe text, or only that called `wanted`; empty without a

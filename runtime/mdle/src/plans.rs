@@ -5,8 +5,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use codespan_reporting::term::termcolor::NoColor;
-use mdle_compiler::diagnostic::{Diagnostic, Sources, judged};
+use mdle_compiler::diagnostic::{Code, Diagnostic, Sources, judged};
 use mdle_compiler::load;
+use mdle_compiler::plan::Nondegenerate;
 use mdle_engine::{CompiledPlans, EngineAlphabet, PlanSource, Plans, StoredPlan};
 use mdle_files::{FaultyFile, Input, InputError, Target, plan, read_plan};
 use mdle_host::Refusal;
@@ -14,6 +15,9 @@ use mdle_runtime::Alphabet;
 
 /// Name of a text that was typed, in diagnostics.
 const TYPED: &str = "main";
+/// Maximum number of atoms, scopes and loops of a plan that another robot sends, in which other plans are copied. Plans
+/// that use plans multiply: a short text may need much memory.
+const SENT: usize = 10_000;
 
 /// Stores the first plan of a run, and enables further plans of this target to be loaded.
 ///
@@ -49,7 +53,13 @@ fn compiled<A: EngineAlphabet>(source: &PlanSource, target: &Target) -> Result<C
         }
     };
     let mut input = input.map_err(unread)?;
-    let (machines, diagnostics) = input.compile(&target.alphabet, None);
+    let (machines, diagnostics) = match source {
+        PlanSource::Peer { .. } => {
+            one_of(&input.roots(&target.alphabet))?;
+            input.compile_within(&target.alphabet, None, is_small)
+        }
+        PlanSource::File(_) | PlanSource::Text(_) => input.compile(&target.alphabet, None),
+    };
     let warnings = rendered(&input.sources, &diagnostics);
     if let Err(count) = judged(&diagnostics, false) {
         return Err(faulty(&count, &warnings));
@@ -62,6 +72,29 @@ fn compiled<A: EngineAlphabet>(source: &PlanSource, target: &Target) -> Result<C
     let files = texts(&input).into();
     let stored = machines.into_iter().map(|(name, machine)| stored(name, &machine, &input, target, &files));
     Ok(CompiledPlans { plans: stored.collect::<Result<_, _>>()?, warnings })
+}
+
+/// Refuses several plans of another robot before they are compiled.
+///
+/// # Errors
+/// The names are those of several plans: a sentence.
+fn one_of(names: &[String]) -> Result<(), String> {
+    match names {
+        [] | [_] => Ok(()),
+        [one, other, ..] => Err(format!("the text has several plans, and one of them can drive: {one}, {other}…")),
+    }
+}
+
+/// Limits the size of a plan of another robot.
+fn is_small(plan: &Nondegenerate) -> Result<(), Diagnostic> {
+    let plan = plan.plan();
+    let parts = plan.parts().count();
+    if parts <= SENT {
+        return Ok(());
+    }
+    let message = format!("this plan has {parts} atoms, scopes and loops, and one that is sent has {SENT} at most");
+    let help = "use a loop where the same is written many times";
+    Err(Diagnostic::new(Code::E0501, message, plan.root.span, "this plan").help(help))
 }
 
 /// Returns the names and texts of the files of a compiled plan, its own file first.

@@ -34,7 +34,7 @@ pub use comparisons::{is_time, is_way};
 pub use condition::{After, Condition, Situation};
 pub use functions::{Function, Functions};
 pub use nondegenerate::{Nondegenerate, remove_degeneracy};
-pub use resolve::resolve;
+pub use resolve::{resolve, roots};
 pub use resolve_conditions::condition_text;
 pub use walk::{Part, Visit, Walk};
 pub(crate) use words::Words;

@@ -19,6 +19,14 @@ use crate::syntax::tree::{self, Arg, Call, ConditionNode, Count, Element, Formal
 /// Maximum angle of a FRAME, in its unit: far beyond a full circle, and small enough for exact sums.
 const FRAME: f64 = 100_000.0;
 
+/// Returns the names of the plans of a file to which no other plan refers, without copying plans into each other.
+#[must_use]
+pub fn roots(files: &Files, alphabet: &Alphabet) -> Vec<String> {
+    let (definitions, _) = Definitions::collect(files, alphabet);
+    let roots = definitions.roots().into_iter().filter(|plan| plan.params.is_empty());
+    roots.map(|plan| plan.name.node.to_owned()).collect()
+}
+
 /// Resolves the plans of a file and of the files that it uses: the file's plans to which no other plan refers,
 /// or only the plan `wanted`.
 ///

@@ -10,6 +10,7 @@ mod frame;
 mod letter;
 mod letter_frame;
 mod orders;
+mod pace;
 mod rounds;
 mod state;
 mod state_link;

@@ -1,9 +1,15 @@
 //! Plans that other robots send, on their way to take over, and the answers to plans that this robot has sent.
 
+use std::collections::BTreeMap;
+
 use mdle_runtime::{Nanos, Printable};
 
+use super::pace::{Admission, Pace};
 use super::{Content, LONGEST_TEXT, Letter, Link};
 use crate::plans::{EngineAlphabet, PlanSource, Plans, When};
+
+/// Answer to a plan of a robot that sends plans too fast.
+const TOO_FAST: &str = "it sends more than one plan a second: send it again later";
 
 /// The plans that are exchanged with other robots.
 #[derive(Debug, Default)]
@@ -18,6 +24,8 @@ pub(super) struct Orders {
     sent: u64,
     /// Plans of other robots that have not taken over.
     waiting: Vec<Order>,
+    /// Paces of the robots that have sent plans.
+    paces: BTreeMap<String, Pace>,
 }
 
 /// A plan of another robot.
@@ -76,16 +84,23 @@ impl Orders {
             Content::Answer { is_accepted: false, sentence, .. } => {
                 Some(format!("warning: state link: {from} refuses the plan: {}", printable(&sentence)))
             }
-            Content::Plan { when, text } if self.takes_from.contains(&from) => {
-                let ticket = plans.swap(PlanSource::Peer { robot: from.clone(), text }, when);
-                self.waiting.push(Order { ticket, from, number });
-                None
-            }
-            Content::Plan { .. } => {
+            Content::Plan { .. } if !self.takes_from.contains(&from) => {
                 let sentence = format!("{} takes no plans of {from}", self.own);
                 self.answer(link, &from, number, Err(&sentence), now);
                 Some(format!("warning: state link: the plan of {from} is refused: {sentence}"))
             }
+            Content::Plan { when, text } => match self.paces.entry(from.clone()).or_default().admits(now) {
+                Admission::Taken => {
+                    let ticket = plans.swap(PlanSource::Peer { robot: from.clone(), text }, when);
+                    self.waiting.push(Order { ticket, from, number });
+                    None
+                }
+                admission @ (Admission::TooFast | Admission::StillTooFast) => {
+                    self.answer(link, &from, number, Err(TOO_FAST), now);
+                    let is_first = admission == Admission::TooFast;
+                    is_first.then(|| format!("warning: state link: the plan of {from} is refused: {TOO_FAST}"))
+                }
+            },
         });
         messages.collect()
     }

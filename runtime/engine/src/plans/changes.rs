@@ -1,6 +1,6 @@
 //! Changes of plans between turns, as records keep them.
 
-use std::sync::Arc;
+use std::collections::BTreeMap;
 
 use mdle_record::Change;
 
@@ -9,21 +9,20 @@ use super::event::When;
 /// The changes of plans since the last turn.
 #[derive(Debug, Default)]
 pub(crate) struct PlanChanges {
-    /// The files of plans that the record contains, by their numbers.
-    files: Vec<Arc<[(String, String)]>>,
+    /// Numbers of the files of plans that the record contains, by their hashes: a run may have any number of plans.
+    files: BTreeMap<[u8; 32], u32>,
     changes: Vec<Change>,
 }
 
 impl PlanChanges {
     /// Records that a plan of these files is to take over.
-    pub(crate) fn armed(&mut self, files: &Arc<[(String, String)]>, plan: &str, when: When) {
-        let number = self.files.iter().position(|known| known == files).unwrap_or_else(|| {
+    pub(crate) fn armed(&mut self, files: &[(String, String)], plan: &str, when: When) {
+        let next = u32::try_from(self.files.len()).unwrap_or(u32::MAX);
+        let number = *self.files.entry(hash(files)).or_insert_with(|| {
             self.changes.push(Change::Files(files.to_vec()));
-            self.files.push(Arc::clone(files));
-            self.files.len() - 1
+            next
         });
-        let files = u32::try_from(number).unwrap_or(u32::MAX);
-        self.changes.push(Change::Armed { files, plan: plan.to_owned(), when: when.number() });
+        self.changes.push(Change::Armed { files: number, plan: plan.to_owned(), when: when.number() });
     }
 
     /// Records another change.
@@ -34,5 +33,36 @@ impl PlanChanges {
     /// Takes the changes since the last call.
     pub(crate) fn take(&mut self) -> Vec<Change> {
         std::mem::take(&mut self.changes)
+    }
+}
+
+/// Returns the hash of the names and texts of files.
+fn hash(files: &[(String, String)]) -> [u8; 32] {
+    let mut hasher = blake3::Hasher::new();
+    for text in files.iter().flat_map(|(name, text)| [name, text]) {
+        // The length separates a text from the next one.
+        hasher.update(&u64::try_from(text.len()).unwrap_or(u64::MAX).to_le_bytes());
+        hasher.update(text.as_bytes());
+    }
+    *hasher.finalize().as_bytes()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_record_has_each_text_once() {
+        let files = |name: &str, text: &str| vec![(name.to_owned(), text.to_owned())];
+        let mut changes = PlanChanges::default();
+        let plans = [files("a", "bc"), files("ab", "c"), files("a", "bc"), files("a", ""), files("ab", "c")];
+        plans.iter().for_each(|files| changes.armed(files, "P", When::Now));
+        let changes = changes.take();
+        let numbers = changes
+            .iter()
+            .filter_map(|change| if let Change::Armed { files, .. } = change { Some(*files) } else { None });
+        assert_eq!(numbers.collect::<Vec<_>>(), [0, 1, 0, 2, 1]);
+        let texts: Vec<_> = changes.iter().filter(|change| matches!(change, Change::Files(_))).cloned().collect();
+        assert_eq!(texts, [0, 1, 3].map(|place: usize| Change::Files(plans[place].clone())));
     }
 }
