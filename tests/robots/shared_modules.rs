@@ -121,6 +121,8 @@ fn a_plan_that_does_not_check_changes_nothing() {
             "the plan comes without other files, so `secret.mdle` is not read",
         ),
         ("{ Go (wait 2s) (Atom (null) path(way)) }", "the plan replays the path `way`"),
+        ("{ Go (null) (Atom (null) (go 20 0)) }", "the plan never ends"),
+        ("{ Go (wait 2s) (Atom (rendezvous eve) stop) }", "the plan names the robot `eve`"),
         (&doubled, "atoms, scopes and loops, and one that is sent has 10000 at most"),
         (&roots, "the text has several plans, and one of them can drive: R0, R1…"),
     ];

@@ -100,6 +100,11 @@ impl LinkFile {
         )))
     }
 
+    /// Returns the names of the other robots.
+    pub(crate) fn robots(&self) -> Vec<String> {
+        self.settings.peers.iter().map(|(name, _)| name.clone()).collect()
+    }
+
     /// Returns `true` if the robot takes plans of another robot.
     pub(crate) fn takes_plans(&self) -> bool {
         !self.settings.plans.is_empty()

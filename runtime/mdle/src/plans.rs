@@ -5,13 +5,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use codespan_reporting::term::termcolor::NoColor;
+use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::diagnostic::{Code, Diagnostic, Sources, judged};
 use mdle_compiler::load;
 use mdle_compiler::plan::Nondegenerate;
 use mdle_engine::{CompiledPlans, EngineAlphabet, PlanSource, Plans, StoredPlan};
 use mdle_files::{FaultyFile, Input, InputError, Target, plan, read_plan};
 use mdle_host::Refusal;
-use mdle_runtime::Alphabet;
+use mdle_runtime::{Alphabet, Plan as _};
 
 /// Name of a text that was typed, in diagnostics.
 const TYPED: &str = "main";
@@ -19,7 +20,8 @@ const TYPED: &str = "main";
 /// that use plans multiply: a short text may need much memory.
 const SENT: usize = 10_000;
 
-/// Stores the first plan of a run, and enables further plans of this target to be loaded.
+/// Stores the first plan of a run, and enables further plans of this target to be loaded, and plans that name these
+/// robots to be sent.
 ///
 /// # Errors
 /// Fails if the system cannot create the compiler's thread.
@@ -27,24 +29,31 @@ pub(crate) fn begin<A: EngineAlphabet>(
     plans: &mut Plans<A>,
     first: StoredPlan<A>,
     target: &Arc<Target>,
+    robots: Vec<String>,
 ) -> Result<(), Refusal> {
     let target = Arc::clone(target);
-    let started = plans.compile_with(Box::new(move |source| compiled(source, &target)));
+    let started = plans.compile_with(Box::new(move |source| compiled(source, &target, &robots)));
     started.map_err(|error| Refusal::Fault(format!("the system gives no thread for the compiler: {error}")))?;
     plans.store(first).map_err(Refusal::Fault)
 }
 
-/// Enables other robots to send plans for this target, for which turns wait, in simulated time.
-pub(crate) fn begin_at_once<A: EngineAlphabet>(plans: &mut Plans<A>, target: &Arc<Target>) {
+/// Enables other robots to send plans for this target that name these robots. In simulated time, turns wait for them.
+pub(crate) fn begin_at_once<A: EngineAlphabet>(plans: &mut Plans<A>, target: &Arc<Target>, robots: Vec<String>) {
     let target = Arc::clone(target);
-    plans.compile_at_once_with(Box::new(move |source| compiled(source, &target)));
+    plans.compile_at_once_with(Box::new(move |source| compiled(source, &target, &robots)));
 }
 
-/// Compiles and loads the plans of a text that no other plan of the text uses.
+/// Compiles and loads the plans of a text that no other plan of the text uses. `robots` are those that a plan of
+/// another robot may name.
 ///
 /// # Errors
 /// Fails with a sentence and the diagnostics, as `mdlec check` prints them.
-fn compiled<A: EngineAlphabet>(source: &PlanSource, target: &Target) -> Result<CompiledPlans<A>, String> {
+fn compiled<A: EngineAlphabet>(
+    source: &PlanSource,
+    target: &Target,
+    robots: &[String],
+) -> Result<CompiledPlans<A>, String> {
+    let is_sent = matches!(source, PlanSource::Peer { .. });
     let input = match source {
         PlanSource::File(path) => read_plan(path, target),
         PlanSource::Text(text) => plan(Path::new(TYPED), text.clone(), target),
@@ -53,16 +62,19 @@ fn compiled<A: EngineAlphabet>(source: &PlanSource, target: &Target) -> Result<C
         }
     };
     let mut input = input.map_err(unread)?;
-    let (machines, diagnostics) = match source {
-        PlanSource::Peer { .. } => {
-            one_of(&input.roots(&target.alphabet))?;
-            input.compile_within(&target.alphabet, None, is_small)
-        }
-        PlanSource::File(_) | PlanSource::Text(_) => input.compile(&target.alphabet, None),
+    let (machines, diagnostics) = if is_sent {
+        one_of(&input.roots(&target.alphabet))?;
+        input.compile_within(&target.alphabet, None, is_small)
+    } else {
+        input.compile(&target.alphabet, None)
     };
     let warnings = rendered(&input.sources, &diagnostics);
     if let Err(count) = judged(&diagnostics, false) {
         return Err(faulty(&count, &warnings));
+    }
+    // Nobody at this robot has read the warning.
+    if is_sent && diagnostics.iter().any(|diagnostic| diagnostic.code == Code::W0201) {
+        return Err(format!("the plan never ends, and nothing has changed\n{}", warnings.trim_end()));
     }
     let machines = machines.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine));
     let machines: Vec<_> = machines.collect();
@@ -71,7 +83,23 @@ fn compiled<A: EngineAlphabet>(source: &PlanSource, target: &Target) -> Result<C
     }
     let files = texts(&input).into();
     let stored = machines.into_iter().map(|(name, machine)| stored(name, &machine, &input, target, &files));
-    Ok(CompiledPlans { plans: stored.collect::<Result<_, _>>()?, warnings })
+    let plans: Vec<StoredPlan<A>> = stored.collect::<Result<_, _>>()?;
+    if is_sent {
+        plans.iter().try_for_each(|plan| names_only(robots, plan.loaded.plan().robots()))?;
+    }
+    Ok(CompiledPlans { plans, warnings })
+}
+
+/// Checks that the robots that a plan names are among these.
+///
+/// # Errors
+/// The plan names another robot: a sentence.
+fn names_only(robots: &[String], named: &[&str]) -> Result<(), String> {
+    let robots: Vec<&str> = robots.iter().map(String::as_str).collect();
+    let Some(unknown) = named.iter().find(|name| !robots.contains(name)) else { return Ok(()) };
+    let near = did_you_mean(unknown, &robots);
+    let robots = robots.join(", ");
+    Err(format!("the plan names the robot `{unknown}`, which this robot does not know{near}; it knows {robots}"))
 }
 
 /// Refuses several plans of another robot before they are compiled.

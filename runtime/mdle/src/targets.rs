@@ -170,7 +170,8 @@ impl<T, A: EngineAlphabet<Output = Sensed>> PlanFor<T, A> {
         let mut engine = self.engine(library, terms)?;
         if is_session || self.link.as_ref().is_some_and(LinkFile::takes_plans) {
             let first = StoredPlan { name: name.into(), files: self.files.clone(), loaded: self.loaded.clone() };
-            plans::begin(engine.plans_mut(), first, &self.known)?;
+            let robots = self.link.as_ref().map_or_else(Vec::new, LinkFile::robots);
+            plans::begin(engine.plans_mut(), first, &self.known, robots)?;
         }
         Ok(engine)
     }

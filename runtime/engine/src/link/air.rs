@@ -72,6 +72,13 @@ impl Air {
         };
         (0..robots).map(end).collect()
     }
+
+    /// Returns the names of the other robots.
+    #[must_use]
+    pub fn others(&self) -> Vec<String> {
+        let others = self.mail.iter().enumerate().filter(|(place, _)| *place != self.own);
+        others.map(|(_, mail)| mail.robot.clone()).collect()
+    }
 }
 
 impl Faults {

@@ -97,12 +97,12 @@ impl Runner {
         let added = hearing.map(|hearing| hearing.added(library, &microphones));
         let engine = Engine::new(plan, added.as_ref().unwrap_or(library), &terms);
         let engine = engine.map_err(|refusal| refusal.to_string())?;
-        let takes_plans = !plans_from.is_empty();
+        let (takes_plans, others) = (!plans_from.is_empty(), air.others());
         let link =
             StateLink::new(Box::new(air), &name, start).sharing(&shares).exchanging_plans(plans_from, Vec::new());
         let mut engine = engine.linked(link).map_err(|refusal| format!("the robot `{name}`: {refusal}"))?;
         if takes_plans {
-            plans::begin_at_once(engine.plans_mut(), &scenario.target);
+            plans::begin_at_once(engine.plans_mut(), &scenario.target, others);
         }
         if is_recorded {
             engine.record();
