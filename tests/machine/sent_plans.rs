@@ -50,6 +50,9 @@ const FIRST: &str = "{ Main (b) (Atom (a) seek) (Atom (null) climb) }";
 const DRIFT: &str = "{ Main (c) (Atom (f) drift) }";
 const IDLE: &str = "{ Main (e) (Atom (null) idle) }";
 
+/// A plan about which the compiler warns.
+const WARNED: &str = "{ Main (b) (Atom (null) idle) }";
+
 /// Compiles the plan `Main` of a text.
 fn compiled(source: &PlanSource) -> Result<CompiledPlans<Alphabet>, String> {
     let (PlanSource::Text(text) | PlanSource::Peer { text, .. }) = source else {
@@ -57,7 +60,8 @@ fn compiled(source: &PlanSource) -> Result<CompiledPlans<Alphabet>, String> {
     };
     let files = [("main".to_owned(), text.clone())].into();
     let plan = StoredPlan { name: "Main".into(), files, loaded: loaded(text)? };
-    Ok(CompiledPlans { plans: vec![plan], warnings: String::new() })
+    let warnings = if text == WARNED { "warning: careful\n".to_owned() } else { String::new() };
+    Ok(CompiledPlans { plans: vec![plan], warnings })
 }
 
 impl Bob {
@@ -160,6 +164,7 @@ fn a_safety_rule_overrules_plans_that_wait() {
     bob.answers();
     bob.retreats();
     assert_eq!([bob.turn(), bob.run.turn("e"), bob.turn()], ["idle", "over", "over"]);
+    assert_eq!(bob.answers(), [refused(1, REPLACED)]);
     assert_eq!(bob.run.plans().armed(), None);
 }
 
@@ -195,7 +200,7 @@ fn a_robot_whose_plan_was_ended_takes_no_other() {
     bob.answers();
     assert!(bob.run.engine.ended_by("contact"), "the plan before goes on");
     assert_eq!([bob.turn(), bob.run.turn("a"), bob.turn()], ["seek", "1 climb since 0.2 input 1", "climb"]);
-    bob.answers();
+    assert_eq!(bob.answers(), [refused(2, ENDED)]);
     for number in 3..5 {
         bob.gets(DRIFT, When::Now);
         assert_eq!([bob.turn(), bob.turn()], ["climb", "climb"]);
@@ -241,4 +246,66 @@ fn a_robot_takes_one_plan_a_second_of_another() {
     assert_eq!(accepted(6), [true, true, true, true, false, false]);
     assert_eq!(accepted(10).iter().filter(|is_accepted| **is_accepted).count(), 1);
     assert_eq!(accepted(100).iter().filter(|is_accepted| **is_accepted).count(), 10);
+}
+
+/// The acceptance of a plan.
+fn accepted(of: u64, sentence: &str) -> (u64, bool, String) {
+    (of, true, sentence.to_owned())
+}
+
+#[test]
+fn a_plan_is_answered_when_it_begins() {
+    let mut bob = Bob::new();
+    bob.gets(DRIFT, When::Now);
+    assert_eq!((bob.turn().as_str(), bob.answers()), ("seek", vec![]));
+    assert_eq!((bob.turn().as_str(), bob.answers()), ("drift", vec![accepted(1, "Main takes over")]));
+    bob.gets(IDLE, When::AtomEnds);
+    bob.turn();
+    assert_eq!(bob.answers(), [accepted(2, "Main waits, and takes over when the atom ends")]);
+    bob.run.turn("f");
+    assert_eq!(bob.answers(), [accepted(2, "Main takes over")]);
+}
+
+#[test]
+fn a_plan_that_never_begins_is_answered() {
+    let mut bob = Bob::new();
+    bob.gets(DRIFT, When::AtomEnds);
+    bob.turn();
+    bob.run.plans().replace(loaded(IDLE).unwrap().plan(), When::PlanEnds);
+    bob.turn();
+    assert_eq!(bob.answers().pop().unwrap(), refused(1, TAKEN));
+    bob.gets(DRIFT, When::AtomEnds);
+    bob.turn();
+    bob.run.plans().cancel();
+    bob.turn();
+    assert_eq!(bob.answers().pop().unwrap(), refused(2, "the request was cancelled"));
+}
+
+#[test]
+fn an_operator_takes_no_answers_away() {
+    let ((compile, gate), (begun, begins)) = (channel(), channel());
+    let mut bob = Bob::compiling_for(begun, gate);
+    bob.gets(DRIFT, When::Now);
+    bob.turn();
+    begins.recv().unwrap();
+    bob.gets(DRIFT, When::Now);
+    bob.turn();
+    // It takes the place of the second plan, which waits for the compiler, and the events are read as in a session.
+    bob.run.plans().swap(PlanSource::Text(IDLE.to_owned()), When::PlanEnds);
+    bob.run.journal.extend(bob.run.engine.plans_mut().take_events());
+    assert_eq!(bob.answered(), refused(2, "a later request replaces this one"));
+    compile.send(()).unwrap();
+    assert_eq!(bob.answered(), accepted(1, "Main takes over"));
+}
+
+#[test]
+fn warnings_go_to_both_ends() {
+    let mut bob = Bob::new();
+    bob.gets(WARNED, When::AtomEnds);
+    bob.turn();
+    let sentence = "Main waits, and takes over when the atom ends\nwarning: careful";
+    assert_eq!(bob.answers(), [accepted(1, sentence)]);
+    let mut messages = Vec::new();
+    bob.run.engine.messages(&mut |message| messages.push(message.to_owned()));
+    assert_eq!(messages, [format!("state link: the plan of ada: {sentence}")]);
 }

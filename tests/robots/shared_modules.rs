@@ -88,17 +88,23 @@ fn a_plan_of_another_robot_takes_over() {
     fs::write(folder.join("go.mdle"), "{ Go (wait 2s)\n(Atom (null) (go 10 0)) }").unwrap();
     for (when, begins, over) in [("now", "2.2", "4.2"), ("atom", "5.0", "7.0"), ("plan", "8.0", "10.0")] {
         let late = "\n[link]\nlatency = \"100ms\"\n";
-        scenario(&folder, [("", STANDS), (TAKES, STANDS)], &(sent("2s", "go.mdle", when) + late));
+        // The sender is there when the plan begins.
+        let ada = STANDS.replace("8s", "9s");
+        scenario(&folder, [("", &ada), (TAKES, STANDS)], &(sent("2s", "go.mdle", when) + late));
         let (out, err, status) = run(&folder, "run two.toml --log run.mcap");
         assert_eq!(status, 0, "{when}: {out}{err}");
         for line in [
             format!("{begins} s  bob: go 10 0 (plan of ada:2)  <- "),
             format!("{over} s  bob: plan over: wait 2s (plan of ada:1)"),
-            "bob: state link: the plan of ada: Go takes over ".to_owned(),
-            "ada: state link: bob takes the plan: Go takes over ".to_owned(),
-            "8.0 s  ada: plan over: wait 8s".to_owned(),
+            format!("{begins} s  bob: state link: the plan of ada: Go takes over"),
+            "ada: state link: bob takes the plan: Go takes over".to_owned(),
+            "9.0 s  ada: plan over: wait 9s".to_owned(),
         ] {
             assert!(out.contains(&line), "{when}: {line}\n{out}{err}");
+        }
+        if when != "now" {
+            let waits = format!("bob: state link: the plan of ada: Go waits, and takes over when the {when} ends");
+            assert!(out.contains(&waits), "{when}: {out}{err}");
         }
         assert_replayed(&folder, "bob");
     }
@@ -122,6 +128,7 @@ fn a_plan_that_does_not_check_changes_nothing() {
         ),
         ("{ Go (wait 2s) (Atom (null) path(way)) }", "the plan replays the path `way`"),
         ("{ Go (null) (Atom (null) (go 20 0)) }", "the plan never ends"),
+        ("{ Go (range(none module) > 1m) (Atom (null) stop) }", "/usr/none/range"),
         ("{ Go (wait 2s) (Atom (rendezvous eve) stop) }", "the plan names the robot `eve`"),
         (&doubled, "atoms, scopes and loops, and one that is sent has 10000 at most"),
         (&roots, "the text has several plans, and one of them can drive: R0, R1…"),

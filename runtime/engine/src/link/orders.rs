@@ -6,7 +6,7 @@ use mdle_runtime::{Nanos, Printable};
 
 use super::pace::{Admission, Pace};
 use super::{Content, LONGEST_TEXT, Letter, Link};
-use crate::plans::{EngineAlphabet, PlanSource, Plans, When};
+use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
 
 /// Answer to a plan of a robot that sends plans too fast.
 const TOO_FAST: &str = "it sends more than one plan a second: send it again later";
@@ -22,7 +22,7 @@ pub(super) struct Orders {
     pub(super) sends_to: Vec<String>,
     /// Number of the letter that was sent last.
     sent: u64,
-    /// Plans of other robots that have not taken over.
+    /// Plans of other robots that have neither taken over nor been refused.
     waiting: Vec<Order>,
     /// Paces of the robots that have sent plans.
     paces: BTreeMap<String, Pace>,
@@ -36,6 +36,10 @@ struct Order {
     from: String,
     /// Number of the letter with the plan.
     number: u64,
+    /// Moment at which the plan takes over.
+    when: When,
+    /// Warnings about the plan that no answer has; empty if there are none.
+    warnings: String,
 }
 
 impl Orders {
@@ -92,7 +96,7 @@ impl Orders {
             Content::Plan { when, text } => match self.paces.entry(from.clone()).or_default().admits(now) {
                 Admission::Taken => {
                     let ticket = plans.swap(PlanSource::Peer { robot: from.clone(), text }, when);
-                    self.waiting.push(Order { ticket, from, number });
+                    self.waiting.push(Order { ticket, from, number, when, warnings: String::new() });
                     None
                 }
                 admission @ (Admission::TooFast | Admission::StillTooFast) => {
@@ -105,7 +109,7 @@ impl Orders {
         messages.collect()
     }
 
-    /// Answers the plans about which has been decided; returns messages about them.
+    /// Answers the plans to which something has happened; returns messages about them.
     pub(super) fn decide<A: EngineAlphabet>(
         &mut self,
         link: &mut dyn Link,
@@ -113,17 +117,22 @@ impl Orders {
         now: Nanos,
     ) -> Vec<String> {
         let mut messages = Vec::new();
-        for Order { ticket, from, number } in std::mem::take(&mut self.waiting) {
-            match plans.take_decision(ticket) {
-                None => self.waiting.push(Order { ticket, from, number }),
-                Some(Ok(sentence)) => {
-                    messages.push(format!("state link: the plan of {from}: {sentence}"));
-                    self.answer(link, &from, number, Ok(&sentence), now);
-                }
+        for event in plans.take_peer_events() {
+            let place = self.waiting.iter().position(|order| order.ticket == event.request());
+            let Some(mut order) = place.map(|place| self.waiting.remove(place)) else { continue };
+            let answer = order.answer(&event, plans);
+            match &answer {
+                Some(Ok(sentence)) => messages.push(format!("state link: the plan of {}: {sentence}", order.from)),
                 Some(Err(sentence)) => {
-                    messages.push(format!("warning: state link: the plan of {from} is refused: {sentence}"));
-                    self.answer(link, &from, number, Err(&sentence), now);
+                    messages.push(format!("warning: state link: the plan of {} is refused: {sentence}", order.from));
                 }
+                None => {}
+            }
+            if let Some(answer) = answer {
+                self.answer(link, &order.from, order.number, answer.as_deref().map_err(String::as_str), now);
+            }
+            if !event.is_decision() {
+                self.waiting.push(order);
             }
         }
         messages
@@ -134,6 +143,41 @@ impl Orders {
         let (Ok(sentence) | Err(sentence)) = result;
         let content = Content::Answer { of, is_accepted: result.is_ok(), sentence: sentence.to_owned() };
         let _ = self.post(link, to, content, now);
+    }
+}
+
+impl Order {
+    /// Returns the answer to an event of the request; `None` if the event needs none.
+    fn answer<A: EngineAlphabet>(&mut self, event: &PlanEvent, plans: &Plans<A>) -> Option<Result<String, String>> {
+        let refused = |sentence: &str| Some(Err(sentence.to_owned()));
+        match event {
+            PlanEvent::Warned(_, warnings) => {
+                self.warnings.clone_from(warnings);
+                None
+            }
+            PlanEvent::Armed(_) if self.when == When::Now => None,
+            PlanEvent::Armed(ticket) => {
+                let name = plans.name_of(*ticket)?;
+                Some(Ok(self.warned(format!("{name} waits, and takes over {}", self.when))))
+            }
+            PlanEvent::Began(ticket) => match plans.name_of(*ticket) {
+                Some(name) => Some(Ok(self.warned(format!("{name} takes over")))),
+                None => refused("it has taken over, and its trial was ended at once"),
+            },
+            PlanEvent::Refused(_, sentence) => refused(sentence),
+            PlanEvent::Superseded(_) => refused("a later request replaces this one"),
+            PlanEvent::Replaced(..) => refused("another plan takes its place"),
+            PlanEvent::Cancelled(_) => refused("the request was cancelled"),
+            PlanEvent::Stored(..) | PlanEvent::Accepted(_) | PlanEvent::RolledBack { .. } => None,
+        }
+    }
+
+    /// Returns the sentence, with the warnings about the plan unless an earlier answer has them.
+    fn warned(&mut self, sentence: String) -> String {
+        match std::mem::take(&mut self.warnings).trim_end() {
+            "" => sentence,
+            warnings => format!("{sentence}\n{warnings}"),
+        }
     }
 }
 

@@ -75,34 +75,25 @@ pub enum PlanEvent {
 }
 
 impl PlanEvent {
-    /// Returns the number of the request if this is its last event before a plan begins, or that a plan begins.
-    pub(super) fn last_of(&self) -> Option<u32> {
+    /// Returns the number of the request; the plan that continues has another.
+    pub(crate) fn request(&self) -> u32 {
         match self {
             Self::Refused(ticket, _)
+            | Self::Warned(ticket, _)
             | Self::Stored(ticket, _)
             | Self::Superseded(ticket)
             | Self::Replaced(ticket, _)
+            | Self::Armed(ticket)
             | Self::Cancelled(ticket)
-            | Self::Began(ticket) => Some(*ticket),
-            Self::Warned(..) | Self::Armed(_) | Self::Accepted(_) | Self::RolledBack { .. } => None,
+            | Self::Began(ticket)
+            | Self::Accepted(ticket)
+            | Self::RolledBack { from: ticket, .. } => *ticket,
         }
     }
 
-    /// Returns the number of a request for a plan to take over, and the decision about it, if the event is one; `armed`
-    /// says when the plan that is armed takes over.
-    pub(crate) fn decision(&self, armed: &str) -> Option<(u32, Result<String, String>)> {
-        match self {
-            Self::Refused(ticket, sentence) => Some((*ticket, Err(sentence.clone()))),
-            Self::Armed(ticket) => Some((*ticket, Ok(armed.to_owned()))),
-            Self::Superseded(ticket) => Some((*ticket, Err("a later request replaces this one".to_owned()))),
-            Self::Cancelled(ticket) => Some((*ticket, Err("the request was cancelled".to_owned()))),
-            Self::Warned(..)
-            | Self::Stored(..)
-            | Self::Replaced(..)
-            | Self::Began(_)
-            | Self::Accepted(_)
-            | Self::RolledBack { .. } => None,
-        }
+    /// Returns `true` if the request is decided with this event: its plan has begun, or never does.
+    pub(crate) fn is_decision(&self) -> bool {
+        !matches!(self, Self::Warned(..) | Self::Armed(_))
     }
 }
 

@@ -59,6 +59,8 @@ pub struct Plans<A: EngineAlphabet> {
     begun: u32,
     /// Number of the last request before a safety rule replaced the plan; 0 if no rule has.
     overruled: u32,
+    /// Number of the request of the plan that may take over in the turn that is being made.
+    aloft: Option<u32>,
     peers: PeerRequests,
     driving: Driving,
     /// Reason why the active plan has replaced another plan.
@@ -103,6 +105,7 @@ impl<A: EngineAlphabet> Plans<A> {
             last: 1,
             begun: 1,
             overruled: 0,
+            aloft: None,
             peers: PeerRequests::default(),
             reason: String::new(),
             events: Vec::new(),
@@ -156,6 +159,13 @@ impl<A: EngineAlphabet> Plans<A> {
     #[must_use]
     pub fn name(&self) -> &str {
         &self.driving.name
+    }
+
+    /// Returns the name of the plan of this request if it is active or armed.
+    pub(crate) fn name_of(&self, ticket: u32) -> Option<&str> {
+        let armed = self.armed.iter().map(|(plan, _)| (plan.ticket, &*plan.name));
+        let plans = armed.chain([(self.driving.ticket, &*self.driving.name)]);
+        plans.into_iter().find_map(|(number, name)| (number == ticket).then_some(name))
     }
 
     /// Returns the name of the armed plan, and the moment at which it takes over.

@@ -2,11 +2,13 @@
 
 use super::PlanEvent;
 
-/// The requests of other robots that are not decided, and the bar that a safety rule has set to them.
+/// The requests of other robots, and the bar that a safety rule has set to them.
 #[derive(Debug, Default)]
 pub(super) struct PeerRequests {
     /// Numbers of the requests whose plans have neither begun nor been refused.
     open: Vec<u32>,
+    /// Events of these requests since they were taken, besides those that a session takes.
+    events: Vec<PlanEvent>,
     bar: Option<Bar>,
 }
 
@@ -34,9 +36,16 @@ impl PeerRequests {
 
     /// Notes an event of any request.
     pub(super) fn note(&mut self, event: &PlanEvent) {
-        if let Some(ticket) = event.last_of() {
-            self.open.retain(|open| *open != ticket);
+        let Some(place) = self.open.iter().position(|open| *open == event.request()) else { return };
+        self.events.push(event.clone());
+        if event.is_decision() {
+            self.open.remove(place);
         }
+    }
+
+    /// Takes the events of the requests of other robots.
+    pub(super) fn take_events(&mut self) -> Vec<PlanEvent> {
+        std::mem::take(&mut self.events)
     }
 
     /// Bars the requests up to this number, and those that follow, for this reason.

@@ -29,14 +29,9 @@ impl<A: EngineAlphabet> Plans<A> {
         self.compiler = Some(Compiler::AtOnce(compile, std::collections::VecDeque::new()));
     }
 
-    /// Takes the decision about the request of this number for a plan to take over: the moment, or why it does not;
-    /// `None` before it is decided.
-    pub(crate) fn take_decision(&mut self, number: u32) -> Option<Result<String, String>> {
-        let armed = self.armed().map_or_else(String::new, |(name, when)| format!("{name} takes over {when}"));
-        let decision = |event: &PlanEvent| event.decision(&armed).filter(|(ticket, _)| *ticket == number);
-        let place = self.events.iter().position(|event| decision(event).is_some())?;
-        let (_, decided) = decision(&self.events.remove(place))?;
-        Some(decided)
+    /// Takes the events of plans that other robots have sent.
+    pub(crate) fn take_peer_events(&mut self) -> Vec<PlanEvent> {
+        self.peers.take_events()
     }
 
     /// Stores a plan under its name; an earlier plan of this name is replaced, and continues if it is active.

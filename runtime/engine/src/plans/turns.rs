@@ -47,6 +47,7 @@ impl<A: EngineAlphabet> Plans<A> {
                 flight.next = Some((next, when));
             }
         }
+        self.aloft = flight.next.as_ref().map(|(next, _)| next.ticket);
         let published = flight.current.published(board, now);
         if let Ok(Some(_)) = published {
             flight.transitions.clear();
@@ -79,6 +80,7 @@ impl<A: EngineAlphabet> Plans<A> {
             return PlanTurn::Panicked(message);
         }
         let Some(mut flight) = flight else { return PlanTurn::Late };
+        self.aloft = None;
         // The input of a turn that was late comes too late.
         let turn = flight.turn.take().filter(|_| flight.at == now);
         if let Some(old) = replaced {
@@ -234,6 +236,9 @@ impl<A: EngineAlphabet> Plans<A> {
                 self.discard(old);
             }
             None => {
+                if let Some(ticket) = self.aloft.take() {
+                    self.tell(PlanEvent::Cancelled(ticket));
+                }
                 self.current = Some(Flight::new(plan));
                 self.desk = Arc::default();
             }

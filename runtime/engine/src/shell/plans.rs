@@ -12,6 +12,8 @@ use crate::Engine;
 use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
+/// Answer to a request whose plan was armed, and is replaced before it takes over.
+const TAKEN: &str = "another plan takes its place";
 const SECONDS: Kind = Kind::Quantity(Quantity::Time, "s");
 
 /// The attributes of `/usr/mdle`, in the order of [`Served::values`].
@@ -62,9 +64,9 @@ impl PlansPart {
     /// answered before.
     pub(super) fn answer<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>) -> Vec<String> {
         let mut messages = Vec::new();
-        let armed = plans.armed().map(|(name, when)| (name.to_owned(), when));
         let mut replaced = None;
-        for event in plans.take_events() {
+        let events: Vec<_> = plans.take_events().collect();
+        for event in events {
             match event {
                 PlanEvent::Warned(ticket, warnings) => {
                     let waiting = self.waiting.iter_mut().find(|waiting| waiting.ticket == ticket);
@@ -81,12 +83,17 @@ impl PlansPart {
                     self.settle(ticket, Ok(format!("{} {verb} stored", names.join(", "))));
                 }
                 PlanEvent::Armed(ticket) => {
-                    let Some((name, when)) = &armed else { continue };
-                    let replaced = replaced.take().map_or_else(String::new, |old| format!(", in place of {old}"));
+                    let is_own = self.waiting.iter().any(|waiting| waiting.ticket == ticket);
+                    let armed = plans.name_of(ticket).zip(plans.armed()).filter(|_| is_own);
+                    let Some((name, (_, when))) = armed else { continue };
+                    let replaced = replaced.take().map_or_else(String::new, |(_, old)| format!(", in place of {old}"));
                     self.settle(ticket, Ok(format!("{name} takes over {when}{replaced}")));
-                    self.armed = (ticket, name.clone());
+                    self.armed = (ticket, name.to_owned());
                 }
-                PlanEvent::Replaced(_, name) => replaced = Some(name),
+                PlanEvent::Replaced(ticket, name) => {
+                    self.settle(ticket, Err(TAKEN.to_owned()));
+                    replaced = Some((ticket, name));
+                }
                 PlanEvent::Superseded(ticket) => {
                     self.settle(ticket, Err("a later request replaces this one".to_owned()))
                 }
@@ -94,6 +101,9 @@ impl PlansPart {
                 PlanEvent::Began(_) | PlanEvent::Accepted(_) | PlanEvent::RolledBack { .. } => {}
             }
         }
+        // A plan of another robot has taken the place.
+        let taken = replaced.filter(|(ticket, _)| *ticket == self.armed.0);
+        messages.extend(taken.map(|(_, name)| format!("warning: {name} does not take over: {TAKEN}")));
         messages
     }
 
