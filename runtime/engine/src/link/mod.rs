@@ -6,6 +6,7 @@
 //! the output, and after the turn it sends the robot's own state. It never waits.
 
 mod air;
+mod foreign_names;
 mod frame;
 mod letter;
 mod letter_frame;

@@ -60,3 +60,20 @@ impl State {
         self.rounds.iter().find(|(name, _)| name == robot).map_or(0, |(_, count)| *count)
     }
 }
+
+#[cfg(test)]
+impl State {
+    /// Returns a state of the robot of this name at the origin, in its first atom.
+    pub(crate) fn of(name: &str, number: u64) -> Self {
+        Self {
+            name: name.to_owned(),
+            session: 0,
+            number,
+            pose: Pose::ORIGIN,
+            velocity: Twist::default(),
+            rounds: Vec::new(),
+            atom: 1,
+            attributes: Vec::new(),
+        }
+    }
+}

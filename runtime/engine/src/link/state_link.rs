@@ -3,11 +3,12 @@
 use mdle_host::Transitions;
 use mdle_runtime::{Links, Machine, Meters, ModuleRead, Nanos, Output, Peer, PeerState, Plan, Pose, Radians};
 
+use super::foreign_names::ForeignNames;
 use super::frame::ATTRIBUTES;
 use super::orders::Orders;
 use super::rounds::Rounds;
 use super::{Foreign, Link, SharedValue, State};
-use crate::attribute::{AGE, AttributeName, Reading, Value};
+use crate::attribute::{AGE, Reading, Value};
 use crate::board::Board;
 use crate::plans::{EngineAlphabet, Plans, When};
 
@@ -24,8 +25,8 @@ pub struct StateLink {
     rounds: Rounds,
     /// Modules whose attributes the robot shares, each as a read of its `age`.
     shares: &'static [ModuleRead],
-    /// Attributes of other robots that were refused.
-    refused: Vec<AttributeName>,
+    /// Names of the attributes of other robots.
+    foreign: ForeignNames,
     orders: Orders,
 }
 
@@ -50,7 +51,7 @@ impl StateLink {
             known: Vec::new(),
             rounds: Rounds::default(),
             shares: &[],
-            refused: Vec::new(),
+            foreign: ForeignNames::default(),
             orders: Orders::of(name),
         }
     }
@@ -102,7 +103,7 @@ impl StateLink {
     /// Takes the states that have arrived by time `now`, and puts the attributes that they share on the board; returns
     /// messages about attributes that are refused, each once.
     pub(crate) fn receive(&mut self, now: Nanos, board: &mut dyn Foreign) -> Vec<String> {
-        let Self { link, known, name, refused, .. } = self;
+        let Self { link, known, name, foreign, .. } = self;
         link.receive(now, &mut |state| match known.iter_mut().find(|known| known.state.name == state.name) {
             // What was sent later counts, in whatever order it arrives.
             Some(place) if state.replaces(&place.state) => *place = Known { state, at: now, is_new: true },
@@ -111,19 +112,8 @@ impl StateLink {
             None => known.push(Known { state, at: now, is_new: true }),
         });
         let mut messages = Vec::new();
-        for Known { state, at, .. } in known.iter_mut().filter_map(|known| known.is_new.then_some(known)) {
-            for shared in state.attributes.iter().take(ATTRIBUTES) {
-                let name = shared.name_from(&state.name);
-                if refused.contains(&name) {
-                    continue;
-                }
-                let reading = Reading { value: shared.value.clone(), at: Nanos(at.0.saturating_sub(shared.age.0)) };
-                if let Err(refusal) = board.put_foreign(&name, reading) {
-                    messages
-                        .push(format!("warning: state link: {} of {} is refused: {refusal}", shared.name, state.name));
-                    refused.push(name);
-                }
-            }
+        for Known { state, at, .. } in known.iter().filter(|known| known.is_new) {
+            foreign.put(state, *at, board, &mut |message| messages.push(message));
         }
         known.iter_mut().for_each(|known| known.is_new = false);
         messages
@@ -219,112 +209,4 @@ fn inward(start: &Pose, shared: &Pose) -> Pose {
 }
 
 #[cfg(test)]
-mod tests {
-    use mdle_runtime::Twist;
-
-    use super::*;
-    use crate::link::Letter;
-    use crate::module::Refusal;
-
-    fn pose(x: f64, y: f64, degrees: f64) -> Pose {
-        Pose { x: Meters(x), y: Meters(y), theta: Radians::from_degrees(degrees) }
-    }
-
-    #[test]
-    fn poses_go_to_the_shared_axes_and_back() {
-        let start = pose(2.0, 1.0, 90.0);
-        let shared = outward(&start, &pose(3.0, 0.5, 45.0));
-        let near =
-            |one: &Pose, other: &Pose| one.distance(other).0 < 1e-12 && (one.theta.0 - other.theta.0).abs() < 1e-12;
-        assert!(near(&shared, &pose(1.5, 4.0, 135.0)), "{shared:?}");
-        assert!(near(&inward(&start, &shared), &pose(3.0, 0.5, 45.0)));
-    }
-
-    /// A link on which states arrive in this order, one at a time.
-    struct Script(Vec<State>);
-
-    impl Link for Script {
-        fn send(&mut self, _: &State, _: Nanos) {}
-
-        fn receive(&mut self, _: Nanos, take: &mut dyn FnMut(State)) {
-            if !self.0.is_empty() {
-                take(self.0.remove(0));
-            }
-        }
-
-        fn post(&mut self, _: &str, _: &Letter, _: Nanos) -> Result<(), String> {
-            Ok(())
-        }
-
-        fn letters(&mut self, _: Nanos, _: &mut dyn FnMut(Letter)) {}
-    }
-
-    #[test]
-    fn a_clock_that_jumps_reorders_no_states() {
-        let state = |number, x| State {
-            name: "ada".to_owned(),
-            session: 0,
-            number,
-            pose: pose(x, 0.0, 0.0),
-            velocity: Twist::default(),
-            rounds: Vec::new(),
-            atom: 1,
-            attributes: Vec::new(),
-        };
-        let restarted = State { session: 1, ..state(1, 9.0) };
-        let script = Script(vec![state(5, 5.0), state(6, 6.0), state(4, 4.0), restarted]);
-        let mut link = StateLink::new(Box::new(script), "bob", Pose::ORIGIN);
-        // An hour ahead, a minute back, and before the start of the clock that the others saw.
-        let seen = [1, 3_600, 3_540, 0, 2].map(|seconds| {
-            let now = Nanos(seconds * 1_000_000_000);
-            link.receive(now, &mut Shared(Vec::new()));
-            let peer = *link.sense(["ada"].into_iter(), now).peer("ada").unwrap();
-            peer.state.map(|state| (state.pose.x.0, state.age.0))
-        });
-        assert_eq!(seen, [Some((5.0, 0)), Some((6.0, 0)), Some((6.0, 0)), Some((9.0, 0)), Some((9.0, 2_000_000_000))]);
-    }
-
-    /// Attributes that were put on a board, with the times of their publication.
-    struct Shared(Vec<(String, Value, u64)>);
-
-    impl Foreign for Shared {
-        fn put_foreign(&mut self, name: &AttributeName, Reading { value, at }: Reading) -> Result<(), Refusal> {
-            self.0.push((name.to_string(), value, at.0));
-            Ok(())
-        }
-    }
-
-    #[test]
-    fn the_newest_state_counts_and_its_age_begins_when_it_arrives() {
-        let state = |number, x| State {
-            name: "ada".to_owned(),
-            session: 0,
-            number,
-            pose: pose(x, 0.0, 0.0),
-            velocity: Twist::default(),
-            rounds: vec![("bob".to_owned(), number)],
-            atom: number,
-            attributes: vec![SharedValue {
-                name: AttributeName::new("heading", "range"),
-                value: Value::Length(Meters(x)),
-                age: Nanos(number),
-            }],
-        };
-        let own = State { name: "bob".to_owned(), ..state(9, 9.0) };
-        let script = Script(vec![own, state(2, 2.0), state(1, 1.0), state(3, 3.0)]);
-        let mut link = StateLink::new(Box::new(script), "bob", pose(1.0, 0.0, 0.0));
-        let (mut seen, mut board) = (Vec::new(), Shared(Vec::new()));
-        for turn in 0..5 {
-            assert_eq!(link.receive(Nanos(10 * turn), &mut board), Vec::<String>::new());
-            let links = link.sense(["ada"].into_iter(), Nanos(10 * turn));
-            let peer = *links.peer("ada").unwrap();
-            seen.push(peer.state.map(|state| (state.pose.x.0, state.age.0, state.rounds, state.atom)));
-        }
-        assert_eq!(
-            seen,
-            [None, Some((1.0, 0, 2, 2)), Some((1.0, 10, 2, 2)), Some((2.0, 0, 3, 3)), Some((2.0, 10, 3, 3))]
-        );
-        let range = |x, at| ("/usr/ada_heading/range".to_owned(), Value::Length(Meters(x)), at);
-        assert_eq!(board.0, [range(2.0, 8), range(3.0, 27)], "each value once, as old as it was when it was sent");
-    }
-}
+mod tests;

@@ -1,0 +1,77 @@
+//! Names of the attributes that other robots share: each robot has a share of the board, and modules of its own.
+
+use mdle_runtime::Nanos;
+
+use super::frame::ATTRIBUTES;
+use super::{Foreign, State};
+use crate::attribute::{AttributeName, Reading};
+
+/// The names of the attributes that other robots share.
+#[derive(Debug, Default)]
+pub(super) struct ForeignNames(Vec<NamesOf>);
+
+/// The names of the attributes of one robot, at most [`ATTRIBUTES`] in all.
+#[derive(Debug)]
+struct NamesOf {
+    robot: String,
+    /// Names on the board.
+    taken: Vec<AttributeName>,
+    /// Names that were refused, each with a message.
+    refused: Vec<AttributeName>,
+    /// `true` if the robot has shared more names, which was reported.
+    has_more: bool,
+}
+
+impl ForeignNames {
+    /// Puts the attributes of a state, which arrived at time `at`, on the board; calls `say` with a message about each
+    /// name that is refused, once.
+    pub(super) fn put(&mut self, state: &State, at: Nanos, board: &mut dyn Foreign, say: &mut dyn FnMut(String)) {
+        let robot = &state.name;
+        let place = self.0.iter().position(|names| names.robot == *robot);
+        let mut own = place.map_or_else(|| NamesOf::of(robot), |place| self.0.swap_remove(place));
+        for shared in state.attributes.iter().take(ATTRIBUTES) {
+            let name = shared.name_from(robot);
+            let is_taken = own.taken.contains(&name);
+            if own.refused.contains(&name) || !is_taken && !own.has_room(say) {
+                continue;
+            }
+            let reading = Reading { value: shared.value.clone(), at: Nanos(at.0.saturating_sub(shared.age.0)) };
+            let put = match self.owner(&name) {
+                // The robot `a` has a module `b_c`, and `a_b` a module `c`.
+                Some(other) => Err(format!("the robot `{other}` shares the module `{}`", name.module)),
+                None => board.put_foreign(&name, reading).map_err(|refusal| refusal.to_string()),
+            };
+            match put {
+                Ok(()) if is_taken => {}
+                Ok(()) => own.taken.push(name),
+                Err(sentence) => {
+                    say(format!("warning: state link: {} of {robot} is refused: {sentence}", shared.name));
+                    own.refused.push(name);
+                }
+            }
+        }
+        self.0.push(own);
+    }
+
+    /// Returns the robot that has put an attribute of the module of this name on the board.
+    fn owner(&self, name: &AttributeName) -> Option<&str> {
+        let owns = |names: &&NamesOf| names.taken.iter().any(|taken| taken.module == name.module);
+        self.0.iter().find(owns).map(|names| names.robot.as_str())
+    }
+}
+
+impl NamesOf {
+    fn of(robot: &str) -> Self {
+        Self { robot: robot.to_owned(), taken: Vec::new(), refused: Vec::new(), has_more: false }
+    }
+
+    /// Returns `true` if the robot may share one more name; the first name for which it may not is reported.
+    fn has_room(&mut self, say: &mut dyn FnMut(String)) -> bool {
+        let has_room = self.taken.len() + self.refused.len() < ATTRIBUTES;
+        if !has_room && !std::mem::replace(&mut self.has_more, true) {
+            let robot = &self.robot;
+            say(format!("warning: state link: {robot} shares more than {ATTRIBUTES} attributes: no more are taken"));
+        }
+        has_room
+    }
+}
