@@ -172,6 +172,14 @@ fn operands_that_cannot_fire_are_analysed_in_linear_time() {
 }
 
 #[test]
+fn signs_before_brackets_are_read_in_linear_time() {
+    let [signs, ends] = ["-(", ")"].map(|text| text.repeat(50_000));
+    let folder = with_plan("signs", &format!("{{ P (Atom (v > {signs}1{ends}) stop) }}\n"));
+    let (status, messages) = judged(&folder, &["check", "plan.mdle"]);
+    assert!(status == Some(1) && messages.contains("unexpected character `-`"), "{status:?}: {messages}");
+}
+
+#[test]
 fn loops_multiply_conditions_within_limits() {
     let plan = format!("{{ P ExecPlan 90000 {{ (Atom ({}) stop) }} }}\n", operands(1000));
     let folder = with_plan("loops", &plan);

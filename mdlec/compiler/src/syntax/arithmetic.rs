@@ -25,6 +25,9 @@ const FOREIGN: &[(&[&str], f64, &str)] = &[
     (&["kHz", "khz"], 1000.0, "Hz"),
 ];
 
+/// Names of pi.
+const PI: [&str; 4] = ["pi", "PI", "Pi", "π"];
+
 /// Returns a number with a foreign unit as a number with a unit of MDLe.
 pub(super) fn foreign_unit(number: &str, unit: &str) -> Option<String> {
     let (_, factor, ours) = FOREIGN.iter().find(|(names, _, _)| names.contains(&unit))?;
@@ -155,9 +158,10 @@ fn part_of_pi(source: Source<'_>, place: Place) -> Option<Diagnostic> {
     if source.slice(place) == "-" {
         // The sign and the operator after `pi` have the same message, which is reported once.
         let after = source.text.get(place.end..)?;
-        let operator = place.end
-            + after.find(['*', '/']).filter(|at| after.get(..*at).is_some_and(|name| is_pi(name.trim_end())))?;
-        return part_of_pi(source, Place::new(operator, operator + 1));
+        let rest = PI.iter().find_map(|name| after.strip_prefix(name))?.trim_start();
+        let operator = source.text.len() - rest.len();
+        let is_operator = rest.starts_with(['*', '/']);
+        return is_operator.then(|| part_of_pi(source, Place::new(operator, operator + 1))).flatten();
     }
     let before = source.text.get(..place.start)?.trim_end_matches([' ', '\t']);
     let after = source.text.get(place.end..)?.trim_start_matches([' ', '\t']);
@@ -180,7 +184,7 @@ fn part_of_pi(source: Source<'_>, place: Place) -> Option<Diagnostic> {
 }
 
 fn is_pi(text: &str) -> bool {
-    matches!(text, "pi" | "PI" | "Pi" | "π")
+    PI.contains(&text)
 }
 
 /// Returns a name without hyphens for a plan's name with hyphens, such as `Return-Home`.
