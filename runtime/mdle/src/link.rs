@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use mdle_compiler::alphabet::did_you_mean;
-use mdle_engine::link::{StateLink, Tcp, TcpSettings};
+use mdle_engine::link::{LinkSettings, StateLink, Tcp, TcpSettings};
 use mdle_files::Group;
 use mdle_host::Refusal;
 use mdle_runtime::Pose;
@@ -74,7 +74,7 @@ impl LinkFile {
     /// # Errors
     /// The robot is not in the group.
     pub(crate) fn part(&self, group: &Group) -> Result<String, Failure> {
-        let own = &self.settings.name;
+        let own = &self.settings.link.name;
         group.plan_of(own).ok_or_else(|| {
             Failure::Usage(format!(
                 "{} is the link of the robot `{own}`, which is not in the group `{}`\nhelp: its robots are {}",
@@ -90,7 +90,7 @@ impl LinkFile {
     /// # Errors
     /// Fails if the link does not know a robot.
     pub(crate) fn check(&self, robots: &[&str]) -> Result<(), Failure> {
-        let names: Vec<&str> = self.settings.peers.iter().map(|(name, _)| name.as_str()).collect();
+        let names: Vec<&str> = self.settings.link.peers.iter().map(String::as_str).collect();
         let Some(unknown) = robots.iter().find(|robot| !names.contains(*robot)) else { return Ok(()) };
         let near = did_you_mean(unknown, &names);
         Err(Failure::Usage(format!(
@@ -102,7 +102,7 @@ impl LinkFile {
 
     /// Returns `true` if the robot takes plans of another robot.
     pub(crate) fn takes_plans(&self) -> bool {
-        !self.settings.plans.is_empty()
+        !self.settings.link.plans.is_empty()
     }
 
     /// Opens the link.
@@ -110,7 +110,7 @@ impl LinkFile {
     /// # Errors
     /// Fails if the robot cannot listen at the address (exit status 2).
     pub(crate) fn open(&self) -> Result<StateLink, Refusal> {
-        let TcpSettings { name, listen, plans, .. } = &self.settings;
+        let TcpSettings { link: LinkSettings { name, plans, .. }, listen, .. } = &self.settings;
         let refused =
             |error| Refusal::Usage(format!("{}: nothing can listen at {listen}: {error}", self.path.display()));
         let link = Tcp::open(&self.settings).map_err(refused)?;
@@ -136,10 +136,10 @@ fn read(text: &str) -> Result<(TcpSettings, Pose, Vec<String>), String> {
     let file: LinkText = toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())?;
     let LinkText { name, listen, key, start, shares, robot } = file;
     let listen = address(&listen)?;
-    let mut peers: Vec<(String, SocketAddr)> = Vec::new();
+    let (mut peers, mut addresses) = (Vec::<String>::new(), Vec::new());
     let mut keys: Vec<(String, String)> = Vec::new();
     for PeerText { name: other, address: at, plans } in robot {
-        if other == name || peers.iter().any(|(known, _)| *known == other) {
+        if other == name || peers.contains(&other) {
             return Err(format!("two robots have the name `{other}`"));
         }
         match plans {
@@ -149,14 +149,16 @@ fn read(text: &str) -> Result<(TcpSettings, Pose, Vec<String>), String> {
             Some(own) => keys.push((other.clone(), own)),
             None => {}
         }
-        peers.push((other, address(&at)?));
+        peers.push(other);
+        addresses.push(address(&at)?);
     }
     if key.is_empty() {
         return Err("the key is empty: write the same one for all robots".to_owned());
     }
     let start = start.map_or(Ok(Start(Pose::ORIGIN)), |start| start.parse());
     let Start(start) = start.map_err(|error| format!("start: {error}"))?;
-    Ok((TcpSettings { name, listen, peers, key, plans: keys }, start, shares))
+    let link = LinkSettings { name, peers, key, plans: keys };
+    Ok((TcpSettings { link, listen, addresses }, start, shares))
 }
 
 /// Reads a literal address. A host name is refused, as its lookup may take long.
@@ -175,7 +177,7 @@ mod tests {
     fn a_file_names_the_robots_and_their_addresses() {
         let (settings, start, shares) = read(GOOD).unwrap();
         assert_eq!(
-            (settings.name.as_str(), settings.peers.len(), start.x.0, shares),
+            (settings.link.name.as_str(), settings.link.peers.len(), start.x.0, shares),
             ("ada", 1, 1.0, vec!["heading".to_owned()])
         );
     }

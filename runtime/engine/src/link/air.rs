@@ -149,31 +149,16 @@ impl Link for Air {
 
 #[cfg(test)]
 mod tests {
-    use mdle_runtime::{Pose, Twist};
-
     use super::*;
 
     const TURN: u64 = 100_000_000;
-
-    fn state(number: u64) -> State {
-        State {
-            name: "ada".to_owned(),
-            session: 0,
-            number,
-            pose: Pose::ORIGIN,
-            velocity: Twist::default(),
-            rounds: Vec::new(),
-            atom: 1,
-            attributes: Vec::new(),
-        }
-    }
 
     /// Returns the numbers of the states that arrive in each turn, if one state is sent in each turn.
     fn heard(faults: Faults, turns: u64, seed: u64) -> Vec<Vec<u64>> {
         let [mut ada, mut bob] = Air::new(&["ada", "bob"], faults, seed).try_into().ok().unwrap();
         let turn = |number| {
             let now = Nanos(number * TURN);
-            ada.send(&state(number), now);
+            ada.send(&State::of("ada", number), now);
             let mut heard = Vec::new();
             bob.receive(now, &mut |state| heard.push(state.number));
             heard

@@ -3,9 +3,9 @@
 use mdle_host::Transitions;
 use mdle_runtime::{Links, Machine, Meters, ModuleRead, Nanos, Output, Peer, PeerState, Plan, Pose, Radians};
 
-use super::frame::ATTRIBUTES;
 use super::orders::Orders;
 use super::rounds::Rounds;
+use super::state_frame::ATTRIBUTES;
 use super::{Foreign, Link, SharedValue, State};
 use crate::attribute::{AGE, AttributeName, Reading, Value};
 use crate::board::Board;
@@ -157,6 +157,7 @@ impl StateLink {
             name: self.name.clone(),
             session: self.link.session(),
             number: self.sent,
+            age: Nanos::ZERO,
             pose: outward(&self.start, &y.here()),
             velocity: y.velocities(),
             rounds: self.rounds.counts().map(|(robot, count)| (robot.to_owned(), count)).collect(),
@@ -220,8 +221,6 @@ fn inward(start: &Pose, shared: &Pose) -> Pose {
 
 #[cfg(test)]
 mod tests {
-    use mdle_runtime::Twist;
-
     use super::*;
     use crate::link::Letter;
     use crate::module::Refusal;
@@ -261,16 +260,7 @@ mod tests {
 
     #[test]
     fn a_clock_that_jumps_reorders_no_states() {
-        let state = |number, x| State {
-            name: "ada".to_owned(),
-            session: 0,
-            number,
-            pose: pose(x, 0.0, 0.0),
-            velocity: Twist::default(),
-            rounds: Vec::new(),
-            atom: 1,
-            attributes: Vec::new(),
-        };
+        let state = |number, x| State { pose: pose(x, 0.0, 0.0), ..State::of("ada", number) };
         let restarted = State { session: 1, ..state(1, 9.0) };
         let script = Script(vec![state(5, 5.0), state(6, 6.0), state(4, 4.0), restarted]);
         let mut link = StateLink::new(Box::new(script), "bob", Pose::ORIGIN);
@@ -297,11 +287,7 @@ mod tests {
     #[test]
     fn the_newest_state_counts_and_its_age_begins_when_it_arrives() {
         let state = |number, x| State {
-            name: "ada".to_owned(),
-            session: 0,
-            number,
             pose: pose(x, 0.0, 0.0),
-            velocity: Twist::default(),
             rounds: vec![("bob".to_owned(), number)],
             atom: number,
             attributes: vec![SharedValue {
@@ -309,6 +295,7 @@ mod tests {
                 value: Value::Length(Meters(x)),
                 age: Nanos(number),
             }],
+            ..State::of("ada", number)
         };
         let own = State { name: "bob".to_owned(), ..state(9, 9.0) };
         let script = Script(vec![own, state(2, 2.0), state(1, 1.0), state(3, 3.0)]);

@@ -5,9 +5,9 @@ use std::net::{SocketAddr, TcpStream};
 
 use mdle_runtime::Nanos;
 
-use super::tests::{address, assert_goes_on, bound, message, received, settings, state, wait};
+use super::tests::{address, assert_goes_on, bound, frame, greeted, message, received, settings, state, wait};
 use super::*;
-use crate::link::frame::written;
+use crate::link::frame::{Challenge, Draft, Key};
 use crate::link::letter_frame::{self, Envelope};
 use crate::link::{Content, LONGEST_TEXT};
 use crate::plans::When;
@@ -19,7 +19,9 @@ fn plan(from: &str, number: u64) -> Letter {
 
 /// Returns the settings of a robot that exchanges plans with this peer.
 fn exchanging(name: &str, (peer, at): (&str, SocketAddr), key: &str) -> TcpSettings {
-    TcpSettings { plans: vec![(peer.to_owned(), key.to_owned())], ..settings(name, &[(peer, at)], "key") }
+    let mut settings = settings(name, &[(peer, at)], "key");
+    settings.link.plans.push((peer.to_owned(), key.to_owned()));
+    settings
 }
 
 fn letters(link: &mut Tcp) -> Vec<Letter> {
@@ -35,12 +37,12 @@ fn bob() -> (Tcp, SocketAddr) {
     (Tcp::on(own, &exchanging("bob", ("ada", nobody), "pair")).unwrap(), place)
 }
 
-/// Sends the state of `ada`, and then these bytes.
-fn sends(place: SocketAddr, bytes: &[u8]) -> TcpStream {
-    let mut stream = TcpStream::connect(place).unwrap();
-    stream.write_all(&written(&state("ada", 1), &Key::of("key"))).unwrap();
+/// Sends the state of `ada`, and then these bytes, which are written for the challenge.
+fn sends(place: SocketAddr, bytes: impl FnOnce(&Challenge) -> Vec<u8>) -> TcpStream {
+    let (mut stream, challenge) = greeted(place);
+    stream.write_all(&frame(&state("ada", 1), "key", &challenge)).unwrap();
     // The connection may be refused meanwhile.
-    let _ = stream.write_all(bytes);
+    let _ = stream.write_all(&bytes(&challenge));
     stream
 }
 
@@ -70,35 +72,54 @@ fn letters_go_both_ways_once_both_are_heard() {
     assert_eq!(wait(|| Some(letters(&mut ada)).filter(|letters| !letters.is_empty())), [answer]);
 }
 
+/// Returns the envelope of a letter of `ada` to a robot in this session.
+fn envelope(meant_for: u64) -> Envelope {
+    Envelope { from: "ada".to_owned(), to: "bob".to_owned(), sent_in: 5, meant_for, sent: Nanos::ZERO }
+}
+
 #[test]
 fn what_is_no_letter_of_a_peer_is_refused() {
     let (mut bob, place) = bob();
-    let (meant_for, key) = (bob.session(), Key::of_letters("pair"));
-    let own = Envelope { from: "ada".to_owned(), to: "bob".to_owned(), sent_in: 5, meant_for };
-    let letter = |envelope: &Envelope, key: &Key| letter_frame::written(envelope, &plan(&envelope.from, 1), key);
-    let mut damaged = letter(&own, &key);
-    *damaged.last_mut().unwrap() ^= 1;
-    let mut long = letter(&own, &key);
-    long.resize(LONGEST_TEXT + 4096, b' ');
-    long[..4].copy_from_slice(&(LONGEST_TEXT as u32 + 4092).to_le_bytes());
-    let cases = [
-        (damaged, "it sends no letters"),
-        (long, "it sends no states"),
-        (letter(&own, &Key::of_letters("another")), "it sends a plan as `ada` with another key"),
-        (letter(&own, &Key::of("key")), "it sends a plan as `ada` with another key"),
-        (letter(&Envelope { from: "eve".to_owned(), ..own.clone() }, &key), "as `eve`, from which no plans are taken"),
-        (letter(&Envelope { to: "eve".to_owned(), ..own.clone() }, &key), "of `ada` that is not for this run"),
-        (letter(&Envelope { sent_in: 6, ..own.clone() }, &key), "of `ada` that is not for this run"),
-        (letter(&Envelope { meant_for: meant_for ^ 1, ..own.clone() }, &key), "of `ada` that is not for this run"),
+    let (meant_for, own) = (bob.session(), envelope(bob.session()));
+    let letter = |envelope: &Envelope, key| {
+        let draft = letter_frame::written(envelope, &plan(&envelope.from, 1), &Key::of_letters(key));
+        move |challenge: &Challenge| draft.frame(challenge)
+    };
+    let good = letter(&own, "pair");
+    let damaged = |challenge: &Challenge| {
+        let mut damaged = good(challenge);
+        *damaged.last_mut().unwrap() ^= 1;
+        damaged
+    };
+    let long = |challenge: &Challenge| {
+        let mut long = good(challenge);
+        long.resize(LONGEST_TEXT + 4096, b' ');
+        long[..4].copy_from_slice(&(LONGEST_TEXT as u32 + 4092).to_le_bytes());
+        long
+    };
+    let recorded = |_: &Challenge| good(&Challenge::NONE);
+    let eve = || "eve".to_owned();
+    let cases: [(&dyn Fn(&Challenge) -> Vec<u8>, &str); 9] = [
+        (&damaged, "it sends no letters"),
+        (&long, "it sends no states"),
+        (&letter(&own, "another"), "it sends a letter of `ada` with another key `plans`"),
+        (&letter(&own, "key"), "it sends a letter of `ada` with another key `plans`"),
+        (&recorded, "it sends a letter of `ada` with another key `plans`"),
+        (&letter(&Envelope { from: eve(), ..own.clone() }, "pair"), "of `ada` that is not for this run"),
+        (&letter(&Envelope { to: eve(), ..own.clone() }, "pair"), "of `ada` that is not for this run"),
+        (&letter(&Envelope { sent_in: 6, ..own.clone() }, "pair"), "of `ada` that is not for this run"),
+        (&letter(&envelope(meant_for ^ 1), "pair"), "of `ada` that is not for this run"),
     ];
     for (bytes, words) in cases {
-        let stream = sends(place, &bytes);
+        let stream = sends(place, bytes);
         message(&mut bob, words);
         drop(stream);
         assert_eq!(letters(&mut bob), [], "{words}");
     }
+    let mut first = greeted(place);
+    first.0.write_all(&good(&first.1)).unwrap();
+    message(&mut bob, "it sends a letter before its state");
     // The good one is taken, and a copy of it is not.
-    let good = letter(&own, &key);
     let first = sends(place, &good);
     assert_eq!(wait(|| Some(letters(&mut bob)).filter(|letters| !letters.is_empty())), [plan("ada", 1)]);
     let second = sends(place, &good);
@@ -112,17 +133,18 @@ fn what_is_no_letter_of_a_peer_is_refused() {
 #[test]
 fn a_flood_of_letters_is_refused() {
     let (mut bob, place) = bob();
-    let envelope = Envelope { from: "ada".to_owned(), to: "bob".to_owned(), sent_in: 5, meant_for: bob.session() };
-    let frame = |number| letter_frame::written(&envelope, &plan("ada", number), &Key::of_letters("pair"));
-    let stream = sends(place, &(1..=50).flat_map(frame).collect::<Vec<_>>());
+    let envelope = envelope(bob.session());
+    let draft = |number| -> Draft { letter_frame::written(&envelope, &plan("ada", number), &Key::of_letters("pair")) };
+    let stream = sends(place, |challenge| (1..=50).flat_map(|number| draft(number).frame(challenge)).collect());
     message(&mut bob, "more than 8 letters arrive in a turn");
     assert_eq!(letters(&mut bob).len(), 8);
     drop(stream);
-    let mut stream = sends(place, &[]);
+    let (mut stream, challenge) = greeted(place);
+    stream.write_all(&frame(&state("ada", 2), "key", &challenge)).unwrap();
     let mut number = 100;
     wait(|| {
         number += 1;
-        let is_closed = stream.write_all(&frame(number)).is_err();
+        let is_closed = stream.write_all(&draft(number).frame(&challenge)).is_err();
         letters(&mut bob);
         is_closed.then_some(())
     });
@@ -136,7 +158,7 @@ fn letters_that_nobody_reads_delay_no_turn() {
     let (listener, own) = (bound(), bound());
     let (at_ada, place) = (address(&listener), address(&own));
     let mut bob = Tcp::on(own, &exchanging("bob", ("ada", at_ada), "pair")).unwrap();
-    let stream = sends(place, &[]);
+    let stream = sends(place, |_| Vec::new());
     wait(|| Some(received(&mut bob)).filter(|states| !states.is_empty()));
     drop(listener);
     let content = Content::Plan { when: When::Now, text: " ".repeat(LONGEST_TEXT) };

@@ -1,25 +1,22 @@
 //! The receiver: a listener, and a thread for each connection, which reads frames within limits.
 
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, ErrorKind, Read, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::Shared;
-use crate::link::frame::{self, LONGEST, Refused, VERSION};
+use crate::link::endpoint::Endpoint;
+use crate::link::frame::Challenge;
 use crate::link::letter_frame::{LONGEST_LETTER, is_letter};
+use crate::link::source::Source;
+use crate::link::state_frame::LONGEST;
 
 /// Time between two checks for a connection, and maximum wait of a read.
 const LOOK: Duration = Duration::from_millis(20);
 /// Time within which a whole frame has to arrive on a connection.
 const SILENT: Duration = Duration::from_secs(2);
-/// Maximum number of frames that a connection may send in a second: twice as many as a robot with turns of a
-/// millisecond sends.
-const FRAMES: u32 = 2000;
-/// Maximum number of letters that a connection may send in a second.
-const LETTERS: u32 = 20;
 /// Maximum number of connections for each peer: an old connection may still be open when the peer connects
 /// again.
 const CONNECTIONS: usize = 4;
@@ -28,28 +25,28 @@ const CONNECTIONS: usize = 4;
 ///
 /// # Errors
 /// Fails if the system cannot set up the listener or create the thread.
-pub(super) fn listen(listener: TcpListener, shared: &Arc<Shared>) -> io::Result<()> {
+pub(super) fn listen(listener: TcpListener, endpoint: &Arc<Endpoint>) -> io::Result<()> {
     listener.set_nonblocking(true)?;
-    let shared = Arc::clone(shared);
-    thread::Builder::new().name("state link".to_owned()).spawn(move || accept(&listener, &shared))?;
+    let endpoint = Arc::clone(endpoint);
+    thread::Builder::new().name("state link".to_owned()).spawn(move || accept(&listener, &endpoint))?;
     Ok(())
 }
 
-fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
+fn accept(listener: &TcpListener, endpoint: &Arc<Endpoint>) {
     let open = Arc::new(AtomicUsize::new(0));
-    let most = CONNECTIONS * (shared.peers.len() + 1);
-    while !shared.is_over() {
+    let most = CONNECTIONS * (endpoint.peers().len() + 1);
+    while !endpoint.is_over() {
         let Ok((stream, from)) = listener.accept() else {
             thread::sleep(LOOK);
             continue;
         };
         if open.load(Ordering::Relaxed) >= most {
-            shared
+            endpoint
                 .say(format!("warning: state link: {from} is refused: {most} connections are open, which is the most"));
             continue;
         }
         open.fetch_add(1, Ordering::Relaxed);
-        let (own, count) = (Arc::clone(shared), Arc::clone(&open));
+        let (own, count) = (Arc::clone(endpoint), Arc::clone(&open));
         let begun = thread::Builder::new().name(format!("from {from}")).spawn(move || {
             if let Err(why) = receive(stream, &own) {
                 own.say(format!("warning: state link: {from} is refused: {why}"));
@@ -58,52 +55,33 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
         });
         if begun.is_err() {
             open.fetch_sub(1, Ordering::Relaxed);
-            shared.say(format!("warning: state link: {from} is refused: the system gives no thread"));
+            endpoint.say(format!("warning: state link: {from} is refused: the system gives no thread"));
         }
     }
 }
 
-/// Receives states from a connection until it ends.
+/// Greets the sender of a connection, and takes its frames until it ends.
 ///
 /// # Errors
-/// Fails with the end of a sentence if anything but states of a peer arrives.
-fn receive(mut stream: TcpStream, shared: &Shared) -> Result<(), String> {
+/// Fails with the end of a sentence if anything but states and letters of a peer arrives.
+fn receive(mut stream: TcpStream, endpoint: &Endpoint) -> Result<(), String> {
     let set = stream.set_nonblocking(false).and_then(|()| stream.set_read_timeout(Some(LOOK)));
-    set.map_err(|error| error.to_string())?;
-    let (mut second, mut count, mut letters) = (Instant::now(), 0, 0);
-    loop {
-        let Some(frame) = next(&mut stream, shared)? else { return Ok(()) };
-        if second.elapsed() >= Duration::from_secs(1) {
-            (second, count, letters) = (Instant::now(), 0, 0);
-        }
-        if is_letter(&frame) {
-            letters += 1;
-            if letters > LETTERS {
-                return Err(format!("it sends more than {LETTERS} letters a second"));
-            }
-            shared.letters.take(&frame)?;
-            continue;
-        }
-        let state = frame::read(&frame, &shared.key).map_err(|refused| match refused {
-            Refused::Garbage => "it sends no states".to_owned(),
-            Refused::Version(other) => format!("its version of the link is {other}, and this one has {VERSION}"),
-            Refused::Key => "it has another key".to_owned(),
-        })?;
-        if !shared.peers.contains(&state.name) {
-            return Err(format!("its robot `{}` is none of {}", state.name, shared.peers.join(", ")));
-        }
-        shared.take(state);
-        count += 1;
-        if count > FRAMES {
-            return Err(format!("it sends more than {FRAMES} states a second"));
-        }
+    let challenge = set.and_then(|()| Challenge::random()).map_err(|error| error.to_string())?;
+    // A sender that is gone already is no fault of this robot's.
+    if stream.write_all(&challenge.greeting()).is_err() {
+        return Ok(());
     }
+    let mut source = Source::of_connection(challenge);
+    while let Some(frame) = next(&mut stream, endpoint)? {
+        endpoint.take(&mut source, &frame)?;
+    }
+    Ok(())
 }
 
 /// Reads a frame; returns `None` if the connection or the run has ended before a frame began.
-fn next(stream: &mut TcpStream, shared: &Shared) -> Result<Option<Vec<u8>>, String> {
+fn next(stream: &mut TcpStream, endpoint: &Endpoint) -> Result<Option<Vec<u8>>, String> {
     let mut length = [0; 4];
-    if !fill(stream, &mut length, shared)? {
+    if !fill(stream, &mut length, endpoint)? {
         return Ok(None);
     }
     let length = u32::from_le_bytes(length) as usize;
@@ -111,7 +89,7 @@ fn next(stream: &mut TcpStream, shared: &Shared) -> Result<Option<Vec<u8>>, Stri
         return Err("it sends no states".to_owned());
     }
     let mut frame = vec![0; length];
-    if !fill(stream, &mut frame, shared)? {
+    if !fill(stream, &mut frame, endpoint)? {
         return Err("it ended within a state".to_owned());
     }
     if length > LONGEST && !is_letter(&frame) {
@@ -122,10 +100,10 @@ fn next(stream: &mut TcpStream, shared: &Shared) -> Result<Option<Vec<u8>>, Stri
 
 /// Fills `bytes`; returns `false` if the connection breaks or ends before the first byte, or if the run has
 /// ended.
-fn fill(stream: &mut TcpStream, bytes: &mut [u8], shared: &Shared) -> Result<bool, String> {
+fn fill(stream: &mut TcpStream, bytes: &mut [u8], endpoint: &Endpoint) -> Result<bool, String> {
     let (begun, mut filled) = (Instant::now(), 0);
     while filled < bytes.len() {
-        if shared.is_over() {
+        if endpoint.is_over() {
             return Ok(false);
         }
         if begun.elapsed() >= SILENT {

@@ -6,13 +6,14 @@ use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use mdle_runtime::{Meters, Nanos, Pose, Twist};
+use mdle_runtime::{Meters, Nanos, Pose};
 
 use super::sender::WRITES;
 use super::*;
 use crate::attribute::{AttributeName, Value};
 use crate::link::SharedValue;
-use crate::link::frame::{LONGEST, written};
+use crate::link::frame::{Challenge, GREETING_LENGTH, Key};
+use crate::link::state_frame::{LONGEST, written};
 
 /// Maximum time for which a test waits.
 const SOON: Duration = Duration::from_secs(20);
@@ -26,27 +27,38 @@ pub(super) fn address(listener: &TcpListener) -> SocketAddr {
 }
 
 pub(super) fn settings(name: &str, peers: &[(&str, SocketAddr)], key: &str) -> TcpSettings {
-    let peers = peers.iter().map(|(name, address)| ((*name).to_owned(), *address)).collect();
-    let (name, key) = (name.to_owned(), key.to_owned());
-    TcpSettings { name, listen: "127.0.0.1:0".parse().unwrap(), peers, key, plans: Vec::new() }
+    let addresses = peers.iter().map(|(_, address)| *address).collect();
+    let peers = peers.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let link = LinkSettings { name: name.to_owned(), peers, key: key.to_owned(), plans: Vec::new() };
+    TcpSettings { link, listen: "127.0.0.1:0".parse().unwrap(), addresses }
 }
 
 pub(super) fn state(name: &str, number: u64) -> State {
     let pose = Pose { x: Meters(number as f64), ..Pose::ORIGIN };
     State {
-        name: name.to_owned(),
-        session: 5,
-        number,
         pose,
-        velocity: Twist::default(),
         rounds: vec![("bob".to_owned(), number)],
-        atom: 1,
         attributes: vec![SharedValue {
             name: AttributeName::new("heading", "range"),
             value: Value::Number(number as f64),
             age: Nanos(3),
         }],
+        ..State::of(name, number)
     }
+}
+
+/// Connects, and reads the greeting.
+pub(super) fn greeted(place: SocketAddr) -> (TcpStream, Challenge) {
+    let mut stream = TcpStream::connect(place).unwrap();
+    let mut greeting = [0; GREETING_LENGTH];
+    stream.set_read_timeout(Some(SOON)).unwrap();
+    stream.read_exact(&mut greeting).unwrap();
+    (stream, Challenge::of_greeting(&greeting).unwrap())
+}
+
+/// Returns the frame of a state for this challenge.
+pub(super) fn frame(state: &State, key: &str, challenge: &Challenge) -> Vec<u8> {
+    written(state, Nanos::ZERO, &Key::of(key)).frame(challenge)
 }
 
 /// Returns the link of `bob`, whose peer is `ada`, and its address; no robot listens at the address of `ada`.
@@ -89,8 +101,8 @@ pub(super) fn message(link: &mut Tcp, words: &str) -> String {
 
 /// Asserts that states of a good peer still arrive.
 pub(super) fn assert_goes_on(link: &mut Tcp, place: SocketAddr) {
-    let mut peer = TcpStream::connect(place).unwrap();
-    peer.write_all(&written(&state("ada", 77), &Key::of("key"))).unwrap();
+    let (mut peer, challenge) = greeted(place);
+    peer.write_all(&frame(&state("ada", 77), "key", &challenge)).unwrap();
     let states = wait(|| Some(received(link)).filter(|states| !states.is_empty()));
     assert_eq!(states, [state("ada", 77)]);
 }
@@ -126,6 +138,7 @@ fn a_peer_that_comes_back_is_connected_to_again() {
     let accept = |listener: &TcpListener| {
         let (mut stream, _) = listener.accept().unwrap();
         stream.set_read_timeout(Some(SOON)).unwrap();
+        stream.write_all(&Challenge::NONE.greeting()).unwrap();
         let mut length = [0; 4];
         stream.read_exact(&mut length).unwrap();
         u32::from_le_bytes(length)
@@ -149,24 +162,35 @@ fn a_peer_that_comes_back_is_connected_to_again() {
 #[test]
 fn what_is_no_state_of_a_peer_is_refused() {
     let (mut bob, place) = bob();
-    let key = Key::of("key");
-    let mut version = written(&state("ada", 1), &key);
-    version[8] = 9;
-    let half = |frame: Vec<u8>| frame[..frame.len() / 2].to_vec();
-    let cases = [
-        (b"GET / HTTP/1.1\r\n\r\n".to_vec(), "it sends no states"),
-        (u32::MAX.to_le_bytes().to_vec(), "it sends no states"),
-        ((LONGEST as u32).to_le_bytes().into_iter().chain([0; LONGEST]).collect(), "it sends no states"),
-        (version, "its version of the link is 9"),
-        (written(&state("ada", 1), &Key::of("another")), "it has another key"),
-        (written(&state("eve", 1), &key), "its robot `eve` is none of ada"),
-        (half(written(&state("ada", 1), &key)), "it ended within a state"),
-        (vec![7], "it ended within a state"),
+    let cases: [(fn(&Challenge) -> Vec<u8>, &str); 9] = [
+        (|_| b"GET / HTTP/1.1\r\n\r\n".to_vec(), "it sends no states"),
+        (|_| u32::MAX.to_le_bytes().to_vec(), "it sends no states"),
+        (|_| (LONGEST as u32).to_le_bytes().into_iter().chain([0; LONGEST]).collect(), "it sends no states"),
+        (
+            |challenge| {
+                let mut version = frame(&state("ada", 1), "key", challenge);
+                version[8] = 9;
+                version
+            },
+            "its version of the link is 9",
+        ),
+        (|challenge| frame(&state("ada", 1), "another", challenge), "it has another key"),
+        (|_| frame(&state("ada", 1), "key", &Challenge::NONE), "it has another key, or repeats what was recorded"),
+        (|challenge| frame(&state("eve\n", 1), "key", challenge), "its robot `eve\\n` is none of ada"),
+        (
+            |challenge| {
+                let frame = frame(&state("ada", 1), "key", challenge);
+                frame[..frame.len() / 2].to_vec()
+            },
+            "it ended within a state",
+        ),
+        (|_| vec![7], "it ended within a state"),
     ];
     for (bytes, words) in cases {
-        let mut stranger = TcpStream::connect(place).unwrap();
-        stranger.write_all(&bytes).unwrap();
-        stranger.shutdown(std::net::Shutdown::Write).unwrap();
+        let (mut stranger, challenge) = greeted(place);
+        stranger.write_all(&bytes(&challenge)).unwrap();
+        // The connection may be refused meanwhile.
+        let _ = stranger.shutdown(std::net::Shutdown::Write);
         let message = message(&mut bob, words);
         assert!(message.starts_with("warning: state link: 127.0.0.1:"), "{message}");
         assert_eq!(received(&mut bob), []);
@@ -175,12 +199,35 @@ fn what_is_no_state_of_a_peer_is_refused() {
 }
 
 #[test]
+fn recorded_states_are_worth_nothing_later() {
+    let (mut bob, place) = bob();
+    let run = |session, number| State { session, ..state("ada", number) };
+    let mut recorded = Vec::new();
+    for session in [1, 2] {
+        // The second run begins once the first one is over.
+        wait(|| {
+            let (mut ada, challenge) = greeted(place);
+            let frame = frame(&run(session, 5), "key", &challenge);
+            ada.write_all(&frame).unwrap();
+            sleep(Duration::from_millis(20));
+            recorded.push(frame);
+            received(&mut bob).pop()
+        });
+    }
+    for frame in [&recorded[0], recorded.last().unwrap()].into_iter().cycle().take(6) {
+        let (mut stranger, _) = greeted(place);
+        stranger.write_all(frame).unwrap();
+        message(&mut bob, "it has another key, or repeats what was recorded");
+        assert_eq!(received(&mut bob), []);
+    }
+}
+
+#[test]
 fn a_flood_and_silence_are_refused() {
     let (mut bob, place) = bob();
     let silent: Vec<_> = (0..3).map(|_| TcpStream::connect(place).unwrap()).collect();
-    let mut flood = TcpStream::connect(place).unwrap();
-    let frame = written(&state("ada", 1), &Key::of("key"));
-    let many = frame.repeat(100);
+    let (mut flood, challenge) = greeted(place);
+    let many = frame(&state("ada", 1), "key", &challenge).repeat(100);
     wait(|| flood.write_all(&many).is_err().then_some(()));
     message(&mut bob, "more than 2000 states a second");
     message(&mut bob, "it sends nothing for 2 s");
@@ -198,7 +245,9 @@ fn too_many_connections_are_refused() {
     wait(|| {
         let mut peer = TcpStream::connect(place).unwrap();
         // Refused while the strangers are still counted.
-        let _ = peer.write_all(&written(&state("ada", 77), &Key::of("key")));
+        let mut greeting = [0; GREETING_LENGTH];
+        peer.read_exact(&mut greeting).ok()?;
+        let _ = peer.write_all(&frame(&state("ada", 77), "key", &Challenge::of_greeting(&greeting).unwrap()));
         sleep(Duration::from_millis(100));
         (!received(&mut bob).is_empty()).then_some(())
     });
@@ -209,8 +258,10 @@ fn a_peer_that_never_reads_delays_no_turn() {
     let (listener, own) = (bound(), bound());
     let (at_ada, place) = (address(&listener), address(&own));
     let mut bob = Tcp::on(own, &settings("bob", &[("ada", at_ada)], "key")).unwrap();
-    let (deaf, _) = listener.accept().unwrap();
-    let (begun, mut number, mut turns) = (Instant::now(), 0, VecDeque::new());
+    bob.send(&state("bob", 1), Nanos::ZERO);
+    let (mut deaf, _) = listener.accept().unwrap();
+    deaf.write_all(&Challenge::NONE.greeting()).unwrap();
+    let (begun, mut number, mut turns) = (Instant::now(), 1, VecDeque::new());
     // As fast as it goes: the buffers of the system are full soon. The sender has then waited for half a second
     // before it gives the peer up. A turn that waited with it would be the only one in that time; a busy machine may
     // make it so once.

@@ -1,0 +1,91 @@
+//! Letters of a link: which are sent, and which that arrive are taken.
+//!
+//! The proof of a letter covers the sessions of both robots, which states tell, and its number: a letter that somebody
+//! has recorded and sends once more is not taken again, whatever carries it.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+
+use mdle_runtime::Nanos;
+
+use super::frame::{Challenge, Draft, Key, Refused, VERSION};
+use super::letter::UNREAD;
+use super::letter_frame::{self, Envelope};
+use super::{Letter, lock};
+
+/// The letters of a robot.
+pub(super) struct Letters {
+    /// Name of the robot.
+    own: String,
+    /// Session of the robot.
+    session: u64,
+    /// For each peer with which letters are exchanged, its name and the key that only both have.
+    keys: Vec<(String, Key)>,
+    /// For each sender and each of its sessions, the number of the last letter.
+    taken: Mutex<BTreeMap<(String, u64), u64>>,
+    /// Letters that have arrived since the last turn.
+    arrived: Mutex<Vec<Letter>>,
+}
+
+impl Letters {
+    /// Returns the letters of the robot of this name and session, which has these keys in common with peers.
+    pub(super) fn new(own: &str, session: u64, keys: &[(String, String)]) -> Self {
+        let keys = keys.iter().map(|(name, key)| (name.clone(), Key::of_letters(key))).collect();
+        Self { own: own.to_owned(), session, keys, taken: Mutex::default(), arrived: Mutex::default() }
+    }
+
+    /// Returns the draft of a letter to a peer, which is in this session, at time `sent` of this robot's session.
+    ///
+    /// # Errors
+    /// Robot and peer have no key for letters, or the peer has not been heard: a sentence.
+    pub(super) fn draft(&self, to: &str, letter: &Letter, session: Option<u64>, sent: Nanos) -> Result<Draft, String> {
+        let key = self.key(to).ok_or_else(|| format!("the file of the link has no key `plans` for {to}"))?;
+        let meant_for = session.ok_or_else(|| format!("{to} has not been heard yet"))?;
+        let envelope = Envelope { from: self.own.clone(), to: to.to_owned(), sent_in: self.session, meant_for, sent };
+        Ok(letter_frame::written(&envelope, letter, key))
+    }
+
+    /// Takes a frame that has arrived from a robot, which is in this session.
+    ///
+    /// # Errors
+    /// It is no letter of the robot to this robot in this run: the end of a sentence.
+    pub(super) fn take(
+        &self,
+        frame: &[u8],
+        challenge: &Challenge,
+        (robot, session): (&str, Option<u64>),
+    ) -> Result<(), String> {
+        let key = self.key(robot);
+        let key = key.ok_or_else(|| format!("it sends a letter of `{robot}`, with which no plans are exchanged"))?;
+        let (envelope, letter) = letter_frame::read(frame, key, challenge).map_err(|refused| match refused {
+            Refused::Garbage | Refused::Impossible => "it sends no letters".to_owned(),
+            Refused::Version(other) => format!("its version of the link is {other}, and this one has {VERSION}"),
+            Refused::Key => format!("it sends a letter of `{robot}` with another key `plans`"),
+        })?;
+        let Envelope { from, to, sent_in, meant_for, .. } = envelope;
+        if from != robot || to != self.own || meant_for != self.session || session != Some(sent_in) {
+            return Err(format!("it sends a letter of `{robot}` that is not for this run"));
+        }
+        let mut arrived = lock(&self.arrived);
+        let mut taken = lock(&self.taken);
+        let last = taken.entry((from, sent_in)).or_default();
+        if letter.number <= *last {
+            return Err(format!("it sends a letter of `{robot}` once more"));
+        }
+        if arrived.len() >= UNREAD {
+            return Err(format!("more than {UNREAD} letters arrive in a turn"));
+        }
+        *last = letter.number;
+        arrived.push(letter);
+        Ok(())
+    }
+
+    /// Takes the letters that have arrived.
+    pub(super) fn arrived(&self) -> Vec<Letter> {
+        std::mem::take(&mut *lock(&self.arrived))
+    }
+
+    fn key(&self, peer: &str) -> Option<&Key> {
+        self.keys.iter().find(|(name, _)| name == peer).map(|(_, key)| key)
+    }
+}
