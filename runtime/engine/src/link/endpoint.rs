@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::hash::{BuildHasher as _, RandomState};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use mdle_runtime::Nanos;
 
@@ -15,10 +15,15 @@ use super::letters::Letters;
 use super::sessions::Sessions;
 use super::source::Source;
 use super::state_frame::{self, LONGEST};
-use super::{Letter, State, lock};
+use super::{Content, Letter, State, lock};
+use crate::plans::When;
 
 /// Maximum number of messages that wait to be shown to the operator.
 const MESSAGES: usize = 32;
+/// Time within which a plan that takes over at once has to be sent.
+const NOW: Duration = Duration::from_secs(2);
+/// Time within which any other letter has to be sent.
+const SOON: Duration = Duration::from_secs(10);
 
 /// Names and keys of a link, whatever carries it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -38,8 +43,14 @@ pub struct LinkSettings {
 pub struct Posted {
     /// Name of the robot to which the letter is sent.
     pub to: String,
+    /// Number of the letter among those of this robot.
+    pub number: u64,
     /// The letter, without its proof.
     pub draft: Draft,
+    /// `true` if the letter has a plan, which is answered.
+    pub is_plan: bool,
+    /// Time after which the letter is not sent any more.
+    pub limit: Duration,
 }
 
 /// The end of one robot's link. Threads that carry frames share it with the robot's turns.
@@ -97,14 +108,35 @@ impl Endpoint {
         state_frame::written(state, self.time(Instant::now()), &self.key)
     }
 
-    /// Returns a letter to a peer.
+    /// Returns a letter to a peer. An answer to it is expected until [`Endpoint::is_unsent`] is called.
     ///
     /// # Errors
     /// Robot and peer have no key for letters, or the peer has not been heard: a sentence.
     pub fn letter(&self, to: &str, letter: &Letter) -> Result<Posted, String> {
-        let session = lock(&self.sessions).of(to);
-        let draft = self.letters.draft(to, letter, session, self.time(Instant::now()))?;
-        Ok(Posted { to: to.to_owned(), draft })
+        let (session, now) = (lock(&self.sessions).of(to), Instant::now());
+        let draft = self.letters.draft(to, letter, session, self.time(now))?;
+        self.letters.posts(to, letter, now);
+        let is_plan = matches!(letter.content, Content::Plan { .. });
+        let is_urgent = matches!(letter.content, Content::Plan { when: When::Now, .. });
+        let limit = if is_urgent { NOW } else { SOON };
+        Ok(Posted { to: to.to_owned(), number: letter.number, draft, is_plan, limit })
+    }
+
+    /// Notes that a letter was refused before it was sent.
+    pub fn is_unsent(&self, number: u64) {
+        self.letters.forget(number);
+    }
+
+    /// Reports that a letter was dropped, since it could not be sent in time.
+    pub fn is_late(&self, letter: &Posted) {
+        self.letters.forget(letter.number);
+        if letter.is_plan {
+            let Posted { to, limit, .. } = letter;
+            let seconds = limit.as_secs();
+            self.say(format!(
+                "warning: state link: the plan for {to} is dropped: it could not be sent for {seconds} s"
+            ));
+        }
     }
 
     /// Returns a time as time of the robot's session.
@@ -116,15 +148,21 @@ impl Endpoint {
     /// which proves the name of its robot.
     ///
     /// # Errors
-    /// It is neither a state of a peer nor a letter of a peer to this robot in this run, or the source sends too many
-    /// frames: the end of a sentence.
+    /// The source is not to be heard any more, as it sends something other than states and letters of one peer, or too
+    /// many: the end of a sentence.
     pub fn take(&self, source: &mut Source, frame: &[u8]) -> Result<(), String> {
         let now = Instant::now();
         if is_letter(frame) {
             source.count_letter(now)?;
             let robot = source.robot.as_deref().ok_or_else(|| "it sends a letter before its state".to_owned())?;
             let session = lock(&self.sessions).of(robot);
-            return self.letters.take(frame, &source.challenge, (robot, session));
+            // The robot has proved its name, so that its states are taken, whatever its letter is.
+            match self.letters.take(frame, &source.challenge, (robot, session)) {
+                Ok(false) => {}
+                Ok(true) => self.refuse(&format!("a plan of {robot}"), "a newer one has arrived"),
+                Err(reason) => self.refuse(&format!("a letter of {robot}"), &reason),
+            }
+            return Ok(());
         }
         if frame.len() > LONGEST {
             return Err("it sends no states".to_owned());
@@ -162,6 +200,11 @@ impl Endpoint {
         self.letters.arrived()
     }
 
+    /// Reports that something is refused, and why.
+    pub fn refuse(&self, what: &str, reason: &str) {
+        self.say(format!("warning: state link: {what} is refused: {reason}"));
+    }
+
     /// Reports a message to the operator, unless too many messages wait.
     pub fn say(&self, message: String) {
         let mut messages = lock(&self.messages);
@@ -173,7 +216,12 @@ impl Endpoint {
     /// Takes the messages for the operator since the last call.
     #[must_use]
     pub fn messages(&self) -> Vec<String> {
-        std::mem::take(&mut *lock(&self.messages))
+        let mut messages = std::mem::take(&mut *lock(&self.messages));
+        let unanswered = self.letters.unanswered(Instant::now()).into_iter();
+        messages.extend(
+            unanswered.map(|to| format!("warning: state link: {to} has not answered the plan that was sent 10 s ago")),
+        );
+        messages
     }
 
     /// Notes that the robot's run has ended.
@@ -216,11 +264,33 @@ mod tests {
         let content = Content::Plan { when: When::Now, text: "{ Go (Atom (wait 1) stop) }".to_owned() };
         let plan = Letter { from: "ada".to_owned(), number: 1, content };
         let letter = ada.letter("bob", &plan).unwrap().draft.frame(&Challenge::NONE)[4..].to_vec();
-        assert_eq!(bob.take(&mut from_ada(), &letter), Ok(()));
-        for _ in 0..2 {
-            let refused = bob.take(&mut from_ada(), &letter).unwrap_err();
-            assert_eq!(refused, "it sends a letter of `ada` once more");
+        for _ in 0..3 {
+            assert_eq!(bob.take(&mut from_ada(), &letter), Ok(()));
         }
-        assert_eq!(bob.letters(), [plan]);
+        assert_eq!((bob.letters(), bob.messages()), (vec![plan], Vec::new()));
+    }
+
+    #[test]
+    fn the_newest_plan_of_a_robot_counts() {
+        let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
+        let mut from_ada = Source::without_connection("ada");
+        bob.take(&mut from_ada, &state(&ada, "ada", 1)).unwrap();
+        ada.take(&mut Source::without_connection("bob"), &state(&bob, "bob", 1)).unwrap();
+        let mut send = |number, content| {
+            let letter = Letter { from: "ada".to_owned(), number, content };
+            let frame = ada.letter("bob", &letter).unwrap().draft.frame(&Challenge::NONE);
+            bob.take(&mut from_ada, &frame[4..]).unwrap();
+        };
+        for number in 1..=10 {
+            send(number, Content::Plan { when: When::Now, text: "{ Go (Atom (wait 1) stop) }".to_owned() });
+        }
+        send(11, Content::Answer { of: 7, is_accepted: true, sentence: String::new() });
+        assert_eq!(bob.letters().iter().map(|letter| letter.number).collect::<Vec<_>>(), [10]);
+        let messages = bob.messages();
+        assert_eq!(messages.first().unwrap(), "warning: state link: a plan of ada is refused: a newer one has arrived");
+        assert_eq!(
+            messages.last().unwrap(),
+            "warning: state link: a letter of ada is refused: it answers a plan that was not sent"
+        );
     }
 }

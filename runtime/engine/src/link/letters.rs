@@ -5,13 +5,15 @@
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
+use std::time::Instant;
 
 use mdle_runtime::Nanos;
 
 use super::frame::{Challenge, Draft, Key, Refused, VERSION};
 use super::letter::UNREAD;
 use super::letter_frame::{self, Envelope};
-use super::{Letter, lock};
+use super::questions::Questions;
+use super::{Content, Letter, lock};
 
 /// The letters of a robot.
 pub(super) struct Letters {
@@ -25,13 +27,15 @@ pub(super) struct Letters {
     taken: Mutex<BTreeMap<(String, u64), u64>>,
     /// Letters that have arrived since the last turn.
     arrived: Mutex<Vec<Letter>>,
+    questions: Mutex<Questions>,
 }
 
 impl Letters {
     /// Returns the letters of the robot of this name and session, which has these keys in common with peers.
     pub(super) fn new(own: &str, session: u64, keys: &[(String, String)]) -> Self {
         let keys = keys.iter().map(|(name, key)| (name.clone(), Key::of_letters(key))).collect();
-        Self { own: own.to_owned(), session, keys, taken: Mutex::default(), arrived: Mutex::default() }
+        let (taken, arrived, questions) = (Mutex::default(), Mutex::default(), Mutex::default());
+        Self { own: own.to_owned(), session, keys, taken, arrived, questions }
     }
 
     /// Returns the draft of a letter to a peer, which is in this session, at time `sent` of this robot's session.
@@ -45,7 +49,25 @@ impl Letters {
         Ok(letter_frame::written(&envelope, letter, key))
     }
 
-    /// Takes a frame that has arrived from a robot, which is in this session.
+    /// Notes that a letter is being sent to a robot at time `now`, so that an answer to it is taken.
+    pub(super) fn posts(&self, to: &str, letter: &Letter, now: Instant) {
+        if matches!(letter.content, Content::Plan { .. }) {
+            lock(&self.questions).ask(to, letter.number, now);
+        }
+    }
+
+    /// Forgets the letter of this number, which was not sent.
+    pub(super) fn forget(&self, number: u64) {
+        lock(&self.questions).forget(number);
+    }
+
+    /// Returns the recipients of plans that have had no answer for too long at time `now`, each plan once.
+    pub(super) fn unanswered(&self, now: Instant) -> Vec<String> {
+        lock(&self.questions).unanswered(now)
+    }
+
+    /// Takes a frame that has arrived from a robot, which is in this session; returns `true` if its plan replaces one
+    /// that waits for the robot's turn.
     ///
     /// # Errors
     /// It is no letter of the robot to this robot in this run: the end of a sentence.
@@ -54,30 +76,45 @@ impl Letters {
         frame: &[u8],
         challenge: &Challenge,
         (robot, session): (&str, Option<u64>),
-    ) -> Result<(), String> {
+    ) -> Result<bool, String> {
         let key = self.key(robot);
-        let key = key.ok_or_else(|| format!("it sends a letter of `{robot}`, with which no plans are exchanged"))?;
+        let key = key.ok_or_else(|| format!("no plans are exchanged with {robot}"))?;
         let (envelope, letter) = letter_frame::read(frame, key, challenge).map_err(|refused| match refused {
-            Refused::Garbage | Refused::Impossible => "it sends no letters".to_owned(),
+            Refused::Garbage | Refused::Impossible => "it is damaged".to_owned(),
             Refused::Version(other) => format!("its version of the link is {other}, and this one has {VERSION}"),
-            Refused::Key => format!("it sends a letter of `{robot}` with another key `plans`"),
+            Refused::Key => "it has another key `plans`, or was recorded".to_owned(),
         })?;
         let Envelope { from, to, sent_in, meant_for, .. } = envelope;
         if from != robot || to != self.own || meant_for != self.session || session != Some(sent_in) {
-            return Err(format!("it sends a letter of `{robot}` that is not for this run"));
+            return Err("it is not for this run".to_owned());
         }
         let mut arrived = lock(&self.arrived);
         let mut taken = lock(&self.taken);
         let last = taken.entry((from, sent_in)).or_default();
+        // A sender does not know if a plan has arrived when its connection breaks, and sends it once more.
         if letter.number <= *last {
-            return Err(format!("it sends a letter of `{robot}` once more"));
-        }
-        if arrived.len() >= UNREAD {
-            return Err(format!("more than {UNREAD} letters arrive in a turn"));
+            return Ok(false);
         }
         *last = letter.number;
+        match letter.content {
+            Content::Answer { of, .. } if !lock(&self.questions).answer(robot, of) => {
+                return Err("it answers a plan that was not sent".to_owned());
+            }
+            Content::Answer { .. } => {
+                let answers = arrived.iter().filter(|letter| letter.from == robot).count();
+                if answers >= UNREAD {
+                    return Err(format!("more than {UNREAD} letters arrive in a turn"));
+                }
+            }
+            Content::Plan { .. } => {}
+        }
+        let is_plan = |letter: &Letter| matches!(letter.content, Content::Plan { .. });
+        let before = arrived.len();
+        // The newest plan counts, as it does once both have been read.
+        arrived.retain(|waiting| !(is_plan(&letter) && is_plan(waiting) && waiting.from == letter.from));
+        let replaces = arrived.len() < before;
         arrived.push(letter);
-        Ok(())
+        Ok(replaces)
     }
 
     /// Takes the letters that have arrived.

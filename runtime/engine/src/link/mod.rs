@@ -14,6 +14,7 @@ mod letter_frame;
 mod letters;
 mod orders;
 mod outbox;
+mod questions;
 mod rounds;
 mod sessions;
 mod source;

@@ -15,12 +15,13 @@ mod tests;
 use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
+use std::time::Instant;
 
 use mdle_runtime::Nanos;
 
 use super::endpoint::{Endpoint, LinkSettings};
 use super::outbox::Outbox;
-use super::{Letter, Link, State};
+use super::{Content, Letter, Link, State};
 use receiver::listen;
 
 /// Names, keys and addresses of a link over TCP.
@@ -80,11 +81,18 @@ impl Link for Tcp {
     fn post(&mut self, to: &str, letter: &Letter, _: Nanos) -> Result<(), String> {
         let outbox = self.outboxes.iter().find(|(name, _)| name == to).map(|(_, outbox)| outbox);
         let outbox = outbox.ok_or_else(|| format!("there is no robot `{to}`"))?;
-        outbox.post(self.endpoint.letter(to, letter)?)
+        let posted = outbox.post(self.endpoint.letter(to, letter)?, Instant::now());
+        posted.inspect_err(|_| self.endpoint.is_unsent(letter.number))
     }
 
     fn letters(&mut self, _: Nanos, take: &mut dyn FnMut(Letter)) {
-        self.endpoint.letters().into_iter().for_each(take);
+        for letter in self.endpoint.letters() {
+            let outbox = self.outboxes.iter().find(|(name, _)| *name == letter.from);
+            if let (Content::Answer { of, .. }, Some((_, outbox))) = (&letter.content, outbox) {
+                outbox.is_answered(*of);
+            }
+            take(letter);
+        }
     }
 
     fn messages(&mut self, say: &mut dyn FnMut(&str)) {

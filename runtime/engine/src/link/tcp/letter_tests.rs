@@ -1,14 +1,14 @@
 //! Tests of letters over TCP on this machine: letters that arrive, and frames that are refused.
 
-use std::io::Write as _;
-use std::net::{SocketAddr, TcpStream};
+use std::io::{Read as _, Write as _};
+use std::net::{SocketAddr, TcpListener, TcpStream};
 
 use mdle_runtime::Nanos;
 
 use super::tests::{address, assert_goes_on, bound, frame, greeted, message, received, settings, state, wait};
 use super::*;
 use crate::link::frame::{Challenge, Draft, Key};
-use crate::link::letter_frame::{self, Envelope};
+use crate::link::letter_frame::{self, Envelope, is_letter};
 use crate::link::{Content, LONGEST_TEXT};
 use crate::plans::When;
 
@@ -100,15 +100,15 @@ fn what_is_no_letter_of_a_peer_is_refused() {
     let recorded = |_: &Challenge| good(&Challenge::NONE);
     let eve = || "eve".to_owned();
     let cases: [(&dyn Fn(&Challenge) -> Vec<u8>, &str); 9] = [
-        (&damaged, "it sends no letters"),
+        (&damaged, "a letter of ada is refused: it is damaged"),
         (&long, "it sends no states"),
-        (&letter(&own, "another"), "it sends a letter of `ada` with another key `plans`"),
-        (&letter(&own, "key"), "it sends a letter of `ada` with another key `plans`"),
-        (&recorded, "it sends a letter of `ada` with another key `plans`"),
-        (&letter(&Envelope { from: eve(), ..own.clone() }, "pair"), "of `ada` that is not for this run"),
-        (&letter(&Envelope { to: eve(), ..own.clone() }, "pair"), "of `ada` that is not for this run"),
-        (&letter(&Envelope { sent_in: 6, ..own.clone() }, "pair"), "of `ada` that is not for this run"),
-        (&letter(&envelope(meant_for ^ 1), "pair"), "of `ada` that is not for this run"),
+        (&letter(&own, "another"), "a letter of ada is refused: it has another key `plans`"),
+        (&letter(&own, "key"), "it has another key `plans`"),
+        (&recorded, "it has another key `plans`, or was recorded"),
+        (&letter(&Envelope { from: eve(), ..own.clone() }, "pair"), "of ada is refused: it is not for this run"),
+        (&letter(&Envelope { to: eve(), ..own.clone() }, "pair"), "of ada is refused: it is not for this run"),
+        (&letter(&Envelope { sent_in: 6, ..own.clone() }, "pair"), "of ada is refused: it is not for this run"),
+        (&letter(&envelope(meant_for ^ 1), "pair"), "of ada is refused: it is not for this run"),
     ];
     for (bytes, words) in cases {
         let stream = sends(place, bytes);
@@ -119,14 +119,16 @@ fn what_is_no_letter_of_a_peer_is_refused() {
     let mut first = greeted(place);
     first.0.write_all(&good(&first.1)).unwrap();
     message(&mut bob, "it sends a letter before its state");
-    // The good one is taken, and a copy of it is not.
+    // The good one is taken, and a copy of it is not; states go on after a letter that is refused.
     let first = sends(place, &good);
     assert_eq!(wait(|| Some(letters(&mut bob)).filter(|letters| !letters.is_empty())), [plan("ada", 1)]);
-    let second = sends(place, &good);
-    message(&mut bob, "it sends a letter of `ada` once more");
+    received(&mut bob);
+    let copies = |challenge: &Challenge| [good(challenge), damaged(challenge)].concat();
+    let second = sends(place, |challenge| [copies(challenge), frame(&state("ada", 2), "key", challenge)].concat());
+    message(&mut bob, "a letter of ada is refused: it is damaged");
+    assert_eq!(wait(|| received(&mut bob).pop()), state("ada", 2));
     assert_eq!(letters(&mut bob), []);
     drop((first, second));
-    received(&mut bob);
     assert_goes_on(&mut bob, place);
 }
 
@@ -135,10 +137,6 @@ fn a_flood_of_letters_is_refused() {
     let (mut bob, place) = bob();
     let envelope = envelope(bob.session());
     let draft = |number| -> Draft { letter_frame::written(&envelope, &plan("ada", number), &Key::of_letters("pair")) };
-    let stream = sends(place, |challenge| (1..=50).flat_map(|number| draft(number).frame(challenge)).collect());
-    message(&mut bob, "more than 8 letters arrive in a turn");
-    assert_eq!(letters(&mut bob).len(), 8);
-    drop(stream);
     let (mut stream, challenge) = greeted(place);
     stream.write_all(&frame(&state("ada", 2), "key", &challenge)).unwrap();
     let mut number = 100;
@@ -153,17 +151,38 @@ fn a_flood_of_letters_is_refused() {
     assert_goes_on(&mut bob, place);
 }
 
+/// Accepts the connection of a robot as its peer, and returns the frame of its first letter, without its length.
+fn first_letter(listener: &TcpListener) -> Vec<u8> {
+    let (mut stream, _) = listener.accept().unwrap();
+    stream.write_all(&Challenge::NONE.greeting()).unwrap();
+    let mut frame = || {
+        let mut length = [0; 4];
+        stream.read_exact(&mut length).unwrap();
+        let mut frame = vec![0; u32::from_le_bytes(length) as usize];
+        stream.read_exact(&mut frame).unwrap();
+        frame
+    };
+    assert!(!is_letter(&frame()), "a connection begins with the state");
+    std::iter::from_fn(|| Some(frame())).find(|frame| is_letter(frame)).unwrap()
+}
+
 #[test]
-fn letters_that_nobody_reads_delay_no_turn() {
+fn a_plan_is_sent_once_more_on_a_new_connection() {
     let (listener, own) = (bound(), bound());
     let (at_ada, place) = (address(&listener), address(&own));
     let mut bob = Tcp::on(own, &exchanging("bob", ("ada", at_ada), "pair")).unwrap();
-    let stream = sends(place, |_| Vec::new());
-    wait(|| Some(received(&mut bob)).filter(|states| !states.is_empty()));
-    drop(listener);
-    let content = Content::Plan { when: When::Now, text: " ".repeat(LONGEST_TEXT) };
-    let long = Letter { content, ..plan("bob", 1) };
-    let refused = wait(|| bob.post("ada", &long, Nanos::ZERO).err());
-    assert_eq!(refused, "8 letters wait for ada already");
-    drop(stream);
+    let heard = sends(place, |_| Vec::new());
+    wait(|| received(&mut bob).pop());
+    let refused = bob.post("ada", &plan("bob", 1), Nanos::ZERO);
+    assert_eq!(refused, Err("ada cannot be reached at the moment".to_owned()));
+    bob.send(&state("bob", 1), Nanos::ZERO);
+    let ada = std::thread::spawn(move || [(); 2].map(|()| first_letter(&listener)));
+    let content = Content::Plan { when: When::PlanEnds, text: "{ Go (Atom (wait 1) stop) }".to_owned() };
+    let patient = Letter { content, ..plan("bob", 2) };
+    wait(|| bob.post("ada", &patient, Nanos::ZERO).ok());
+    for frame in ada.join().unwrap() {
+        let (_, letter) = letter_frame::read(&frame, &Key::of_letters("pair"), &Challenge::NONE).unwrap();
+        assert_eq!(letter, patient);
+    }
+    drop(heard);
 }

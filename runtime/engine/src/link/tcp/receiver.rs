@@ -15,7 +15,7 @@ use crate::link::state_frame::LONGEST;
 
 /// Time between two checks for a connection, and maximum wait of a read.
 const LOOK: Duration = Duration::from_millis(20);
-/// Time within which a whole frame has to arrive on a connection.
+/// Time without a byte after which a connection is closed.
 const SILENT: Duration = Duration::from_secs(2);
 /// Maximum number of connections for each peer: an old connection may still be open when the peer connects
 /// again.
@@ -90,7 +90,7 @@ fn next(stream: &mut TcpStream, endpoint: &Endpoint) -> Result<Option<Vec<u8>>, 
     }
     let mut frame = vec![0; length];
     if !fill(stream, &mut frame, endpoint)? {
-        return Err("it ended within a state".to_owned());
+        return Err("it ended within a frame".to_owned());
     }
     if length > LONGEST && !is_letter(&frame) {
         return Err("it sends no states".to_owned());
@@ -101,19 +101,19 @@ fn next(stream: &mut TcpStream, endpoint: &Endpoint) -> Result<Option<Vec<u8>>, 
 /// Fills `bytes`; returns `false` if the connection breaks or ends before the first byte, or if the run has
 /// ended.
 fn fill(stream: &mut TcpStream, bytes: &mut [u8], endpoint: &Endpoint) -> Result<bool, String> {
-    let (begun, mut filled) = (Instant::now(), 0);
+    let (mut heard, mut filled) = (Instant::now(), 0);
     while filled < bytes.len() {
         if endpoint.is_over() {
             return Ok(false);
         }
-        if begun.elapsed() >= SILENT {
+        if heard.elapsed() >= SILENT {
             return Err(format!("it sends nothing for {} s", SILENT.as_secs()));
         }
         let Some(rest) = bytes.get_mut(filled..) else { return Ok(false) };
         match stream.read(rest) {
             Ok(0) if filled == 0 => return Ok(false),
-            Ok(0) => return Err("it ended within a state".to_owned()),
-            Ok(count) => filled += count,
+            Ok(0) => return Err("it ended within a frame".to_owned()),
+            Ok(count) => (heard, filled) = (Instant::now(), filled + count),
             Err(error)
                 if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
             // A peer that went away is not a fault of this robot's; its state grows old.

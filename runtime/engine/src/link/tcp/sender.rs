@@ -17,7 +17,7 @@ const GREETS: Duration = Duration::from_secs(1);
 /// Time between two attempts to connect.
 const AGAIN: Duration = Duration::from_millis(200);
 /// Time after which the connection to a peer that reads nothing is closed and made again.
-pub(super) const WRITES: Duration = Duration::from_millis(500);
+pub(super) const WRITES: Duration = Duration::from_secs(2);
 
 /// Begins to send to the peer of this name.
 ///
@@ -38,13 +38,17 @@ fn keep_sending(name: &str, address: SocketAddr, outbox: &Outbox, endpoint: &End
     let mut last = None;
     while !endpoint.is_over() {
         let begun = Instant::now();
+        outbox.late(begun).iter().for_each(|letter| endpoint.is_late(letter));
         let failure = match connect(address) {
             Ok(connection) => {
                 if is_known_as_down {
                     endpoint.say(format!("state link: connected to {name} again"));
                 }
                 is_known_as_down = false;
-                send(connection, outbox, &mut last, endpoint).to_string()
+                outbox.open();
+                let failure = send(connection, outbox, &mut last, endpoint);
+                outbox.close();
+                failure.to_string()
             }
             Err(failure) => failure,
         };
@@ -93,11 +97,12 @@ fn send(
         if let Err(error) = stream.write_all(&state.frame(&challenge)) {
             return error;
         }
-        while let Some(letter) = outbox.letter() {
+        outbox.late(Instant::now()).iter().for_each(|letter| endpoint.is_late(letter));
+        while let Some(letter) = outbox.letter(Instant::now()) {
             if let Err(error) = stream.write_all(&letter.draft.frame(&challenge)) {
                 return error;
             }
-            outbox.letter_is_sent();
+            outbox.is_sent(letter.number);
         }
     }
     io::ErrorKind::Interrupted.into()

@@ -182,9 +182,9 @@ fn what_is_no_state_of_a_peer_is_refused() {
                 let frame = frame(&state("ada", 1), "key", challenge);
                 frame[..frame.len() / 2].to_vec()
             },
-            "it ended within a state",
+            "it ended within a frame",
         ),
-        (|_| vec![7], "it ended within a state"),
+        (|_| vec![7], "it ended within a frame"),
     ];
     for (bytes, words) in cases {
         let (mut stranger, challenge) = greeted(place);
