@@ -12,6 +12,7 @@ use mdle_runtime::Nanos;
 use super::frame::{Draft, Key, Refused, VERSION};
 use super::letter_frame::is_letter;
 use super::letters::Letters;
+use super::refusals::Refusals;
 use super::sessions::Sessions;
 use super::source::Source;
 use super::state_frame::{self, LONGEST};
@@ -66,6 +67,7 @@ pub struct Endpoint {
     arrived: Mutex<BTreeMap<String, State>>,
     letters: Letters,
     messages: Mutex<Vec<String>>,
+    refusals: Mutex<Refusals>,
     /// `true` once the robot's run has ended.
     is_over: AtomicBool,
 }
@@ -86,6 +88,7 @@ impl Endpoint {
             arrived: Mutex::default(),
             letters: Letters::new(name, session, plans),
             messages: Mutex::default(),
+            refusals: Mutex::default(),
             is_over: AtomicBool::new(false),
         }
     }
@@ -200,9 +203,10 @@ impl Endpoint {
         self.letters.arrived()
     }
 
-    /// Reports that something is refused, and why.
+    /// Reports that something is refused, and why, unless that was reported a short while ago.
     pub fn refuse(&self, what: &str, reason: &str) {
-        self.say(format!("warning: state link: {what} is refused: {reason}"));
+        let warning = lock(&self.refusals).warning(what, reason, Instant::now());
+        warning.into_iter().for_each(|warning| self.say(warning));
     }
 
     /// Reports a message to the operator, unless too many messages wait.

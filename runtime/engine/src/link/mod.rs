@@ -15,6 +15,7 @@ mod letters;
 mod orders;
 mod outbox;
 mod questions;
+mod refusals;
 mod rounds;
 mod sessions;
 mod source;

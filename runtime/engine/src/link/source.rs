@@ -34,6 +34,12 @@ impl Source {
         Self { robot: Some(robot.to_owned()), ..Self::of_connection(Challenge::NONE) }
     }
 
+    /// Returns the name of the robot, once a frame has proved it.
+    #[must_use]
+    pub fn robot(&self) -> Option<&str> {
+        self.robot.as_deref()
+    }
+
     /// Counts a state that has arrived at time `now`.
     ///
     /// # Errors

@@ -5,10 +5,12 @@
 //! writes only the newest state, and each letter, so a peer that reads slowly or never does not delay the others. The
 //! receiver of a connection writes its challenge first, for which each frame is proved.
 
+mod connection;
 #[cfg(test)]
 mod letter_tests;
 mod receiver;
 mod sender;
+mod strangers;
 #[cfg(test)]
 mod tests;
 
@@ -56,7 +58,7 @@ impl Tcp {
     fn on(listener: TcpListener, settings: &TcpSettings) -> io::Result<Self> {
         let TcpSettings { link: settings, addresses, .. } = settings;
         let mut link = Self { endpoint: Arc::new(Endpoint::new(settings)), outboxes: Vec::new() };
-        listen(listener, &link.endpoint)?;
+        listen(listener, &link.endpoint, addresses.iter().map(SocketAddr::ip).collect())?;
         for (name, address) in settings.peers.iter().zip(addresses) {
             link.outboxes.push((name.clone(), sender::begin(name.clone(), *address, &link.endpoint)?));
         }

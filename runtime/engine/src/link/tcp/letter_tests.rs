@@ -5,7 +5,9 @@ use std::net::{SocketAddr, TcpListener, TcpStream};
 
 use mdle_runtime::Nanos;
 
-use super::tests::{address, assert_goes_on, bound, frame, greeted, message, received, settings, state, wait};
+use super::tests::{
+    address, assert_goes_on, bound, frame, greeted, message, read_messages, received, settings, state, wait,
+};
 use super::*;
 use crate::link::frame::{Challenge, Draft, Key};
 use crate::link::letter_frame::{self, Envelope, is_letter};
@@ -99,9 +101,8 @@ fn what_is_no_letter_of_a_peer_is_refused() {
     };
     let recorded = |_: &Challenge| good(&Challenge::NONE);
     let eve = || "eve".to_owned();
-    let cases: [(&dyn Fn(&Challenge) -> Vec<u8>, &str); 9] = [
+    let cases: [(&dyn Fn(&Challenge) -> Vec<u8>, &str); 8] = [
         (&damaged, "a letter of ada is refused: it is damaged"),
-        (&long, "it sends no states"),
         (&letter(&own, "another"), "a letter of ada is refused: it has another key `plans`"),
         (&letter(&own, "key"), "it has another key `plans`"),
         (&recorded, "it has another key `plans`, or was recorded"),
@@ -110,23 +111,31 @@ fn what_is_no_letter_of_a_peer_is_refused() {
         (&letter(&Envelope { sent_in: 6, ..own.clone() }, "pair"), "of ada is refused: it is not for this run"),
         (&letter(&envelope(meant_for ^ 1), "pair"), "of ada is refused: it is not for this run"),
     ];
+    let (mut messages, mut number) = (Vec::new(), 1);
     for (bytes, words) in cases {
-        let stream = sends(place, bytes);
-        message(&mut bob, words);
+        number += 1;
+        // The state after the letter shows that the letter has been read.
+        let after = |challenge: &Challenge| frame(&state("ada", number), "key", challenge);
+        let stream = sends(place, |challenge| [bytes(challenge), after(challenge)].concat());
+        wait(|| received(&mut bob).into_iter().find(|state| state.number == number));
+        read_messages(&mut bob, &mut messages);
+        assert!(messages.iter().any(|message| message.contains(words)), "{words}: {messages:?}");
         drop(stream);
         assert_eq!(letters(&mut bob), [], "{words}");
     }
+    let stream = sends(place, long);
+    message(&mut bob, "the connection of ada is refused: it sends neither states nor letters");
+    drop(stream);
     let mut first = greeted(place);
     first.0.write_all(&good(&first.1)).unwrap();
     message(&mut bob, "it sends a letter before its state");
-    // The good one is taken, and a copy of it is not; states go on after a letter that is refused.
+    // The good one is taken, and a copy of it is not.
     let first = sends(place, &good);
     assert_eq!(wait(|| Some(letters(&mut bob)).filter(|letters| !letters.is_empty())), [plan("ada", 1)]);
     received(&mut bob);
-    let copies = |challenge: &Challenge| [good(challenge), damaged(challenge)].concat();
-    let second = sends(place, |challenge| [copies(challenge), frame(&state("ada", 2), "key", challenge)].concat());
-    message(&mut bob, "a letter of ada is refused: it is damaged");
-    assert_eq!(wait(|| received(&mut bob).pop()), state("ada", 2));
+    let after = |challenge: &Challenge| frame(&state("ada", 60), "key", challenge);
+    let second = sends(place, |challenge| [good(challenge), after(challenge)].concat());
+    assert_eq!(wait(|| received(&mut bob).pop()), state("ada", 60));
     assert_eq!(letters(&mut bob), []);
     drop((first, second));
     assert_goes_on(&mut bob, place);

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::io::{Read as _, Write as _};
 use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -99,6 +100,11 @@ pub(super) fn message(link: &mut Tcp, words: &str) -> String {
     })
 }
 
+/// Appends the messages that wait.
+pub(super) fn read_messages(link: &mut Tcp, messages: &mut Vec<String>) {
+    link.messages(&mut |message| messages.push(message.to_owned()));
+}
+
 /// Asserts that states of a good peer still arrive.
 pub(super) fn assert_goes_on(link: &mut Tcp, place: SocketAddr) {
     let (mut peer, challenge) = greeted(place);
@@ -186,13 +192,16 @@ fn what_is_no_state_of_a_peer_is_refused() {
         ),
         (|_| vec![7], "it ended within a frame"),
     ];
+    let mut messages = Vec::new();
     for (bytes, words) in cases {
         let (mut stranger, challenge) = greeted(place);
         stranger.write_all(&bytes(&challenge)).unwrap();
         // The connection may be refused meanwhile.
         let _ = stranger.shutdown(std::net::Shutdown::Write);
-        let message = message(&mut bob, words);
-        assert!(message.starts_with("warning: state link: 127.0.0.1:"), "{message}");
+        assert_eq!(stranger.read(&mut [0]).unwrap_or_default(), 0, "{words}: it is closed");
+        read_messages(&mut bob, &mut messages);
+        let is_reported = |message: &String| message.contains("127.0.0.1 is refused: ") && message.contains(words);
+        assert!(messages.iter().any(is_reported), "{words}: {messages:?}");
         assert_eq!(received(&mut bob), []);
     }
     assert_goes_on(&mut bob, place);
@@ -217,7 +226,7 @@ fn recorded_states_are_worth_nothing_later() {
     for frame in [&recorded[0], recorded.last().unwrap()].into_iter().cycle().take(6) {
         let (mut stranger, _) = greeted(place);
         stranger.write_all(frame).unwrap();
-        message(&mut bob, "it has another key, or repeats what was recorded");
+        assert_eq!(stranger.read(&mut [0]).unwrap_or_default(), 0, "it is closed");
         assert_eq!(received(&mut bob), []);
     }
 }
@@ -230,27 +239,62 @@ fn a_flood_and_silence_are_refused() {
     let many = frame(&state("ada", 1), "key", &challenge).repeat(100);
     wait(|| flood.write_all(&many).is_err().then_some(()));
     message(&mut bob, "more than 2000 states a second");
-    message(&mut bob, "it sends nothing for 2 s");
+    message(&mut bob, "it has not sent a state within 1 s");
     drop(silent);
     received(&mut bob);
     assert_goes_on(&mut bob, place);
 }
 
 #[test]
-fn too_many_connections_are_refused() {
+fn strangers_shut_no_peer_out() {
     let (mut bob, place) = bob();
-    let strangers: Vec<_> = (0..12).map(|_| TcpStream::connect(place).unwrap()).collect();
-    message(&mut bob, "8 connections are open, which is the most");
-    drop(strangers);
-    wait(|| {
-        let mut peer = TcpStream::connect(place).unwrap();
-        // Refused while the strangers are still counted.
-        let mut greeting = [0; GREETING_LENGTH];
-        peer.read_exact(&mut greeting).ok()?;
-        let _ = peer.write_all(&frame(&state("ada", 77), "key", &Challenge::of_greeting(&greeting).unwrap()));
-        sleep(Duration::from_millis(100));
-        (!received(&mut bob).is_empty()).then_some(())
+    let is_over = Arc::<AtomicBool>::default();
+    let held: Vec<_> = (0..200).map(|_| TcpStream::connect(place).unwrap()).collect();
+    let strangers = [(); 4].map(|()| {
+        let is_over = Arc::clone(&is_over);
+        std::thread::spawn(move || {
+            let mut held = VecDeque::new();
+            while !is_over.load(Ordering::Relaxed) {
+                let Ok(mut stranger) = TcpStream::connect(place) else { continue };
+                let _ = stranger.write_all(&[16]);
+                held.push_back(stranger);
+                held.drain(..held.len().saturating_sub(20));
+                sleep(Duration::from_millis(1));
+            }
+        })
     });
+    message(&mut bob, "64 others have not sent a state yet");
+    let (mut ada, challenge) = wait(|| {
+        let mut stream = TcpStream::connect(place).unwrap();
+        let mut greeting = [0; GREETING_LENGTH];
+        stream.read_exact(&mut greeting).ok()?;
+        let challenge = Challenge::of_greeting(&greeting).unwrap();
+        stream.write_all(&frame(&state("ada", 1), "key", &challenge)).ok()?;
+        sleep(Duration::from_millis(20));
+        received(&mut bob).pop().map(|_| (stream, challenge))
+    });
+    for number in 2..30 {
+        ada.write_all(&frame(&state("ada", number), "key", &challenge)).unwrap();
+        assert_eq!(wait(|| received(&mut bob).pop()), state("ada", number), "the connection stays");
+    }
+    is_over.store(true, Ordering::Relaxed);
+    strangers.into_iter().for_each(|stranger| stranger.join().unwrap());
+    drop(held);
+}
+
+#[test]
+fn a_new_connection_of_a_peer_replaces_the_old_one() {
+    let (mut bob, place) = bob();
+    let (mut old, challenge) = greeted(place);
+    old.write_all(&frame(&state("ada", 1), "key", &challenge)).unwrap();
+    wait(|| received(&mut bob).pop());
+    let (mut new, of_new) = greeted(place);
+    new.write_all(&frame(&state("ada", 2), "key", &of_new)).unwrap();
+    assert_eq!(old.read(&mut [0]).unwrap_or_default(), 0, "it is closed");
+    wait(|| received(&mut bob).pop());
+    let _ = old.write_all(&frame(&state("ada", 9), "key", &challenge));
+    new.write_all(&frame(&state("ada", 3), "key", &of_new)).unwrap();
+    assert_eq!(wait(|| received(&mut bob).pop()), state("ada", 3));
 }
 
 #[test]
