@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use mdle_runtime::Nanos;
 
 use super::frame::{Draft, Key, Refused, VERSION};
+use super::letter::NOW;
 use super::letter_frame::is_letter;
 use super::letters::Letters;
 use super::refusals::Refusals;
@@ -21,8 +22,6 @@ use crate::plans::When;
 
 /// Maximum number of messages that wait to be shown to the operator.
 const MESSAGES: usize = 32;
-/// Time within which a plan that takes over at once has to be sent.
-const NOW: Duration = Duration::from_secs(2);
 /// Time within which any other letter has to be sent.
 const SOON: Duration = Duration::from_secs(10);
 
@@ -64,12 +63,22 @@ pub struct Endpoint {
     key: Key,
     sessions: Mutex<Sessions>,
     /// For each robot, the newest state that has arrived since the last turn.
-    arrived: Mutex<BTreeMap<String, State>>,
+    arrived: Mutex<BTreeMap<String, Arrived>>,
     letters: Letters,
     messages: Mutex<Vec<String>>,
     refusals: Mutex<Refusals>,
     /// `true` once the robot's run has ended.
     is_over: AtomicBool,
+}
+
+/// A state that has arrived.
+struct Arrived {
+    state: State,
+    at: Instant,
+}
+
+fn nanos(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }
 
 impl Endpoint {
@@ -144,7 +153,7 @@ impl Endpoint {
 
     /// Returns a time as time of the robot's session.
     fn time(&self, now: Instant) -> Nanos {
-        Nanos(u64::try_from(now.saturating_duration_since(self.begun).as_nanos()).unwrap_or(u64::MAX))
+        Nanos(nanos(now.saturating_duration_since(self.begun)))
     }
 
     /// Takes a frame that has arrived from a source, without its length. The first frame of a source has to be a state,
@@ -157,10 +166,12 @@ impl Endpoint {
         let now = Instant::now();
         if is_letter(frame) {
             source.count_letter(now)?;
-            let robot = source.robot.as_deref().ok_or_else(|| "it sends a letter before its state".to_owned())?;
+            let Source { challenge, robot, lag, .. } = source;
+            let robot = robot.as_deref().ok_or_else(|| "it sends a letter before its state".to_owned())?;
             let session = lock(&self.sessions).of(robot);
+            let late = |sent| lag.of(sent, self.time(now));
             // The robot has proved its name, so that its states are taken, whatever its letter is.
-            match self.letters.take(frame, &source.challenge, (robot, session)) {
+            match self.letters.take(frame, challenge, (robot, session), late) {
                 Ok(false) => {}
                 Ok(true) => self.refuse(&format!("a plan of {robot}"), "a newer one has arrived"),
                 Err(reason) => self.refuse(&format!("a letter of {robot}"), &reason),
@@ -176,7 +187,7 @@ impl Endpoint {
             Refused::Key => "it has another key, or repeats what was recorded".to_owned(),
             Refused::Impossible => "its pose or velocity is one that no robot has".to_owned(),
         })?;
-        let (state, _) = read;
+        let (state, sent) = read;
         if !self.peers.contains(&state.name) {
             let name = state.name.escape_debug();
             return Err(format!("its robot `{name}` is none of {}", self.peers.join(", ")));
@@ -186,15 +197,21 @@ impl Endpoint {
             return Err(format!("it sends a state of `{}`, and is `{robot}`", state.name));
         }
         source.count_state(now)?;
+        let age = source.lag.of(sent, self.time(now));
         if lock(&self.sessions).take(&state.name, (state.session, state.number), now)? {
-            lock(&self.arrived).insert(state.name.clone(), state);
+            let arrived = Arrived { state: State { age, ..state }, at: now };
+            lock(&self.arrived).insert(arrived.state.name.clone(), arrived);
         }
         Ok(())
     }
 
     /// Takes the newest state of each robot that has arrived since the last call.
     pub fn states(&self) -> impl Iterator<Item = State> + use<> {
-        std::mem::take(&mut *lock(&self.arrived)).into_values()
+        let now = Instant::now();
+        std::mem::take(&mut *lock(&self.arrived)).into_values().map(move |Arrived { mut state, at }| {
+            state.age = Nanos(state.age.0.saturating_add(nanos(now.saturating_duration_since(at))));
+            state
+        })
     }
 
     /// Takes the letters that have arrived since the last call.
@@ -295,6 +312,44 @@ mod tests {
         assert_eq!(
             messages.last().unwrap(),
             "warning: state link: a letter of ada is refused: it answers a plan that was not sent"
+        );
+    }
+
+    #[test]
+    fn a_state_that_was_held_back_is_old() {
+        let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
+        let mut from_ada = Source::without_connection("ada");
+        let mut send = |number, sent: u64| {
+            let state = State { session: ada.session, ..State::of("ada", number) };
+            let frame = state_frame::written(&state, Nanos(sent * 1_000_000_000), &Key::of("key"));
+            bob.take(&mut from_ada, &frame.frame(&Challenge::NONE)[4..]).unwrap();
+            bob.states().next().unwrap().age.0 / 1_000_000_000
+        };
+        // Two are sent at nine seconds, one at six, and all arrive at once.
+        assert_eq!((send(9, 9), send(10, 6), send(11, 9)), (0, 3, 0));
+        assert!(send(12, 2) >= 7);
+    }
+
+    #[test]
+    fn a_plan_for_now_that_was_held_back_is_refused() {
+        let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
+        let mut from_ada = Source::without_connection("ada");
+        let begun = state_frame::written(
+            &State { session: ada.session, ..State::of("ada", 1) },
+            Nanos(9_000_000_000),
+            &Key::of("key"),
+        );
+        bob.take(&mut from_ada, &begun.frame(&Challenge::NONE)[4..]).unwrap();
+        let mut send = |number, when, sent: u64| {
+            let content = Content::Plan { when, text: "{ Go (Atom (wait 1) stop) }".to_owned() };
+            let letter = Letter { from: "ada".to_owned(), number, content };
+            let draft = ada.letters.draft("bob", &letter, Some(bob.session), Nanos(sent * 1_000_000_000)).unwrap();
+            bob.take(&mut from_ada, &draft.frame(&Challenge::NONE)[4..]).unwrap();
+            (bob.letters().len(), bob.messages().len())
+        };
+        assert_eq!(
+            [send(1, When::Now, 6), send(2, When::PlanEnds, 6), send(3, When::Now, 9)],
+            [(0, 1), (1, 0), (1, 0)]
         );
     }
 }

@@ -10,10 +10,11 @@ use std::time::Instant;
 use mdle_runtime::Nanos;
 
 use super::frame::{Challenge, Draft, Key, Refused, VERSION};
-use super::letter::UNREAD;
+use super::letter::{NOW, UNREAD};
 use super::letter_frame::{self, Envelope};
 use super::questions::Questions;
 use super::{Content, Letter, lock};
+use crate::plans::When;
 
 /// The letters of a robot.
 pub(super) struct Letters {
@@ -67,7 +68,8 @@ impl Letters {
     }
 
     /// Takes a frame that has arrived from a robot, which is in this session; returns `true` if its plan replaces one
-    /// that waits for the robot's turn.
+    /// that waits for the robot's turn. `late` returns how late a letter is that was sent at a time of the robot's
+    /// session.
     ///
     /// # Errors
     /// It is no letter of the robot to this robot in this run: the end of a sentence.
@@ -76,6 +78,7 @@ impl Letters {
         frame: &[u8],
         challenge: &Challenge,
         (robot, session): (&str, Option<u64>),
+        late: impl FnOnce(Nanos) -> Nanos,
     ) -> Result<bool, String> {
         let key = self.key(robot);
         let key = key.ok_or_else(|| format!("no plans are exchanged with {robot}"))?;
@@ -84,9 +87,13 @@ impl Letters {
             Refused::Version(other) => format!("its version of the link is {other}, and this one has {VERSION}"),
             Refused::Key => "it has another key `plans`, or was recorded".to_owned(),
         })?;
-        let Envelope { from, to, sent_in, meant_for, .. } = envelope;
+        let Envelope { from, to, sent_in, meant_for, sent } = envelope;
         if from != robot || to != self.own || meant_for != self.session || session != Some(sent_in) {
             return Err("it is not for this run".to_owned());
+        }
+        // Somebody on the line may hold it back.
+        if matches!(letter.content, Content::Plan { when: When::Now, .. }) && late(sent).0 > NOW.as_nanos() as u64 {
+            return Err(format!("it is a plan for `now`, and is more than {} s late", NOW.as_secs()));
         }
         let mut arrived = lock(&self.arrived);
         let mut taken = lock(&self.taken);

@@ -9,6 +9,7 @@
 mod air;
 mod endpoint;
 mod frame;
+mod lag;
 mod letter;
 mod letter_frame;
 mod letters;

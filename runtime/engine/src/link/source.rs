@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::frame::Challenge;
+use super::lag::Lag;
 
 /// Maximum number of states that a source may send in a second: twice as many as a robot with turns of a
 /// millisecond sends.
@@ -16,6 +17,7 @@ pub struct Source {
     pub(super) challenge: Challenge,
     /// Name of the robot that a frame has proved.
     pub(super) robot: Option<String>,
+    pub(super) lag: Lag,
     second: Instant,
     states: u32,
     letters: u32,
@@ -24,7 +26,7 @@ pub struct Source {
 impl Source {
     /// Returns a connection whose frames are proved for this challenge.
     pub(super) fn of_connection(challenge: Challenge) -> Self {
-        Self { challenge, robot: None, second: Instant::now(), states: 0, letters: 0 }
+        Self { challenge, robot: None, lag: Lag::default(), second: Instant::now(), states: 0, letters: 0 }
     }
 
     /// Returns a source of frames of the robot of this name on a medium without connections. Frames that were recorded

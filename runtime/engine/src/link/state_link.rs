@@ -117,7 +117,8 @@ impl StateLink {
                 if refused.contains(&name) {
                     continue;
                 }
-                let reading = Reading { value: shared.value.clone(), at: Nanos(at.0.saturating_sub(shared.age.0)) };
+                let age = shared.age.0.saturating_add(state.age.0);
+                let reading = Reading { value: shared.value.clone(), at: Nanos(at.0.saturating_sub(age)) };
                 if let Err(refusal) = board.put_foreign(&name, reading) {
                     messages
                         .push(format!("warning: state link: {} of {} is refused: {refusal}", shared.name, state.name));
@@ -189,7 +190,7 @@ impl StateLink {
         let state = known.map(|Known { state, at, .. }| PeerState {
             pose: inward(&self.start, &state.pose),
             velocity: state.velocity,
-            age: now.since(*at),
+            age: Nanos(now.since(*at).0.saturating_add(state.age.0)),
             rounds: state.rounds_with(&self.name),
             atom: state.atom,
         });
@@ -282,6 +283,22 @@ mod tests {
             self.0.push((name.to_string(), value, at.0));
             Ok(())
         }
+    }
+
+    #[test]
+    fn the_time_on_the_way_counts_to_the_age() {
+        let attributes = vec![SharedValue {
+            name: AttributeName::new("heading", "range"),
+            value: Value::Number(1.0),
+            age: Nanos(3),
+        }];
+        let state = State { age: Nanos(20), attributes, ..State::of("ada", 1) };
+        let (mut link, mut board) =
+            (StateLink::new(Box::new(Script(vec![state])), "bob", Pose::ORIGIN), Shared(Vec::new()));
+        link.receive(Nanos(100), &mut board);
+        let age = |now| link.sense(["ada"].into_iter(), Nanos(now)).peer("ada").unwrap().state.unwrap().age;
+        assert_eq!((age(100), age(150)), (Nanos(20), Nanos(70)));
+        assert_eq!(board.0, [("/usr/ada_heading/range".to_owned(), Value::Number(1.0), 77)]);
     }
 
     #[test]

@@ -83,7 +83,8 @@ pub(super) fn wait<T>(mut happens: impl FnMut() -> Option<T>) -> T {
 
 pub(super) fn received(link: &mut Tcp) -> Vec<State> {
     let mut states = Vec::new();
-    link.receive(Nanos::ZERO, &mut |state| states.push(state));
+    // The age is by the clock.
+    link.receive(Nanos::ZERO, &mut |state| states.push(State { age: Nanos::ZERO, ..state }));
     states
 }
 
