@@ -6,6 +6,8 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use rustix::net::sockopt::{set_socket_send_buffer_size, set_tcp_user_timeout};
+
 use crate::link::endpoint::Endpoint;
 use crate::link::frame::{Challenge, Draft, GREETING_LENGTH, Refused, VERSION};
 use crate::link::outbox::Outbox;
@@ -16,8 +18,11 @@ const CONNECTS: Duration = Duration::from_millis(500);
 const GREETS: Duration = Duration::from_secs(1);
 /// Time between two attempts to connect.
 const AGAIN: Duration = Duration::from_millis(200);
-/// Time after which the connection to a peer that reads nothing is closed and made again.
+/// Time after which the connection to a peer that acknowledges nothing, or reads nothing, is closed and made again.
+/// Without it the system would send what was lost again at ever longer intervals, also once the line is good.
 pub(super) const WRITES: Duration = Duration::from_secs(2);
+/// Size of the system's buffer, in bytes: what is in it is not replaced by newer states.
+const BUFFER: usize = 16_384;
 
 /// Begins to send to the peer of this name.
 ///
@@ -70,6 +75,8 @@ fn connect(address: SocketAddr) -> Result<(TcpStream, Challenge), String> {
         let mut stream = TcpStream::connect_timeout(&address, CONNECTS)?;
         stream.set_nodelay(true)?;
         stream.set_write_timeout(Some(WRITES))?;
+        set_tcp_user_timeout(&stream, WRITES.as_millis() as u32)?;
+        set_socket_send_buffer_size(&stream, BUFFER)?;
         stream.set_read_timeout(Some(GREETS))?;
         Ok((stream.read_exact(&mut greeting), stream))
     })();
@@ -106,4 +113,26 @@ fn send(
         }
     }
     io::ErrorKind::Interrupted.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::TcpListener;
+
+    use rustix::net::sockopt::tcp_user_timeout;
+
+    use super::*;
+
+    #[test]
+    fn a_connection_without_acknowledgements_is_given_up() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = listener.local_addr().unwrap();
+        let peer = thread::spawn(move || {
+            let (mut stream, _) = listener.accept().unwrap();
+            stream.write_all(&Challenge::NONE.greeting()).unwrap();
+        });
+        let (stream, challenge) = connect(address).unwrap();
+        peer.join().unwrap();
+        assert_eq!((tcp_user_timeout(&stream), challenge), (Ok(2000), Challenge::NONE));
+    }
 }

@@ -299,6 +299,30 @@ fn a_new_connection_of_a_peer_replaces_the_old_one() {
 }
 
 #[test]
+fn few_states_wait_for_a_peer_that_reads_slowly() {
+    let listener = bound();
+    rustix::net::sockopt::set_socket_recv_buffer_size(&listener, 8192).unwrap();
+    let mut bob = Tcp::on(bound(), &settings("bob", &[("ada", address(&listener))], "key")).unwrap();
+    bob.send(&state("bob", 1), Nanos::ZERO);
+    let (mut slow, _) = listener.accept().unwrap();
+    slow.write_all(&Challenge::NONE.greeting()).unwrap();
+    let (begun, mut number) = (Instant::now(), 1);
+    while begun.elapsed() < Duration::from_secs(1) {
+        number += 1;
+        bob.send(&state("bob", number), Nanos::ZERO);
+        std::thread::yield_now();
+    }
+    // What waits on the way arrives before the newest state.
+    slow.set_read_timeout(Some(Duration::from_millis(200))).unwrap();
+    let mut bytes = 0;
+    let mut buffer = [0; 65_536];
+    while let Ok(count) = slow.read(&mut buffer) {
+        bytes += count;
+    }
+    assert!(bytes < 150_000, "{bytes} bytes of {number} states");
+}
+
+#[test]
 fn a_peer_that_never_reads_delays_no_turn() {
     let (listener, own) = (bound(), bound());
     let (at_ada, place) = (address(&listener), address(&own));
