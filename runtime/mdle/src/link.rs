@@ -108,11 +108,10 @@ impl LinkFile {
     /// Opens the link.
     ///
     /// # Errors
-    /// Fails if the robot cannot listen at the address (exit status 2).
+    /// Fails if the robot cannot listen at the address, or the system cannot create threads (exit status 2).
     pub(crate) fn open(&self) -> Result<StateLink, Refusal> {
-        let TcpSettings { link: LinkSettings { name, plans, .. }, listen, .. } = &self.settings;
-        let refused =
-            |error| Refusal::Usage(format!("{}: nothing can listen at {listen}: {error}", self.path.display()));
+        let LinkSettings { name, plans, .. } = &self.settings.link;
+        let refused = |sentence| Refusal::Usage(format!("{}: {sentence}", self.path.display()));
         let link = Tcp::open(&self.settings).map_err(refused)?;
         let names: Vec<_> = plans.iter().map(|(name, _)| name.clone()).collect();
         let link = StateLink::new(Box::new(link), name, self.start).sharing(&self.shares);

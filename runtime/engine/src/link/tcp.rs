@@ -48,10 +48,11 @@ impl Tcp {
     /// Begins to listen, and to connect to the peers.
     ///
     /// # Errors
-    /// Fails if the robot cannot listen at the address, or if the system cannot create the threads.
-    pub fn open(settings: &TcpSettings) -> io::Result<Self> {
-        let listener = TcpListener::bind(settings.listen)?;
-        Self::on(listener, settings)
+    /// Fails with a sentence if the robot cannot listen at the address, or if the system cannot create the threads.
+    pub fn open(settings: &TcpSettings) -> Result<Self, String> {
+        let TcpSettings { listen, .. } = settings;
+        let listener = TcpListener::bind(listen).map_err(|error| format!("nothing can listen at {listen}: {error}"))?;
+        Self::on(listener, settings).map_err(|error| format!("the system gives no thread: {error}"))
     }
 
     /// Returns the link of a robot that accepts connections from `listener`.

@@ -21,6 +21,8 @@ const AGAIN: Duration = Duration::from_millis(200);
 /// Time after which the connection to a peer that acknowledges nothing, or reads nothing, is closed and made again.
 /// Without it the system would send what was lost again at ever longer intervals, also once the line is good.
 pub(super) const WRITES: Duration = Duration::from_secs(2);
+/// Time after which a connection counts as one that lasts.
+const LASTS: Duration = Duration::from_secs(1);
 /// Size of the system's buffer, in bytes: what is in it is not replaced by newer states.
 const BUFFER: usize = 16_384;
 
@@ -35,31 +37,30 @@ pub(super) fn begin(name: String, address: SocketAddr, endpoint: &Arc<Endpoint>)
     Ok(outbox)
 }
 
-/// Connects and sends until the run is over. A peer that cannot be reached is reported only once, until it has
-/// been reached again.
+/// Connects and sends until the run is over. A peer that cannot be reached is reported only once, until a connection to
+/// it has lasted.
 fn keep_sending(name: &str, address: SocketAddr, outbox: &Outbox, endpoint: &Endpoint) {
-    let mut is_known_as_down = false;
-    // The last state that was taken, which a new connection begins with.
-    let mut last = None;
+    let mut sender = Sender { name, outbox, endpoint, last: None, is_known_as_down: false };
     while !endpoint.is_over() {
         let begun = Instant::now();
-        outbox.late(begun).iter().for_each(|letter| endpoint.is_late(letter));
+        sender.drop_late_letters();
+        sender.last = outbox.next().or(sender.last.take());
+        if sender.last.is_none() {
+            // Before its first turn the robot has nothing to send, and a receiver waits for a state.
+            continue;
+        }
         let failure = match connect(address) {
             Ok(connection) => {
-                if is_known_as_down {
-                    endpoint.say(format!("state link: connected to {name} again"));
-                }
-                is_known_as_down = false;
                 outbox.open();
-                let failure = send(connection, outbox, &mut last, endpoint);
+                let failure = sender.send(connection);
                 outbox.close();
                 failure.to_string()
             }
             Err(failure) => failure,
         };
-        if !is_known_as_down && !endpoint.is_over() {
+        if !sender.is_known_as_down && !endpoint.is_over() {
             endpoint.say(format!("warning: state link: {name} at {address} cannot be reached: {failure}"));
-            is_known_as_down = true;
+            sender.is_known_as_down = true;
         }
         thread::sleep(AGAIN.saturating_sub(begun.elapsed()));
     }
@@ -89,30 +90,48 @@ fn connect(address: SocketAddr) -> Result<(TcpStream, Challenge), String> {
     }
 }
 
-/// Sends states and letters until that fails; returns the error. `last` is the state that was taken last, with which
-/// every connection begins: a letter is taken only from a robot whose state has arrived.
-fn send(
-    (mut stream, challenge): (TcpStream, Challenge),
-    outbox: &Outbox,
-    last: &mut Option<Draft>,
-    endpoint: &Endpoint,
-) -> io::Error {
-    while !endpoint.is_over() {
-        *last = outbox.next().or(last.take());
-        let Some(state) = last else { continue };
-        // A frame that was written in part would shift all that follow: the connection is made anew.
-        if let Err(error) = stream.write_all(&state.frame(&challenge)) {
-            return error;
-        }
-        outbox.late(Instant::now()).iter().for_each(|letter| endpoint.is_late(letter));
-        while let Some(letter) = outbox.letter(Instant::now()) {
-            if let Err(error) = stream.write_all(&letter.draft.frame(&challenge)) {
+/// The sender to a peer.
+struct Sender<'l> {
+    /// Name of the peer.
+    name: &'l str,
+    outbox: &'l Outbox,
+    endpoint: &'l Endpoint,
+    /// The last state that was taken, with which every connection begins: a letter is taken only from a robot whose
+    /// state has arrived.
+    last: Option<Draft>,
+    /// `true` once it has been reported that the peer cannot be reached.
+    is_known_as_down: bool,
+}
+
+impl Sender<'_> {
+    /// Sends states and letters until that fails; returns the error.
+    fn send(&mut self, (mut stream, challenge): (TcpStream, Challenge)) -> io::Error {
+        let begun = Instant::now();
+        while !self.endpoint.is_over() {
+            // A frame that was written in part would shift all that follow: the connection is made anew.
+            if let Err(error) = self.last.iter().try_for_each(|state| stream.write_all(&state.frame(&challenge))) {
                 return error;
             }
-            outbox.is_sent(letter.number);
+            while let Some(letter) = self.outbox.letter(Instant::now()) {
+                if let Err(error) = stream.write_all(&letter.draft.frame(&challenge)) {
+                    return error;
+                }
+                self.outbox.is_sent(letter.number);
+            }
+            // A peer that has another key closes each connection at once.
+            if self.is_known_as_down && begun.elapsed() >= LASTS {
+                self.endpoint.say(format!("state link: connected to {} again", self.name));
+                self.is_known_as_down = false;
+            }
+            self.last = self.outbox.next().or(self.last.take());
+            self.drop_late_letters();
         }
+        io::ErrorKind::Interrupted.into()
     }
-    io::ErrorKind::Interrupted.into()
+
+    fn drop_late_letters(&self) {
+        self.outbox.late(Instant::now()).iter().for_each(|letter| self.endpoint.is_late(letter));
+    }
 }
 
 #[cfg(test)]

@@ -148,10 +148,10 @@ fn a_peer_that_comes_back_is_connected_to_again() {
         stream.write_all(&Challenge::NONE.greeting()).unwrap();
         let mut length = [0; 4];
         stream.read_exact(&mut length).unwrap();
-        u32::from_le_bytes(length)
+        (u32::from_le_bytes(length), stream)
     };
     bob.send(&state("bob", 1), Nanos::ZERO);
-    assert!(accept(&listener) > 0);
+    assert!(accept(&listener).0 > 0);
     drop(listener);
     let mut number = 1;
     wait(|| {
@@ -162,8 +162,10 @@ fn a_peer_that_comes_back_is_connected_to_again() {
         is_down.then_some(())
     });
     let again = TcpListener::bind(at_ada).unwrap();
-    assert!(accept(&again) > 0);
+    let (length, stream) = accept(&again);
+    assert!(length > 0);
     message(&mut bob, "connected to ada again");
+    drop(stream);
 }
 
 #[test]
@@ -296,6 +298,37 @@ fn a_new_connection_of_a_peer_replaces_the_old_one() {
     let _ = old.write_all(&frame(&state("ada", 9), "key", &challenge));
     new.write_all(&frame(&state("ada", 3), "key", &of_new)).unwrap();
     assert_eq!(wait(|| received(&mut bob).pop()), state("ada", 3));
+}
+
+#[test]
+fn a_peer_with_another_key_causes_few_messages() {
+    let (one, other) = (bound(), bound());
+    let (at_ada, at_bob) = (address(&one), address(&other));
+    let mut ada = Tcp::on(one, &settings("ada", &[("bob", at_bob)], "another")).unwrap();
+    let mut bob = Tcp::on(other, &settings("bob", &[("ada", at_ada)], "key")).unwrap();
+    let (begun, mut number, mut messages) = (Instant::now(), 0, Vec::new());
+    while begun.elapsed() < Duration::from_secs(2) {
+        number += 1;
+        ada.send(&state("ada", number), Nanos::ZERO);
+        bob.send(&state("bob", number), Nanos::ZERO);
+        read_messages(&mut bob, &mut messages);
+        sleep(Duration::from_millis(10));
+    }
+    messages.sort();
+    assert_eq!(messages.len(), 2, "{messages:?}");
+    assert!(messages[0].contains("127.0.0.1 is refused: it has another key"), "{messages:?}");
+    assert!(messages[1].contains("ada at 127.0.0.1:") && messages[1].contains("cannot be reached"), "{messages:?}");
+}
+
+#[test]
+fn a_robot_connects_once_it_has_a_state() {
+    let listener = bound();
+    listener.set_nonblocking(true).unwrap();
+    let mut bob = Tcp::on(bound(), &settings("bob", &[("ada", address(&listener))], "key")).unwrap();
+    sleep(Duration::from_millis(300));
+    assert!(listener.accept().is_err(), "there is nothing to send");
+    bob.send(&state("bob", 1), Nanos::ZERO);
+    wait(|| listener.accept().ok());
 }
 
 #[test]
