@@ -7,16 +7,16 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use mdle_runtime::Nanos;
+use mdle_runtime::{Nanos, Printable};
 
-use super::frame::{Draft, Key, Refused, VERSION};
+use super::frame::{Draft, Key, NAME, Refused, VERSION};
 use super::letter::NOW;
 use super::letter_frame::is_letter;
 use super::letters::Letters;
 use super::refusals::Refusals;
 use super::sessions::Sessions;
 use super::source::Source;
-use super::state_frame::{self, LONGEST};
+use super::state_frame::{self, LONGEST, has_fitting_name};
 use super::{Content, Letter, State, lock};
 use crate::plans::When;
 
@@ -114,9 +114,12 @@ impl Endpoint {
         &self.peers
     }
 
-    /// Returns the draft of a state of this robot.
+    /// Returns the draft of a state of this robot, without attributes whose names are too long.
     #[must_use]
     pub fn state(&self, state: &State) -> Draft {
+        for shared in state.attributes.iter().filter(|shared| !has_fitting_name(shared)) {
+            self.refuse(&shared.name.to_string(), &format!("a name that is shared has at most {NAME} bytes"));
+        }
         state_frame::written(state, self.time(Instant::now()), &self.key)
     }
 
@@ -189,7 +192,7 @@ impl Endpoint {
         })?;
         let (state, sent) = read;
         if !self.peers.contains(&state.name) {
-            let name = state.name.escape_debug();
+            let name = Printable(&state.name);
             return Err(format!("its robot `{name}` is none of {}", self.peers.join(", ")));
         }
         let robot = source.robot.get_or_insert_with(|| state.name.clone());

@@ -185,7 +185,7 @@ fn what_is_no_state_of_a_peer_is_refused() {
         ),
         (|challenge| frame(&state("ada", 1), "another", challenge), "it has another key"),
         (|_| frame(&state("ada", 1), "key", &Challenge::NONE), "it has another key, or repeats what was recorded"),
-        (|challenge| frame(&state("eve\n", 1), "key", challenge), "its robot `eve\\n` is none of ada"),
+        (|challenge| frame(&state("eve\n", 1), "key", challenge), "its robot `eveU+000A` is none of ada"),
         (
             |challenge| {
                 let frame = frame(&state("ada", 1), "key", challenge);
