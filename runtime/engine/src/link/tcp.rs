@@ -9,6 +9,8 @@ mod connection;
 #[cfg(test)]
 mod letter_tests;
 mod receiver;
+#[cfg(test)]
+mod refusal_tests;
 mod sender;
 mod strangers;
 #[cfg(test)]
