@@ -12,6 +12,9 @@ use std::time::{Duration, Instant};
 
 use mdle_tests::chance::Chance;
 
+/// Length of the bytes by which a robot greets a sender (docs/src/reference/interfaces.md, 6.5).
+const GREETING: usize = 21;
+
 /// A line's faults.
 #[derive(Clone, Copy)]
 pub(crate) struct Line {
@@ -27,9 +30,14 @@ impl Line {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap();
         thread::spawn(move || {
-            for (number, stream) in (0..).zip(listener.incoming().flatten()) {
+            for (number, mut stream) in (0..).zip(listener.incoming().flatten()) {
                 // A peer that is not there yet: the sender comes again.
-                let Ok(to) = TcpStream::connect(peer) else { continue };
+                let Ok(mut to) = TcpStream::connect(peer) else { continue };
+                let mut greeting = [0; GREETING];
+                let greeted = to.read_exact(&mut greeting).and_then(|()| stream.write_all(&greeting));
+                if greeted.is_err() {
+                    continue;
+                }
                 let (frames, carried) = channel();
                 let chance = Chance::new(seed + 1000 * number);
                 thread::spawn(move || self.take(stream, &frames, chance));

@@ -90,8 +90,8 @@ fn a_plan_takes_over_in_another_process() {
 #[test]
 fn a_plan_of_a_stranger_is_refused() {
     for (test, keys, words) in [
-        ("tcp_plan_key", [KEY, "plans = \"another\""], "it sends a plan as `ada` with another key"),
-        ("tcp_plan_stranger", [KEY, ""], "it sends a plan as `ada`, from which no plans are taken"),
+        ("tcp_plan_key", [KEY, "plans = \"another\""], "a letter of ada is refused: it has another key `plans`"),
+        ("tcp_plan_stranger", [KEY, ""], "a letter of ada is refused: no plans are exchanged with ada"),
     ] {
         let [ada, bob] = send(test, keys, GO);
         assert!(bob.contains(words) && bob.contains("plan over: wait 5s (stand.mdle:1)"), "{ada}{bob}");

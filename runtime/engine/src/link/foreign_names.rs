@@ -2,7 +2,7 @@
 
 use mdle_runtime::Nanos;
 
-use super::frame::ATTRIBUTES;
+use super::state_frame::ATTRIBUTES;
 use super::{Foreign, State};
 use crate::attribute::{AttributeName, Reading};
 
@@ -35,7 +35,8 @@ impl ForeignNames {
             if own.refused.contains(&name) || !is_taken && !own.has_room(say) {
                 continue;
             }
-            let reading = Reading { value: shared.value.clone(), at: Nanos(at.0.saturating_sub(shared.age.0)) };
+            let age = shared.age.0.saturating_add(state.age.0);
+            let reading = Reading { value: shared.value.clone(), at: Nanos(at.0.saturating_sub(age)) };
             let put = match self.owner(&name) {
                 // The robot `a` has a module `b_c`, and `a_b` a module `c`.
                 Some(other) => Err(format!("the robot `{other}` shares the module `{}`", name.module)),

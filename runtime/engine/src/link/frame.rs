@@ -1,29 +1,28 @@
-//! A state in binary form: a length, then version, checksum, proof of the key, and the state
+//! Frames: a length, then first bytes, version, checksum, proof of the key, and a body
 //! (docs/src/reference/interfaces.md, 6.5).
 
-use mdle_runtime::{Meters, MetersPerSecond, Nanos, PEERS, Pose, Radians, RadiansPerSecond, Twist};
+use std::io;
+use std::sync::Arc;
 
-use super::{SharedValue, State};
-use crate::attribute::{AttributeKind, AttributeName, Value};
+use rustix::rand::{GetRandomFlags, getrandom};
 
-/// First bytes of every frame.
-const MAGIC: [u8; 4] = *b"MDLe";
 /// Version of frames.
-pub(super) const VERSION: u8 = 3;
-/// Maximum length of a frame, in bytes, without the four bytes of the length.
-pub(super) const LONGEST: usize = 8192;
-/// Maximum number of attributes in a state.
-pub(super) const ATTRIBUTES: usize = 40;
-/// Maximum length of a robot's name, in bytes.
+pub(super) const VERSION: u8 = 4;
+/// Maximum length of a name, in bytes.
 pub(super) const NAME: usize = 64;
-/// Number of bytes before the state: magic, version, checksum, and proof.
-const HEAD: usize = 4 + 1 + 4 + 16;
+/// First bytes of a greeting.
+const GREETING: [u8; 4] = *b"MDLg";
+/// Length of a greeting, in bytes: its first bytes, version, and challenge.
+pub(super) const GREETING_LENGTH: usize = 4 + 1 + 16;
+/// Number of bytes before the body: first bytes, version, checksum, and proof.
+const HEAD: usize = 4 + 1 + 4 + 32;
 
-/// The key that all robots of a link share.
+/// A key that robots share.
 #[derive(Clone)]
 pub(super) struct Key([u8; 32]);
 
 impl Key {
+    /// Returns the key of states, which all robots of a link share.
     pub(super) fn of(text: &str) -> Self {
         Self(blake3::derive_key("mdle state link 1", text.as_bytes()))
     }
@@ -33,9 +32,57 @@ impl Key {
         Self(blake3::derive_key("mdle letters 1", text.as_bytes()))
     }
 
-    /// Returns the proof that the writer of these bytes has the key.
-    fn proof(&self, body: &[u8]) -> [u8; 16] {
-        blake3::keyed_hash(&self.0, body).as_bytes().first_chunk().copied().unwrap_or_default()
+    /// Returns the proof that the writer of a frame has the key, and has written the frame for this challenge.
+    fn proof(&self, challenge: &Challenge, magic: [u8; 4], body: &[u8]) -> blake3::Hash {
+        let mut hasher = blake3::Hasher::new_keyed(&self.0);
+        hasher.update(&challenge.0).update(&magic).update(&[VERSION]).update(body);
+        hasher.finalize()
+    }
+}
+
+/// Random bytes that the receiver of a connection sends first. The proof of each frame covers them, so that a recorded
+/// frame is worth nothing on any other connection.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Challenge([u8; 16]);
+
+impl Challenge {
+    /// The challenge of a medium without connections, by which the proof of a frame does not tell when it was written.
+    pub const NONE: Self = Self([0; 16]);
+
+    /// Returns a new challenge.
+    ///
+    /// # Errors
+    /// Fails if the system has no random numbers.
+    pub(super) fn random() -> io::Result<Self> {
+        let mut bytes = [0; 16];
+        match getrandom(&mut bytes[..], GetRandomFlags::empty())? {
+            16 => Ok(Self(bytes)),
+            _ => Err(io::ErrorKind::UnexpectedEof.into()),
+        }
+    }
+
+    /// Returns the bytes by which a receiver tells a sender the challenge.
+    pub(super) fn greeting(&self) -> [u8; GREETING_LENGTH] {
+        let mut greeting = [0; GREETING_LENGTH];
+        let bytes = GREETING.into_iter().chain([VERSION]).chain(self.0);
+        greeting.iter_mut().zip(bytes).for_each(|(place, byte)| *place = byte);
+        greeting
+    }
+
+    /// Reads a greeting.
+    ///
+    /// # Errors
+    /// The bytes are no greeting of this version.
+    pub(super) fn of_greeting(greeting: &[u8; GREETING_LENGTH]) -> Result<Self, Refused> {
+        let mut bytes = Bytes(greeting);
+        if bytes.take() != Some(GREETING) {
+            return Err(Refused::Garbage);
+        }
+        match bytes.take::<1>() {
+            Some([VERSION]) => bytes.take().map(Self).ok_or(Refused::Garbage),
+            Some([other]) => Err(Refused::Version(other)),
+            None => Err(Refused::Garbage),
+        }
     }
 }
 
@@ -46,75 +93,55 @@ pub(super) enum Refused {
     Garbage,
     /// The frame has another version: its number.
     Version(u8),
-    /// The sender has a different key.
+    /// The sender has a different key, or has written the frame for another connection.
     Key,
+    /// The pose or the velocity is one that no robot has.
+    Impossible,
 }
 
-/// Returns the frame of a state, length included.
-pub(super) fn written(state: &State, key: &Key) -> Vec<u8> {
-    let mut body = Vec::with_capacity(256);
-    put_name(&mut body, &state.name);
-    body.extend(state.session.to_le_bytes());
-    body.extend(state.number.to_le_bytes());
-    let Pose { x, y, theta } = state.pose;
-    let Twist { v, omega } = state.velocity;
-    [x.0, y.0, theta.0, v.0, omega.0].iter().for_each(|number| body.extend(number.to_le_bytes()));
-    body.extend(state.atom.to_le_bytes());
-    let rounds = state.rounds.get(..state.rounds.len().min(PEERS)).unwrap_or_default();
-    body.push(rounds.len() as u8);
-    for (robot, count) in rounds {
-        put_name(&mut body, robot);
-        body.extend(count.to_le_bytes());
-    }
-    let attributes = state.attributes.get(..state.attributes.len().min(ATTRIBUTES)).unwrap_or_default();
-    body.push(attributes.len() as u8);
-    for SharedValue { name, value, age } in attributes {
-        put_name(&mut body, &name.module);
-        put_name(&mut body, &name.attribute);
-        body.push(value.kind().number());
-        body.extend(value.bits().to_le_bytes());
-        body.extend(age.0.to_le_bytes());
-    }
-    framed(MAGIC, &body, key)
+/// A frame without its proof, which each connection needs anew.
+#[derive(Clone)]
+pub struct Draft {
+    magic: [u8; 4],
+    body: Arc<[u8]>,
+    key: Key,
 }
 
-/// Returns the frame of a body, length included.
-pub(super) fn framed(magic: [u8; 4], body: &[u8], key: &Key) -> Vec<u8> {
-    let length = (HEAD + body.len()) as u32;
-    let mut frame = length.to_le_bytes().to_vec();
-    frame.extend(magic);
-    frame.push(VERSION);
-    frame.extend(checksum(body));
-    frame.extend(key.proof(body));
-    frame.extend(body);
-    frame
+impl Draft {
+    /// Returns the draft of a frame with these first bytes.
+    pub(super) fn new(magic: [u8; 4], body: Vec<u8>, key: &Key) -> Self {
+        Self { magic, body: body.into(), key: key.clone() }
+    }
+
+    /// Returns the frame, length included, with a proof for this challenge.
+    #[must_use]
+    pub fn frame(&self, challenge: &Challenge) -> Vec<u8> {
+        let Self { magic, body, key } = self;
+        let length = (HEAD + body.len()) as u32;
+        let mut frame = length.to_le_bytes().to_vec();
+        frame.extend(magic);
+        frame.push(VERSION);
+        frame.extend(checksum(body));
+        frame.extend(key.proof(challenge, *magic, body).as_bytes());
+        frame.extend(body.iter());
+        frame
+    }
 }
 
 fn checksum(body: &[u8]) -> [u8; 4] {
     blake3::hash(body).as_bytes().first_chunk().copied().unwrap_or_default()
 }
 
-pub(super) fn put_name(to: &mut Vec<u8>, name: &str) {
-    let bytes = name.as_bytes();
-    let bytes = bytes.get(..bytes.len().min(NAME)).unwrap_or_default();
-    to.push(bytes.len() as u8);
-    to.extend(bytes);
-}
-
-/// Reads the frame of a state, without its length.
-///
-/// # Errors
-/// Fails if the bytes are not a frame of a robot with this key.
-pub(super) fn read(frame: &[u8], key: &Key) -> Result<State, Refused> {
-    let mut body = opened(MAGIC, frame, key)?;
-    state(&mut body).ok_or(Refused::Garbage)
-}
-
 /// Returns the body of a frame with these first bytes, once its checksum and its proof hold.
 ///
 /// # Errors
-/// The bytes are no such frame of somebody with this key.
-pub(super) fn opened<'b>(magic: [u8; 4], frame: &'b [u8], key: &Key) -> Result<Bytes<'b>, Refused> {
+/// The bytes are no such frame of somebody with this key, for this challenge.
+pub(super) fn opened<'b>(
+    magic: [u8; 4],
+    frame: &'b [u8],
+    key: &Key,
+    challenge: &Challenge,
+) -> Result<Bytes<'b>, Refused> {
     let mut from = Bytes(frame);
     if from.take() != Some(magic) {
         return Err(Refused::Garbage);
@@ -124,47 +151,37 @@ pub(super) fn opened<'b>(magic: [u8; 4], frame: &'b [u8], key: &Key) -> Result<B
         Some([other]) => return Err(Refused::Version(other)),
         None => return Err(Refused::Garbage),
     }
-    let (Some(sum), Some(proof)) = (from.take::<4>(), from.take::<16>()) else { return Err(Refused::Garbage) };
+    let (Some(sum), Some(proof)) = (from.take::<4>(), from.take::<32>()) else { return Err(Refused::Garbage) };
     if checksum(from.0) != sum {
         return Err(Refused::Garbage);
     }
-    // Only somebody who has the key knows the proof, so nobody gains from the time that the comparison takes.
-    if key.proof(from.0) != proof {
+    // Hashes are compared in constant time: nobody learns a proof byte by byte.
+    if key.proof(challenge, magic, from.0) != blake3::Hash::from_bytes(proof) {
         return Err(Refused::Key);
     }
     Ok(from)
 }
 
-fn state(from: &mut Bytes<'_>) -> Option<State> {
-    let name = from.name()?;
-    let (session, number) = (from.number()?, from.number()?);
-    let mut real = || from.take().map(f64::from_le_bytes).filter(|number| number.is_finite());
-    let pose = Pose { x: Meters(real()?), y: Meters(real()?), theta: Radians(real()?) };
-    let velocity = Twist { v: MetersPerSecond(real()?), omega: RadiansPerSecond(real()?) };
-    let atom = from.number()?;
-    let [count] = from.take()?;
-    let rounds = (0..count).map(|_| Some((from.name()?, from.number()?))).collect::<Option<Vec<_>>>()?;
-    let [count] = from.take()?;
-    let attributes = (0..count).map(|_| attribute(from)).collect::<Option<Vec<_>>>()?;
-    from.0.is_empty().then_some(State { name, session, number, pose, velocity, rounds, atom, attributes })
+/// Returns `true` if a name can be in a frame.
+pub(super) fn fits(name: &str) -> bool {
+    (1..=NAME).contains(&name.len())
 }
 
-/// Reads the value of an attribute, which is a number and not NaN.
-fn attribute(from: &mut Bytes<'_>) -> Option<SharedValue> {
-    let name = AttributeName::new(&from.name()?, &from.name()?);
-    let [kind] = from.take()?;
-    let value = Value::of_bits(AttributeKind::of_number(kind)?, from.number()?);
-    let age = Nanos(from.number()?);
-    value.number().filter(|number| !number.is_nan()).map(|_| SharedValue { name, value, age })
+/// Appends a name that [`fits`].
+pub(super) fn put_name(to: &mut Vec<u8>, name: &str) {
+    let bytes = name.as_bytes();
+    let bytes = bytes.get(..bytes.len().min(NAME)).unwrap_or_default();
+    to.push(bytes.len() as u8);
+    to.extend(bytes);
 }
 
 /// Bytes of a frame, which are read from the front.
 pub(super) struct Bytes<'b>(&'b [u8]);
 
-impl<'b> Bytes<'b> {
-    /// Returns the bytes of a frame's body, which nothing proves yet.
-    pub(super) fn of_body(frame: &'b [u8]) -> Option<Self> {
-        frame.get(HEAD..).map(Self)
+impl Bytes<'_> {
+    /// Returns `true` if all bytes have been read.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
     }
 
     /// Takes all bytes that are left, as text.
@@ -186,7 +203,7 @@ impl<'b> Bytes<'b> {
         let [length] = self.take()?;
         let (name, rest) = self.0.split_at_checked(usize::from(length))?;
         self.0 = rest;
-        String::from_utf8(name.to_vec()).ok().filter(|name| !name.is_empty() && name.len() <= NAME)
+        String::from_utf8(name.to_vec()).ok().filter(|name| fits(name))
     }
 }
 
@@ -194,74 +211,41 @@ impl<'b> Bytes<'b> {
 mod tests {
     use super::*;
 
-    fn sent() -> State {
-        State {
-            name: "ada".to_owned(),
-            session: 9,
-            number: 7,
-            pose: Pose { x: Meters(1.5), y: Meters(-2.0), theta: Radians(0.25) },
-            velocity: Twist { v: MetersPerSecond(0.5), omega: RadiansPerSecond(-0.1) },
-            rounds: vec![("bob".to_owned(), 3), ("eve".to_owned(), u64::MAX)],
-            atom: 4,
-            attributes: vec![
-                shared("range", Value::Length(Meters(f64::INFINITY))),
-                shared("count", Value::Integer(-3)),
-            ],
-        }
-    }
-
-    fn shared(attribute: &str, value: Value) -> SharedValue {
-        SharedValue { name: AttributeName::new("heading", attribute), value, age: Nanos(5) }
-    }
+    const MAGIC: [u8; 4] = *b"MDLe";
 
     #[test]
-    fn a_state_is_read_as_it_was_written() {
+    fn a_frame_counts_for_its_challenge_alone() {
+        let [one, other] = [(); 2].map(|()| Challenge::random().unwrap());
+        assert_ne!(one, other);
         let key = Key::of("a key");
-        let frame = written(&sent(), &key);
-        let (length, rest) = frame.split_first_chunk().unwrap();
-        assert_eq!(u32::from_le_bytes(*length) as usize, rest.len());
-        assert!(rest.len() < LONGEST);
-        assert_eq!(read(rest, &key), Ok(sent()));
-    }
-
-    #[test]
-    fn any_other_bytes_are_refused() {
-        let key = Key::of("a key");
-        let frame = written(&sent(), &key)[4..].to_vec();
-        assert_eq!(read(&frame, &Key::of("another")), Err(Refused::Key));
-        for length in 0..frame.len() {
-            assert_eq!(read(&frame[..length], &key), Err(Refused::Garbage), "the first {length} bytes");
-        }
-        for place in 0..frame.len() {
-            let mut changed = frame.clone();
-            changed[place] ^= 1;
-            let refused = read(&changed, &key).unwrap_err();
-            let expected = match place {
-                4 => Refused::Version(VERSION ^ 1),
-                9..25 => Refused::Key,
-                _ => Refused::Garbage,
-            };
-            assert_eq!(refused, expected, "byte {place}");
-        }
-        let mut not_finite = sent();
-        not_finite.pose.x.0 = f64::NAN;
-        assert_eq!(read(&written(&not_finite, &key)[4..], &key), Err(Refused::Garbage));
-        for value in [Value::Number(f64::NAN), Value::Flag(true), Value::Text("text".into())] {
-            let no_number = State { attributes: vec![shared("range", value)], ..sent() };
-            assert_eq!(read(&written(&no_number, &key)[4..], &key), Err(Refused::Garbage));
+        let draft = Draft::new(MAGIC, b"body".to_vec(), &key);
+        let frame = draft.frame(&one)[4..].to_vec();
+        assert_eq!(opened(MAGIC, &frame, &key, &one).unwrap().text().unwrap(), "body");
+        for challenge in [other, Challenge::NONE] {
+            assert_eq!(opened(MAGIC, &frame, &key, &challenge).err(), Some(Refused::Key));
         }
     }
 
     #[test]
-    fn names_and_rounds_have_limits() {
-        let key = Key::of("");
-        let name = AttributeName::new(&"m".repeat(300), &"a".repeat(300));
-        let attribute = SharedValue { name, ..shared("", Value::Number(1.0)) };
-        let (rounds, attributes) = (vec![("r".repeat(300), 1); 20], vec![attribute; 60]);
-        let long = State { name: "n".repeat(300), rounds, attributes, ..sent() };
-        let frame = written(&long, &key);
-        assert!(frame.len() < LONGEST, "{}", frame.len());
-        let state = read(&frame[4..], &key).unwrap();
-        assert_eq!((state.name.len(), state.rounds.len(), state.attributes.len()), (NAME, PEERS, ATTRIBUTES));
+    fn the_proof_covers_first_bytes_and_version() {
+        let (key, challenge) = (Key::of("a key"), Challenge::NONE);
+        let mut frame = Draft::new(MAGIC, b"body".to_vec(), &key).frame(&challenge)[4..].to_vec();
+        frame[3] = b'l';
+        assert_eq!(opened(*b"MDLl", &frame, &key, &challenge).err(), Some(Refused::Key));
+        let older = blake3::keyed_hash(&key.0, b"body");
+        frame[3] = b'e';
+        frame[9..41].copy_from_slice(older.as_bytes());
+        assert_eq!(opened(MAGIC, &frame, &key, &challenge).err(), Some(Refused::Key));
+    }
+
+    #[test]
+    fn a_greeting_tells_the_challenge() {
+        let challenge = Challenge::random().unwrap();
+        let mut greeting = challenge.greeting();
+        assert_eq!(Challenge::of_greeting(&greeting), Ok(challenge));
+        greeting[4] = 9;
+        assert_eq!(Challenge::of_greeting(&greeting), Err(Refused::Version(9)));
+        greeting[0] = 0;
+        assert_eq!(Challenge::of_greeting(&greeting), Err(Refused::Garbage));
     }
 }

@@ -1,11 +1,15 @@
 //! Letters between robots: plans as text, and the answers to them. In contrast to a state, no letter replaces another.
 
+use std::time::Duration;
+
 use crate::plans::When;
 
 /// Maximum length of the text in a letter, in bytes.
 pub const LONGEST_TEXT: usize = 65_536;
 /// Maximum number of letters that wait for one robot.
 pub(super) const UNREAD: usize = 8;
+/// Time within which a plan that takes over at once has to be sent, and has to arrive.
+pub(super) const NOW: Duration = Duration::from_secs(2);
 
 /// A letter from one robot to another.
 #[derive(Debug, Clone, PartialEq, Eq)]

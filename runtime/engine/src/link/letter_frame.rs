@@ -1,14 +1,16 @@
 //! A letter in binary form, with a proof of the key that sender and recipient share, and of the runs of both
 //! (docs/src/reference/interfaces.md, 6.5).
 
-use super::frame::{Bytes, Key, Refused, framed, opened, put_name};
+use mdle_runtime::Nanos;
+
+use super::frame::{Bytes, Challenge, Draft, Key, Refused, opened, put_name};
 use super::letter::{Content, LONGEST_TEXT, Letter, cut};
 use crate::plans::When;
 
 /// First bytes of a letter's frame.
 const MAGIC: [u8; 4] = *b"MDLl";
-/// Maximum length of a frame, in bytes, without the four bytes of the length.
-pub(super) const LONGEST_LETTER: usize = LONGEST_TEXT + 1024;
+/// Maximum length of the frame of a letter, in bytes, without the four bytes of the length. No frame is longer.
+pub const LONGEST_LETTER: usize = LONGEST_TEXT + 1024;
 /// Numbers of the contents of letters.
 const PLAN: u8 = 0;
 const REFUSAL: u8 = 1;
@@ -23,6 +25,8 @@ pub(super) struct Envelope {
     pub(super) sent_in: u64,
     /// Session of the recipient.
     pub(super) meant_for: u64,
+    /// Time of the sender's session at which the letter was sent.
+    pub(super) sent: Nanos,
 }
 
 /// Returns `true` if a frame, without its length, is that of a letter.
@@ -30,12 +34,13 @@ pub(super) fn is_letter(frame: &[u8]) -> bool {
     frame.starts_with(&MAGIC)
 }
 
-/// Returns the frame of a letter, length included.
-pub(super) fn written(envelope: &Envelope, letter: &Letter, key: &Key) -> Vec<u8> {
+/// Returns the draft of a letter.
+pub(super) fn written(envelope: &Envelope, letter: &Letter, key: &Key) -> Draft {
     let mut body = Vec::new();
     put_name(&mut body, &envelope.from);
     put_name(&mut body, &envelope.to);
-    [envelope.sent_in, envelope.meant_for, letter.number].iter().for_each(|number| body.extend(number.to_le_bytes()));
+    let numbers = [envelope.sent_in, envelope.meant_for, letter.number, envelope.sent.0];
+    numbers.iter().for_each(|number| body.extend(number.to_le_bytes()));
     let text = match &letter.content {
         Content::Plan { when, text } => {
             body.extend([PLAN, when.number()]);
@@ -48,26 +53,20 @@ pub(super) fn written(envelope: &Envelope, letter: &Letter, key: &Key) -> Vec<u8
         }
     };
     body.extend(cut(text).as_bytes());
-    framed(MAGIC, &body, key)
-}
-
-/// Returns the name of the sender of a letter, which nothing proves yet.
-pub(super) fn sender(frame: &[u8]) -> Option<String> {
-    Bytes::of_body(frame)?.name()
+    Draft::new(MAGIC, body, key)
 }
 
 /// Reads the frame of a letter, without its length.
 ///
 /// # Errors
-/// The bytes are no letter of somebody with this key.
-pub(super) fn read(frame: &[u8], key: &Key) -> Result<(Envelope, Letter), Refused> {
-    let mut body = opened(MAGIC, frame, key)?;
-    letter(&mut body).ok_or(Refused::Garbage)
+/// The bytes are no letter of somebody with this key, for this challenge.
+pub(super) fn read(frame: &[u8], key: &Key, challenge: &Challenge) -> Result<(Envelope, Letter), Refused> {
+    letter(&mut opened(MAGIC, frame, key, challenge)?).ok_or(Refused::Garbage)
 }
 
 fn letter(body: &mut Bytes<'_>) -> Option<(Envelope, Letter)> {
     let (from, to) = (body.name()?, body.name()?);
-    let (sent_in, meant_for, number) = (body.number()?, body.number()?, body.number()?);
+    let (sent_in, meant_for, number, sent) = (body.number()?, body.number()?, body.number()?, Nanos(body.number()?));
     let [kind] = body.take()?;
     let content = match kind {
         PLAN => {
@@ -80,7 +79,7 @@ fn letter(body: &mut Bytes<'_>) -> Option<(Envelope, Letter)> {
         _ => return None,
     };
     let letter = Letter { from: from.clone(), number, content };
-    Some((Envelope { from, to, sent_in, meant_for }, letter))
+    Some((Envelope { from, to, sent_in, meant_for, sent }, letter))
 }
 
 #[cfg(test)]
@@ -94,25 +93,25 @@ mod tests {
     }
 
     fn envelope() -> Envelope {
-        Envelope { from: "ada".to_owned(), to: "bob".to_owned(), sent_in: 1, meant_for: u64::MAX }
+        Envelope { from: "ada".to_owned(), to: "bob".to_owned(), sent_in: 1, meant_for: u64::MAX, sent: Nanos(9) }
     }
 
     #[test]
     fn a_letter_is_read_as_it_was_written() {
         let key = Key::of("pair");
         for letter in letters() {
-            let frame = written(&envelope(), &letter, &key);
+            let frame = written(&envelope(), &letter, &key).frame(&Challenge::NONE);
             assert!(is_letter(&frame[4..]) && frame.len() < LONGEST_LETTER);
-            assert_eq!(sender(&frame[4..]).as_deref(), Some("ada"));
-            assert_eq!(read(&frame[4..], &key), Ok((envelope(), letter)));
+            assert_eq!(read(&frame[4..], &key, &Challenge::NONE), Ok((envelope(), letter)));
         }
     }
 
     #[test]
     fn any_other_bytes_are_no_letter() {
         let key = Key::of("pair");
+        let read = |frame: &[u8], key: &Key| read(frame, key, &Challenge::NONE);
         for letter in letters() {
-            let frame = written(&envelope(), &letter, &key)[4..].to_vec();
+            let frame = written(&envelope(), &letter, &key).frame(&Challenge::NONE)[4..].to_vec();
             assert_eq!(read(&frame, &Key::of("another")), Err(Refused::Key));
             for place in 0..frame.len() {
                 let mut changed = frame.clone();
@@ -126,8 +125,9 @@ mod tests {
     #[test]
     fn a_long_text_is_cut_at_a_letter() {
         let content = Content::Answer { of: 1, is_accepted: false, sentence: "Γ".repeat(LONGEST_TEXT) };
-        let frame = written(&envelope(), &Letter { from: "ada".to_owned(), number: 1, content }, &Key::of("pair"));
+        let letter = Letter { from: "ada".to_owned(), number: 1, content };
+        let frame = written(&envelope(), &letter, &Key::of("pair")).frame(&Challenge::NONE);
         assert!(frame.len() <= LONGEST_LETTER);
-        assert!(read(&frame[4..], &Key::of("pair")).is_ok());
+        assert!(read(&frame[4..], &Key::of("pair"), &Challenge::NONE).is_ok());
     }
 }

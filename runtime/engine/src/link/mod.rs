@@ -2,25 +2,42 @@
 //! sections III and IV-D).
 //!
 //! A [`Link`] carries states and letters: [`Air`] between robots of one process, [`Tcp`] between processes and
-//! machines. [`StateLink`] is the module of one robot: before a turn it writes the states that have arrived into
-//! the output, and after the turn it sends the robot's own state. It never waits.
+//! machines. An [`Endpoint`] drafts and checks the frames of a link that leaves the process, whatever carries them.
+//! [`StateLink`] is the module of one robot: before a turn it writes the states that have arrived into the output, and
+//! after the turn it sends the robot's own state. It never waits.
 
 mod air;
+mod endpoint;
 mod foreign_names;
 mod frame;
+mod lag;
 mod letter;
 mod letter_frame;
+mod letters;
 mod orders;
+mod outbox;
 mod pace;
+mod questions;
+mod refusals;
 mod rounds;
+mod sessions;
+mod source;
 mod state;
+mod state_frame;
 mod state_link;
 mod tcp;
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use mdle_runtime::Nanos;
 
 pub use air::{Air, Faults};
+pub use endpoint::{Endpoint, LinkSettings, Posted};
+pub use frame::{Challenge, Draft};
 pub use letter::{Content, LONGEST_TEXT, Letter};
+pub use letter_frame::LONGEST_LETTER;
+pub use outbox::Outbox;
+pub use source::Source;
 pub use state::{SharedValue, State};
 pub use state_link::StateLink;
 pub use tcp::{Tcp, TcpSettings};
@@ -56,4 +73,9 @@ pub(crate) trait Foreign {
     /// # Errors
     /// A module of this robot has the name, or reads the attribute as another kind, or there are too many attributes.
     fn put_foreign(&mut self, name: &AttributeName, reading: Reading) -> Result<(), Refusal>;
+}
+
+/// Locks a mutex, also if a thread has panicked that had locked it.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

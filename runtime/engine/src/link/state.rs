@@ -15,6 +15,8 @@ pub struct State {
     pub session: u64,
     /// Number of the state, from 1: of two states of a session, that with the higher number was sent later.
     pub number: u64,
+    /// Time that the state was on its way when it is received, beyond the least such time of its source.
+    pub age: Nanos,
     /// Pose by odometry, in the axes that all robots share.
     pub pose: Pose,
     /// Measured velocities.
@@ -48,6 +50,22 @@ impl SharedValue {
 }
 
 impl State {
+    /// Returns a state of the robot of this name, at the origin.
+    #[cfg(test)]
+    pub(crate) fn of(name: &str, number: u64) -> Self {
+        Self {
+            name: name.to_owned(),
+            session: 5,
+            number,
+            age: Nanos::ZERO,
+            pose: Pose::ORIGIN,
+            velocity: Twist::default(),
+            rounds: Vec::new(),
+            atom: 1,
+            attributes: Vec::new(),
+        }
+    }
+
     /// Returns `true` if this state replaces one of the same robot that arrived before.
     pub(super) fn replaces(&self, known: &Self) -> bool {
         // A program that was started again counts from 1.
@@ -58,22 +76,5 @@ impl State {
     #[must_use]
     pub fn rounds_with(&self, robot: &str) -> u64 {
         self.rounds.iter().find(|(name, _)| name == robot).map_or(0, |(_, count)| *count)
-    }
-}
-
-#[cfg(test)]
-impl State {
-    /// Returns a state of the robot of this name at the origin, in its first atom.
-    pub(crate) fn of(name: &str, number: u64) -> Self {
-        Self {
-            name: name.to_owned(),
-            session: 0,
-            number,
-            pose: Pose::ORIGIN,
-            velocity: Twist::default(),
-            rounds: Vec::new(),
-            atom: 1,
-            attributes: Vec::new(),
-        }
     }
 }

@@ -4,9 +4,9 @@ use mdle_host::Transitions;
 use mdle_runtime::{Links, Machine, Meters, ModuleRead, Nanos, Output, Peer, PeerState, Plan, Pose, Radians};
 
 use super::foreign_names::ForeignNames;
-use super::frame::ATTRIBUTES;
 use super::orders::Orders;
 use super::rounds::Rounds;
+use super::state_frame::ATTRIBUTES;
 use super::{Foreign, Link, SharedValue, State};
 use crate::attribute::{AGE, Reading, Value};
 use crate::board::Board;
@@ -147,6 +147,7 @@ impl StateLink {
             name: self.name.clone(),
             session: self.link.session(),
             number: self.sent,
+            age: Nanos::ZERO,
             pose: outward(&self.start, &y.here()),
             velocity: y.velocities(),
             rounds: self.rounds.counts().map(|(robot, count)| (robot.to_owned(), count)).collect(),
@@ -178,7 +179,7 @@ impl StateLink {
         let state = known.map(|Known { state, at, .. }| PeerState {
             pose: inward(&self.start, &state.pose),
             velocity: state.velocity,
-            age: now.since(*at),
+            age: Nanos(now.since(*at).0.saturating_add(state.age.0)),
             rounds: state.rounds_with(&self.name),
             atom: state.atom,
         });

@@ -2,129 +2,68 @@
 //! that have arrived; threads do all work that may wait.
 //!
 //! A robot connects to each of its peers to send, and listens to receive. Each connection has a sender that
-//! writes only the newest state, and each letter, so a peer that reads slowly or never does not delay the others.
+//! writes only the newest state, and each letter, so a peer that reads slowly or never does not delay the others. The
+//! receiver of a connection writes its challenge first, for which each frame is proved.
 
+mod connection;
 #[cfg(test)]
 mod letter_tests;
-mod letters;
 mod receiver;
+#[cfg(test)]
+mod refusal_tests;
 mod sender;
+mod strangers;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
-use std::hash::{BuildHasher as _, RandomState};
 use std::io;
 use std::net::{SocketAddr, TcpListener};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
+use std::time::Instant;
 
 use mdle_runtime::Nanos;
 
-use super::frame::{self, Key};
-use super::{Letter, Link, State};
-use letters::Letters;
+use super::endpoint::{Endpoint, LinkSettings};
+use super::outbox::Outbox;
+use super::{Content, Letter, Link, State};
 use receiver::listen;
-use sender::Slot;
 
-/// Maximum number of messages that wait to be shown to the operator.
-const MESSAGES: usize = 32;
-
-/// Addresses and key of a link over TCP.
+/// Names, keys and addresses of a link over TCP.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TcpSettings {
-    /// Name of the robot.
-    pub name: String,
+    /// Names and keys.
+    pub link: LinkSettings,
     /// Address at which the robot listens.
     pub listen: SocketAddr,
-    /// Name and address of each other robot.
-    pub peers: Vec<(String, SocketAddr)>,
-    /// Key that all robots of the link have.
-    pub key: String,
-    /// Name of each robot with which plans are exchanged, and the key that only both have.
-    pub plans: Vec<(String, String)>,
+    /// Address of each peer, in the order of their names.
+    pub addresses: Vec<SocketAddr>,
 }
 
-/// The endpoint of one robot on a state link over TCP.
+/// The end of one robot on a state link over TCP.
 pub struct Tcp {
-    shared: Arc<Shared>,
+    endpoint: Arc<Endpoint>,
     /// Name of each peer, with the newest state and the letters for it.
-    slots: Vec<(String, Arc<Slot>)>,
-    key: Key,
-    session: u64,
-}
-
-/// Data that the threads share with the turns.
-struct Shared {
-    /// Names of the robots from which states are accepted.
-    peers: Vec<String>,
-    key: Key,
-    /// For each robot, the newest state that has arrived since the last turn.
-    arrived: Mutex<BTreeMap<String, State>>,
-    letters: Letters,
-    messages: Mutex<Vec<String>>,
-    /// `true` once the robot's run has ended.
-    is_over: AtomicBool,
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-impl Shared {
-    /// Reports a message to the operator, unless too many messages wait.
-    fn say(&self, message: String) {
-        let mut messages = lock(&self.messages);
-        if messages.len() < MESSAGES {
-            messages.push(message);
-        }
-    }
-
-    fn is_over(&self) -> bool {
-        self.is_over.load(Ordering::Relaxed)
-    }
-
-    /// Stores a state that has arrived.
-    fn take(&self, state: State) {
-        self.letters.heard(&state);
-        let mut arrived = lock(&self.arrived);
-        match arrived.get(&state.name) {
-            Some(known) if !state.replaces(known) => {}
-            Some(_) | None => {
-                arrived.insert(state.name.clone(), state);
-            }
-        }
-    }
+    outboxes: Vec<(String, Arc<Outbox>)>,
 }
 
 impl Tcp {
     /// Begins to listen, and to connect to the peers.
     ///
     /// # Errors
-    /// Fails if the robot cannot listen at the address, or if the system cannot create the threads.
-    pub fn open(settings: &TcpSettings) -> io::Result<Self> {
-        let listener = TcpListener::bind(settings.listen)?;
-        Self::on(listener, settings)
+    /// Fails with a sentence if the robot cannot listen at the address, or if the system cannot create the threads.
+    pub fn open(settings: &TcpSettings) -> Result<Self, String> {
+        let TcpSettings { listen, .. } = settings;
+        let listener = TcpListener::bind(listen).map_err(|error| format!("nothing can listen at {listen}: {error}"))?;
+        Self::on(listener, settings).map_err(|error| format!("the system gives no thread: {error}"))
     }
 
     /// Returns the link of a robot that accepts connections from `listener`.
     fn on(listener: TcpListener, settings: &TcpSettings) -> io::Result<Self> {
-        let TcpSettings { name, peers, key, plans, .. } = settings;
-        let key = Key::of(key);
-        // Keyed by random numbers of the system.
-        let session = RandomState::new().hash_one(name);
-        let shared = Arc::new(Shared {
-            peers: peers.iter().map(|(name, _)| name.clone()).collect(),
-            key: key.clone(),
-            arrived: Mutex::default(),
-            letters: Letters::new(name, session, plans),
-            messages: Mutex::default(),
-            is_over: AtomicBool::new(false),
-        });
-        let mut link = Self { shared, slots: Vec::new(), key, session };
-        listen(listener, &link.shared)?;
-        for (name, address) in peers {
-            link.slots.push((name.clone(), sender::begin(name.clone(), *address, &link.shared)?));
+        let TcpSettings { link: settings, addresses, .. } = settings;
+        let mut link = Self { endpoint: Arc::new(Endpoint::new(settings)), outboxes: Vec::new() };
+        listen(listener, &link.endpoint, addresses.iter().map(SocketAddr::ip).collect())?;
+        for (name, address) in settings.peers.iter().zip(addresses) {
+            link.outboxes.push((name.clone(), sender::begin(name.clone(), *address, &link.endpoint)?));
         }
         Ok(link)
     }
@@ -132,40 +71,44 @@ impl Tcp {
 
 impl Link for Tcp {
     fn session(&self) -> u64 {
-        self.session
+        self.endpoint.session()
     }
 
     fn send(&mut self, state: &State, _: Nanos) {
-        let frame: Arc<[u8]> = frame::written(state, &self.key).into();
-        self.slots.iter().for_each(|(_, slot)| slot.put(Arc::clone(&frame)));
+        let draft = self.endpoint.state(state);
+        self.outboxes.iter().for_each(|(_, outbox)| outbox.put(draft.clone()));
     }
 
     fn receive(&mut self, _: Nanos, take: &mut dyn FnMut(State)) {
-        let arrived = std::mem::take(&mut *lock(&self.shared.arrived));
-        arrived.into_values().for_each(take);
+        self.endpoint.states().for_each(take);
     }
 
     fn post(&mut self, to: &str, letter: &Letter, _: Nanos) -> Result<(), String> {
-        let slot = self.slots.iter().find(|(name, _)| name == to).map(|(_, slot)| slot);
-        let slot = slot.ok_or_else(|| format!("there is no robot `{to}`"))?;
-        let frame = self.shared.letters.frame(to, letter)?;
-        slot.post(frame.into()).map_err(|waiting| format!("{waiting} letters wait for {to} already"))
+        let outbox = self.outboxes.iter().find(|(name, _)| name == to).map(|(_, outbox)| outbox);
+        let outbox = outbox.ok_or_else(|| format!("there is no robot `{to}`"))?;
+        let posted = outbox.post(self.endpoint.letter(to, letter)?, Instant::now());
+        posted.inspect_err(|_| self.endpoint.is_unsent(letter.number))
     }
 
     fn letters(&mut self, _: Nanos, take: &mut dyn FnMut(Letter)) {
-        self.shared.letters.arrived().into_iter().for_each(take);
+        for letter in self.endpoint.letters() {
+            let outbox = self.outboxes.iter().find(|(name, _)| *name == letter.from);
+            if let (Content::Answer { of, .. }, Some((_, outbox))) = (&letter.content, outbox) {
+                outbox.is_answered(*of);
+            }
+            take(letter);
+        }
     }
 
     fn messages(&mut self, say: &mut dyn FnMut(&str)) {
-        let messages = std::mem::take(&mut *lock(&self.shared.messages));
-        messages.iter().for_each(|message| say(message));
+        self.endpoint.messages().iter().for_each(|message| say(message));
     }
 }
 
 impl Drop for Tcp {
     fn drop(&mut self) {
         // The threads look at it several times a second; nobody waits for them.
-        self.shared.is_over.store(true, Ordering::Relaxed);
-        self.slots.iter().for_each(|(_, slot)| slot.wake());
+        self.endpoint.end();
+        self.outboxes.iter().for_each(|(_, outbox)| outbox.wake());
     }
 }

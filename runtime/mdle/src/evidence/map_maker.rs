@@ -62,7 +62,7 @@ mod tests {
     fn its_score_is_that_of_a_fit_where_it_was_made() {
         let mut maker = MapMaker::new();
         assert_eq!((maker.cells(), maker.map().least.to_bits()), (0, 1.7_f64.to_bits()));
-        let range = |number: u32| (number % 7 != 0).then(|| 1.0 + 0.01 * f64::from(number));
+        let range = |number: u32| (!number.is_multiple_of(7)).then(|| 1.0 + 0.01 * f64::from(number));
         let pings: Vec<GridPing> = (0..72)
             .map(|number| GridPing { x: 0.1, y: -0.2, theta: f64::from(number) * 0.0873, range: range(number) })
             .collect();

@@ -10,6 +10,8 @@ use mdle_runtime::Printable;
 use serde::Deserialize;
 use toml::Spanned;
 
+use crate::robot_name::{FORM, is_robot_name};
+
 /// Maximum size of a scenario file, in bytes.
 pub(super) const LARGEST: u64 = 4_000_000;
 
@@ -148,16 +150,11 @@ pub(super) fn duration(text: &At<String>, least: f64, most: f64) -> Result<Durat
 /// name.
 pub(super) fn read(text: &str) -> Result<ScenarioText, ScenarioError> {
     let file: ScenarioText = toml::from_str(text).map_err(|error| refused(&error))?;
-    let is_name = |name: &str| {
-        let mut letters = name.chars();
-        letters.next().is_some_and(|first| first.is_ascii_alphabetic())
-            && letters.all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
-    };
     for (number, robot) in file.robot.iter().enumerate() {
         let (name, place) = (robot.name.get_ref(), robot.name.span());
-        if !is_name(name) {
+        if !is_robot_name(name) {
             let message = format!("`{}` is no name of a robot", Printable(name));
-            return Err(ScenarioError::at(place, message).help("a name is a letter, then letters, digits and `_`"));
+            return Err(ScenarioError::at(place, message).help(FORM));
         }
         if file.robot.iter().take(number).any(|before| before.name.get_ref() == name) {
             let message = format!("there is another robot with the name `{name}`");

@@ -64,6 +64,19 @@ impl Foreign for Shared {
 }
 
 #[test]
+fn the_time_on_the_way_counts_to_the_age() {
+    let attributes =
+        vec![SharedValue { name: AttributeName::new("heading", "range"), value: Value::Number(1.0), age: Nanos(3) }];
+    let state = State { age: Nanos(20), attributes, ..State::of("ada", 1) };
+    let (mut link, mut board) =
+        (StateLink::new(Box::new(Script(vec![state])), "bob", Pose::ORIGIN), Shared(Vec::new()));
+    link.receive(Nanos(100), &mut board);
+    let age = |now| link.sense(["ada"].into_iter(), Nanos(now)).peer("ada").unwrap().state.unwrap().age;
+    assert_eq!((age(100), age(150)), (Nanos(20), Nanos(70)));
+    assert_eq!(board.0, [("/usr/ada_heading/range".to_owned(), Value::Number(1.0), 77)]);
+}
+
+#[test]
 fn the_newest_state_counts_and_its_age_begins_when_it_arrives() {
     let state = |number, x| State {
         pose: pose(x, 0.0, 0.0),

@@ -1,14 +1,16 @@
 //! Tests of letters over TCP on this machine: letters that arrive, and frames that are refused.
 
-use std::io::Write as _;
-use std::net::{SocketAddr, TcpStream};
+use std::io::{Read as _, Write as _};
+use std::net::{SocketAddr, TcpListener, TcpStream};
 
 use mdle_runtime::Nanos;
 
-use super::tests::{address, assert_goes_on, bound, message, received, settings, state, wait};
+use super::tests::{
+    address, assert_goes_on, bound, frame, greeted, message, read_messages, received, settings, state, wait,
+};
 use super::*;
-use crate::link::frame::written;
-use crate::link::letter_frame::{self, Envelope};
+use crate::link::frame::{Challenge, Draft, Key};
+use crate::link::letter_frame::{self, Envelope, is_letter};
 use crate::link::{Content, LONGEST_TEXT};
 use crate::plans::When;
 
@@ -19,7 +21,9 @@ fn plan(from: &str, number: u64) -> Letter {
 
 /// Returns the settings of a robot that exchanges plans with this peer.
 fn exchanging(name: &str, (peer, at): (&str, SocketAddr), key: &str) -> TcpSettings {
-    TcpSettings { plans: vec![(peer.to_owned(), key.to_owned())], ..settings(name, &[(peer, at)], "key") }
+    let mut settings = settings(name, &[(peer, at)], "key");
+    settings.link.plans.push((peer.to_owned(), key.to_owned()));
+    settings
 }
 
 fn letters(link: &mut Tcp) -> Vec<Letter> {
@@ -35,12 +39,12 @@ fn bob() -> (Tcp, SocketAddr) {
     (Tcp::on(own, &exchanging("bob", ("ada", nobody), "pair")).unwrap(), place)
 }
 
-/// Sends the state of `ada`, and then these bytes.
-fn sends(place: SocketAddr, bytes: &[u8]) -> TcpStream {
-    let mut stream = TcpStream::connect(place).unwrap();
-    stream.write_all(&written(&state("ada", 1), &Key::of("key"))).unwrap();
+/// Sends the state of `ada`, and then these bytes, which are written for the challenge.
+fn sends(place: SocketAddr, bytes: impl FnOnce(&Challenge) -> Vec<u8>) -> TcpStream {
+    let (mut stream, challenge) = greeted(place);
+    stream.write_all(&frame(&state("ada", 1), "key", &challenge)).unwrap();
     // The connection may be refused meanwhile.
-    let _ = stream.write_all(bytes);
+    let _ = stream.write_all(&bytes(&challenge));
     stream
 }
 
@@ -70,59 +74,87 @@ fn letters_go_both_ways_once_both_are_heard() {
     assert_eq!(wait(|| Some(letters(&mut ada)).filter(|letters| !letters.is_empty())), [answer]);
 }
 
+/// Returns the envelope of a letter of `ada` to a robot in this session.
+fn envelope(meant_for: u64) -> Envelope {
+    Envelope { from: "ada".to_owned(), to: "bob".to_owned(), sent_in: 5, meant_for, sent: Nanos::ZERO }
+}
+
+/// Bytes that a peer sends after a challenge, and the message about them.
+type Case<'c> = (&'c dyn Fn(&Challenge) -> Vec<u8>, &'c str);
+
 #[test]
 fn what_is_no_letter_of_a_peer_is_refused() {
     let (mut bob, place) = bob();
-    let (meant_for, key) = (bob.session(), Key::of_letters("pair"));
-    let own = Envelope { from: "ada".to_owned(), to: "bob".to_owned(), sent_in: 5, meant_for };
-    let letter = |envelope: &Envelope, key: &Key| letter_frame::written(envelope, &plan(&envelope.from, 1), key);
-    let mut damaged = letter(&own, &key);
-    *damaged.last_mut().unwrap() ^= 1;
-    let mut long = letter(&own, &key);
-    long.resize(LONGEST_TEXT + 4096, b' ');
-    long[..4].copy_from_slice(&(LONGEST_TEXT as u32 + 4092).to_le_bytes());
-    let cases = [
-        (damaged, "it sends no letters"),
-        (long, "it sends no states"),
-        (letter(&own, &Key::of_letters("another")), "it sends a plan as `ada` with another key"),
-        (letter(&own, &Key::of("key")), "it sends a plan as `ada` with another key"),
-        (letter(&Envelope { from: "eve".to_owned(), ..own.clone() }, &key), "as `eve`, from which no plans are taken"),
-        (letter(&Envelope { to: "eve".to_owned(), ..own.clone() }, &key), "of `ada` that is not for this run"),
-        (letter(&Envelope { sent_in: 6, ..own.clone() }, &key), "of `ada` that is not for this run"),
-        (letter(&Envelope { meant_for: meant_for ^ 1, ..own.clone() }, &key), "of `ada` that is not for this run"),
+    let (meant_for, own) = (bob.session(), envelope(bob.session()));
+    let letter = |envelope: &Envelope, key| {
+        let draft = letter_frame::written(envelope, &plan(&envelope.from, 1), &Key::of_letters(key));
+        move |challenge: &Challenge| draft.frame(challenge)
+    };
+    let good = letter(&own, "pair");
+    let damaged = |challenge: &Challenge| {
+        let mut damaged = good(challenge);
+        *damaged.last_mut().unwrap() ^= 1;
+        damaged
+    };
+    let long = |challenge: &Challenge| {
+        let mut long = good(challenge);
+        long.resize(LONGEST_TEXT + 4096, b' ');
+        long[..4].copy_from_slice(&(LONGEST_TEXT as u32 + 4092).to_le_bytes());
+        long
+    };
+    let recorded = |_: &Challenge| good(&Challenge::NONE);
+    let eve = || "eve".to_owned();
+    let cases: [Case<'_>; 8] = [
+        (&damaged, "a letter of ada is refused: it is damaged"),
+        (&letter(&own, "another"), "a letter of ada is refused: it has another key `plans`"),
+        (&letter(&own, "key"), "it has another key `plans`"),
+        (&recorded, "it has another key `plans`, or was recorded"),
+        (&letter(&Envelope { from: eve(), ..own.clone() }, "pair"), "of ada is refused: it is not for this run"),
+        (&letter(&Envelope { to: eve(), ..own.clone() }, "pair"), "of ada is refused: it is not for this run"),
+        (&letter(&Envelope { sent_in: 6, ..own.clone() }, "pair"), "of ada is refused: it is not for this run"),
+        (&letter(&envelope(meant_for ^ 1), "pair"), "of ada is refused: it is not for this run"),
     ];
+    let (mut messages, mut number) = (Vec::new(), 1);
     for (bytes, words) in cases {
-        let stream = sends(place, &bytes);
-        message(&mut bob, words);
+        number += 1;
+        // The state after the letter shows that the letter has been read.
+        let after = |challenge: &Challenge| frame(&state("ada", number), "key", challenge);
+        let stream = sends(place, |challenge| [bytes(challenge), after(challenge)].concat());
+        wait(|| received(&mut bob).into_iter().find(|state| state.number == number));
+        read_messages(&mut bob, &mut messages);
+        assert!(messages.iter().any(|message| message.contains(words)), "{words}: {messages:?}");
         drop(stream);
         assert_eq!(letters(&mut bob), [], "{words}");
     }
+    let stream = sends(place, long);
+    message(&mut bob, "the connection of ada is refused: it sends neither states nor letters");
+    drop(stream);
+    let mut first = greeted(place);
+    first.0.write_all(&good(&first.1)).unwrap();
+    message(&mut bob, "it sends a letter before its state");
     // The good one is taken, and a copy of it is not.
-    let good = letter(&own, &key);
     let first = sends(place, &good);
     assert_eq!(wait(|| Some(letters(&mut bob)).filter(|letters| !letters.is_empty())), [plan("ada", 1)]);
-    let second = sends(place, &good);
-    message(&mut bob, "it sends a letter of `ada` once more");
+    received(&mut bob);
+    let after = |challenge: &Challenge| frame(&state("ada", 60), "key", challenge);
+    let second = sends(place, |challenge| [good(challenge), after(challenge)].concat());
+    assert_eq!(wait(|| received(&mut bob).pop()), state("ada", 60));
     assert_eq!(letters(&mut bob), []);
     drop((first, second));
-    received(&mut bob);
     assert_goes_on(&mut bob, place);
 }
 
 #[test]
 fn a_flood_of_letters_is_refused() {
     let (mut bob, place) = bob();
-    let envelope = Envelope { from: "ada".to_owned(), to: "bob".to_owned(), sent_in: 5, meant_for: bob.session() };
-    let frame = |number| letter_frame::written(&envelope, &plan("ada", number), &Key::of_letters("pair"));
-    let stream = sends(place, &(1..=50).flat_map(frame).collect::<Vec<_>>());
-    message(&mut bob, "more than 8 letters arrive in a turn");
-    assert_eq!(letters(&mut bob).len(), 8);
-    drop(stream);
-    let mut stream = sends(place, &[]);
+    let envelope = envelope(bob.session());
+    let draft = |number| -> Draft { letter_frame::written(&envelope, &plan("ada", number), &Key::of_letters("pair")) };
+    let (mut stream, challenge) = greeted(place);
+    stream.write_all(&frame(&state("ada", 2), "key", &challenge)).unwrap();
     let mut number = 100;
     wait(|| {
         number += 1;
-        let is_closed = stream.write_all(&frame(number)).is_err();
+        let is_closed = stream.write_all(&draft(number).frame(&challenge)).is_err();
         letters(&mut bob);
         is_closed.then_some(())
     });
@@ -131,17 +163,38 @@ fn a_flood_of_letters_is_refused() {
     assert_goes_on(&mut bob, place);
 }
 
+/// Accepts the connection of a robot as its peer, and returns the frame of its first letter, without its length.
+fn first_letter(listener: &TcpListener) -> Vec<u8> {
+    let (mut stream, _) = listener.accept().unwrap();
+    stream.write_all(&Challenge::NONE.greeting()).unwrap();
+    let mut frame = || {
+        let mut length = [0; 4];
+        stream.read_exact(&mut length).unwrap();
+        let mut frame = vec![0; u32::from_le_bytes(length) as usize];
+        stream.read_exact(&mut frame).unwrap();
+        frame
+    };
+    assert!(!is_letter(&frame()), "a connection begins with the state");
+    std::iter::from_fn(|| Some(frame())).find(|frame| is_letter(frame)).unwrap()
+}
+
 #[test]
-fn letters_that_nobody_reads_delay_no_turn() {
+fn a_plan_is_sent_once_more_on_a_new_connection() {
     let (listener, own) = (bound(), bound());
     let (at_ada, place) = (address(&listener), address(&own));
     let mut bob = Tcp::on(own, &exchanging("bob", ("ada", at_ada), "pair")).unwrap();
-    let stream = sends(place, &[]);
-    wait(|| Some(received(&mut bob)).filter(|states| !states.is_empty()));
-    drop(listener);
-    let content = Content::Plan { when: When::Now, text: " ".repeat(LONGEST_TEXT) };
-    let long = Letter { content, ..plan("bob", 1) };
-    let refused = wait(|| bob.post("ada", &long, Nanos::ZERO).err());
-    assert_eq!(refused, "8 letters wait for ada already");
-    drop(stream);
+    let heard = sends(place, |_| Vec::new());
+    wait(|| received(&mut bob).pop());
+    let refused = bob.post("ada", &plan("bob", 1), Nanos::ZERO);
+    assert_eq!(refused, Err("ada cannot be reached at the moment".to_owned()));
+    bob.send(&state("bob", 1), Nanos::ZERO);
+    let ada = std::thread::spawn(move || [(); 2].map(|()| first_letter(&listener)));
+    let content = Content::Plan { when: When::PlanEnds, text: "{ Go (Atom (wait 1) stop) }".to_owned() };
+    let patient = Letter { content, ..plan("bob", 2) };
+    wait(|| bob.post("ada", &patient, Nanos::ZERO).ok());
+    for frame in ada.join().unwrap() {
+        let (_, letter) = letter_frame::read(&frame, &Key::of_letters("pair"), &Challenge::NONE).unwrap();
+        assert_eq!(letter, patient);
+    }
+    drop(heard);
 }

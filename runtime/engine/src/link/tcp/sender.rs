@@ -1,147 +1,157 @@
 //! The sender to one peer, which connects, and writes only the newest state, and each letter.
 
-use std::collections::VecDeque;
-use std::io::{self, Write as _};
+use std::io::{self, Read as _, Write as _};
 use std::net::{SocketAddr, TcpStream};
-use std::sync::{Arc, Condvar, Mutex};
+use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::{Shared, lock};
-use crate::link::letter::UNREAD;
+use rustix::net::sockopt::{set_socket_send_buffer_size, set_tcp_user_timeout};
+
+use crate::link::endpoint::Endpoint;
+use crate::link::frame::{Challenge, Draft, GREETING_LENGTH, Refused, VERSION};
+use crate::link::outbox::Outbox;
 
 /// Maximum time for an attempt to connect.
 const CONNECTS: Duration = Duration::from_millis(500);
+/// Maximum time that a peer may take for its greeting.
+const GREETS: Duration = Duration::from_secs(1);
 /// Time between two attempts to connect.
 const AGAIN: Duration = Duration::from_millis(200);
-/// Time after which the connection to a peer that reads nothing is closed and made again.
-pub(super) const WRITES: Duration = Duration::from_millis(500);
-/// Time without a new state after which the last one is sent again, so that the connection stays open.
-const HEARTBEAT: Duration = Duration::from_millis(500);
-
-/// The newest state and the letters for a peer.
-#[derive(Default)]
-pub(super) struct Slot {
-    waiting: Mutex<Waiting>,
-    is_new: Condvar,
-}
-
-/// Frames that wait for the sender.
-#[derive(Default)]
-struct Waiting {
-    /// The newest state; `None` once it has been taken.
-    state: Option<Arc<[u8]>>,
-    letters: VecDeque<Arc<[u8]>>,
-}
-
-impl Slot {
-    /// Replaces the state, without waiting.
-    pub(super) fn put(&self, frame: Arc<[u8]>) {
-        lock(&self.waiting).state = Some(frame);
-        self.is_new.notify_one();
-    }
-
-    /// Appends a letter, without waiting.
-    ///
-    /// # Errors
-    /// Returns the number of letters if too many wait.
-    pub(super) fn post(&self, frame: Arc<[u8]>) -> Result<(), usize> {
-        let mut waiting = lock(&self.waiting);
-        if waiting.letters.len() >= UNREAD {
-            return Err(waiting.letters.len());
-        }
-        waiting.letters.push_back(frame);
-        self.is_new.notify_one();
-        Ok(())
-    }
-
-    /// Wakes the sender.
-    pub(super) fn wake(&self) {
-        self.is_new.notify_all();
-    }
-
-    /// Waits a while for a state or a letter that has not been sent; returns the state, or `None` if there is none.
-    fn next(&self) -> Option<Arc<[u8]>> {
-        let waiting = lock(&self.waiting);
-        let is_idle = |waiting: &mut Waiting| waiting.state.is_none() && waiting.letters.is_empty();
-        let (mut waiting, _) = self
-            .is_new
-            .wait_timeout_while(waiting, HEARTBEAT, is_idle)
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        waiting.state.take()
-    }
-
-    /// Returns the first letter that has not been sent.
-    fn letter(&self) -> Option<Arc<[u8]>> {
-        lock(&self.waiting).letters.front().cloned()
-    }
-
-    /// Removes the first letter, which has been sent.
-    fn letter_is_sent(&self) {
-        lock(&self.waiting).letters.pop_front();
-    }
-}
+/// Time after which the connection to a peer that acknowledges nothing, or reads nothing, is closed and made again.
+/// Without it the system would send what was lost again at ever longer intervals, also once the line is good.
+pub(super) const WRITES: Duration = Duration::from_secs(2);
+/// Time after which a connection counts as one that lasts.
+const LASTS: Duration = Duration::from_secs(1);
+/// Size of the system's buffer, in bytes: what is in it is not replaced by newer states.
+const BUFFER: usize = 16_384;
 
 /// Begins to send to the peer of this name.
 ///
 /// # Errors
 /// Fails if the system cannot create the thread.
-pub(super) fn begin(name: String, address: SocketAddr, shared: &Arc<Shared>) -> io::Result<Arc<Slot>> {
-    let slot = Arc::<Slot>::default();
-    let (own, shared) = (Arc::clone(&slot), Arc::clone(shared));
-    thread::Builder::new().name(format!("to {name}")).spawn(move || keep_sending(&name, address, &own, &shared))?;
-    Ok(slot)
+pub(super) fn begin(name: String, address: SocketAddr, endpoint: &Arc<Endpoint>) -> io::Result<Arc<Outbox>> {
+    let outbox = Arc::<Outbox>::default();
+    let (own, endpoint) = (Arc::clone(&outbox), Arc::clone(endpoint));
+    thread::Builder::new().name(format!("to {name}")).spawn(move || keep_sending(&name, address, &own, &endpoint))?;
+    Ok(outbox)
 }
 
-/// Connects and sends until the run is over. A peer that cannot be reached is reported only once, until it has
-/// been reached again.
-fn keep_sending(name: &str, address: SocketAddr, slot: &Slot, shared: &Shared) {
-    let mut is_known_as_down = false;
-    // The last state that was taken, which a new connection begins with.
-    let mut last = None;
-    while !shared.is_over() {
+/// Connects and sends until the run is over. A peer that cannot be reached is reported only once, until a connection to
+/// it has lasted.
+fn keep_sending(name: &str, address: SocketAddr, outbox: &Outbox, endpoint: &Endpoint) {
+    let mut sender = Sender { name, outbox, endpoint, last: None, is_known_as_down: false };
+    while !endpoint.is_over() {
         let begun = Instant::now();
+        sender.drop_late_letters();
+        sender.last = outbox.next().or(sender.last.take());
+        if sender.last.is_none() {
+            // Before its first turn the robot has nothing to send, and a receiver waits for a state.
+            continue;
+        }
         let failure = match connect(address) {
-            Ok(stream) => {
-                if is_known_as_down {
-                    shared.say(format!("state link: connected to {name} again"));
-                }
-                is_known_as_down = false;
-                send(stream, slot, &mut last, shared)
+            Ok(connection) => {
+                outbox.open();
+                let failure = sender.send(connection);
+                outbox.close();
+                failure.to_string()
             }
-            Err(error) => error,
+            Err(failure) => failure,
         };
-        if !is_known_as_down && !shared.is_over() {
-            shared.say(format!("warning: state link: {name} at {address} cannot be reached: {failure}"));
-            is_known_as_down = true;
+        if !sender.is_known_as_down && !endpoint.is_over() {
+            endpoint.say(format!("warning: state link: {name} at {address} cannot be reached: {failure}"));
+            sender.is_known_as_down = true;
         }
         thread::sleep(AGAIN.saturating_sub(begun.elapsed()));
     }
 }
 
-fn connect(address: SocketAddr) -> io::Result<TcpStream> {
-    let stream = TcpStream::connect_timeout(&address, CONNECTS)?;
-    stream.set_nodelay(true)?;
-    stream.set_write_timeout(Some(WRITES))?;
-    Ok(stream)
+/// Connects to a peer, and reads its challenge.
+///
+/// # Errors
+/// The peer cannot be reached, or has another version of the link: the end of a sentence.
+fn connect(address: SocketAddr) -> Result<(TcpStream, Challenge), String> {
+    let mut greeting = [0; GREETING_LENGTH];
+    let connected = (|| {
+        let mut stream = TcpStream::connect_timeout(&address, CONNECTS)?;
+        stream.set_nodelay(true)?;
+        stream.set_write_timeout(Some(WRITES))?;
+        set_tcp_user_timeout(&stream, WRITES.as_millis() as u32)?;
+        set_socket_send_buffer_size(&stream, BUFFER)?;
+        stream.set_read_timeout(Some(GREETS))?;
+        Ok((stream.read_exact(&mut greeting), stream))
+    })();
+    let (read, stream) = connected.map_err(|error: io::Error| error.to_string())?;
+    read.map_err(|_| "it sends no greeting, as no version of the link before 4 does".to_owned())?;
+    match Challenge::of_greeting(&greeting) {
+        Ok(challenge) => Ok((stream, challenge)),
+        Err(Refused::Version(other)) => Err(format!("its version of the link is {other}, and this one has {VERSION}")),
+        Err(Refused::Garbage | Refused::Key | Refused::Impossible) => Err("its greeting is none of a robot".to_owned()),
+    }
 }
 
-/// Sends states and letters until that fails; returns the error. `last` is the state that was taken last, with which
-/// every connection begins: a letter is taken only from a robot whose state has arrived.
-fn send(mut stream: TcpStream, slot: &Slot, last: &mut Option<Arc<[u8]>>, shared: &Shared) -> io::Error {
-    while !shared.is_over() {
-        *last = slot.next().or(last.take());
-        let Some(frame) = last else { continue };
-        // A frame that was written in part would shift all that follow: the connection is made anew.
-        if let Err(error) = stream.write_all(frame) {
-            return error;
-        }
-        while let Some(letter) = slot.letter() {
-            if let Err(error) = stream.write_all(&letter) {
+/// The sender to a peer.
+struct Sender<'l> {
+    /// Name of the peer.
+    name: &'l str,
+    outbox: &'l Outbox,
+    endpoint: &'l Endpoint,
+    /// The last state that was taken, with which every connection begins: a letter is taken only from a robot whose
+    /// state has arrived.
+    last: Option<Draft>,
+    /// `true` once it has been reported that the peer cannot be reached.
+    is_known_as_down: bool,
+}
+
+impl Sender<'_> {
+    /// Sends states and letters until that fails; returns the error.
+    fn send(&mut self, (mut stream, challenge): (TcpStream, Challenge)) -> io::Error {
+        let begun = Instant::now();
+        while !self.endpoint.is_over() {
+            // A frame that was written in part would shift all that follow: the connection is made anew.
+            if let Err(error) = self.last.iter().try_for_each(|state| stream.write_all(&state.frame(&challenge))) {
                 return error;
             }
-            slot.letter_is_sent();
+            while let Some(letter) = self.outbox.letter(Instant::now()) {
+                if let Err(error) = stream.write_all(&letter.draft.frame(&challenge)) {
+                    return error;
+                }
+                self.outbox.is_sent(letter.number);
+            }
+            // A peer that has another key closes each connection at once.
+            if self.is_known_as_down && begun.elapsed() >= LASTS {
+                self.endpoint.say(format!("state link: connected to {} again", self.name));
+                self.is_known_as_down = false;
+            }
+            self.last = self.outbox.next().or(self.last.take());
+            self.drop_late_letters();
         }
+        io::ErrorKind::Interrupted.into()
     }
-    io::ErrorKind::Interrupted.into()
+
+    fn drop_late_letters(&self) {
+        self.outbox.late(Instant::now()).iter().for_each(|letter| self.endpoint.is_late(letter));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::TcpListener;
+
+    use rustix::net::sockopt::tcp_user_timeout;
+
+    use super::*;
+
+    #[test]
+    fn a_connection_without_acknowledgements_is_given_up() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = listener.local_addr().unwrap();
+        let peer = thread::spawn(move || {
+            let (mut stream, _) = listener.accept().unwrap();
+            stream.write_all(&Challenge::NONE.greeting()).unwrap();
+        });
+        let (stream, challenge) = connect(address).unwrap();
+        peer.join().unwrap();
+        assert_eq!((tcp_user_timeout(&stream), challenge), (Ok(2000), Challenge::NONE));
+    }
 }

@@ -1,0 +1,264 @@
+//! The end of a link that leaves the process, whatever carries the frames: it drafts the frames of its robot, checks
+//! those that arrive, and keeps what they contain until the robot's turn.
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+use std::hash::{BuildHasher as _, RandomState};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use mdle_runtime::{Nanos, Printable};
+
+use super::frame::{Draft, Key, NAME, Refused, VERSION};
+use super::letter::NOW;
+use super::letter_frame::is_letter;
+use super::letters::Letters;
+use super::refusals::Refusals;
+use super::sessions::Sessions;
+use super::source::Source;
+use super::state_frame::{self, LONGEST, has_fitting_name};
+use super::{Content, Letter, State, lock};
+use crate::plans::When;
+
+/// Maximum number of messages that wait to be shown to the operator.
+const MESSAGES: usize = 32;
+/// Time within which any other letter has to be sent.
+const SOON: Duration = Duration::from_secs(10);
+
+/// Names and keys of a link, whatever carries it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LinkSettings {
+    /// Name of the robot.
+    pub name: String,
+    /// Name of each other robot.
+    pub peers: Vec<String>,
+    /// Key that all robots of the link have.
+    pub key: String,
+    /// Name of each robot with which plans are exchanged, and the key that only both have.
+    pub plans: Vec<(String, String)>,
+}
+
+/// A letter that is to be sent.
+#[derive(Clone)]
+pub struct Posted {
+    /// Name of the robot to which the letter is sent.
+    pub to: String,
+    /// Number of the letter among those of this robot.
+    pub number: u64,
+    /// The letter, without its proof.
+    pub draft: Draft,
+    /// `true` if the letter has a plan, which is answered.
+    pub is_plan: bool,
+    /// Time after which the letter is not sent any more.
+    pub limit: Duration,
+}
+
+/// The end of one robot's link. Threads that carry frames share it with the robot's turns.
+pub struct Endpoint {
+    session: u64,
+    /// Time at which the session began.
+    begun: Instant,
+    /// Names of the robots from which states are accepted.
+    peers: Vec<String>,
+    key: Key,
+    sessions: Mutex<Sessions>,
+    /// For each robot, the newest state that has arrived since the last turn.
+    arrived: Mutex<BTreeMap<String, Arrived>>,
+    letters: Letters,
+    messages: Mutex<Vec<String>>,
+    refusals: Mutex<Refusals>,
+    /// `true` once the robot's run has ended.
+    is_over: AtomicBool,
+}
+
+/// A state that has arrived.
+struct Arrived {
+    state: State,
+    at: Instant,
+}
+
+fn nanos(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}
+
+impl Endpoint {
+    /// Returns the endpoint of a robot in a new session.
+    #[must_use]
+    pub fn new(settings: &LinkSettings) -> Self {
+        let LinkSettings { name, peers, key, plans } = settings;
+        // Keyed by random numbers of the system.
+        let session = RandomState::new().hash_one(name);
+        Self {
+            session,
+            begun: Instant::now(),
+            peers: peers.clone(),
+            key: Key::of(key),
+            sessions: Mutex::default(),
+            arrived: Mutex::default(),
+            letters: Letters::new(name, session, plans),
+            messages: Mutex::default(),
+            refusals: Mutex::default(),
+            is_over: AtomicBool::new(false),
+        }
+    }
+
+    /// Returns the session of the robot.
+    #[must_use]
+    pub fn session(&self) -> u64 {
+        self.session
+    }
+
+    /// Returns the names of the other robots.
+    #[must_use]
+    pub fn peers(&self) -> &[String] {
+        &self.peers
+    }
+
+    /// Returns the draft of a state of this robot, without attributes whose names are too long.
+    #[must_use]
+    pub fn state(&self, state: &State) -> Draft {
+        for shared in state.attributes.iter().filter(|shared| !has_fitting_name(shared)) {
+            self.refuse(&shared.name.to_string(), &format!("a name that is shared has at most {NAME} bytes"));
+        }
+        state_frame::written(state, self.time(Instant::now()), &self.key)
+    }
+
+    /// Returns a letter to a peer. An answer to it is expected until [`Endpoint::is_unsent`] is called.
+    ///
+    /// # Errors
+    /// Robot and peer have no key for letters, or the peer has not been heard: a sentence.
+    pub fn letter(&self, to: &str, letter: &Letter) -> Result<Posted, String> {
+        let (session, now) = (lock(&self.sessions).of(to), Instant::now());
+        let draft = self.letters.draft(to, letter, session, self.time(now))?;
+        self.letters.posts(to, letter, now);
+        let is_plan = matches!(letter.content, Content::Plan { .. });
+        let is_urgent = matches!(letter.content, Content::Plan { when: When::Now, .. });
+        let limit = if is_urgent { NOW } else { SOON };
+        Ok(Posted { to: to.to_owned(), number: letter.number, draft, is_plan, limit })
+    }
+
+    /// Notes that a letter was refused before it was sent.
+    pub fn is_unsent(&self, number: u64) {
+        self.letters.forget(number);
+    }
+
+    /// Reports that a letter was dropped, since it could not be sent in time.
+    pub fn is_late(&self, letter: &Posted) {
+        self.letters.forget(letter.number);
+        if letter.is_plan {
+            let Posted { to, limit, .. } = letter;
+            let seconds = limit.as_secs();
+            self.say(format!(
+                "warning: state link: the plan for {to} is dropped: it could not be sent for {seconds} s"
+            ));
+        }
+    }
+
+    /// Returns a time as time of the robot's session.
+    fn time(&self, now: Instant) -> Nanos {
+        Nanos(nanos(now.saturating_duration_since(self.begun)))
+    }
+
+    /// Takes a frame that has arrived from a source, without its length. The first frame of a source has to be a state,
+    /// which proves the name of its robot.
+    ///
+    /// # Errors
+    /// The source is not to be heard any more, as it sends something other than states and letters of one peer, or too
+    /// many: the end of a sentence.
+    pub fn take(&self, source: &mut Source, frame: &[u8]) -> Result<(), String> {
+        let now = Instant::now();
+        if is_letter(frame) {
+            source.count_letter(now)?;
+            let Source { challenge, robot, lag, .. } = source;
+            let robot = robot.as_deref().ok_or_else(|| "it sends a letter before its state".to_owned())?;
+            let session = lock(&self.sessions).of(robot);
+            let late = |sent| lag.of(sent, self.time(now));
+            // The robot has proved its name, so that its states are taken, whatever its letter is.
+            match self.letters.take(frame, challenge, (robot, session), late) {
+                Ok(false) => {}
+                Ok(true) => self.refuse(&format!("a plan of {robot}"), "a newer one has arrived"),
+                Err(reason) => self.refuse(&format!("a letter of {robot}"), &reason),
+            }
+            return Ok(());
+        }
+        if frame.len() > LONGEST {
+            return Err("it sends no states".to_owned());
+        }
+        let read = state_frame::read(frame, &self.key, &source.challenge).map_err(|refused| match refused {
+            Refused::Garbage => "it sends no states".to_owned(),
+            Refused::Version(other) => format!("its version of the link is {other}, and this one has {VERSION}"),
+            Refused::Key => "it has another key, or repeats what was recorded".to_owned(),
+            Refused::Impossible => "its pose or velocity is one that no robot has".to_owned(),
+        })?;
+        let (state, sent) = read;
+        if !self.peers.contains(&state.name) {
+            let name = Printable(&state.name);
+            return Err(format!("its robot `{name}` is none of {}", self.peers.join(", ")));
+        }
+        let robot = source.robot.get_or_insert_with(|| state.name.clone());
+        if *robot != state.name {
+            return Err(format!("it sends a state of `{}`, and is `{robot}`", state.name));
+        }
+        source.count_state(now)?;
+        let age = source.lag.of(sent, self.time(now));
+        if lock(&self.sessions).take(&state.name, (state.session, state.number), now)? {
+            let arrived = Arrived { state: State { age, ..state }, at: now };
+            lock(&self.arrived).insert(arrived.state.name.clone(), arrived);
+        }
+        Ok(())
+    }
+
+    /// Takes the newest state of each robot that has arrived since the last call.
+    pub fn states(&self) -> impl Iterator<Item = State> + use<> {
+        let now = Instant::now();
+        std::mem::take(&mut *lock(&self.arrived)).into_values().map(move |Arrived { mut state, at }| {
+            state.age = Nanos(state.age.0.saturating_add(nanos(now.saturating_duration_since(at))));
+            state
+        })
+    }
+
+    /// Takes the letters that have arrived since the last call.
+    #[must_use]
+    pub fn letters(&self) -> Vec<Letter> {
+        self.letters.arrived()
+    }
+
+    /// Reports that something is refused, and why, unless that was reported a short while ago.
+    pub fn refuse(&self, what: &str, reason: &str) {
+        let warning = lock(&self.refusals).warning(what, reason, Instant::now());
+        warning.into_iter().for_each(|warning| self.say(warning));
+    }
+
+    /// Reports a message to the operator, unless too many messages wait.
+    pub fn say(&self, message: String) {
+        let mut messages = lock(&self.messages);
+        if messages.len() < MESSAGES {
+            messages.push(message);
+        }
+    }
+
+    /// Takes the messages for the operator since the last call.
+    #[must_use]
+    pub fn messages(&self) -> Vec<String> {
+        let mut messages = std::mem::take(&mut *lock(&self.messages));
+        let unanswered = self.letters.unanswered(Instant::now()).into_iter();
+        messages.extend(
+            unanswered.map(|to| format!("warning: state link: {to} has not answered the plan that was sent 10 s ago")),
+        );
+        messages
+    }
+
+    /// Notes that the robot's run has ended.
+    pub fn end(&self) {
+        self.is_over.store(true, Ordering::Relaxed);
+    }
+
+    /// Returns `true` once the robot's run has ended.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.is_over.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,92 @@
+//! Tests of endpoints without a medium: frames are handed from one to the other.
+
+use super::*;
+use crate::link::Content;
+use crate::link::frame::Challenge;
+use crate::plans::When;
+
+fn endpoint(name: &str, peer: &str) -> Endpoint {
+    let plans = vec![(peer.to_owned(), "pair".to_owned())];
+    let (name, peers, key) = (name.to_owned(), vec![peer.to_owned()], "key".to_owned());
+    Endpoint::new(&LinkSettings { name, peers, key, plans })
+}
+
+/// Returns the frame of a state with this number on a medium without connections.
+fn state(from: &Endpoint, name: &str, number: u64) -> Vec<u8> {
+    let state = State { session: from.session, ..State::of(name, number) };
+    from.state(&state).frame(&Challenge::NONE)[4..].to_vec()
+}
+
+#[test]
+fn a_letter_is_taken_once_on_any_medium() {
+    let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
+    let from_ada = || Source::without_connection("ada");
+    bob.take(&mut from_ada(), &state(&ada, "ada", 1)).unwrap();
+    ada.take(&mut Source::without_connection("bob"), &state(&bob, "bob", 1)).unwrap();
+    let content = Content::Plan { when: When::Now, text: "{ Go (Atom (wait 1) stop) }".to_owned() };
+    let plan = Letter { from: "ada".to_owned(), number: 1, content };
+    let letter = ada.letter("bob", &plan).unwrap().draft.frame(&Challenge::NONE)[4..].to_vec();
+    for _ in 0..3 {
+        assert_eq!(bob.take(&mut from_ada(), &letter), Ok(()));
+    }
+    assert_eq!((bob.letters(), bob.messages()), (vec![plan], Vec::new()));
+}
+
+#[test]
+fn the_newest_plan_of_a_robot_counts() {
+    let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
+    let mut from_ada = Source::without_connection("ada");
+    bob.take(&mut from_ada, &state(&ada, "ada", 1)).unwrap();
+    ada.take(&mut Source::without_connection("bob"), &state(&bob, "bob", 1)).unwrap();
+    let mut send = |number, content| {
+        let letter = Letter { from: "ada".to_owned(), number, content };
+        let frame = ada.letter("bob", &letter).unwrap().draft.frame(&Challenge::NONE);
+        bob.take(&mut from_ada, &frame[4..]).unwrap();
+    };
+    for number in 1..=10 {
+        send(number, Content::Plan { when: When::Now, text: "{ Go (Atom (wait 1) stop) }".to_owned() });
+    }
+    send(11, Content::Answer { of: 7, is_accepted: true, sentence: String::new() });
+    assert_eq!(bob.letters().iter().map(|letter| letter.number).collect::<Vec<_>>(), [10]);
+    let messages = bob.messages();
+    assert_eq!(messages.first().unwrap(), "warning: state link: a plan of ada is refused: a newer one has arrived");
+    assert_eq!(
+        messages.last().unwrap(),
+        "warning: state link: a letter of ada is refused: it answers a plan that was not sent"
+    );
+}
+
+#[test]
+fn a_state_that_was_held_back_is_old() {
+    let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
+    let mut from_ada = Source::without_connection("ada");
+    let mut send = |number, sent: u64| {
+        let state = State { session: ada.session, ..State::of("ada", number) };
+        let frame = state_frame::written(&state, Nanos(sent * 1_000_000_000), &Key::of("key"));
+        bob.take(&mut from_ada, &frame.frame(&Challenge::NONE)[4..]).unwrap();
+        bob.states().next().unwrap().age.0 / 1_000_000_000
+    };
+    // Two are sent at nine seconds, one at six, and all arrive at once.
+    assert_eq!((send(9, 9), send(10, 6), send(11, 9)), (0, 3, 0));
+    assert!(send(12, 2) >= 7);
+}
+
+#[test]
+fn a_plan_for_now_that_was_held_back_is_refused() {
+    let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
+    let mut from_ada = Source::without_connection("ada");
+    let begun = state_frame::written(
+        &State { session: ada.session, ..State::of("ada", 1) },
+        Nanos(9_000_000_000),
+        &Key::of("key"),
+    );
+    bob.take(&mut from_ada, &begun.frame(&Challenge::NONE)[4..]).unwrap();
+    let mut send = |number, when, sent: u64| {
+        let content = Content::Plan { when, text: "{ Go (Atom (wait 1) stop) }".to_owned() };
+        let letter = Letter { from: "ada".to_owned(), number, content };
+        let draft = ada.letters.draft("bob", &letter, Some(bob.session), Nanos(sent * 1_000_000_000)).unwrap();
+        bob.take(&mut from_ada, &draft.frame(&Challenge::NONE)[4..]).unwrap();
+        (bob.letters().len(), bob.messages().len())
+    };
+    assert_eq!([send(1, When::Now, 6), send(2, When::PlanEnds, 6), send(3, When::Now, 9)], [(0, 1), (1, 0), (1, 0)]);
+}

@@ -1,0 +1,81 @@
+//! Plans that were sent to other robots, and their answers.
+
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+/// Time after which a plan without an answer is reported.
+const ANSWERS: Duration = Duration::from_secs(10);
+/// Maximum number of plans that are known.
+const KNOWN: usize = 64;
+
+/// The plans that were sent last.
+#[derive(Debug, Default)]
+pub(super) struct Questions(VecDeque<Question>);
+
+/// A plan that was sent.
+#[derive(Debug)]
+struct Question {
+    to: String,
+    /// Number of the letter with the plan.
+    number: u64,
+    at: Instant,
+    /// `true` until an answer has arrived, or its absence was reported.
+    is_open: bool,
+}
+
+impl Questions {
+    /// Notes that a plan was sent in the letter of this number at time `now`.
+    pub(super) fn ask(&mut self, to: &str, number: u64, now: Instant) {
+        if self.0.len() >= KNOWN {
+            self.0.pop_front();
+        }
+        self.0.push_back(Question { to: to.to_owned(), number, at: now, is_open: true });
+    }
+
+    /// Forgets the plan in the letter of this number, which was not sent.
+    pub(super) fn forget(&mut self, number: u64) {
+        self.0.retain(|question| question.number != number);
+    }
+
+    /// Notes an answer; returns `false` if the robot has not been sent this plan.
+    pub(super) fn answer(&mut self, from: &str, number: u64) -> bool {
+        let question = self.0.iter_mut().find(|question| question.to == from && question.number == number);
+        question.is_some_and(|question| {
+            question.is_open = false;
+            true
+        })
+    }
+
+    /// Returns the recipients of plans that have had no answer for too long at time `now`, each plan once.
+    pub(super) fn unanswered(&mut self, now: Instant) -> Vec<String> {
+        let is_late =
+            |question: &&mut Question| question.is_open && now.saturating_duration_since(question.at) >= ANSWERS;
+        let late = self.0.iter_mut().filter(is_late).map(|question| {
+            question.is_open = false;
+            question.to.clone()
+        });
+        late.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plan_without_an_answer_is_reported_once() {
+        let (mut questions, begun) = (Questions::default(), Instant::now());
+        let at = |seconds| begun + Duration::from_secs(seconds);
+        questions.ask("bob", 1, begun);
+        questions.ask("eve", 2, begun);
+        questions.ask("bob", 3, begun);
+        questions.forget(3);
+        assert_eq!(questions.unanswered(at(9)), Vec::<String>::new());
+        assert!(!questions.answer("eve", 1), "a plan for another robot");
+        assert!(!questions.answer("bob", 3), "a plan that was not sent");
+        // A plan may have several answers: that it waits, and that it has taken over.
+        assert!(questions.answer("bob", 1) && questions.answer("bob", 1));
+        assert_eq!((questions.unanswered(at(10)), questions.unanswered(at(11))), (vec!["eve".to_owned()], vec![]));
+        assert!(questions.answer("eve", 2), "late, and an answer");
+    }
+}

@@ -1,0 +1,71 @@
+//! A source of frames, as a connection, and its limits.
+
+use std::time::{Duration, Instant};
+
+use super::frame::Challenge;
+use super::lag::Lag;
+
+/// Maximum number of states that a source may send in a second: twice as many as a robot with turns of a
+/// millisecond sends.
+const STATES: u32 = 2000;
+/// Maximum number of letters that a source may send in a second.
+const LETTERS: u32 = 20;
+
+/// A source of frames: its robot, and the number of its frames in the current second.
+#[derive(Debug)]
+pub struct Source {
+    pub(super) challenge: Challenge,
+    /// Name of the robot that a frame has proved.
+    pub(super) robot: Option<String>,
+    pub(super) lag: Lag,
+    second: Instant,
+    states: u32,
+    letters: u32,
+}
+
+impl Source {
+    /// Returns a connection whose frames are proved for this challenge.
+    pub(super) fn of_connection(challenge: Challenge) -> Self {
+        Self { challenge, robot: None, lag: Lag::default(), second: Instant::now(), states: 0, letters: 0 }
+    }
+
+    /// Returns a source of frames of the robot of this name on a medium without connections. Frames that were recorded
+    /// before this run are accepted from it, unless the robot has been heard in a newer session.
+    #[must_use]
+    pub fn without_connection(robot: &str) -> Self {
+        Self { robot: Some(robot.to_owned()), ..Self::of_connection(Challenge::NONE) }
+    }
+
+    /// Returns the name of the robot, once a frame has proved it.
+    #[must_use]
+    pub fn robot(&self) -> Option<&str> {
+        self.robot.as_deref()
+    }
+
+    /// Counts a state that has arrived at time `now`.
+    ///
+    /// # Errors
+    /// The source sends too many: the end of a sentence.
+    pub(super) fn count_state(&mut self, now: Instant) -> Result<(), String> {
+        self.tick(now);
+        self.states = self.states.saturating_add(1);
+        if self.states > STATES { Err(format!("it sends more than {STATES} states a second")) } else { Ok(()) }
+    }
+
+    /// Counts a letter that has arrived at time `now`.
+    ///
+    /// # Errors
+    /// The source sends too many: the end of a sentence.
+    pub(super) fn count_letter(&mut self, now: Instant) -> Result<(), String> {
+        self.tick(now);
+        self.letters = self.letters.saturating_add(1);
+        if self.letters > LETTERS { Err(format!("it sends more than {LETTERS} letters a second")) } else { Ok(()) }
+    }
+
+    /// Begins to count anew once a second is over.
+    fn tick(&mut self, now: Instant) {
+        if now.saturating_duration_since(self.second) >= Duration::from_secs(1) {
+            (self.second, self.states, self.letters) = (now, 0, 0);
+        }
+    }
+}

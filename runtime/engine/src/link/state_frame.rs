@@ -1,0 +1,200 @@
+//! A state in binary form (docs/src/reference/interfaces.md, 6.5).
+
+use mdle_runtime::{Meters, MetersPerSecond, Nanos, PEERS, Pose, Radians, RadiansPerSecond, Twist};
+
+use super::frame::{Bytes, Challenge, Draft, Key, Refused, fits, opened, put_name};
+use super::{SharedValue, State};
+use crate::attribute::{AttributeKind, AttributeName, Value};
+
+/// First bytes of a state's frame.
+const MAGIC: [u8; 4] = *b"MDLe";
+/// Maximum length of a frame, in bytes, without the four bytes of the length.
+pub(super) const LONGEST: usize = 8192;
+/// Maximum number of attributes in a state.
+pub(super) const ATTRIBUTES: usize = 40;
+/// Maximum coordinate of a robot, in metres, and its maximum velocity, in metres and radians a second.
+const FARTHEST: f64 = 1e6;
+const FASTEST: f64 = 1e3;
+
+/// Returns the draft of a state that is sent at this time of the robot's session. Attributes whose names do not fit are
+/// left out.
+pub(super) fn written(state: &State, sent: Nanos, key: &Key) -> Draft {
+    let mut body = Vec::with_capacity(256);
+    put_name(&mut body, &state.name);
+    [state.session, state.number, sent.0].iter().for_each(|number| body.extend(number.to_le_bytes()));
+    let Pose { x, y, theta } = state.pose;
+    let Twist { v, omega } = state.velocity;
+    [x.0, y.0, theta.0, v.0, omega.0].iter().for_each(|number| body.extend(number.to_le_bytes()));
+    body.extend(state.atom.to_le_bytes());
+    let rounds: Vec<_> = state.rounds.iter().filter(|(robot, _)| fits(robot)).take(PEERS).collect();
+    body.push(rounds.len() as u8);
+    for (robot, count) in rounds {
+        put_name(&mut body, robot);
+        body.extend(count.to_le_bytes());
+    }
+    let attributes: Vec<_> =
+        state.attributes.iter().filter(|shared| has_fitting_name(shared)).take(ATTRIBUTES).collect();
+    body.push(attributes.len() as u8);
+    for SharedValue { name, value, age } in attributes {
+        put_name(&mut body, &name.module);
+        put_name(&mut body, &name.attribute);
+        body.push(value.kind().number());
+        body.extend(value.bits().to_le_bytes());
+        body.extend(age.0.to_le_bytes());
+    }
+    Draft::new(MAGIC, body, key)
+}
+
+/// Returns `true` if the name of an attribute can be in a frame.
+pub(super) fn has_fitting_name(SharedValue { name, .. }: &SharedValue) -> bool {
+    fits(&name.module) && fits(&name.attribute)
+}
+
+/// Reads the frame of a state, without its length; returns the state, and the time of the sender's session at which it
+/// was sent.
+///
+/// # Errors
+/// Fails if the bytes are not a frame of a robot with this key, for this challenge.
+pub(super) fn read(frame: &[u8], key: &Key, challenge: &Challenge) -> Result<(State, Nanos), Refused> {
+    let (state, sent) = state(&mut opened(MAGIC, frame, key, challenge)?).ok_or(Refused::Garbage)?;
+    let Pose { x, y, theta } = state.pose;
+    let Twist { v, omega } = state.velocity;
+    // Larger numbers would overflow in the laws that reckon with them.
+    if [x.0, y.0].iter().any(|place| place.abs() > FARTHEST) || [v.0, omega.0].iter().any(|speed| speed.abs() > FASTEST)
+    {
+        return Err(Refused::Impossible);
+    }
+    Ok((State { pose: Pose { x, y, theta: theta.wrapped() }, ..state }, sent))
+}
+
+fn state(from: &mut Bytes<'_>) -> Option<(State, Nanos)> {
+    let name = from.name()?;
+    let (session, number, sent) = (from.number()?, from.number()?, Nanos(from.number()?));
+    let mut real = || from.take().map(f64::from_le_bytes).filter(|number| number.is_finite());
+    let pose = Pose { x: Meters(real()?), y: Meters(real()?), theta: Radians(real()?) };
+    let velocity = Twist { v: MetersPerSecond(real()?), omega: RadiansPerSecond(real()?) };
+    let atom = from.number()?;
+    let [count] = from.take()?;
+    let rounds = (0..count).map(|_| Some((from.name()?, from.number()?))).collect::<Option<Vec<_>>>()?;
+    let [count] = from.take()?;
+    let attributes = (0..count).map(|_| attribute(from)).collect::<Option<Vec<_>>>()?;
+    let state = State { name, session, number, age: Nanos::ZERO, pose, velocity, rounds, atom, attributes };
+    from.is_empty().then_some((state, sent))
+}
+
+/// Reads the value of an attribute, which is a number and not NaN.
+fn attribute(from: &mut Bytes<'_>) -> Option<SharedValue> {
+    let name = AttributeName::new(&from.name()?, &from.name()?);
+    let [kind] = from.take()?;
+    let value = Value::of_bits(AttributeKind::of_number(kind)?, from.number()?);
+    let age = Nanos(from.number()?);
+    value.number().filter(|number| !number.is_nan()).map(|_| SharedValue { name, value, age })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::link::frame::{NAME, VERSION};
+
+    const SENT: Nanos = Nanos(12);
+
+    fn sent() -> State {
+        State {
+            pose: Pose { x: Meters(1.5), y: Meters(-2.0), theta: Radians(0.25) },
+            velocity: Twist { v: MetersPerSecond(0.5), omega: RadiansPerSecond(-0.1) },
+            rounds: vec![("bob".to_owned(), 3), ("eve".to_owned(), u64::MAX)],
+            attributes: vec![
+                shared("range", Value::Length(Meters(f64::INFINITY))),
+                shared("count", Value::Integer(-3)),
+            ],
+            ..State::of("ada", 7)
+        }
+    }
+
+    fn shared(attribute: &str, value: Value) -> SharedValue {
+        SharedValue { name: AttributeName::new("heading", attribute), value, age: Nanos(5) }
+    }
+
+    /// Returns the frame of a state without its length.
+    fn frame(state: &State, key: &Key) -> Vec<u8> {
+        written(state, SENT, key).frame(&Challenge::NONE)[4..].to_vec()
+    }
+
+    /// Reads the frame of a state that another robot has written.
+    fn taken(state: &State) -> Result<State, Refused> {
+        let key = Key::of("a key");
+        read(&frame(state, &key), &key, &Challenge::NONE).map(|(state, _)| state)
+    }
+
+    #[test]
+    fn a_state_is_read_as_it_was_written() {
+        let key = Key::of("a key");
+        let frame = written(&sent(), SENT, &key).frame(&Challenge::NONE);
+        let (length, rest) = frame.split_first_chunk().unwrap();
+        assert_eq!(u32::from_le_bytes(*length) as usize, rest.len());
+        assert!(rest.len() < LONGEST);
+        assert_eq!(read(rest, &key, &Challenge::NONE), Ok((sent(), SENT)));
+    }
+
+    #[test]
+    fn any_other_bytes_are_refused() {
+        let key = Key::of("a key");
+        let read = |frame: &[u8], key: &Key| read(frame, key, &Challenge::NONE);
+        let frame = frame(&sent(), &key);
+        assert_eq!(read(&frame, &Key::of("another")), Err(Refused::Key));
+        for length in 0..frame.len() {
+            assert_eq!(read(&frame[..length], &key), Err(Refused::Garbage), "the first {length} bytes");
+        }
+        for place in 0..frame.len() {
+            let mut changed = frame.clone();
+            changed[place] ^= 1;
+            let expected = match place {
+                4 => Refused::Version(VERSION ^ 1),
+                9..41 => Refused::Key,
+                _ => Refused::Garbage,
+            };
+            assert_eq!(read(&changed, &key), Err(expected), "byte {place}");
+        }
+        for value in [Value::Number(f64::NAN), Value::Flag(true), Value::Text("text".into())] {
+            let no_number = State { attributes: vec![shared("range", value)], ..sent() };
+            assert_eq!(taken(&no_number), Err(Refused::Garbage));
+        }
+    }
+
+    #[test]
+    fn a_state_that_no_robot_has_is_refused() {
+        let with = |change: fn(&mut State)| {
+            let mut state = sent();
+            change(&mut state);
+            taken(&state)
+        };
+        assert_eq!(with(|state| state.pose.x.0 = f64::NAN), Err(Refused::Garbage));
+        for change in [
+            |state: &mut State| state.pose.x.0 = 1.7e308,
+            |state: &mut State| state.pose.y.0 = -1.1e6,
+            |state: &mut State| state.velocity.v.0 = 1.1e3,
+            |state: &mut State| state.velocity.omega.0 = -1.7e308,
+        ] {
+            assert_eq!(with(change), Err(Refused::Impossible));
+        }
+        let turned = with(|state| state.pose.theta = Radians::from_degrees(350.0)).unwrap();
+        assert!((turned.pose.theta.0 - Radians::from_degrees(-10.0).0).abs() < 1e-9, "{turned:?}");
+    }
+
+    #[test]
+    fn names_and_rounds_have_limits() {
+        let attribute = |length: usize| {
+            let name = AttributeName::new(&"m".repeat(NAME), &"a".repeat(length));
+            SharedValue { name, ..shared("", Value::Number(1.0)) }
+        };
+        let mut attributes = vec![attribute(NAME); 60];
+        attributes.insert(0, attribute(NAME + 1));
+        let mut rounds = vec![("r".repeat(NAME), 1); 20];
+        rounds.insert(0, ("r".repeat(NAME + 1), 1));
+        let long = State { name: "n".repeat(NAME), rounds, attributes, ..sent() };
+        assert!(frame(&long, &Key::of("")).len() < LONGEST);
+        let state = taken(&long).unwrap();
+        assert_eq!((state.name.len(), state.rounds.len(), state.attributes.len()), (NAME, PEERS, ATTRIBUTES));
+        assert!(state.attributes.iter().all(|shared| *shared == attribute(NAME)), "what is too long is left out");
+    }
+}

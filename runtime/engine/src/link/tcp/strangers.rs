@@ -1,0 +1,168 @@
+//! Connections that have not proved the name of a robot. They have few places, which new ones take from old ones, so
+//! that those who hold connections open shut no peer out.
+
+use std::io::{ErrorKind, Read as _, Write as _};
+use std::net::{IpAddr, TcpStream};
+use std::time::{Duration, Instant};
+
+use crate::link::endpoint::Endpoint;
+use crate::link::frame::Challenge;
+use crate::link::source::Source;
+use crate::link::state_frame::LONGEST;
+
+/// Maximum number of strangers.
+const PLACES: usize = 64;
+/// Time within which the first state has to arrive.
+const PROVES: Duration = Duration::from_secs(1);
+
+/// The connections that have proved nothing, in the order in which they were made.
+pub(super) struct Strangers {
+    /// Addresses of the peers.
+    peers: Vec<IpAddr>,
+    strangers: Vec<Stranger>,
+}
+
+/// A connection that has proved nothing.
+struct Stranger {
+    stream: TcpStream,
+    from: IpAddr,
+    since: Instant,
+    source: Source,
+    /// Bytes that have arrived: the length of a frame, and the frame.
+    bytes: Vec<u8>,
+}
+
+/// A connection whose first state has arrived.
+pub(super) struct Proved {
+    pub(super) stream: TcpStream,
+    pub(super) source: Source,
+    /// Name of the robot.
+    pub(super) robot: String,
+}
+
+/// State of a stranger.
+enum Progress {
+    Waits,
+    /// The connection has ended.
+    Gone,
+    Proved,
+    /// End of a sentence with the reason.
+    Refused(String),
+}
+
+impl Strangers {
+    /// Returns no strangers, for a robot whose peers have these addresses.
+    pub(super) fn new(peers: Vec<IpAddr>) -> Self {
+        Self { peers, strangers: Vec::new() }
+    }
+
+    /// Returns the streams of all strangers.
+    pub(super) fn streams(&self) -> impl Iterator<Item = &TcpStream> {
+        self.strangers.iter().map(|stranger| &stranger.stream)
+    }
+
+    /// Greets a new connection.
+    pub(super) fn add(&mut self, stream: TcpStream, from: IpAddr, endpoint: &Endpoint) {
+        let Ok(stranger) = Stranger::greeted(stream, from) else {
+            return endpoint.refuse(&from.to_string(), "it could not be greeted");
+        };
+        if self.strangers.len() >= PLACES {
+            let addresses: Vec<_> = self.strangers.iter().map(|stranger| stranger.from).collect();
+            match place_for(from, &addresses, &self.peers) {
+                Some(place) => drop(self.strangers.remove(place)),
+                None => return,
+            }
+            endpoint.refuse("a connection", &format!("{PLACES} others have not sent a state yet"));
+        }
+        self.strangers.push(stranger);
+    }
+
+    /// Reads what strangers have sent; returns those that are strangers no more.
+    pub(super) fn look(&mut self, endpoint: &Endpoint) -> Vec<Proved> {
+        let mut proved = Vec::new();
+        for mut stranger in std::mem::take(&mut self.strangers) {
+            match stranger.look(endpoint) {
+                Progress::Waits => self.strangers.push(stranger),
+                Progress::Gone => {}
+                Progress::Refused(reason) => endpoint.refuse(&stranger.from.to_string(), &reason),
+                Progress::Proved => {
+                    let Stranger { stream, source, .. } = stranger;
+                    let robot = source.robot().unwrap_or_default().to_owned();
+                    proved.push(Proved { stream, source, robot });
+                }
+            }
+        }
+        proved
+    }
+}
+
+/// Returns which of the strangers at these addresses makes place for a new one: the oldest that is not at the address
+/// of a peer, or else the oldest of all, if the new one is at the address of a peer.
+fn place_for(new: IpAddr, strangers: &[IpAddr], peers: &[IpAddr]) -> Option<usize> {
+    let is_elsewhere = |from: &IpAddr| !peers.contains(from);
+    strangers.iter().position(is_elsewhere).or_else(|| peers.contains(&new).then_some(0))
+}
+
+impl Stranger {
+    /// Greets a connection.
+    ///
+    /// # Errors
+    /// The connection has ended, or the system has no random numbers.
+    fn greeted(mut stream: TcpStream, from: IpAddr) -> std::io::Result<Self> {
+        stream.set_nonblocking(true)?;
+        let challenge = Challenge::random()?;
+        // The buffer of a new connection is empty.
+        stream.write_all(&challenge.greeting())?;
+        let source = Source::of_connection(challenge);
+        Ok(Self { stream, from, since: Instant::now(), source, bytes: Vec::new() })
+    }
+
+    /// Reads what has arrived of the first frame.
+    fn look(&mut self, endpoint: &Endpoint) -> Progress {
+        loop {
+            let missing = match self.bytes.split_first_chunk() {
+                None => 4 - self.bytes.len(),
+                Some((length, frame)) => {
+                    let length = u32::from_le_bytes(*length) as usize;
+                    if length > LONGEST {
+                        return Progress::Refused("it sends no states".to_owned());
+                    }
+                    if frame.len() >= length {
+                        return match endpoint.take(&mut self.source, frame) {
+                            Ok(()) => Progress::Proved,
+                            Err(reason) => Progress::Refused(reason),
+                        };
+                    }
+                    length - frame.len()
+                }
+            };
+            let mut buffer = [0; 1024];
+            let Some(place) = buffer.get_mut(..missing.min(1024)) else { return Progress::Gone };
+            match self.stream.read(place) {
+                Ok(0) if self.bytes.is_empty() => return Progress::Gone,
+                Ok(0) => return Progress::Refused("it ended within a frame".to_owned()),
+                Ok(count) => self.bytes.extend(place.get(..count).unwrap_or_default()),
+                Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {
+                    let is_late = self.since.elapsed() >= PROVES;
+                    let reason = || format!("it has not sent a state within {} s", PROVES.as_secs());
+                    return if is_late { Progress::Refused(reason()) } else { Progress::Waits };
+                }
+                Err(_) => return Progress::Gone,
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stranger_makes_no_place_at_a_peers_address() {
+        let [peer, one, other] = ["10.0.0.1", "10.0.0.2", "10.0.0.3"].map(|text| text.parse::<IpAddr>().unwrap());
+        assert_eq!(place_for(peer, &[peer, one, other], &[peer]), Some(1));
+        assert_eq!(place_for(other, &[peer, one], &[peer]), Some(1));
+        assert_eq!(place_for(peer, &[peer, peer], &[peer]), Some(0));
+        assert_eq!(place_for(other, &[peer, peer], &[peer]), None);
+    }
+}
