@@ -51,24 +51,34 @@ fn comes<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, speed: f64
         return None;
     }
     let (sin, cos) = libm::sincos(here.theta.0);
-    let [new, middle, old] = [new, middle, old].map(|(ping, range)| {
+    let echo = |(ping, range): (&Ping, Meters)| {
         let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
         let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + range.0));
         let (x, y) = (place.x.0 - here.x.0, place.y.0 - here.y.0);
         Echo { at: ping.at.seconds(), along: x * cos + y * sin, across: y * cos - x * sin }
-    });
+    };
     let approach = |from: &Echo, to: &Echo| {
         (libm::hypot(from.along, from.across) - libm::hypot(to.along, to.across)) / (to.at - from.at)
     };
     let moves = |speed: f64| (SPEEDS[0]..=SPEEDS[1]).contains(&speed);
-    let (first, second) = (approach(&old, &middle), approach(&middle, &new));
-    let passes = new.along > y.body_radius().0 + PERSON && new.across.abs() > ASIDE;
+    // Most echoes are of what lies in the way, or of what stands: their other places are not needed.
+    let new = echo(new);
+    if !(new.along > y.body_radius().0 + PERSON && new.across.abs() > ASIDE) {
+        return None;
+    }
+    let middle = echo(middle);
+    let second = approach(&middle, &new);
+    if !moves(second) {
+        return None;
+    }
+    let old = echo(old);
+    let first = approach(&old, &middle);
     let mean = (first + second) / 2.0;
     let seconds = new.across.abs() / mean;
     let meets = new.along < y.body_radius().0 + 2.0 * PERSON + speed * seconds && seconds < SOON;
     let is_nearer = mean * (new.at - old.at) >= NEARER;
     let passed = seconds + (y.body_radius().0 + PERSON) / mean;
-    (moves(first) && moves(second) && is_nearer && passes && meets).then_some(passed)
+    (moves(first) && is_nearer && meets).then_some(passed)
 }
 
 #[cfg(test)]

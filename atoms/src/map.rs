@@ -10,8 +10,10 @@ use crate::gains::{Gains, fire_in_turn};
 pub(crate) const CELLS: i32 = 64;
 /// Side of a cell, in metres.
 pub(crate) const CELL: f64 = 0.05;
-/// Size of a map, in bytes; a byte contains two cells.
-const BYTES: usize = (CELLS * CELLS / 2) as usize;
+/// Number of rows of cells.
+const ROWS: usize = CELLS as usize;
+/// Size of a row, in bytes; a byte contains two cells.
+const BYTES: usize = ROWS / 2;
 /// Evidence of an unknown cell.
 const UNKNOWN: u8 = 4;
 /// Evidence from which a cell is occupied.
@@ -58,17 +60,21 @@ impl Cell {
     }
 }
 
-/// Returns the largest whole number that is at most `number`. A ping passes many cells, so `floor` of `libm`
-/// would take most of the turn's time.
+/// Returns the largest whole number that is at most `number`, whose size is at most [`FURTHEST`]. A ping passes many
+/// cells, so `floor` of `libm`, or a conversion that looks for numbers that do not fit, would take most of the turn's
+/// time.
 fn below(number: f64) -> i32 {
-    let towards_zero = number as i32;
-    towards_zero - i32::from(number < f64::from(towards_zero))
+    // In a sum of this size the last bit counts ones, so that the low bits are the nearest whole number.
+    const ROUNDS: f64 = 6_755_399_441_055_744.0;
+    const { assert!(ROUNDS == 1.5 * (1_u64 << 52) as f64) };
+    let sum = number + ROUNDS;
+    sum.to_bits() as i32 - i32::from(sum - ROUNDS > number)
 }
 
 /// Evidence for obstacles around the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Map {
-    evidence: [u8; BYTES],
+    evidence: [[u8; BYTES]; ROWS],
     /// The cell with the smallest numbers.
     pub(crate) corner: Cell,
     /// Time up to which the pings of each third of the sonars have been read; `None` before the first reading. Sonars
@@ -80,7 +86,7 @@ pub(crate) struct Map {
 
 impl Map {
     pub(crate) const EMPTY: Self = Self {
-        evidence: [UNKNOWN | UNKNOWN << 4; BYTES],
+        evidence: [[UNKNOWN | UNKNOWN << 4; BYTES]; ROWS],
         corner: Cell { x: 0, y: 0 },
         taken: [None; THIRDS],
         third: 0,
@@ -164,8 +170,9 @@ impl Map {
 
     /// Returns the evidence for an object in a cell; outside the map, the evidence of an unknown cell.
     fn evidence(&self, cell: Cell) -> u8 {
-        let (place, shift) = place(cell);
-        self.evidence.get(place).filter(|_| self.contains(cell)).map_or(UNKNOWN, |byte| byte >> shift & 15)
+        let (row, column, shift) = place(cell);
+        let byte = self.evidence.get(row).and_then(|row| row.get(column)).filter(|_| self.contains(cell));
+        byte.map_or(UNKNOWN, |byte| byte >> shift & 15)
     }
 
     /// Changes cells; a cell that is repeated in a row is changed only once.
@@ -186,6 +193,9 @@ impl Map {
         let Cell { x: from_x, y: from_y } = self.corner;
         let (dx, dy) = (corner.x - from_x, corner.y - from_y);
         self.corner = corner;
+        if (dx, dy) == (0, 0) {
+            return;
+        }
         for across in 0..CELLS {
             for step in 0..dx.abs().min(CELLS) {
                 let x = if dx > 0 { corner.x + CELLS - 1 - step } else { corner.x + step };
@@ -209,8 +219,8 @@ impl Map {
         if !self.contains(cell) {
             return;
         }
-        let (place, shift) = place(cell);
-        if let Some(byte) = self.evidence.get_mut(place) {
+        let (row, column, shift) = place(cell);
+        if let Some(byte) = self.evidence.get_mut(row).and_then(|row| row.get_mut(column)) {
             let evidence = to(*byte >> shift & 15);
             *byte = *byte & !(15 << shift) | evidence << shift;
         }
@@ -223,20 +233,27 @@ impl Map {
 
     /// Returns the occupied cells.
     pub(crate) fn occupied(&self) -> impl Iterator<Item = Cell> {
-        // Most bytes contain two cells that are not occupied.
-        let bytes = (0..).zip(&self.evidence).filter(|(_, byte)| **byte & 15 >= OCCUPIED || **byte >> 4 >= OCCUPIED);
-        let cells = bytes.flat_map(|(number, _)| {
-            let (x, y) = (2 * (number % (CELLS / 2)), number / (CELLS / 2));
-            [Cell { x, y }, Cell { x: x + 1, y }]
+        // Most rows have no occupied cell, and most bytes contain two cells that are not occupied.
+        const { assert!(OCCUPIED == 8) };
+        let is_occupied = |byte: u8| byte & (OCCUPIED | OCCUPIED << 4) != 0;
+        let rows = (0..).zip(&self.evidence);
+        let rows = rows.filter(move |(_, row)| is_occupied(row.iter().fold(0, |all, byte| all | byte)));
+        let bytes = rows.flat_map(move |(y, row)| {
+            (0..).zip(row).filter(move |(_, byte)| is_occupied(**byte)).map(move |(number, _)| (2 * number, y))
         });
+        let cells = bytes.flat_map(|(x, y)| [Cell { x, y }, Cell { x: x + 1, y }]);
         let on_map = |at: i32, corner: i32| corner + ((at - corner) & (CELLS - 1));
         let cells = cells.map(move |Cell { x, y }| Cell { x: on_map(x, self.corner.x), y: on_map(y, self.corner.y) });
         cells.filter(|cell| self.is_occupied(*cell))
     }
 
-    /// Returns `true` if the map has no evidence about the cell.
-    pub(crate) fn is_unknown(&self, cell: Cell) -> bool {
-        self.evidence(cell) == UNKNOWN
+    /// Returns the evidence of the cells in the row with this number, in order.
+    pub(crate) fn row(&self, y: i32) -> impl Iterator<Item = u8> {
+        (self.corner.x..self.corner.x.saturating_add(CELLS)).map(move |x| {
+            let (row, column, shift) = place(Cell { x, y });
+            let byte = self.evidence.get(row).and_then(|row| row.get(column));
+            byte.map_or(UNKNOWN, |byte| byte >> shift & 15)
+        })
     }
 
     /// Returns the centres of the occupied cells at most `within` metres off the robot along both axes, relative to
@@ -253,12 +270,18 @@ impl Map {
     }
 }
 
-/// Returns the position of a cell's evidence, which stays the same while the map moves, and the number of bits
+/// Returns `true` if this is the evidence of a cell of which nothing is known.
+pub(crate) fn is_unknown(evidence: u8) -> bool {
+    evidence == UNKNOWN
+}
+
+/// Returns the row and the byte of a cell's evidence, which stay the same while the map moves, and the number of bits
 /// by which it is shifted there.
-fn place(Cell { x, y }: Cell) -> (usize, u8) {
-    const { assert!(CELLS.count_ones() == 1) };
-    let (x, y) = (x & (CELLS - 1), y & (CELLS - 1));
-    ((y * (CELLS / 2) + x / 2) as usize, 4 * (x & 1) as u8)
+#[inline]
+fn place(Cell { x, y }: Cell) -> (usize, usize, u8) {
+    const { assert!(ROWS.is_power_of_two()) };
+    let (x, y) = (x as usize & (ROWS - 1), y as usize & (ROWS - 1));
+    (y, x / 2, 4 * (x & 1) as u8)
 }
 
 #[cfg(test)]
@@ -308,7 +331,7 @@ mod tests {
         let (map, _) = heard(&[Some(0.8)], 3);
         assert!(is_ahead(&map, 0.99) && !is_ahead(&map, 0.9) && !is_ahead(&map, 1.1));
         assert!(map.is_occupied(Cell::of(0.19 + 0.8 * 0.98, 0.8 * 0.18)));
-        assert!(!map.is_unknown(Cell::of(0.6, 0.0)) && map.is_unknown(Cell::of(1.2, 0.0)));
+        assert!(!is_unknown(map.evidence(Cell::of(0.6, 0.0))) && is_unknown(map.evidence(Cell::of(1.2, 0.0))));
     }
 
     #[test]

@@ -273,8 +273,11 @@ fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose) -> Opti
         [new, old].map(|(ping, range)| on_arc(ping, range, sonar, y.ring_radius(), here, [Radians(0.0)]));
     let (along, up) = (new.x - old.x, new.y - old.y);
     let length = libm::hypot(along, up);
+    if length < APART {
+        return None;
+    }
     let (sin, cos) = libm::sincos(here.theta.0 + sonar.bearing().0);
-    if length < APART || (along * cos + up * sin).abs() > ACROSS * length {
+    if (along * cos + up * sin).abs() > ACROSS * length {
         return None;
     }
     Some(EXTENDS.map(|further| Point { x: new.x + further * along / length, y: new.y + further * up / length }))
@@ -299,10 +302,11 @@ fn on_arc<const N: usize>(
     off_axis: [Radians; N],
 ) -> [Point; N] {
     let from = ping.axis(sonar);
-    let (axis, transducer) = (from.theta, from.towards(from.theta, ring));
-    off_axis.map(|off_axis| {
-        let point = transducer.towards(Radians(axis.0 + off_axis.0), range);
-        Point { x: point.x.0 - here.x.0, y: point.y.0 - here.y.0 }
+    let (sin, cos) = libm::sincos(from.theta.0);
+    let (x, y) = (from.x.0 + ring.0 * cos, from.y.0 + ring.0 * sin);
+    off_axis.map(|Radians(off_axis)| {
+        let (sin, cos) = if off_axis == 0.0 { (sin, cos) } else { libm::sincos(from.theta.0 + off_axis) };
+        Point { x: x + range.0 * cos - here.x.0, y: y + range.0 * sin - here.y.0 }
     })
 }
 

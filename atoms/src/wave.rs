@@ -4,7 +4,7 @@
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Meters, Pose};
 
-use crate::map::{CELLS, Cell, Map};
+use crate::map::{self, CELLS, Cell, Map};
 
 /// Number of cells along a side of the wave: the side of the map and one more cell at each end.
 pub(crate) const SIDE: usize = CELLS as usize + 2;
@@ -26,6 +26,8 @@ const TURNS: usize = 5;
 const SMALL: usize = 64;
 /// Room on a map without obstacles, in centimetres.
 const LARGE: i32 = DISTANCE as i32;
+/// Factor of the cost of a step in a cell that the body does not pass: the step costs more than any distance.
+const NO_WAY: u16 = DISTANCE / STRAIGHT + 1;
 /// Class of cells of which nothing is known.
 const UNKNOWN: usize = 5;
 /// Maximum number of passes over the map, forwards and backwards.
@@ -53,8 +55,11 @@ pub(crate) struct Ends {
 
 /// The distance of each cell from the end of the way, and its class.
 pub(crate) struct Wave {
-    cells: [u16; SIDE * SIDE],
+    rows: [Row; SIDE],
 }
+
+/// A row of cells.
+type Row = [u16; SIDE];
 
 /// Rows of the map, one bit each, in which a forward or backward pass may change a distance: a distance decreases only
 /// after that of an earlier cell of the pass, in the same row or the previous one.
@@ -84,11 +89,6 @@ pub(crate) fn index(x: i32, y: i32) -> usize {
     (y + 1) as usize * SIDE + (x + 1) as usize
 }
 
-/// Returns the cells of the map, row by row.
-fn all() -> impl Iterator<Item = (i32, i32, usize)> {
-    (0..CELLS).flat_map(|y| (0..CELLS).map(move |x| (x, y, index(x, y))))
-}
-
 fn class(value: u16) -> usize {
     (value >> 13) as usize
 }
@@ -97,9 +97,38 @@ fn factor(value: u16) -> u16 {
     CLASSES.get(class(value)).map_or(0, |class| class.1)
 }
 
+/// Returns the factor of a step's cost in a cell with this value; in a cell that the body does not pass, a step costs
+/// more than any distance.
+fn step(value: u16) -> u16 {
+    match factor(value) {
+        0 => NO_WAY,
+        factor => factor,
+    }
+}
+
+/// Lowers the distances in a row by steps from earlier cells of a pass, which are in the same row and in the previous
+/// one, and have this factor of their cost; returns `true` if any distance has changed.
+fn relax<'r>(
+    mut row: impl Iterator<Item = &'r mut u16>,
+    mut previous: impl Iterator<Item = &'r u16>,
+    factor: impl Fn(u16) -> u16,
+) -> bool {
+    let mut earlier = || previous.next().map_or(DISTANCE, |value| value & DISTANCE);
+    let (mut across, mut beside, mut changes) = (earlier(), earlier(), false);
+    let mut before = row.next().map_or(DISTANCE, |value| *value & DISTANCE);
+    for value in row.take(CELLS as usize) {
+        let (next, factor, distance) = (earlier(), factor(*value), *value & DISTANCE);
+        let least = (before.min(beside) + STRAIGHT * factor).min(across.min(next) + ACROSS * factor);
+        changes |= least < distance;
+        (across, beside, before) = (beside, next, distance.min(least));
+        *value = *value & !DISTANCE | before;
+    }
+    changes
+}
+
 impl Wave {
     /// The wave before it starts.
-    pub(crate) const NONE: Self = Self { cells: [DISTANCE; SIDE * SIDE] };
+    pub(crate) const NONE: Self = Self { rows: [[DISTANCE; SIDE]; SIDE] };
 
     /// Computes the wave over a map for this body, from the ends of ways.
     pub(crate) fn start<Y: DiffDrive>(&mut self, map: &Map, ends: &Ends, y: &Y) {
@@ -131,11 +160,11 @@ impl Wave {
     }
 
     fn at(&self, cell: usize) -> u16 {
-        self.cells.get(cell).copied().unwrap_or(DISTANCE)
+        self.rows.as_flattened().get(cell).copied().unwrap_or(DISTANCE)
     }
 
     fn set(&mut self, cell: usize, value: u16) {
-        if let Some(place) = self.cells.get_mut(cell) {
+        if let Some(place) = self.rows.as_flattened_mut().get_mut(cell) {
             *place = value;
         }
     }
@@ -159,19 +188,20 @@ impl Wave {
         };
         // Most cells have little room, or the room of a map without obstacles.
         let (small, large) = (core::array::from_fn::<_, SMALL, _>(|room| class_of(room as i32)), class_of(LARGE));
-        for (x, y, place) in all() {
-            let room = i32::from(self.at(place));
-            let known = if room == LARGE { Some(large) } else { small.get(room as usize).copied() };
-            let mut class = known.unwrap_or_else(|| class_of(room));
-            let cell = Cell { x: corner.x + x, y: corner.y + y };
-            if class > UNKNOWN && map.is_unknown(cell) {
-                class = UNKNOWN;
+        for (row, y) in self.rows.iter_mut().skip(1).zip(0..CELLS) {
+            for (value, evidence) in row.iter_mut().skip(1).zip(map.row(corner.y + y)) {
+                let room = i32::from(*value);
+                let known = if room == LARGE { Some(large) } else { small.get(room as usize).copied() };
+                let class = known.unwrap_or_else(|| class_of(room));
+                let class = if map::is_unknown(evidence) { class.min(UNKNOWN) } else { class };
+                *value = (class as u16) << 13 | DISTANCE;
             }
-            // The robot can drive in the cells that it covers, even if an error of the map blocks them.
-            if class == 0 && (x - CELLS / 2).abs() <= 2 && (y - CELLS / 2).abs() <= 2 {
-                class = 1;
+        }
+        // The robot can drive in the cells that it covers, even if an error of the map blocks them.
+        for (x, y) in (-2..=2).flat_map(|y| (-2..=2).map(move |x| (CELLS / 2 + x, CELLS / 2 + y))) {
+            if class(self.at(index(x, y))) == 0 {
+                self.set(index(x, y), 1 << 13 | DISTANCE);
             }
-            self.set(place, (class as u16) << 13 | DISTANCE);
         }
     }
 
@@ -179,7 +209,9 @@ impl Wave {
     /// given the cell's value.
     fn pass(&mut self, rows: &mut Rows, factor: impl Fn(u16) -> u16) {
         for y in 0..CELLS {
-            if rows.forth >> y & 1 == 1 && self.relax((0..CELLS).map(|x| index(x, y)), &factor, |cell, off| cell - off)
+            if rows.forth >> y & 1 == 1
+                && let [previous, row, ..] = self.rows_from(y)
+                && relax(row.iter_mut(), previous.iter(), &factor)
             {
                 rows.changes(y);
             }
@@ -187,7 +219,8 @@ impl Wave {
         rows.forth = 0;
         for y in (0..CELLS).rev() {
             if rows.back >> y & 1 == 1
-                && self.relax((0..CELLS).rev().map(|x| index(x, y)), &factor, |cell, off| cell + off)
+                && let [_, row, previous, ..] = self.rows_from(y)
+                && relax(row.iter_mut().rev(), previous.iter().rev(), &factor)
             {
                 rows.changes(y);
             }
@@ -195,48 +228,36 @@ impl Wave {
         rows.back = 0;
     }
 
-    fn relax(
-        &mut self,
-        cells: impl Iterator<Item = usize>,
-        factor: impl Fn(u16) -> u16,
-        other: impl Fn(usize, usize) -> usize,
-    ) -> bool {
-        let mut changes = false;
-        for cell in cells {
-            let value = self.at(cell);
-            let factor = factor(value);
-            if factor == 0 {
-                continue;
-            }
-            let beside = (self.at(other(cell, 1)) & DISTANCE).min(self.at(other(cell, SIDE)) & DISTANCE);
-            let across = (self.at(other(cell, SIDE - 1)) & DISTANCE).min(self.at(other(cell, SIDE + 1)) & DISTANCE);
-            let least = (beside + STRAIGHT * factor).min(across + ACROSS * factor);
-            if least < value & DISTANCE {
-                self.set(cell, value & !DISTANCE | least);
-                changes = true;
-            }
-        }
-        changes
+    /// Returns the rows from the one before row `y` of the map.
+    fn rows_from(&mut self, y: i32) -> &mut [Row] {
+        self.rows.get_mut(y as usize..).unwrap_or_default()
     }
 
     /// Sets the distances of the cells in which ways end; returns the rows in which distances may change as a result.
     fn seed(&mut self, map: &Map, Ends { goal, near, from, base }: &Ends) -> Rows {
         let (corner, end, mut rows) = (map.corner, Cell::of(goal.x.0, goal.y.0), Rows::NONE);
-        for (column, row, place) in all() {
-            let is_border = column == 0 || row == 0 || column == CELLS - 1 || row == CELLS - 1;
-            let at = Cell { x: corner.x + column, y: corner.y + row };
-            let (x, y) = at.centre();
-            let (ahead, aside) = (goal.x.0 - x, goal.y.0 - y);
-            let is_near = ahead.abs() < near.0 && aside.abs() < near.0;
-            let value = self.at(place);
-            if !(at == end || is_near || is_border) || factor(value) == 0 {
-                continue;
-            }
-            let left = libm::hypot(ahead, aside);
-            if at == end || left < near.0 || is_border && left < from.0 - GAINS {
-                let distance = libm::round(100.0 * (left - base)).max(0.0) as u16;
-                self.set(place, value & !DISTANCE | distance.min(DISTANCE));
-                rows.changes(row);
+        for row in 0..CELLS {
+            let is_edge = row == 0 || row == CELLS - 1;
+            let (_, y) = Cell { x: corner.x, y: corner.y + row }.centre();
+            let may_end = corner.y + row == end.y || (goal.y.0 - y).abs() < near.0;
+            // Elsewhere ways end in the first and the last cell of a row alone.
+            let columns = (0..CELLS).step_by(if is_edge || may_end { 1 } else { CELLS as usize - 1 });
+            for column in columns {
+                let is_border = is_edge || column == 0 || column == CELLS - 1;
+                let at = Cell { x: corner.x + column, y: corner.y + row };
+                let (x, y) = at.centre();
+                let (ahead, aside) = (goal.x.0 - x, goal.y.0 - y);
+                let is_near = ahead.abs() < near.0 && aside.abs() < near.0;
+                let (place, value) = (index(column, row), self.at(index(column, row)));
+                if !(at == end || is_near || is_border) || factor(value) == 0 {
+                    continue;
+                }
+                let left = libm::hypot(ahead, aside);
+                if at == end || left < near.0 || is_border && left < from.0 - GAINS {
+                    let distance = libm::round(100.0 * (left - base)).max(0.0) as u16;
+                    self.set(place, value & !DISTANCE | distance.min(DISTANCE));
+                    rows.changes(row);
+                }
             }
         }
         rows
@@ -247,7 +268,7 @@ impl Wave {
             if rows.are_done() {
                 return;
             }
-            self.pass(&mut rows, factor);
+            self.pass(&mut rows, step);
         }
     }
 
@@ -285,9 +306,9 @@ mod tests {
         wave.start(&map, &ends, &Sensed::default());
         let here = index(CELLS / 2, CELLS / 2);
         assert!(wave.left(here).is_some_and(|left| left > 300), "a way round the walls");
-        let (before, mut rows) = (wave.cells, Rows::NONE);
+        let (before, mut rows) = (wave.rows, Rows::NONE);
         (0..CELLS).for_each(|y| rows.changes(y));
-        wave.pass(&mut rows, factor);
-        assert_eq!(wave.cells, before);
+        wave.pass(&mut rows, step);
+        assert_eq!(wave.rows, before);
     }
 }
