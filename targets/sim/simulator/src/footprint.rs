@@ -52,6 +52,8 @@ pub(crate) struct Contact {
     pub(crate) body: Place,
 }
 
+/// Distance, in metres, beyond a ray at which a body may still be met; larger than rounding errors.
+const BEYOND: f64 = 1e-6;
 /// Gap of a rectangle that overlaps something; the depth of the overlap is not known.
 const OVERLAPS: f64 = -1.0;
 
@@ -250,6 +252,10 @@ impl Footprint {
             return self.sides().filter_map(|side| side.met(from, way, most)).reduce(f64::min);
         };
         let (x, y) = (self.pose.x.0 - from.x, self.pose.y.0 - from.y);
+        // A quick check skips most bodies beyond a short ray.
+        if x.abs() > most + radius + BEYOND {
+            return None;
+        }
         let (along, across) = (x * way.x + y * way.y, x * way.y - y * way.x);
         let half = radius * radius - across * across;
         if half < 0.0 {

@@ -213,6 +213,20 @@ impl Grid {
         self.entries(self.column(at.x), self.row(at.y)).len() as u64
     }
 
+    /// Returns `true` if a ray from `at` of the length `reach` may meet a segment: the rectangle around the segment and
+    /// the square that contains all such rays overlap.
+    pub(crate) fn is_in_reach(&self, at: Place, reach: f64) -> bool {
+        let reach = reach + BEYOND * (self.cell + reach);
+        let (left, right) = (at.x - reach, at.x + reach);
+        let (low, high) = (at.y - reach, at.y + reach);
+        let overlaps = |(Segment { from, along }, _): &(Segment, u32)| {
+            let (x, y) = (from.x + along.x, from.y + along.y);
+            from.x.min(x) <= right && from.x.max(x) >= left && from.y.min(y) <= high && from.y.max(y) >= low
+        };
+        let (columns, mut rows) = (self.column(left)..=self.column(right), self.row(low)..=self.row(high));
+        rows.any(|row| columns.clone().any(|column| self.entries(column, row).iter().any(overlaps)))
+    }
+
     /// Calls `take` with each segment that touches a cell within `reach` of `at`; a segment in several cells
     /// comes several times.
     pub(crate) fn near(&self, at: Place, reach: f64, mut take: impl FnMut(usize, &Segment)) {

@@ -19,8 +19,6 @@ pub(crate) struct Ring {
     pub(crate) pings: [Pings; SONARS],
     /// The model of the sonars, which all robots with the same body share.
     pub(crate) hearing: Arc<Hearing>,
-    /// Newest range of each transducer, as a range of the sonar that it represents; `None` if no echo returned.
-    ranges: Vec<Option<f64>>,
     /// Newest ping of each transducer, with the range from the transducer itself.
     pub(crate) heard: Vec<Heard>,
     errors: Option<Errors>,
@@ -62,8 +60,8 @@ impl Ring {
             }
         });
         let count = hearing.transducers.len();
-        let (ranges, heard) = (vec![None; count], vec![Heard::default(); count]);
-        Self { pings: [Pings::default(); SONARS], hearing, ranges, heard, errors, next: (0, Nanos::ZERO) }
+        let heard = vec![Heard::default(); count];
+        Self { pings: [Pings::default(); SONARS], hearing, heard, errors, next: (0, Nanos::ZERO) }
     }
 
     /// Returns the time of the next ping; `None` if all sonars ping in every turn.
@@ -95,23 +93,30 @@ impl Ring {
     /// Fires the sonars that are due at `at`, on a robot at `pose` whose odometry reads `odometry`.
     pub(crate) fn ping(&mut self, pose: &Pose, odometry: Pose, at: Nanos, walls: &Walls) {
         let Some(Order { groups, gap }) = &self.hearing.order else {
-            for number in 0..self.ranges.len() {
+            for number in 0..self.heard.len() {
                 self.listen(number, pose, at, walls);
             }
             for (sonar, pings) in (0..).zip(&mut self.pings) {
-                pings.push(nearest(&self.hearing, &self.ranges, sonar, at, odometry));
+                pings.push(nearest(&self.hearing, &self.heard, sonar, at, odometry));
             }
             return;
         };
         let (group, when) = self.next;
         self.next = ((group + 1) % groups.len(), Nanos(when.0.saturating_add(gap.0)));
-        for number in groups.get(group).cloned().unwrap_or_default() {
+        let count = groups.get(group).map_or(0, Vec::len);
+        for place in 0..count {
+            let Some(number) = self.grouped(group, place) else { continue };
             self.listen(number, pose, at, walls);
             // A sonar of several transducers has pinged when the last of them has.
             if let Some(sonar) = self.completed(group, number) {
-                self.pings[sonar].push(nearest(&self.hearing, &self.ranges, sonar, at, odometry));
+                self.pings[sonar].push(nearest(&self.hearing, &self.heard, sonar, at, odometry));
             }
         }
+    }
+
+    /// Returns the number of the transducer at this place of a group.
+    fn grouped(&self, group: usize, place: usize) -> Option<usize> {
+        self.hearing.order.as_ref()?.groups.get(group)?.get(place).copied()
     }
 
     /// Pings until every sonar has the number of pings that an output keeps, as if the robot had been switched
@@ -138,12 +143,8 @@ impl Ring {
 
     /// Makes one transducer ping.
     fn listen(&mut self, number: usize, pose: &Pose, at: Nanos, walls: &Walls) {
-        let Self { hearing, errors, ranges, heard: all, .. } = self;
-        let (Some(transducer), Some(range), Some(last)) =
-            (hearing.transducers.get(number), ranges.get_mut(number), all.get_mut(number))
-        else {
-            return;
-        };
+        let Self { hearing, errors, heard: all, .. } = self;
+        let (Some(transducer), Some(last)) = (hearing.transducers.get(number), all.get_mut(number)) else { return };
         let fade = match errors {
             Some(errors) if hearing.fading > 0.0 => hearing.fading * errors.fading.normal(),
             Some(_) | None => 0.0,
@@ -154,7 +155,6 @@ impl Ring {
         let heard = heard.map(|range| stepped(range.max(hearing.least), hearing.step));
         let heard = heard.filter(|range| *range < hearing.most);
         *last = Heard { range: heard.map(Meters), at };
-        *range = heard.map(|range| as_of_the_ring(range, transducer, hearing));
     }
 }
 
@@ -209,9 +209,12 @@ fn stepped(range: f64, step: f64) -> f64 {
 }
 
 /// Returns the ping of this sonar, from the nearest echo that its transducers heard last.
-fn nearest(hearing: &Hearing, ranges: &[Option<f64>], sonar: usize, at: Nanos, odometry: Pose) -> Ping {
-    let speaking = hearing.transducers.iter().zip(ranges).filter(|(transducer, _)| transducer.sonar.number() == sonar);
-    let heard = speaking.filter_map(|(transducer, range)| Some((transducer, (*range)?)));
+fn nearest(hearing: &Hearing, heard: &[Heard], sonar: usize, at: Nanos, odometry: Pose) -> Ping {
+    let speaking = hearing.transducers.iter().zip(heard).filter(|(transducer, _)| transducer.sonar.number() == sonar);
+    let heard = speaking.filter_map(|(transducer, last)| {
+        let Meters(range) = last.range?;
+        Some((transducer, as_of_the_ring(range, transducer, hearing)))
+    });
     let nearest = heard.reduce(|one, other| if other.1 < one.1 { other } else { one });
     let mount = nearest.map_or(Mount::default(), |(transducer, _)| mount(transducer, hearing.ring_radius));
     Ping { range: nearest.map(|(_, range)| Meters(range)), at, pose: odometry, mount }

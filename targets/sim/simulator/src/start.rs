@@ -80,7 +80,7 @@ pub fn check(pose: &Pose, form: Form, world: &World, walls: &Walls) -> Result<()
         return Err(StartError::Overlaps(form, name.unwrap_or_default()));
     }
     // A world whose walls do not close has no outside.
-    if encloses(walls, Place::of(&world.start)) && !encloses(walls, place) {
+    if !encloses(walls, place) && encloses(walls, Place::of(&world.start)) {
         return Err(StartError::OffTheFloor);
     }
     Ok(())

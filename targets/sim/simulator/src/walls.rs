@@ -49,6 +49,14 @@ pub struct Others {
     pub touched: Vec<Footprint>,
 }
 
+/// The obstacles, other than moving objects, that rays may meet.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reached<'o> {
+    pub(crate) others: &'o [Footprint],
+    /// `false` if no ray can meet a fixed obstacle.
+    pub(crate) standing: bool,
+}
+
 impl Walls {
     /// Returns the walls and the sides of the fixed obstacles in `world`, and the moving objects where they begin.
     #[must_use]
@@ -103,31 +111,40 @@ impl Walls {
     /// that is `most` metres or more.
     #[must_use]
     pub fn cast(&self, from: Place, way: Place, most: f64) -> Option<f64> {
-        self.cast_among(&self.others.heard, from, way, most)
+        self.cast_among(self.all(), from, way, most)
     }
 
-    /// Returns the distance that a ray goes, as [`Walls::cast`] does, but considers only these other robots.
-    pub(crate) fn cast_among(&self, others: &[Footprint], from: Place, way: Place, most: f64) -> Option<f64> {
-        let range = nearest_of(others, from, way, most).map_or(most, |(range, _)| range);
-        let range = self.standing.grid.ray(from, way, range).map_or(range, |hit| hit.range);
+    /// Returns the distance that a ray goes, as [`Walls::cast`] does, but considers only what `reached` names, and
+    /// moving objects.
+    pub(crate) fn cast_among(&self, reached: Reached<'_>, from: Place, way: Place, most: f64) -> Option<f64> {
+        let range = nearest_of(reached.others, from, way, most).map_or(most, |(range, _)| range);
+        let hit = reached.standing.then(|| self.standing.grid.ray(from, way, range)).flatten();
+        let range = hit.map_or(range, |hit| hit.range);
         let range =
             self.moving.iter().fold(range, |range, thing| thing.ray(from, way, range).map_or(range, |hit| hit.range));
         (range < most).then_some(range)
     }
 
-    /// Returns the surface that a ray in the direction of the unit vector `way` meets, if nearer than `most` metres.
-    pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
-        self.found_among(&self.others.heard, from, way, most)
+    /// Returns everything that rays may meet.
+    pub(crate) fn all(&self) -> Reached<'_> {
+        Reached { others: &self.others.heard, standing: true }
     }
 
-    /// Returns the surface that a ray hits, as [`Walls::found`] does, but considers only these other robots.
-    pub(crate) fn found_among(&self, others: &[Footprint], from: Place, way: Place, most: f64) -> Option<Surface> {
+    /// Returns `true` if a ray of this length from `from` may meet a fixed obstacle.
+    pub(crate) fn stand_in_reach(&self, from: Place, most: f64) -> bool {
+        self.standing.grid.is_in_reach(from, most)
+    }
+
+    /// Returns the surface that a ray in the direction of the unit vector `way` meets, if nearer than `most` metres;
+    /// considers only what `reached` names, and moving objects.
+    pub(crate) fn found_among(&self, reached: Reached<'_>, from: Place, way: Place, most: f64) -> Option<Surface> {
         let at = |range: f64| Place { x: from.x + range * way.x, y: from.y + range * way.y };
-        let other = nearest_of(others, from, way, most);
+        let other = nearest_of(reached.others, from, way, most);
         // What lies beyond the nearest robot is not looked for.
         let reach = other.map_or(most, |(range, _)| range);
         let Standing { segments, ends, roughs, grid } = &*self.standing;
-        let standing = grid.ray(from, way, reach).and_then(|Hit { range, segment }| {
+        let hit = reached.standing.then(|| grid.ray(from, way, reach)).flatten();
+        let standing = hit.and_then(|Hit { range, segment }| {
             let (side, ends) = (segments.get(segment)?, ends.get(segment)?);
             Some(Surface { rough: *roughs.get(segment)?, ..surface(side, ends, at(range), way, range) })
         });
@@ -230,7 +247,9 @@ impl Walls {
             let (behind, beside) = (-ahead, aside * edge.1 - ahead * edge.0);
             behind.max(beside) <= other.form.radius() + BESIDE
         };
-        self.others.heard.iter().filter(is_near).copied().collect()
+        let mut others = Vec::with_capacity(self.others.heard.len());
+        others.extend(self.others.heard.iter().filter(is_near));
+        others
     }
 
     /// Sets the places of the other robots.
@@ -261,10 +280,14 @@ impl Walls {
 
 /// Returns the robot that a ray in the unit direction `way` meets first, and its distance, if that is less than `most`.
 fn nearest_of(others: &[Footprint], from: Place, way: Place, most: f64) -> Option<(f64, &Footprint)> {
-    others.iter().fold(None, |nearest: Option<(f64, &Footprint)>, other| {
-        let reach = nearest.map_or(most, |(range, _)| range);
-        other.met(from, way, reach).map(|range| (range, other)).or(nearest)
-    })
+    let mut nearest = (most, None);
+    for other in others {
+        if let Some(range) = other.met(from, way, nearest.0) {
+            nearest = (range, Some(other));
+        }
+    }
+    let (range, other) = nearest;
+    other.map(|other| (range, other))
 }
 
 fn segments(world: &World) -> Vec<Segment> {

@@ -15,7 +15,7 @@ use crate::footprint::Footprint;
 use crate::model::Hearing;
 use crate::place::Place;
 use crate::surfaces::{Surface, dot};
-use crate::walls::Walls;
+use crate::walls::{Reached, Walls};
 
 /// Number of rays of a cone, which are evenly spread.
 const RAYS: u8 = 7;
@@ -40,6 +40,9 @@ const OFF: f64 = 1e-6;
 pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing, fade: f64) -> Option<f64> {
     let spread = (0..RAYS).map(|ray| hearing.half_cone.0 * (2.0 * f64::from(ray) / f64::from(RAYS - 1) - 1.0));
     let others = walls.others_in(from, axis, hearing.half_cone);
+    // A ray that leaves a corner goes on for a part of its range.
+    let standing = walls.stand_in_reach(from, (1.0 + CORNER) * hearing.most);
+    let (reached, bounced) = (Reached { others: &others, standing }, Reached { standing, ..walls.all() });
     let aimed = walls.things().chain(others.iter().map(Footprint::at)).map(|thing| {
         let Radians(off_axis) = Radians(libm::atan2(thing.y - from.y, thing.x - from.x) - axis.0).wrapped();
         off_axis
@@ -50,11 +53,13 @@ pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing,
         let (sin, cos) = libm::sincos(axis.0 + off_axis);
         let way = Place { x: cos, y: sin };
         let heard = if hearing.lobe.is_none() && hearing.facing.is_none() {
-            walls.cast_among(&others, from, way, most)
+            walls.cast_among(reached, from, way, most)
         } else {
             let lost = hearing.lobe.map_or(0.0, |lobe| (off_axis / lobe.0) * (off_axis / lobe.0));
-            let found = walls.found_among(&others, from, way, most);
-            found.and_then(|surface| heard(walls, from, way, &surface, hearing, lost - fade))
+            // A ray that has lost all loudness at the start is not heard at any distance.
+            let is_loud = 1.0 - (lost - fade) >= 0.0;
+            let found = is_loud.then(|| walls.found_among(reached, from, way, most)).flatten();
+            found.and_then(|surface| heard((walls, bounced), from, way, &surface, hearing, lost - fade))
         };
         // A corner's echo comes from behind the place where the ray first met a wall.
         best = heard.filter(|range| *range < most).or(best);
@@ -64,7 +69,14 @@ pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing,
 
 /// Returns the range at which this surface is heard by a ray with the loss `lost` so far; `None` if it is not
 /// heard.
-fn heard(walls: &Walls, from: Place, way: Place, surface: &Surface, hearing: &Hearing, lost: f64) -> Option<f64> {
+fn heard(
+    walls: (&Walls, Reached<'_>),
+    from: Place,
+    way: Place,
+    surface: &Surface,
+    hearing: &Hearing,
+    lost: f64,
+) -> Option<f64> {
     let left = 1.0 - METRE_COSTS * (surface.range - GAIN_LASTS).max(0.0) - lost;
     let Some(facing) = hearing.facing else { return (left >= 0.0).then_some(surface.range) };
     let incidence = libm::acos((-dot(way, surface.normal)).min(1.0)) / facing.0;
@@ -79,14 +91,15 @@ fn heard(walls: &Walls, from: Place, way: Place, surface: &Surface, hearing: &He
     corner(walls, from, way, surface).filter(|range| *range < hearing.most)
 }
 
-/// Returns the range of the corner in which this surface lies, if the corner reflects the ray back.
-fn corner(walls: &Walls, from: Place, way: Place, first: &Surface) -> Option<f64> {
+/// Returns the range of the corner in which this surface lies, if the corner reflects the ray back; a ray that leaves
+/// the surface may meet what `bounced` names.
+fn corner((walls, bounced): (&Walls, Reached<'_>), from: Place, way: Place, first: &Surface) -> Option<f64> {
     let on = reflected(way, first.normal);
     let bounce = Place {
         x: from.x + first.range * way.x + OFF * first.normal.x,
         y: from.y + first.range * way.y + OFF * first.normal.y,
     };
-    let second = walls.found(bounce, on, CORNER * first.range)?;
+    let second = walls.found_among(bounced, bounce, on, CORNER * first.range)?;
     if dot(reflected(on, second.normal), way) > BACK {
         return None;
     }

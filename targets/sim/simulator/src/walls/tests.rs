@@ -63,6 +63,23 @@ fn a_ray_meets_the_nearest_of_all_walls() {
 }
 
 #[test]
+fn a_ray_meets_nothing_where_no_wall_is_in_reach() {
+    let (mut random, mut far) = (ChaCha8Rng::seed_from_u64(6), 0);
+    for count in [1, 3, 40] {
+        let world = scene(&mut random, count);
+        let walls = Walls::of(&world);
+        for _ in 0..500 {
+            let (from, direction) = look(&mut random);
+            let reach = 3.0 * uniform(&mut random);
+            let is_in_reach = walls.stand_in_reach(from, reach);
+            assert!(is_in_reach || walls.ray(from, direction, reach).is_none(), "{reach} m from {from}");
+            far += u32::from(!is_in_reach);
+        }
+    }
+    assert!(far > 100, "{far} of 1500");
+}
+
+#[test]
 fn a_ray_that_lies_in_borders_of_cells_meets_what_is_there() {
     // Walls on a raster, so that borders of cells fall on them, and rays from place to place of the raster.
     let mut text = String::new();
@@ -104,7 +121,7 @@ fn edges_are_where_a_surface_ends_or_turns_away() {
     let walls = Walls::of(&World::parse("edges", text).expect("good"));
     let edge = |x, y, degrees: f64| {
         let (sin, cos) = libm::sincos(degrees.to_radians());
-        walls.found(Place { x, y }, Place { x: cos, y: sin }, 9.0).expect("a wall").edge
+        walls.found_among(walls.all(), Place { x, y }, Place { x: cos, y: sin }, 9.0).expect("a wall").edge
     };
     // Up at the box from below: its corners turn away.
     assert!((edge(2.25, -3.0, 90.0) - 0.25).abs() < 1e-9);
@@ -161,6 +178,7 @@ fn a_cone_leaves_out_no_robot_that_its_rays_meet() {
         let (axis, from) = (Radians(within(3.0)), Place { x: within(0.5), y: within(0.5) });
         let half_cone = Radians::from_degrees(21.0);
         let near = walls.others_in(from, axis, half_cone);
+        let reached = Reached { others: &near, standing: true };
         let aimed = libm::atan2(pose.y.0 - from.y, pose.x.0 - from.x);
         let spread = (0..41).map(|ray| axis.0 + half_cone.0 * (f64::from(ray) / 20.0 - 1.0));
         let is_aimed = Radians(aimed - axis.0).wrapped().0.abs() < half_cone.0;
@@ -168,7 +186,7 @@ fn a_cone_leaves_out_no_robot_that_its_rays_meet() {
             let (sin, cos) = libm::sincos(direction);
             let way = Place { x: cos, y: sin };
             met += u32::from(walls.cast(from, way, 9.0).is_some());
-            assert_eq!(walls.cast(from, way, 9.0), walls.cast_among(&near, from, way, 9.0), "{number}");
+            assert_eq!(walls.cast(from, way, 9.0), walls.cast_among(reached, from, way, 9.0), "{number}");
         }
         left_out += u32::from(near.is_empty());
     }
@@ -182,7 +200,7 @@ fn a_ray_meets_the_nearest_of_robots_and_walls() {
     let at = |x: f64| Footprint { pose: Pose { x: Meters(x), ..Pose::ORIGIN }, form: Form::SCOUT };
     let met = |walls: &Walls| {
         let (from, way) = (Place { x: 0.0, y: 0.0 }, Place { x: 1.0, y: 0.0 });
-        let surface = walls.found(from, way, 9.0).expect("a surface");
+        let surface = walls.found_among(walls.all(), from, way, 9.0).expect("a surface");
         assert_eq!(walls.cast(from, way, 9.0), Some(surface.range));
         (libm::round(surface.range * 1000.0), surface.rough)
     };
