@@ -53,7 +53,7 @@ enum Progress {
 impl Strangers {
     /// Returns no strangers, for a robot whose peers have these addresses.
     pub(super) fn new(peers: Vec<IpAddr>) -> Self {
-        Self { peers, strangers: Vec::new() }
+        Self { peers: peers.iter().map(IpAddr::to_canonical).collect(), strangers: Vec::new() }
     }
 
     /// Returns the streams of all strangers.
@@ -63,6 +63,8 @@ impl Strangers {
 
     /// Greets a new connection.
     pub(super) fn add(&mut self, stream: TcpStream, from: IpAddr, endpoint: &Endpoint) {
+        // A listener for both versions of IP has IPv4 addresses as ones of IPv6.
+        let from = from.to_canonical();
         let Ok(stranger) = Stranger::greeted(stream, from) else {
             return endpoint.refuse(&from.to_string(), "it could not be greeted");
         };
@@ -155,7 +157,10 @@ impl Stranger {
 
 #[cfg(test)]
 mod tests {
+    use std::net::TcpListener;
+
     use super::*;
+    use crate::link::endpoint::LinkSettings;
 
     #[test]
     fn a_stranger_makes_no_place_at_a_peers_address() {
@@ -164,5 +169,25 @@ mod tests {
         assert_eq!(place_for(other, &[peer, one], &[peer]), Some(1));
         assert_eq!(place_for(peer, &[peer, peer], &[peer]), Some(0));
         assert_eq!(place_for(other, &[peer, peer], &[peer]), None);
+    }
+
+    #[test]
+    fn peers_at_an_ipv6_listener_are_known_by_ipv4() {
+        let settings =
+            LinkSettings { name: "bob".to_owned(), peers: Vec::new(), key: String::new(), plans: Vec::new() };
+        let (listener, endpoint) = (TcpListener::bind("127.0.0.1:0").unwrap(), Endpoint::new(&settings));
+        let address = listener.local_addr().unwrap();
+        let [peer, mapped, other] =
+            ["10.0.0.1", "::ffff:10.0.0.1", "10.0.0.2"].map(|text| text.parse::<IpAddr>().unwrap());
+        for (of_file, from) in [(peer, mapped), (mapped, peer)] {
+            let mut strangers = Strangers::new(vec![of_file]);
+            let connect = |_| (TcpStream::connect(address).unwrap(), listener.accept().unwrap().0);
+            let connections: Vec<_> = (0..=PLACES).map(connect).collect();
+            for (place, (_, stream)) in connections.iter().enumerate() {
+                strangers.add(stream.try_clone().unwrap(), if place == 0 { from } else { other }, &endpoint);
+            }
+            let first = &strangers.strangers.first().unwrap().stream;
+            assert_eq!(first.peer_addr().unwrap(), connections[0].0.local_addr().unwrap(), "{from}");
+        }
     }
 }
