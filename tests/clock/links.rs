@@ -102,3 +102,39 @@ fn a_plan_with_unknown_robots_is_refused() {
         assert!(output.status.code() == Some(2) && refused.contains(words), "{line}: {refused}");
     }
 }
+
+/// Returns the time in ticks that a process has used of all cores.
+fn used(process: u32) -> u64 {
+    let text = fs::read_to_string(format!("/proc/{process}/stat")).unwrap();
+    // The name of the program may contain blanks.
+    let (_, fields) = text.rsplit_once(')').unwrap();
+    fields.split_whitespace().skip(11).take(2).map(|ticks| ticks.parse::<u64>().unwrap()).sum()
+}
+
+#[test]
+fn a_robot_idles_while_it_can_open_no_file() {
+    let folder = folder("link_files");
+    let addresses = with_links(&folder, "key");
+    fs::write(folder.join("ada.mdle"), "{ P (wait 5) (Atom (null) stop) }").unwrap();
+    let mut command = Command::new("sh");
+    command.args(["-c", "ulimit -n 48; exec \"$0\" \"$@\""]).arg(mdle());
+    let command =
+        command.args("run ada.mdle --target sim --link ada.toml --world room".split(' ')).current_dir(&folder);
+    let ada = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    sleep(Duration::from_secs(1));
+    let mut strangers = Vec::new();
+    let mut hold = |milliseconds: u64| {
+        for _ in 0..milliseconds / 10 {
+            strangers.extend(TcpStream::connect_timeout(&addresses[0], Duration::from_millis(5)).ok());
+            sleep(Duration::from_millis(10));
+        }
+    };
+    hold(1000);
+    let before = used(ada.id());
+    hold(2000);
+    let ticks = used(ada.id()) - before;
+    let report = ended(ada);
+    assert!(report.contains("a connection is refused: the system does not accept it: "), "{report}");
+    // A tick is a hundredth of a second.
+    assert!(ticks < 100, "{ticks} ticks in two seconds");
+}

@@ -1,7 +1,8 @@
 //! The receiver: a thread that accepts connections, and a thread for each peer whose state has arrived.
 
 use std::collections::BTreeMap;
-use std::net::{IpAddr, TcpListener};
+use std::io::ErrorKind;
+use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::{io, iter, thread};
@@ -44,10 +45,25 @@ fn accept(listener: &TcpListener, endpoint: &Arc<Endpoint>, peers: Vec<IpAddr>) 
                 endpoint.refuse(&robot, "the system gives no thread");
             }
         }
-        for (stream, from) in iter::from_fn(|| listener.accept().ok()).take(AT_ONCE) {
-            strangers.add(stream, from.ip(), endpoint);
+        for connection in iter::from_fn(|| accept_one(listener)).take(AT_ONCE) {
+            match connection {
+                Ok((stream, from)) => strangers.add(stream, from.ip(), endpoint),
+                Err(error) => {
+                    endpoint.refuse("a connection", &format!("the system does not accept it: {error}"));
+                    // It waits for longer than this, and `poll` would return at once.
+                    thread::sleep(LOOK);
+                    break;
+                }
+            }
         }
     }
+}
+
+/// Accepts a connection; returns `None` if none waits.
+fn accept_one(listener: &TcpListener) -> Option<io::Result<(TcpStream, SocketAddr)>> {
+    let connection = listener.accept();
+    let is_none = |error: &io::Error| matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted);
+    (!connection.as_ref().is_err_and(is_none)).then_some(connection)
 }
 
 /// Waits a while for a connection, or for bytes of a stranger.
