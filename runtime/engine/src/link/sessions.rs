@@ -3,8 +3,9 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
-/// Time after the last state of a session until which no other session of the robot begins.
-const LIVES: Duration = Duration::from_millis(500);
+/// Time after the last frame of a session until which no other session of the robot begins. A robot repeats its state
+/// every half second, however long its turns are.
+const LIVES: Duration = Duration::from_secs(2);
 /// Maximum number of sessions of a robot that are known to be over.
 const OVER: usize = 256;
 
@@ -18,7 +19,7 @@ struct Session {
     session: u64,
     /// Number of the newest state.
     number: u64,
-    /// Time at which the newest state arrived.
+    /// Time at which a state arrived last, the newest one or a repeated one.
     at: Instant,
     /// Sessions of the robot that are over.
     over: VecDeque<u64>,
@@ -42,17 +43,21 @@ impl Sessions {
         };
         if known.session == session {
             let is_newer = number > known.number;
-            if is_newer {
-                (known.number, known.at) = (number, now);
-            }
+            (known.number, known.at) = (known.number.max(number), now);
             return Ok(is_newer);
         }
         // Somebody may have recorded a session that is over: it must not take the place of the current one.
         if known.over.contains(&session) {
-            return Err(format!("it sends a state of `{robot}` from a run that is over"));
+            return Err(format!(
+                "another run of `{robot}` has taken its place: give each robot its own name, or start this one again"
+            ));
         }
         if now.saturating_duration_since(known.at) < LIVES {
-            return Err(format!("another robot with the name `{robot}` sends states: give each robot its own name"));
+            let seconds = LIVES.as_secs();
+            return Err(format!(
+                "another run of `{robot}` has sent states within {seconds} s: give each robot its own name, or wait if it \
+                 was started again"
+            ));
         }
         if known.over.len() >= OVER {
             known.over.pop_front();
@@ -67,6 +72,11 @@ impl Sessions {
 mod tests {
     use super::*;
 
+    const OVER: &str =
+        "another run of `ada` has taken its place: give each robot its own name, or start this one again";
+    const TWO: &str = "another run of `ada` has sent states within 2 s: give each robot its own name, or wait if it was \
+                       started again";
+
     #[test]
     fn a_session_that_was_replaced_does_not_come_back() {
         let (mut sessions, begun) = (Sessions::default(), Instant::now());
@@ -74,20 +84,30 @@ mod tests {
             sessions.take("ada", (session, number), begun + Duration::from_millis(milliseconds))
         };
         assert_eq!([take(1, 5, 0), take(1, 6, 100), take(1, 4, 200)], [Ok(true), Ok(true), Ok(false)]);
+        assert_eq!(take(2, 1, 2_100).unwrap_err(), TWO);
         // A program that was started again counts from 1.
-        assert_eq!(take(2, 1, 700), Ok(true));
-        for (number, milliseconds) in [(7, 800), (8, 9_000)] {
-            assert_eq!(take(1, number, milliseconds).unwrap_err(), "it sends a state of `ada` from a run that is over");
-        }
+        assert_eq!(take(2, 1, 2_200), Ok(true));
+        assert_eq!([take(1, 7, 2_300).unwrap_err(), take(1, 8, 9_000).unwrap_err()], [OVER, OVER]);
         assert_eq!(take(2, 2, 9_100), Ok(true));
+    }
+
+    #[test]
+    fn a_robot_with_long_turns_keeps_its_session() {
+        let (mut sessions, begun) = (Sessions::default(), Instant::now());
+        let mut take =
+            |session, milliseconds| sessions.take("ada", (session, 1), begun + Duration::from_millis(milliseconds));
+        assert_eq!(take(1, 0), Ok(true));
+        for milliseconds in (500..60_000).step_by(500) {
+            assert_eq!(take(1, milliseconds), Ok(false), "it repeats its state");
+            assert_eq!(take(2, milliseconds + 200).unwrap_err(), TWO);
+        }
     }
 
     #[test]
     fn a_second_robot_of_one_name_is_refused() {
         let (mut sessions, now) = (Sessions::default(), Instant::now());
         assert_eq!(sessions.take("ada", (1, 1), now), Ok(true));
-        let refused = sessions.take("ada", (2, 1), now).unwrap_err();
-        assert_eq!(refused, "another robot with the name `ada` sends states: give each robot its own name");
+        assert_eq!(sessions.take("ada", (2, 1), now).unwrap_err(), TWO);
         assert_eq!((sessions.take("bob", (2, 1), now), sessions.of("ada")), (Ok(true), Some(1)));
     }
 }

@@ -30,7 +30,8 @@ impl Source {
     }
 
     /// Returns a source of frames of the robot of this name on a medium without connections. Frames that were recorded
-    /// before this run are accepted from it, unless the robot has been heard in a newer session.
+    /// before this run are accepted from it, unless the robot has been heard in a newer session; who repeats the frames
+    /// of a session keeps it up.
     #[must_use]
     pub fn without_connection(robot: &str) -> Self {
         Self { robot: Some(robot.to_owned()), ..Self::of_connection(Challenge::NONE) }
