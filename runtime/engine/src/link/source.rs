@@ -5,8 +5,7 @@ use std::time::{Duration, Instant};
 use super::frame::Challenge;
 use super::lag::Lag;
 
-/// Maximum number of states that a source may send in a second: twice as many as a robot with turns of a
-/// millisecond sends.
+/// Maximum number of states that a source may send in a second: twice as many as a sender sends.
 const STATES: u32 = 2000;
 /// Maximum number of letters that a source may send in a second.
 const LETTERS: u32 = 20;

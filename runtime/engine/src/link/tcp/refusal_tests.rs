@@ -170,3 +170,29 @@ fn a_peer_with_another_key_causes_few_messages() {
     assert!(messages[0].contains("127.0.0.1 is refused: it has another key"), "{messages:?}");
     assert!(messages[1].contains("ada at 127.0.0.1:") && messages[1].contains("cannot be reached"), "{messages:?}");
 }
+
+#[test]
+fn a_robot_with_fast_turns_sends_1000_states_a_second() {
+    let listener = bound();
+    let mut ada = Tcp::on(bound(), &settings("ada", &[("bob", address(&listener))], "key")).unwrap();
+    let is_over = Arc::<AtomicBool>::default();
+    let (until, begun) = (Arc::clone(&is_over), Instant::now());
+    let turns = std::thread::spawn(move || {
+        for number in (1..).take_while(|_| !until.load(Ordering::Relaxed)) {
+            ada.send(&state("ada", number), Nanos::ZERO);
+        }
+    });
+    let (mut stream, _) = listener.accept().unwrap();
+    stream.write_all(&Challenge::NONE.greeting()).unwrap();
+    let mut count = 0;
+    while begun.elapsed() < Duration::from_secs(1) {
+        let mut length = [0; 4];
+        stream.read_exact(&mut length).unwrap();
+        stream.read_exact(&mut vec![0; u32::from_le_bytes(length) as usize]).unwrap();
+        count += 1;
+    }
+    let milliseconds = begun.elapsed().as_millis();
+    is_over.store(true, Ordering::Relaxed);
+    turns.join().unwrap();
+    assert!((10..=milliseconds + 1).contains(&count), "{count} states in {milliseconds} ms");
+}

@@ -23,6 +23,8 @@ const AGAIN: Duration = Duration::from_millis(200);
 pub(super) const WRITES: Duration = Duration::from_secs(2);
 /// Time after which a connection counts as one that lasts.
 const LASTS: Duration = Duration::from_secs(1);
+/// Minimum time between two states: only the newest counts, and a receiver takes 2000 a second.
+const SPACING: Duration = Duration::from_millis(1);
 /// Size of the system's buffer, in bytes: what is in it is not replaced by newer states.
 const BUFFER: usize = 16_384;
 
@@ -112,6 +114,7 @@ impl Sender<'_> {
             if let Err(error) = self.last.iter().try_for_each(|state| stream.write_all(&state.frame(&challenge))) {
                 return error;
             }
+            let written = Instant::now();
             while let Some(letter) = self.outbox.letter(Instant::now()) {
                 if let Err(error) = stream.write_all(&letter.draft.frame(&challenge)) {
                     return error;
@@ -123,6 +126,7 @@ impl Sender<'_> {
                 self.endpoint.say(format!("state link: connected to {} again", self.name));
                 self.is_known_as_down = false;
             }
+            thread::sleep(SPACING.saturating_sub(written.elapsed()));
             self.last = self.outbox.next().or(self.last.take());
             self.drop_late_letters();
         }
