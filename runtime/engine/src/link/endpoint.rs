@@ -4,7 +4,6 @@
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
 use std::hash::{BuildHasher as _, RandomState};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,15 +11,16 @@ use std::time::{Duration, Instant};
 
 use mdle_runtime::{Nanos, Printable};
 
-use super::frame::{Draft, Key, NAME, Refused, VERSION};
+use super::bytes::NAME;
+use super::frame::{Draft, Key, Refused, Times, VERSION};
+use super::fresh_states::FreshStates;
 use super::letter::NOW;
 use super::letter_frame::is_letter;
 use super::letters::Letters;
 use super::refusals::Refusals;
-use super::sessions::Sessions;
 use super::source::Source;
 use super::state_frame::{self, LONGEST, has_fitting_name};
-use super::{Content, Letter, State, lock};
+use super::{Content, Letter, State, clock, lock};
 use crate::plans::When;
 
 /// Maximum number of messages that wait to be shown to the operator.
@@ -60,28 +60,16 @@ pub struct Posted {
 pub struct Endpoint {
     session: u64,
     /// Time at which the session began.
-    begun: Instant,
+    begun: Nanos,
     /// Names of the robots from which states are accepted.
     peers: Vec<String>,
     key: Key,
-    sessions: Mutex<Sessions>,
-    /// For each robot, the newest state that has arrived since the last turn.
-    arrived: Mutex<BTreeMap<String, Arrived>>,
+    states: Mutex<FreshStates>,
     letters: Letters,
     messages: Mutex<Vec<String>>,
     refusals: Mutex<Refusals>,
     /// `true` once the robot's run has ended.
     is_over: AtomicBool,
-}
-
-/// A state that has arrived.
-struct Arrived {
-    state: State,
-    at: Instant,
-}
-
-fn nanos(duration: Duration) -> u64 {
-    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }
 
 impl Endpoint {
@@ -93,11 +81,10 @@ impl Endpoint {
         let session = RandomState::new().hash_one(name);
         Self {
             session,
-            begun: Instant::now(),
+            begun: clock::now(),
             peers: peers.clone(),
             key: Key::of(key),
-            sessions: Mutex::default(),
-            arrived: Mutex::default(),
+            states: Mutex::default(),
             letters: Letters::new(name, session, plans),
             messages: Mutex::default(),
             refusals: Mutex::default(),
@@ -123,7 +110,8 @@ impl Endpoint {
         for shared in state.attributes.iter().filter(|shared| !has_fitting_name(shared)) {
             self.refuse(&shared.name.to_string(), &format!("a name that is shared has at most {NAME} bytes"));
         }
-        state_frame::written(state, self.time(Instant::now()), &self.key)
+        let times = Times { begun: self.begun, measured: clock::now() };
+        state_frame::written(state, times, &self.key)
     }
 
     /// Returns a letter to a peer. An answer to it is expected until [`Endpoint::is_unsent`] is called.
@@ -131,9 +119,9 @@ impl Endpoint {
     /// # Errors
     /// Robot and peer have no key for letters, or the peer has not been heard: a sentence.
     pub fn letter(&self, to: &str, letter: &Letter) -> Result<Posted, String> {
-        let (session, now) = (lock(&self.sessions).of(to), Instant::now());
-        let draft = self.letters.draft(to, letter, session, self.time(now))?;
-        self.letters.posts(to, letter, now);
+        let session = lock(&self.states).session(to);
+        let draft = self.letters.draft(to, letter, session, self.time(clock::now()))?;
+        self.letters.posts(to, letter, Instant::now());
         let is_plan = matches!(letter.content, Content::Plan { .. });
         let is_urgent = matches!(letter.content, Content::Plan { when: When::Now, .. });
         let limit = if is_urgent { NOW } else { SOON };
@@ -158,8 +146,8 @@ impl Endpoint {
     }
 
     /// Returns a time as time of the robot's session.
-    fn time(&self, now: Instant) -> Nanos {
-        Nanos(nanos(now.saturating_duration_since(self.begun)))
+    fn time(&self, now: Nanos) -> Nanos {
+        now.since(self.begun)
     }
 
     /// Takes a frame that has arrived from a source, without its length. The first frame of a source has to be a state,
@@ -169,12 +157,12 @@ impl Endpoint {
     /// The source is not to be heard any more, as it sends something other than states and letters of one peer, or too
     /// many: the end of a sentence.
     pub fn take(&self, source: &mut Source, frame: &[u8]) -> Result<(), String> {
-        let now = Instant::now();
+        let now = clock::now();
         if is_letter(frame) {
-            source.count_letter(now)?;
+            source.count_letter(Instant::now())?;
             let Source { challenge, robot, lag, .. } = source;
             let robot = robot.as_deref().ok_or_else(|| "it sends a letter before its state".to_owned())?;
-            let session = lock(&self.sessions).of(robot);
+            let session = lock(&self.states).session(robot);
             let late = |sent| lag.of(sent, self.time(now));
             // The robot has proved its name, so that its states are taken, whatever its letter is.
             match self.letters.take(frame, challenge, (robot, session), late) {
@@ -193,7 +181,7 @@ impl Endpoint {
             Refused::Key => "it has another key, or repeats what was recorded".to_owned(),
             Refused::Impossible => "its pose or velocity is one that no robot has".to_owned(),
         })?;
-        let (state, sent) = read;
+        let (state, written) = read;
         if !self.peers.contains(&state.name) {
             let name = Printable(&state.name);
             return Err(format!("its robot `{name}` is none of {}", self.peers.join(", ")));
@@ -202,22 +190,15 @@ impl Endpoint {
         if *robot != state.name {
             return Err(format!("it sends a state of `{}`, and is `{robot}`", state.name));
         }
-        source.count_state(now)?;
-        let age = source.lag.of(sent, self.time(now));
-        if lock(&self.sessions).take(&state.name, (state.session, state.number), now)? {
-            let arrived = Arrived { state: State { age, ..state }, at: now };
-            lock(&self.arrived).insert(arrived.state.name.clone(), arrived);
-        }
-        Ok(())
+        source.count_state(Instant::now())?;
+        let lag = source.lag.of(written, self.time(now));
+        let age = Nanos(state.age.0.saturating_add(lag.0));
+        lock(&self.states).take(State { age, ..state }, now)
     }
 
     /// Takes the newest state of each robot that has arrived since the last call.
     pub fn states(&self) -> impl Iterator<Item = State> + use<> {
-        let now = Instant::now();
-        std::mem::take(&mut *lock(&self.arrived)).into_values().map(move |Arrived { mut state, at }| {
-            state.age = Nanos(state.age.0.saturating_add(nanos(now.saturating_duration_since(at))));
-            state
-        })
+        lock(&self.states).take_all()
     }
 
     /// Takes the letters that have arrived since the last call.

@@ -4,12 +4,14 @@
 use std::io;
 use std::sync::Arc;
 
+use mdle_runtime::Nanos;
 use rustix::rand::{GetRandomFlags, getrandom};
 
+use super::bytes::Bytes;
+use super::clock;
+
 /// Version of frames.
-pub(super) const VERSION: u8 = 4;
-/// Maximum length of a name, in bytes.
-pub(super) const NAME: usize = 64;
+pub(super) const VERSION: u8 = 5;
 /// First bytes of a greeting.
 const GREETING: [u8; 4] = *b"MDLg";
 /// Length of a greeting, in bytes: its first bytes, version, and challenge.
@@ -74,7 +76,7 @@ impl Challenge {
     /// # Errors
     /// The bytes are no greeting of this version.
     pub(super) fn of_greeting(greeting: &[u8; GREETING_LENGTH]) -> Result<Self, Refused> {
-        let mut bytes = Bytes(greeting);
+        let mut bytes = Bytes::of(greeting);
         if bytes.take() != Some(GREETING) {
             return Err(Refused::Garbage);
         }
@@ -99,31 +101,57 @@ pub(super) enum Refused {
     Impossible,
 }
 
-/// A frame without its proof, which each connection needs anew.
+/// A frame without what each connection needs anew: its proof, and the times of a state.
 #[derive(Clone)]
 pub struct Draft {
     magic: [u8; 4],
+    /// Times with which the body begins; `None` if it has none.
+    times: Option<Times>,
     body: Arc<[u8]>,
     key: Key,
 }
 
+/// Times of a state, by the clock of its robot.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Times {
+    /// Time at which the robot's session began.
+    pub(super) begun: Nanos,
+    /// Time at which the state was measured.
+    pub(super) measured: Nanos,
+}
+
+impl Times {
+    /// Returns the numbers of a frame that is written at time `now`: the time of the session, and the age of the state.
+    fn at(self, now: Nanos) -> [Nanos; 2] {
+        [now.since(self.begun), now.since(self.measured)]
+    }
+}
+
 impl Draft {
-    /// Returns the draft of a frame with these first bytes.
-    pub(super) fn new(magic: [u8; 4], body: Vec<u8>, key: &Key) -> Self {
-        Self { magic, body: body.into(), key: key.clone() }
+    /// Returns the draft of a frame with these first bytes, and with these times if it is one of a state.
+    pub(super) fn new(magic: [u8; 4], times: Option<Times>, body: Vec<u8>, key: &Key) -> Self {
+        Self { magic, times, body: body.into(), key: key.clone() }
     }
 
-    /// Returns the frame, length included, with a proof for this challenge.
+    /// Returns the frame, length included, as it is written now with a proof for this challenge.
     #[must_use]
     pub fn frame(&self, challenge: &Challenge) -> Vec<u8> {
-        let Self { magic, body, key } = self;
+        self.frame_at(challenge, clock::now())
+    }
+
+    /// Returns the frame, length included, as it is written at time `now` with a proof for this challenge.
+    pub(super) fn frame_at(&self, challenge: &Challenge, now: Nanos) -> Vec<u8> {
+        let Self { magic, times, body, key } = self;
+        let times = times.iter().flat_map(|times| times.at(now)).flat_map(|time| time.0.to_le_bytes());
+        let body: Vec<u8> = times.chain(body.iter().copied()).collect();
+        let body = body.as_slice();
         let length = (HEAD + body.len()) as u32;
         let mut frame = length.to_le_bytes().to_vec();
         frame.extend(magic);
         frame.push(VERSION);
         frame.extend(checksum(body));
         frame.extend(key.proof(challenge, *magic, body).as_bytes());
-        frame.extend(body.iter());
+        frame.extend(body);
         frame
     }
 }
@@ -142,7 +170,7 @@ pub(super) fn opened<'b>(
     key: &Key,
     challenge: &Challenge,
 ) -> Result<Bytes<'b>, Refused> {
-    let mut from = Bytes(frame);
+    let mut from = Bytes::of(frame);
     if from.take() != Some(magic) {
         return Err(Refused::Garbage);
     }
@@ -152,59 +180,14 @@ pub(super) fn opened<'b>(
         None => return Err(Refused::Garbage),
     }
     let (Some(sum), Some(proof)) = (from.take::<4>(), from.take::<32>()) else { return Err(Refused::Garbage) };
-    if checksum(from.0) != sum {
+    if checksum(from.rest()) != sum {
         return Err(Refused::Garbage);
     }
     // Hashes are compared in constant time: nobody learns a proof byte by byte.
-    if key.proof(challenge, magic, from.0) != blake3::Hash::from_bytes(proof) {
+    if key.proof(challenge, magic, from.rest()) != blake3::Hash::from_bytes(proof) {
         return Err(Refused::Key);
     }
     Ok(from)
-}
-
-/// Returns `true` if a name can be in a frame.
-pub(super) fn fits(name: &str) -> bool {
-    (1..=NAME).contains(&name.len())
-}
-
-/// Appends a name that [`fits`].
-pub(super) fn put_name(to: &mut Vec<u8>, name: &str) {
-    let bytes = name.as_bytes();
-    let bytes = bytes.get(..bytes.len().min(NAME)).unwrap_or_default();
-    to.push(bytes.len() as u8);
-    to.extend(bytes);
-}
-
-/// Bytes of a frame, which are read from the front.
-pub(super) struct Bytes<'b>(&'b [u8]);
-
-impl Bytes<'_> {
-    /// Returns `true` if all bytes have been read.
-    pub(super) fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    /// Takes all bytes that are left, as text.
-    pub(super) fn text(&mut self) -> Option<String> {
-        String::from_utf8(std::mem::take(&mut self.0).to_vec()).ok()
-    }
-
-    pub(super) fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let (first, rest) = self.0.split_first_chunk()?;
-        self.0 = rest;
-        Some(*first)
-    }
-
-    pub(super) fn number(&mut self) -> Option<u64> {
-        self.take().map(u64::from_le_bytes)
-    }
-
-    pub(super) fn name(&mut self) -> Option<String> {
-        let [length] = self.take()?;
-        let (name, rest) = self.0.split_at_checked(usize::from(length))?;
-        self.0 = rest;
-        String::from_utf8(name.to_vec()).ok().filter(|name| fits(name))
-    }
 }
 
 #[cfg(test)]
@@ -218,7 +201,7 @@ mod tests {
         let [one, other] = [(); 2].map(|()| Challenge::random().unwrap());
         assert_ne!(one, other);
         let key = Key::of("a key");
-        let draft = Draft::new(MAGIC, b"body".to_vec(), &key);
+        let draft = Draft::new(MAGIC, None, b"body".to_vec(), &key);
         let frame = draft.frame(&one)[4..].to_vec();
         assert_eq!(opened(MAGIC, &frame, &key, &one).unwrap().text().unwrap(), "body");
         for challenge in [other, Challenge::NONE] {
@@ -229,7 +212,7 @@ mod tests {
     #[test]
     fn the_proof_covers_first_bytes_and_version() {
         let (key, challenge) = (Key::of("a key"), Challenge::NONE);
-        let mut frame = Draft::new(MAGIC, b"body".to_vec(), &key).frame(&challenge)[4..].to_vec();
+        let mut frame = Draft::new(MAGIC, None, b"body".to_vec(), &key).frame(&challenge)[4..].to_vec();
         frame[3] = b'l';
         assert_eq!(opened(*b"MDLl", &frame, &key, &challenge).err(), Some(Refused::Key));
         let older = blake3::keyed_hash(&key.0, b"body");

@@ -3,7 +3,8 @@
 
 use mdle_runtime::Nanos;
 
-use super::frame::{Bytes, Challenge, Draft, Key, Refused, opened, put_name};
+use super::bytes::{Bytes, put_name};
+use super::frame::{Challenge, Draft, Key, Refused, opened};
 use super::letter::{Content, LONGEST_TEXT, Letter, cut};
 use crate::plans::When;
 
@@ -25,7 +26,7 @@ pub(super) struct Envelope {
     pub(super) sent_in: u64,
     /// Session of the recipient.
     pub(super) meant_for: u64,
-    /// Time of the sender's session at which the letter was sent.
+    /// Time of the sender's session at which the letter was posted.
     pub(super) sent: Nanos,
 }
 
@@ -53,7 +54,7 @@ pub(super) fn written(envelope: &Envelope, letter: &Letter, key: &Key) -> Draft 
         }
     };
     body.extend(cut(text).as_bytes());
-    Draft::new(MAGIC, body, key)
+    Draft::new(MAGIC, None, body, key)
 }
 
 /// Reads the frame of a letter, without its length.

@@ -7,9 +7,12 @@
 //! after the turn it sends the robot's own state. It never waits.
 
 mod air;
+mod bytes;
+mod clock;
 mod endpoint;
 mod foreign_names;
 mod frame;
+mod fresh_states;
 mod lag;
 mod letter;
 mod letter_frame;

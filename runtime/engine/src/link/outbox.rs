@@ -143,7 +143,8 @@ mod tests {
     use crate::link::frame::Key;
 
     fn letter(number: u64, is_plan: bool, limit: u64) -> Posted {
-        let (draft, limit) = (Draft::new(*b"MDLl", Vec::new(), &Key::of_letters("pair")), Duration::from_secs(limit));
+        let (draft, limit) =
+            (Draft::new(*b"MDLl", None, Vec::new(), &Key::of_letters("pair")), Duration::from_secs(limit));
         Posted { to: "bob".to_owned(), number, draft, is_plan, limit }
     }
 

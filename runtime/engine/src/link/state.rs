@@ -15,7 +15,8 @@ pub struct State {
     pub session: u64,
     /// Number of the state, from 1: of two states of a session, that with the higher number was sent later.
     pub number: u64,
-    /// Time that the state was on its way when it is received, beyond the least such time of its source.
+    /// Time since the state was measured when it is received, without the least time that a frame of its source was on
+    /// its way.
     pub age: Nanos,
     /// Pose by odometry, in the axes that all robots share.
     pub pose: Pose,
@@ -36,7 +37,7 @@ pub struct SharedValue {
     pub name: AttributeName,
     /// The value, of a kind that plans read as a number.
     pub value: Value,
-    /// Time since the value was published, when the state was sent.
+    /// Time since the value was published, when the state was measured.
     pub age: Nanos,
 }
 

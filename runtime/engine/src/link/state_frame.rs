@@ -2,7 +2,8 @@
 
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, PEERS, Pose, Radians, RadiansPerSecond, Twist};
 
-use super::frame::{Bytes, Challenge, Draft, Key, Refused, fits, opened, put_name};
+use super::bytes::{Bytes, fits, put_name};
+use super::frame::{Challenge, Draft, Key, Refused, Times, opened};
 use super::{SharedValue, State};
 use crate::attribute::{AttributeKind, AttributeName, Value};
 
@@ -16,12 +17,11 @@ pub(super) const ATTRIBUTES: usize = 40;
 const FARTHEST: f64 = 1e6;
 const FASTEST: f64 = 1e3;
 
-/// Returns the draft of a state that is sent at this time of the robot's session. Attributes whose names do not fit are
-/// left out.
-pub(super) fn written(state: &State, sent: Nanos, key: &Key) -> Draft {
+/// Returns the draft of a state with these times. Attributes whose names do not fit are left out.
+pub(super) fn written(state: &State, times: Times, key: &Key) -> Draft {
     let mut body = Vec::with_capacity(256);
     put_name(&mut body, &state.name);
-    [state.session, state.number, sent.0].iter().for_each(|number| body.extend(number.to_le_bytes()));
+    [state.session, state.number].iter().for_each(|number| body.extend(number.to_le_bytes()));
     let Pose { x, y, theta } = state.pose;
     let Twist { v, omega } = state.velocity;
     [x.0, y.0, theta.0, v.0, omega.0].iter().for_each(|number| body.extend(number.to_le_bytes()));
@@ -42,7 +42,7 @@ pub(super) fn written(state: &State, sent: Nanos, key: &Key) -> Draft {
         body.extend(value.bits().to_le_bytes());
         body.extend(age.0.to_le_bytes());
     }
-    Draft::new(MAGIC, body, key)
+    Draft::new(MAGIC, Some(times), body, key)
 }
 
 /// Returns `true` if the name of an attribute can be in a frame.
@@ -50,13 +50,13 @@ pub(super) fn has_fitting_name(SharedValue { name, .. }: &SharedValue) -> bool {
     fits(&name.module) && fits(&name.attribute)
 }
 
-/// Reads the frame of a state, without its length; returns the state, and the time of the sender's session at which it
-/// was sent.
+/// Reads the frame of a state, without its length; returns the state with its age when the frame was written, and the
+/// time of the sender's session at which that was.
 ///
 /// # Errors
 /// Fails if the bytes are not a frame of a robot with this key, for this challenge.
 pub(super) fn read(frame: &[u8], key: &Key, challenge: &Challenge) -> Result<(State, Nanos), Refused> {
-    let (state, sent) = state(&mut opened(MAGIC, frame, key, challenge)?).ok_or(Refused::Garbage)?;
+    let (state, written) = state(&mut opened(MAGIC, frame, key, challenge)?).ok_or(Refused::Garbage)?;
     let Pose { x, y, theta } = state.pose;
     let Twist { v, omega } = state.velocity;
     // Larger numbers would overflow in the laws that reckon with them.
@@ -64,12 +64,13 @@ pub(super) fn read(frame: &[u8], key: &Key, challenge: &Challenge) -> Result<(St
     {
         return Err(Refused::Impossible);
     }
-    Ok((State { pose: Pose { x, y, theta: theta.wrapped() }, ..state }, sent))
+    Ok((State { pose: Pose { x, y, theta: theta.wrapped() }, ..state }, written))
 }
 
 fn state(from: &mut Bytes<'_>) -> Option<(State, Nanos)> {
+    let (written, age) = (Nanos(from.number()?), Nanos(from.number()?));
     let name = from.name()?;
-    let (session, number, sent) = (from.number()?, from.number()?, Nanos(from.number()?));
+    let (session, number) = (from.number()?, from.number()?);
     let mut real = || from.take().map(f64::from_le_bytes).filter(|number| number.is_finite());
     let pose = Pose { x: Meters(real()?), y: Meters(real()?), theta: Radians(real()?) };
     let velocity = Twist { v: MetersPerSecond(real()?), omega: RadiansPerSecond(real()?) };
@@ -78,8 +79,8 @@ fn state(from: &mut Bytes<'_>) -> Option<(State, Nanos)> {
     let rounds = (0..count).map(|_| Some((from.name()?, from.number()?))).collect::<Option<Vec<_>>>()?;
     let [count] = from.take()?;
     let attributes = (0..count).map(|_| attribute(from)).collect::<Option<Vec<_>>>()?;
-    let state = State { name, session, number, age: Nanos::ZERO, pose, velocity, rounds, atom, attributes };
-    from.is_empty().then_some((state, sent))
+    let state = State { name, session, number, age, pose, velocity, rounds, atom, attributes };
+    from.is_empty().then_some((state, written))
 }
 
 /// Reads the value of an attribute, which is a number and not NaN.
@@ -94,9 +95,12 @@ fn attribute(from: &mut Bytes<'_>) -> Option<SharedValue> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::link::frame::{NAME, VERSION};
+    use crate::link::bytes::NAME;
+    use crate::link::frame::VERSION;
 
-    const SENT: Nanos = Nanos(12);
+    /// Times of a state that is written at 15 ns of the session, and is 3 ns old.
+    const TIMES: Times = Times { begun: Nanos(5), measured: Nanos(17) };
+    const WRITTEN: Nanos = Nanos(20);
 
     fn sent() -> State {
         State {
@@ -117,7 +121,7 @@ mod tests {
 
     /// Returns the frame of a state without its length.
     fn frame(state: &State, key: &Key) -> Vec<u8> {
-        written(state, SENT, key).frame(&Challenge::NONE)[4..].to_vec()
+        written(state, TIMES, key).frame_at(&Challenge::NONE, WRITTEN)[4..].to_vec()
     }
 
     /// Reads the frame of a state that another robot has written.
@@ -129,11 +133,11 @@ mod tests {
     #[test]
     fn a_state_is_read_as_it_was_written() {
         let key = Key::of("a key");
-        let frame = written(&sent(), SENT, &key).frame(&Challenge::NONE);
+        let frame = written(&sent(), TIMES, &key).frame_at(&Challenge::NONE, WRITTEN);
         let (length, rest) = frame.split_first_chunk().unwrap();
         assert_eq!(u32::from_le_bytes(*length) as usize, rest.len());
         assert!(rest.len() < LONGEST);
-        assert_eq!(read(rest, &key, &Challenge::NONE), Ok((sent(), SENT)));
+        assert_eq!(read(rest, &key, &Challenge::NONE), Ok((State { age: Nanos(3), ..sent() }, Nanos(15))));
     }
 
     #[test]

@@ -17,6 +17,13 @@ fn state(from: &Endpoint, name: &str, number: u64) -> Vec<u8> {
     from.state(&state).frame(&Challenge::NONE)[4..].to_vec()
 }
 
+/// Returns the frame of a state that is measured and written at this time in seconds of its session.
+fn written_at(state: &State, seconds: u64) -> Vec<u8> {
+    let times = Times { begun: Nanos::ZERO, measured: Nanos(seconds * 1_000_000_000) };
+    let draft = state_frame::written(state, times, &Key::of("key"));
+    draft.frame_at(&Challenge::NONE, times.measured)[4..].to_vec()
+}
+
 #[test]
 fn a_letter_is_taken_once_on_any_medium() {
     let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
@@ -62,8 +69,7 @@ fn a_state_that_was_held_back_is_old() {
     let mut from_ada = Source::without_connection("ada");
     let mut send = |number, sent: u64| {
         let state = State { session: ada.session, ..State::of("ada", number) };
-        let frame = state_frame::written(&state, Nanos(sent * 1_000_000_000), &Key::of("key"));
-        bob.take(&mut from_ada, &frame.frame(&Challenge::NONE)[4..]).unwrap();
+        bob.take(&mut from_ada, &written_at(&state, sent)).unwrap();
         bob.states().next().unwrap().age.0 / 1_000_000_000
     };
     // Two are sent at nine seconds, one at six, and all arrive at once.
@@ -75,12 +81,7 @@ fn a_state_that_was_held_back_is_old() {
 fn a_plan_for_now_that_was_held_back_is_refused() {
     let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
     let mut from_ada = Source::without_connection("ada");
-    let begun = state_frame::written(
-        &State { session: ada.session, ..State::of("ada", 1) },
-        Nanos(9_000_000_000),
-        &Key::of("key"),
-    );
-    bob.take(&mut from_ada, &begun.frame(&Challenge::NONE)[4..]).unwrap();
+    bob.take(&mut from_ada, &written_at(&State { session: ada.session, ..State::of("ada", 1) }, 9)).unwrap();
     let mut send = |number, when, sent: u64| {
         let content = Content::Plan { when, text: "{ Go (Atom (wait 1) stop) }".to_owned() };
         let letter = Letter { from: "ada".to_owned(), number, content };

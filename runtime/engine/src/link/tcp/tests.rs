@@ -11,12 +11,12 @@ use mdle_runtime::{Meters, Nanos, Pose};
 use super::sender::WRITES;
 use super::*;
 use crate::attribute::{AttributeName, Value};
-use crate::link::SharedValue;
-use crate::link::frame::{Challenge, GREETING_LENGTH, Key};
+use crate::link::frame::{Challenge, GREETING_LENGTH, Key, Times};
 use crate::link::state_frame::written;
+use crate::link::{SharedValue, clock};
 
 /// Maximum time for which a test waits.
-const SOON: Duration = Duration::from_secs(20);
+pub(super) const SOON: Duration = Duration::from_secs(20);
 
 pub(super) fn bound() -> TcpListener {
     TcpListener::bind("127.0.0.1:0").unwrap()
@@ -56,9 +56,10 @@ pub(super) fn greeted(place: SocketAddr) -> (TcpStream, Challenge) {
     (stream, Challenge::of_greeting(&greeting).unwrap())
 }
 
-/// Returns the frame of a state for this challenge.
+/// Returns the frame of a state for this challenge, at the beginning of the session.
 pub(super) fn frame(state: &State, key: &str, challenge: &Challenge) -> Vec<u8> {
-    written(state, Nanos::ZERO, &Key::of(key)).frame(challenge)
+    let now = clock::now();
+    written(state, Times { begun: now, measured: now }, &Key::of(key)).frame_at(challenge, now)
 }
 
 /// Returns the link of `bob`, whose peer is `ada`, and its address; no robot listens at the address of `ada`.
@@ -134,6 +135,24 @@ fn states_go_both_ways_and_the_newest_counts() {
         }
         (heard_by_ada > 20 && heard_by_bob > 20).then_some(())
     });
+}
+
+#[test]
+fn the_first_state_of_a_connection_is_as_old_as_it_is() {
+    let (one, other) = (bound(), bound());
+    let (at_ada, at_bob) = (address(&one), address(&other));
+    let mut ada = Tcp::on(one, &settings("ada", &[("bob", at_bob)], "key")).unwrap();
+    drop(other);
+    ada.send(&state("ada", 1), Nanos::ZERO);
+    sleep(Duration::from_millis(700));
+    let other = TcpListener::bind(at_bob).unwrap();
+    let mut bob = Tcp::on(other, &settings("bob", &[("ada", at_ada)], "key")).unwrap();
+    let age = wait(|| {
+        let mut age = None;
+        bob.receive(Nanos::ZERO, &mut |state| age = Some(state.age.0));
+        age
+    });
+    assert!(age >= 700_000_000, "{age} ns");
 }
 
 #[test]

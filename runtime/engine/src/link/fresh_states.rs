@@ -1,0 +1,44 @@
+//! The sessions of the other robots, and the newest state of each since this robot's last turn.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use mdle_runtime::Nanos;
+
+use super::sessions::Sessions;
+use super::{State, clock};
+
+/// States of other robots. One lock has sessions and states, so that no older state takes the place of a newer one.
+#[derive(Debug, Default)]
+pub(super) struct FreshStates {
+    sessions: Sessions,
+    /// For each robot, the newest state, and the time at which it arrived.
+    states: BTreeMap<String, (State, Nanos)>,
+}
+
+impl FreshStates {
+    /// Returns the current session of a robot, if a state of it has arrived.
+    pub(super) fn session(&self, robot: &str) -> Option<u64> {
+        self.sessions.of(robot)
+    }
+
+    /// Takes a state that has arrived at time `at`, unless a newer one of its robot has arrived.
+    ///
+    /// # Errors
+    /// The state is of a session that is over, or of another robot with the same name: the end of a sentence.
+    pub(super) fn take(&mut self, state: State, at: Nanos) -> Result<(), String> {
+        if self.sessions.take(&state.name, (state.session, state.number), Instant::now())? {
+            self.states.insert(state.name.clone(), (state, at));
+        }
+        Ok(())
+    }
+
+    /// Takes the newest state of each robot that has arrived since the last call; time here counts to its age.
+    pub(super) fn take_all(&mut self) -> impl Iterator<Item = State> + use<> {
+        let now = clock::now();
+        std::mem::take(&mut self.states).into_values().map(move |(mut state, at)| {
+            state.age = Nanos(state.age.0.saturating_add(now.since(at).0));
+            state
+        })
+    }
+}
