@@ -5,7 +5,7 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 
-use mdle_engine::link::{Content, Letter, Link, State, StateLink};
+use mdle_engine::link::{Content, Letter, Link, RefusedPlan, State, StateLink};
 use mdle_engine::{CompiledPlans, PlanSource, StoredPlan, When};
 use mdle_host::{Moment, Pilot};
 use mdle_runtime::{Nanos, Pose};
@@ -18,6 +18,7 @@ use crate::engine::{Run, loaded};
 #[derive(Default)]
 struct Mail {
     arrived: Vec<Letter>,
+    refused: Vec<RefusedPlan>,
     sent: Vec<Letter>,
 }
 
@@ -36,6 +37,10 @@ impl Link for Post {
 
     fn letters(&mut self, _: Nanos, take: &mut dyn FnMut(Letter)) {
         self.0.lock().unwrap().arrived.drain(..).for_each(take);
+    }
+
+    fn refused_plans(&mut self, take: &mut dyn FnMut(RefusedPlan)) {
+        self.0.lock().unwrap().refused.drain(..).for_each(take);
     }
 }
 
@@ -308,4 +313,13 @@ fn warnings_go_to_both_ends() {
     let mut messages = Vec::new();
     bob.run.engine.messages(&mut |message| messages.push(message.to_owned()));
     assert_eq!(messages, [format!("state link: the plan of ada: {sentence}")]);
+}
+
+#[test]
+fn a_plan_that_the_link_refuses_is_answered() {
+    let mut bob = Bob::new();
+    let reason = "it is more than 2 s late".to_owned();
+    bob.mail.lock().unwrap().refused.push(RefusedPlan { from: "ada".to_owned(), number: 7, reason: reason.clone() });
+    assert_eq!(bob.turn(), "seek");
+    assert_eq!(bob.answers(), [refused(7, &reason)]);
 }

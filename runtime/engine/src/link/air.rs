@@ -140,8 +140,9 @@ impl Link for Air {
         let due = Nanos(now.0.saturating_add(self.faults.delay(&mut self.random)));
         let mail = self.mail.iter().find(|mail| mail.robot == to).ok_or_else(|| format!("there is no robot `{to}`"))?;
         let mut letters = lock(&mail.letters);
-        if letters.len() >= letter::UNREAD {
-            return Err(format!("{} letters wait for {to} already", letters.len()));
+        let plans = letters.iter().filter(|sent| sent.content.content.is_plan()).count();
+        if letter.content.is_plan() && plans >= letter::UNREAD {
+            return Err(format!("{plans} plans wait for {to} already"));
         }
         letters.push(Sent { content: letter.clone(), sent: now, due });
         Ok(())
@@ -157,6 +158,8 @@ impl Link for Air {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::link::Content;
+    use crate::plans::When;
 
     const TURN: u64 = 100_000_000;
 
@@ -184,7 +187,7 @@ mod tests {
     fn a_letter_arrives_after_its_latency_and_is_not_lost() {
         let faults = Faults { latency: (Nanos(2 * TURN), Nanos(2 * TURN)), loss: 1.0, duplication: 1.0 };
         let [mut ada, mut bob] = Air::new(&["ada", "bob"], faults, 1).try_into().ok().unwrap();
-        let content = crate::link::Content::Answer { of: 1, is_accepted: true, sentence: String::new() };
+        let content = Content::Answer { of: 1, is_accepted: true, sentence: String::new() };
         let letter = Letter { from: "ada".to_owned(), number: 1, content };
         assert_eq!(ada.post("bob", &letter, Nanos::ZERO), Ok(()));
         assert_eq!(ada.post("eve", &letter, Nanos::ZERO), Err("there is no robot `eve`".to_owned()));
@@ -193,10 +196,13 @@ mod tests {
             bob.letters(Nanos(turn * TURN), &mut |letter| letters.push(letter));
             assert_eq!(letters, expected, "turn {turn}");
         }
+        let content = Content::Plan { when: When::Now, text: String::new() };
+        let plan = Letter { content, ..letter.clone() };
         for _ in 0..letter::UNREAD {
-            assert_eq!(ada.post("bob", &letter, Nanos::ZERO), Ok(()));
+            assert_eq!([&plan, &letter].map(|letter| ada.post("bob", letter, Nanos::ZERO)), [Ok(()), Ok(())]);
         }
-        assert_eq!(ada.post("bob", &letter, Nanos::ZERO), Err("8 letters wait for bob already".to_owned()));
+        assert_eq!(ada.post("bob", &plan, Nanos::ZERO), Err("8 plans wait for bob already".to_owned()));
+        assert_eq!(ada.post("bob", &letter, Nanos::ZERO), Ok(()), "there are few answers to few plans");
     }
 
     #[test]

@@ -7,26 +7,22 @@ mod tests;
 use std::hash::{BuildHasher as _, RandomState};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use mdle_runtime::{Nanos, Printable};
 
 use super::bytes::NAME;
 use super::frame::{Draft, Key, Refused, Times, VERSION};
 use super::fresh_states::FreshStates;
-use super::letter::NOW;
 use super::letter_frame::is_letter;
 use super::letters::Letters;
 use super::refusals::Refusals;
 use super::source::Source;
 use super::state_frame::{self, LONGEST, has_fitting_name};
-use super::{Content, Letter, State, clock, lock};
-use crate::plans::When;
+use super::{Letter, Posted, RefusedPlan, State, clock, lock};
 
 /// Maximum number of messages that wait to be shown to the operator.
 const MESSAGES: usize = 32;
-/// Time within which any other letter has to be sent.
-const SOON: Duration = Duration::from_secs(10);
 
 /// Names and keys of a link, whatever carries it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,21 +35,6 @@ pub struct LinkSettings {
     pub key: String,
     /// Name of each robot with which plans are exchanged, and the key that only both have.
     pub plans: Vec<(String, String)>,
-}
-
-/// A letter that is to be sent.
-#[derive(Clone)]
-pub struct Posted {
-    /// Name of the robot to which the letter is sent.
-    pub to: String,
-    /// Number of the letter among those of this robot.
-    pub number: u64,
-    /// The letter, without its proof.
-    pub draft: Draft,
-    /// `true` if the letter has a plan, which is answered.
-    pub is_plan: bool,
-    /// Time after which the letter is not sent any more.
-    pub limit: Duration,
 }
 
 /// The end of one robot's link. Threads that carry frames share it with the robot's turns.
@@ -122,9 +103,7 @@ impl Endpoint {
         let session = lock(&self.states).session(to);
         let draft = self.letters.draft(to, letter, session, self.time(clock::now()))?;
         self.letters.posts(to, letter, Instant::now());
-        let is_plan = matches!(letter.content, Content::Plan { .. });
-        let is_urgent = matches!(letter.content, Content::Plan { when: When::Now, .. });
-        let limit = if is_urgent { NOW } else { SOON };
+        let (is_plan, limit) = (letter.content.is_plan(), letter.content.limit());
         Ok(Posted { to: to.to_owned(), number: letter.number, draft, is_plan, limit })
     }
 
@@ -136,13 +115,9 @@ impl Endpoint {
     /// Reports that a letter was dropped, since it could not be sent in time.
     pub fn is_late(&self, letter: &Posted) {
         self.letters.forget(letter.number);
-        if letter.is_plan {
-            let Posted { to, limit, .. } = letter;
-            let seconds = limit.as_secs();
-            self.say(format!(
-                "warning: state link: the plan for {to} is dropped: it could not be sent for {seconds} s"
-            ));
-        }
+        let Posted { to, is_plan, limit, .. } = letter;
+        let (what, seconds) = (if *is_plan { "plan for" } else { "answer to" }, limit.as_secs());
+        self.say(format!("warning: state link: the {what} {to} is dropped: it could not be sent for {seconds} s"));
     }
 
     /// Returns a time as time of the robot's session.
@@ -165,10 +140,8 @@ impl Endpoint {
             let session = lock(&self.states).session(robot);
             let late = |sent| lag.of(sent, self.time(now));
             // The robot has proved its name, so that its states are taken, whatever its letter is.
-            match self.letters.take(frame, challenge, (robot, session), late) {
-                Ok(false) => {}
-                Ok(true) => self.refuse(&format!("a plan of {robot}"), "a newer one has arrived"),
-                Err(reason) => self.refuse(&format!("a letter of {robot}"), &reason),
+            if let Err(reason) = self.letters.take(frame, challenge, (robot, session), late) {
+                self.refuse(&format!("a letter of {robot}"), &reason);
             }
             return Ok(());
         }
@@ -201,10 +174,18 @@ impl Endpoint {
         lock(&self.states).take_all()
     }
 
-    /// Takes the letters that have arrived since the last call.
+    /// Takes the letters that have arrived since the last call, without plans that have become too late.
     #[must_use]
     pub fn letters(&self) -> Vec<Letter> {
-        self.letters.arrived()
+        self.letters.arrived(clock::now())
+    }
+
+    /// Takes the plans that were refused since the last call, and reports them; each has to be answered.
+    #[must_use]
+    pub fn refused_plans(&self) -> Vec<RefusedPlan> {
+        let plans = self.letters.refused();
+        plans.iter().for_each(|plan| self.refuse(&format!("a plan of {}", plan.from), &plan.reason));
+        plans
     }
 
     /// Reports that something is refused, and why, unless that was reported a short while ago.

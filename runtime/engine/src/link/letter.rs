@@ -6,10 +6,12 @@ use crate::plans::When;
 
 /// Maximum length of the text in a letter, in bytes.
 pub const LONGEST_TEXT: usize = 65_536;
-/// Maximum number of letters that wait for one robot.
+/// Maximum number of plans that wait for one robot.
 pub(super) const UNREAD: usize = 8;
 /// Time within which a plan that takes over at once has to be sent, and has to arrive.
-pub(super) const NOW: Duration = Duration::from_secs(2);
+const NOW: Duration = Duration::from_secs(2);
+/// Time within which any other letter has to be sent, and a plan has to arrive.
+const SOON: Duration = Duration::from_secs(10);
 
 /// A letter from one robot to another.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,6 +43,32 @@ pub enum Content {
         /// Sentence that says when the plan takes over, or why it does not.
         sentence: String,
     },
+}
+
+/// A plan that was refused on its arrival, and has to be answered.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RefusedPlan {
+    /// Name of the robot that has sent the plan.
+    pub from: String,
+    /// Number of the letter with the plan.
+    pub number: u64,
+    /// Reason why the plan is refused: the end of a sentence.
+    pub reason: String,
+}
+
+impl Content {
+    /// Returns `true` for a plan.
+    pub(super) fn is_plan(&self) -> bool {
+        matches!(self, Self::Plan { .. })
+    }
+
+    /// Returns the time within which the letter has to be sent, and a plan has to arrive.
+    pub(super) fn limit(&self) -> Duration {
+        match self {
+            Self::Plan { when: When::Now, .. } => NOW,
+            Self::Plan { when: When::AtomEnds | When::PlanEnds, .. } | Self::Answer { .. } => SOON,
+        }
+    }
 }
 
 /// Cuts a text after at most [`LONGEST_TEXT`] bytes.

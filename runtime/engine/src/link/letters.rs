@@ -10,11 +10,10 @@ use std::time::Instant;
 use mdle_runtime::Nanos;
 
 use super::frame::{Challenge, Draft, Key, Refused, VERSION};
-use super::letter::{NOW, UNREAD};
+use super::letter::UNREAD;
 use super::letter_frame::{self, Envelope};
 use super::questions::Questions;
-use super::{Content, Letter, lock};
-use crate::plans::When;
+use super::{Content, Letter, RefusedPlan, clock, lock};
 
 /// The letters of a robot.
 pub(super) struct Letters {
@@ -24,19 +23,35 @@ pub(super) struct Letters {
     session: u64,
     /// For each peer with which letters are exchanged, its name and the key that only both have.
     keys: Vec<(String, Key)>,
-    /// For each sender and each of its sessions, the number of the last letter.
-    taken: Mutex<BTreeMap<(String, u64), u64>>,
-    /// Letters that have arrived since the last turn.
-    arrived: Mutex<Vec<Letter>>,
+    unread: Mutex<Unread>,
     questions: Mutex<Questions>,
+}
+
+/// Letters that have arrived.
+#[derive(Default)]
+struct Unread {
+    /// For each sender and each of its sessions, the number of the last letter.
+    taken: BTreeMap<(String, u64), u64>,
+    /// Letters since the last turn.
+    letters: Vec<Waiting>,
+    /// Plans that were refused, and are not answered yet.
+    refused: Vec<RefusedPlan>,
+}
+
+/// A letter that waits for the robot's turn.
+struct Waiting {
+    letter: Letter,
+    /// Time at which the letter arrived.
+    at: Nanos,
+    /// Time that the letter was late when it arrived.
+    late: Nanos,
 }
 
 impl Letters {
     /// Returns the letters of the robot of this name and session, which has these keys in common with peers.
     pub(super) fn new(own: &str, session: u64, keys: &[(String, String)]) -> Self {
         let keys = keys.iter().map(|(name, key)| (name.clone(), Key::of_letters(key))).collect();
-        let (taken, arrived, questions) = (Mutex::default(), Mutex::default(), Mutex::default());
-        Self { own: own.to_owned(), session, keys, taken, arrived, questions }
+        Self { own: own.to_owned(), session, keys, unread: Mutex::default(), questions: Mutex::default() }
     }
 
     /// Returns the draft of a letter to a peer, which is in this session, at time `sent` of this robot's session.
@@ -52,7 +67,7 @@ impl Letters {
 
     /// Notes that a letter is being sent to a robot at time `now`, so that an answer to it is taken.
     pub(super) fn posts(&self, to: &str, letter: &Letter, now: Instant) {
-        if matches!(letter.content, Content::Plan { .. }) {
+        if letter.content.is_plan() {
             lock(&self.questions).ask(to, letter.number, now);
         }
     }
@@ -67,19 +82,19 @@ impl Letters {
         lock(&self.questions).unanswered(now)
     }
 
-    /// Takes a frame that has arrived from a robot, which is in this session; returns `true` if its plan replaces one
-    /// that waits for the robot's turn. `late` returns how late a letter is that was sent at a time of the robot's
-    /// session.
+    /// Takes a frame that has arrived from a robot, which is in this session. A plan that is too late is refused, as is
+    /// one that waits for the turn when a newer one arrives. `late` returns how late a letter is that was posted at a
+    /// time of the robot's session.
     ///
     /// # Errors
-    /// It is no letter of the robot to this robot in this run: the end of a sentence.
+    /// It is no letter of the robot to this robot, or an answer to no plan of this run: the end of a sentence.
     pub(super) fn take(
         &self,
         frame: &[u8],
         challenge: &Challenge,
         (robot, session): (&str, Option<u64>),
         late: impl FnOnce(Nanos) -> Nanos,
-    ) -> Result<bool, String> {
+    ) -> Result<(), String> {
         let key = self.key(robot);
         let key = key.ok_or_else(|| format!("no plans are exchanged with {robot}"))?;
         let (envelope, letter) = letter_frame::read(frame, key, challenge).map_err(|refused| match refused {
@@ -88,48 +103,84 @@ impl Letters {
             Refused::Key => "it has another key `plans`, or was recorded".to_owned(),
         })?;
         let Envelope { from, to, sent_in, meant_for, sent } = envelope;
-        if from != robot || to != self.own || meant_for != self.session || session != Some(sent_in) {
+        if from != robot || to != self.own || session != Some(sent_in) {
             return Err("it is not for this run".to_owned());
         }
-        // Somebody on the line may hold it back.
-        if matches!(letter.content, Content::Plan { when: When::Now, .. }) && late(sent).0 > NOW.as_nanos() as u64 {
-            return Err(format!("it is a plan for `now`, and is more than {} s late", NOW.as_secs()));
-        }
-        let mut arrived = lock(&self.arrived);
-        let mut taken = lock(&self.taken);
-        let last = taken.entry((from, sent_in)).or_default();
-        // A sender does not know if a plan has arrived when its connection breaks, and sends it once more.
+        let mut unread = lock(&self.unread);
+        let last = unread.taken.entry((from, sent_in)).or_default();
+        // A sender does not know if a letter has arrived when its connection breaks, and sends it once more.
         if letter.number <= *last {
-            return Ok(false);
+            return Ok(());
         }
         *last = letter.number;
-        match letter.content {
-            Content::Answer { of, .. } if !lock(&self.questions).answer(robot, of) => {
-                return Err("it answers a plan that was not sent".to_owned());
+        let is_for_this_run = meant_for == self.session;
+        match &letter.content {
+            Content::Plan { .. } if is_for_this_run => {
+                unread.put(Waiting { letter, at: clock::now(), late: late(sent) });
             }
-            Content::Answer { .. } => {
-                let answers = arrived.iter().filter(|letter| letter.from == robot).count();
-                if answers >= UNREAD {
-                    return Err(format!("more than {UNREAD} letters arrive in a turn"));
-                }
+            Content::Plan { .. } => unread.refuse(&letter, format!("it was sent to an earlier run of {}", self.own)),
+            Content::Answer { of, .. } if is_for_this_run => {
+                lock(&self.questions).answer(robot, *of)?;
+                unread.letters.push(Waiting { letter, at: clock::now(), late: Nanos::ZERO });
             }
-            Content::Plan { .. } => {}
+            Content::Answer { .. } => return Err("it is not for this run".to_owned()),
         }
-        let is_plan = |letter: &Letter| matches!(letter.content, Content::Plan { .. });
-        let before = arrived.len();
-        // The newest plan counts, as it does once both have been read.
-        arrived.retain(|waiting| !(is_plan(&letter) && is_plan(waiting) && waiting.from == letter.from));
-        let replaces = arrived.len() < before;
-        arrived.push(letter);
-        Ok(replaces)
+        Ok(())
     }
 
-    /// Takes the letters that have arrived.
-    pub(super) fn arrived(&self) -> Vec<Letter> {
-        std::mem::take(&mut *lock(&self.arrived))
+    /// Takes the letters that have arrived by time `now`, without plans that have become too late.
+    pub(super) fn arrived(&self, now: Nanos) -> Vec<Letter> {
+        let mut unread = lock(&self.unread);
+        let waiting = std::mem::take(&mut unread.letters).into_iter();
+        let in_time = waiting.filter_map(|waiting| match waiting.lateness(now) {
+            None => Some(waiting.letter),
+            Some(reason) => {
+                unread.refuse(&waiting.letter, reason);
+                None
+            }
+        });
+        in_time.collect()
+    }
+
+    /// Takes the plans that were refused since the last call.
+    pub(super) fn refused(&self) -> Vec<RefusedPlan> {
+        std::mem::take(&mut lock(&self.unread).refused)
     }
 
     fn key(&self, peer: &str) -> Option<&Key> {
         self.keys.iter().find(|(name, _)| name == peer).map(|(_, key)| key)
+    }
+}
+
+impl Unread {
+    /// Puts a plan in the place of an older one of its sender, unless it is too late.
+    fn put(&mut self, plan: Waiting) {
+        if let Some(reason) = plan.lateness(plan.at) {
+            return self.refuse(&plan.letter, reason);
+        }
+        let from = &plan.letter.from;
+        let older = self.letters.iter().position(|old| old.letter.content.is_plan() && old.letter.from == *from);
+        if let Some(older) = older.map(|place| self.letters.remove(place)) {
+            self.refuse(&older.letter, "a newer one has arrived".to_owned());
+        }
+        self.letters.push(plan);
+    }
+
+    /// Notes that a plan was refused. A sender has few plans without an answer: more of them are not answered.
+    fn refuse(&mut self, letter: &Letter, reason: String) {
+        let Letter { from, number, .. } = letter;
+        if self.refused.iter().filter(|plan| plan.from == *from).count() < UNREAD {
+            self.refused.push(RefusedPlan { from: from.clone(), number: *number, reason });
+        }
+    }
+}
+
+impl Waiting {
+    /// Returns the reason to refuse a plan that is too late at time `now`. Somebody on the line may hold it back.
+    fn lateness(&self, now: Nanos) -> Option<String> {
+        let limit = self.letter.content.limit();
+        let late = self.late.0.saturating_add(now.since(self.at).0);
+        let is_late = self.letter.content.is_plan() && u128::from(late) > limit.as_nanos();
+        is_late.then(|| format!("it is more than {} s late", limit.as_secs()))
     }
 }

@@ -35,11 +35,11 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use mdle_runtime::Nanos;
 
 pub use air::{Air, Faults};
-pub use endpoint::{Endpoint, LinkSettings, Posted};
+pub use endpoint::{Endpoint, LinkSettings};
 pub use frame::{Challenge, Draft};
-pub use letter::{Content, LONGEST_TEXT, Letter};
+pub use letter::{Content, LONGEST_TEXT, Letter, RefusedPlan};
 pub use letter_frame::LONGEST_LETTER;
-pub use outbox::Outbox;
+pub use outbox::{Outbox, Posted};
 pub use source::Source;
 pub use state::{SharedValue, State};
 pub use state_link::StateLink;
@@ -65,6 +65,8 @@ pub trait Link: Send {
     fn post(&mut self, to: &str, letter: &Letter, now: Nanos) -> Result<(), String>;
     /// Calls `take` with each letter that has arrived by `now`.
     fn letters(&mut self, now: Nanos, take: &mut dyn FnMut(Letter));
+    /// Calls `take` with each plan that was refused on its arrival, and has to be answered.
+    fn refused_plans(&mut self, _take: &mut dyn FnMut(RefusedPlan)) {}
     /// Calls `say` with each message for the operator since the last call.
     fn messages(&mut self, _say: &mut dyn FnMut(&str)) {}
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use mdle_runtime::{Nanos, Printable};
 
 use super::pace::{Admission, Pace};
-use super::{Content, LONGEST_TEXT, Letter, Link};
+use super::{Content, LONGEST_TEXT, Letter, Link, RefusedPlan};
 use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
 
 /// Answer to a plan of a robot that sends plans too fast.
@@ -79,8 +79,12 @@ impl Orders {
         plans: &mut Plans<A>,
         now: Nanos,
     ) -> Vec<String> {
-        let mut letters = Vec::new();
+        let (mut letters, mut refused) = (Vec::new(), Vec::new());
         link.letters(now, &mut |letter| letters.push(letter));
+        link.refused_plans(&mut |plan| refused.push(plan));
+        for RefusedPlan { from, number, reason } in refused {
+            self.answer(link, &from, number, Err(&reason), now);
+        }
         let messages = letters.into_iter().filter_map(|Letter { from, number, content }| match content {
             Content::Answer { is_accepted: true, sentence, .. } => {
                 Some(format!("state link: {from} takes the plan: {}", printable(&sentence)))

@@ -4,13 +4,30 @@ use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::endpoint::Posted;
 use super::frame::Draft;
 use super::letter::UNREAD;
 use super::lock;
 
+/// Maximum number of answers that are kept for one robot: each plan has an answer when it waits, and one when it
+/// begins.
+const ANSWERS: usize = 2 * UNREAD;
 /// Time without a new state after which the last one is to be sent again.
 const HEARTBEAT: Duration = Duration::from_millis(500);
+
+/// A letter that is to be sent.
+#[derive(Clone)]
+pub struct Posted {
+    /// Name of the robot to which the letter is sent.
+    pub to: String,
+    /// Number of the letter among those of this robot.
+    pub number: u64,
+    /// The letter, without its proof.
+    pub draft: Draft,
+    /// `true` if the letter has a plan, which is answered.
+    pub is_plan: bool,
+    /// Time after which the letter is not sent any more.
+    pub limit: Duration,
+}
 
 /// The newest state and the letters that wait for a sender.
 #[derive(Default)]
@@ -28,7 +45,7 @@ struct Waiting {
     letters: VecDeque<Waits>,
 }
 
-/// A letter that waits to be sent, or a plan that waits for its answer.
+/// A letter that waits to be sent, or is kept since its connection may break before it arrives.
 struct Waits {
     letter: Posted,
     /// Time at which the letter was posted.
@@ -67,8 +84,16 @@ impl Outbox {
         if letter.is_plan && !waiting.is_open {
             return Err(format!("{} cannot be reached at the moment", letter.to));
         }
-        if waiting.letters.len() >= UNREAD {
-            return Err(format!("{UNREAD} letters wait for {} already", letter.to));
+        let is_alike = |waits: &Waits| waits.letter.is_plan == letter.is_plan;
+        let count = waiting.letters.iter().filter(|waits| is_alike(waits)).count();
+        if letter.is_plan && count >= UNREAD {
+            return Err(format!("{UNREAD} plans wait for {} already", letter.to));
+        }
+        if !letter.is_plan && count >= ANSWERS {
+            // One that was sent has probably arrived.
+            let oldest = waiting.letters.iter().position(|waits| is_alike(waits) && waits.was_sent);
+            let oldest = oldest.ok_or_else(|| format!("{ANSWERS} answers wait for {} already", letter.to))?;
+            waiting.letters.remove(oldest);
         }
         waiting.letters.push_back(Waits { letter, at: now, is_sent: false, was_sent: false });
         self.is_new.notify_one();
@@ -100,15 +125,12 @@ impl Outbox {
         Some(letter.letter.clone())
     }
 
-    /// Notes that the letter of this number has been sent. A plan is sent once more if the connection is made anew
-    /// before its answer has arrived.
+    /// Notes that the letter of this number has been sent. It is sent once more if the connection is made anew before
+    /// its limit, and a plan before its answer has arrived.
     pub fn is_sent(&self, number: u64) {
-        lock(&self.waiting).letters.retain_mut(|waits| {
-            let is_it = waits.letter.number == number;
-            waits.is_sent |= is_it;
-            waits.was_sent |= is_it;
-            !is_it || waits.letter.is_plan
-        });
+        for waits in lock(&self.waiting).letters.iter_mut().filter(|waits| waits.letter.number == number) {
+            (waits.is_sent, waits.was_sent) = (true, true);
+        }
     }
 
     /// Removes the plan in the letter of this number, which has been answered.
@@ -179,19 +201,38 @@ mod tests {
     }
 
     #[test]
-    fn a_plan_is_sent_on_each_connection_until_it_is_answered() {
+    fn a_letter_is_sent_on_each_connection_until_its_limit() {
+        let (outbox, begun) = (Outbox::default(), Instant::now());
+        let at = |seconds| begun + Duration::from_secs(seconds);
+        let sent = |now| {
+            outbox.open();
+            let letters = std::iter::from_fn(|| outbox.letter(now).inspect(|letter| outbox.is_sent(letter.number)));
+            numbers(letters)
+        };
+        outbox.open();
+        outbox.post(letter(1, false, 10), begun).unwrap();
+        outbox.post(letter(2, true, 2), begun).unwrap();
+        assert_eq!([sent(begun), sent(at(1)), sent(at(3))], [vec![1, 2], vec![1, 2], vec![1]]);
+        outbox.post(letter(3, true, 2), at(3)).unwrap();
+        outbox.is_answered(3);
+        assert_eq!([sent(at(9)), sent(at(10))], [vec![1], vec![]]);
+        assert!(outbox.late(at(10)).is_empty(), "they were sent");
+    }
+
+    #[test]
+    fn the_letters_that_are_kept_are_bounded() {
         let (outbox, now) = (Outbox::default(), Instant::now());
         outbox.open();
-        outbox.post(letter(1, false, 10), now).unwrap();
-        outbox.post(letter(2, true, 2), now).unwrap();
-        assert_eq!(numbers(outbox.letter(now)), [1]);
-        outbox.is_sent(1);
-        assert_eq!(numbers(outbox.letter(now)), [2]);
-        outbox.is_sent(2);
-        assert!(outbox.letter(now).is_none());
+        let plans = (0..=UNREAD as u64).map(|number| outbox.post(letter(number, true, 10), now));
+        assert_eq!(plans.last().unwrap(), Err("8 plans wait for bob already".to_owned()));
+        let answers = (100..=100 + ANSWERS as u64).map(|number| outbox.post(letter(number, false, 10), now));
+        assert_eq!(answers.last().unwrap(), Err("16 answers wait for bob already".to_owned()));
+        outbox.is_sent(103);
+        assert_eq!(outbox.post(letter(200, false, 10), now), Ok(()));
+        assert!(outbox.post(letter(201, false, 10), now).is_err());
         outbox.open();
-        assert_eq!(numbers(outbox.letter(now)), [2]);
-        outbox.is_answered(2);
-        assert!(outbox.letter(now).is_none());
+        let letters = std::iter::from_fn(|| outbox.letter(now).inspect(|letter| outbox.is_sent(letter.number)));
+        let numbers = numbers(letters);
+        assert!(numbers.len() == UNREAD + ANSWERS && !numbers.contains(&103), "{numbers:?}");
     }
 }

@@ -37,13 +37,15 @@ impl Questions {
         self.0.retain(|question| question.number != number);
     }
 
-    /// Notes an answer; returns `false` if the robot has not been sent this plan.
-    pub(super) fn answer(&mut self, from: &str, number: u64) -> bool {
+    /// Notes an answer to the plan in the letter of this number.
+    ///
+    /// # Errors
+    /// The robot has not been sent this plan: the end of a sentence.
+    pub(super) fn answer(&mut self, from: &str, number: u64) -> Result<(), String> {
         let question = self.0.iter_mut().find(|question| question.to == from && question.number == number);
-        question.is_some_and(|question| {
-            question.is_open = false;
-            true
-        })
+        let question = question.ok_or_else(|| "it answers a plan that was not sent".to_owned())?;
+        question.is_open = false;
+        Ok(())
     }
 
     /// Returns the recipients of plans that have had no answer for too long at time `now`, each plan once.
@@ -71,11 +73,11 @@ mod tests {
         questions.ask("bob", 3, begun);
         questions.forget(3);
         assert_eq!(questions.unanswered(at(9)), Vec::<String>::new());
-        assert!(!questions.answer("eve", 1), "a plan for another robot");
-        assert!(!questions.answer("bob", 3), "a plan that was not sent");
+        assert!(questions.answer("eve", 1).is_err(), "a plan for another robot");
+        assert_eq!(questions.answer("bob", 3).unwrap_err(), "it answers a plan that was not sent");
         // A plan may have several answers: that it waits, and that it has taken over.
-        assert!(questions.answer("bob", 1) && questions.answer("bob", 1));
+        assert_eq!([(); 3].map(|()| questions.answer("bob", 1)), [const { Ok(()) }; 3]);
         assert_eq!((questions.unanswered(at(10)), questions.unanswered(at(11))), (vec!["eve".to_owned()], vec![]));
-        assert!(questions.answer("eve", 2), "late, and an answer");
+        assert_eq!(questions.answer("eve", 2), Ok(()), "late, and an answer");
     }
 }

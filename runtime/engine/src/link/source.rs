@@ -7,8 +7,9 @@ use super::lag::Lag;
 
 /// Maximum number of states that a source may send in a second: twice as many as a sender sends.
 const STATES: u32 = 2000;
-/// Maximum number of letters that a source may send in a second.
-const LETTERS: u32 = 20;
+/// Maximum number of letters that a source may send in a second: more than a sender keeps, and sends at once on a new
+/// connection.
+const LETTERS: u32 = 40;
 
 /// A source of frames: its robot, and the number of its frames in the current second.
 #[derive(Debug)]

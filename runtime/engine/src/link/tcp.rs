@@ -5,6 +5,8 @@
 //! writes only the newest state, and each letter, so a peer that reads slowly or never does not delay the others. The
 //! receiver of a connection writes its challenge first, for which each frame is proved.
 
+#[cfg(test)]
+mod answer_tests;
 mod connection;
 #[cfg(test)]
 mod letter_tests;
@@ -25,7 +27,7 @@ use mdle_runtime::Nanos;
 
 use super::endpoint::{Endpoint, LinkSettings};
 use super::outbox::Outbox;
-use super::{Content, Letter, Link, State};
+use super::{Content, Letter, Link, RefusedPlan, State};
 use receiver::listen;
 
 /// Names, keys and addresses of a link over TCP.
@@ -98,6 +100,10 @@ impl Link for Tcp {
             }
             take(letter);
         }
+    }
+
+    fn refused_plans(&mut self, take: &mut dyn FnMut(RefusedPlan)) {
+        self.endpoint.refused_plans().into_iter().for_each(take);
     }
 
     fn messages(&mut self, say: &mut dyn FnMut(&str)) {

@@ -1,8 +1,8 @@
 //! Tests of endpoints without a medium: frames are handed from one to the other.
 
 use super::*;
-use crate::link::Content;
 use crate::link::frame::Challenge;
+use crate::link::{Content, clock};
 use crate::plans::When;
 
 fn endpoint(name: &str, peer: &str) -> Endpoint {
@@ -55,12 +55,13 @@ fn the_newest_plan_of_a_robot_counts() {
     }
     send(11, Content::Answer { of: 7, is_accepted: true, sentence: String::new() });
     assert_eq!(bob.letters().iter().map(|letter| letter.number).collect::<Vec<_>>(), [10]);
-    let messages = bob.messages();
-    assert_eq!(messages.first().unwrap(), "warning: state link: a plan of ada is refused: a newer one has arrived");
-    assert_eq!(
-        messages.last().unwrap(),
-        "warning: state link: a letter of ada is refused: it answers a plan that was not sent"
-    );
+    // Those of a flood are not all answered.
+    assert_eq!(bob.refused_plans().iter().map(|plan| plan.number).collect::<Vec<_>>(), (1..=8).collect::<Vec<_>>());
+    let messages = [
+        "a letter of ada is refused: it answers a plan that was not sent",
+        "a plan of ada is refused: a newer one has arrived",
+    ];
+    assert_eq!(bob.messages(), messages.map(|message| format!("warning: state link: {message}")));
 }
 
 #[test]
@@ -78,16 +79,21 @@ fn a_state_that_was_held_back_is_old() {
 }
 
 #[test]
-fn a_plan_for_now_that_was_held_back_is_refused() {
+fn a_plan_that_was_held_back_is_refused() {
     let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
     let mut from_ada = Source::without_connection("ada");
-    bob.take(&mut from_ada, &written_at(&State { session: ada.session, ..State::of("ada", 1) }, 9)).unwrap();
-    let mut send = |number, when, sent: u64| {
+    bob.take(&mut from_ada, &written_at(&State { session: ada.session, ..State::of("ada", 1) }, 20)).unwrap();
+    let mut send = |number, when, sent: u64, waits: u64| {
         let content = Content::Plan { when, text: "{ Go (Atom (wait 1) stop) }".to_owned() };
         let letter = Letter { from: "ada".to_owned(), number, content };
         let draft = ada.letters.draft("bob", &letter, Some(bob.session), Nanos(sent * 1_000_000_000)).unwrap();
         bob.take(&mut from_ada, &draft.frame(&Challenge::NONE)[4..]).unwrap();
-        (bob.letters().len(), bob.messages().len())
+        let now = Nanos(clock::now().0 + waits * 1_000_000_000);
+        (bob.letters.arrived(now).len(), bob.refused_plans().len())
     };
-    assert_eq!([send(1, When::Now, 6), send(2, When::PlanEnds, 6), send(3, When::Now, 9)], [(0, 1), (1, 0), (1, 0)]);
+    let (taken, refused) = ((1, 0), (0, 1));
+    // The time on the way and the wait for the turn count.
+    assert_eq!([send(1, When::Now, 17, 0), send(2, When::Now, 20, 3), send(3, When::Now, 19, 2)], [refused; 3]);
+    assert_eq!([send(4, When::PlanEnds, 9, 0), send(5, When::AtomEnds, 15, 6)], [refused; 2]);
+    assert_eq!([send(6, When::Now, 19, 0), send(7, When::PlanEnds, 17, 0), send(8, When::AtomEnds, 20, 3)], [taken; 3]);
 }
