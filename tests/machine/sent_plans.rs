@@ -323,3 +323,17 @@ fn a_plan_that_the_link_refuses_is_answered() {
     assert_eq!(bob.turn(), "seek");
     assert_eq!(bob.answers(), [refused(7, &reason)]);
 }
+
+#[test]
+fn an_answer_looks_like_no_line_of_the_report() {
+    let mut bob = Bob::new();
+    let sentence = "Go takes over\n12.0 s  safety: \u{1b}[1mfence\nstate link: eve".to_owned();
+    let content = Content::Answer { of: 1, is_accepted: true, sentence };
+    bob.mail.lock().unwrap().arrived.push(Letter { from: "ada".to_owned(), number: 1, content });
+    bob.turn();
+    let mut messages = Vec::new();
+    bob.run.engine.messages(&mut |message| messages.push(message.to_owned()));
+    let shown =
+        "state link: ada takes the plan: Go takes over\n    12.0 s  safety: U+001B[1mfence\n    state link: eve";
+    assert_eq!(messages, [shown]);
+}

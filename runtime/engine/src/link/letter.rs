@@ -6,6 +6,8 @@ use crate::plans::When;
 
 /// Maximum length of the text in a letter, in bytes.
 pub const LONGEST_TEXT: usize = 65_536;
+/// Maximum length of the sentence in an answer, in bytes.
+pub(super) const LONGEST_SENTENCE: usize = 4096;
 /// Maximum number of plans that wait for one robot.
 pub(super) const UNREAD: usize = 8;
 /// Time within which a plan that takes over at once has to be sent, and has to arrive.
@@ -71,7 +73,7 @@ impl Content {
     }
 }
 
-/// Cuts a text after at most [`LONGEST_TEXT`] bytes.
-pub(super) fn cut(text: &str) -> &str {
-    text.get(..text.floor_char_boundary(LONGEST_TEXT)).unwrap_or(text)
+/// Cuts a text after at most this number of bytes.
+pub(super) fn cut(text: &str, longest: usize) -> &str {
+    text.get(..text.floor_char_boundary(longest)).unwrap_or(text)
 }

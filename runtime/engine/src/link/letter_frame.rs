@@ -5,7 +5,7 @@ use mdle_runtime::Nanos;
 
 use super::bytes::{Bytes, put_name};
 use super::frame::{Challenge, Draft, Key, Refused, opened};
-use super::letter::{Content, LONGEST_TEXT, Letter, cut};
+use super::letter::{Content, LONGEST_SENTENCE, LONGEST_TEXT, Letter, cut};
 use crate::plans::When;
 
 /// First bytes of a letter's frame.
@@ -45,15 +45,15 @@ pub(super) fn written(envelope: &Envelope, letter: &Letter, key: &Key) -> Draft 
     let text = match &letter.content {
         Content::Plan { when, text } => {
             body.extend([PLAN, when.number()]);
-            text
+            cut(text, LONGEST_TEXT)
         }
         Content::Answer { of, is_accepted, sentence } => {
             body.push(if *is_accepted { ACCEPTANCE } else { REFUSAL });
             body.extend(of.to_le_bytes());
-            sentence
+            cut(sentence, LONGEST_SENTENCE)
         }
     };
-    body.extend(cut(text).as_bytes());
+    body.extend(text.as_bytes());
     Draft::new(MAGIC, None, body, key)
 }
 
@@ -75,7 +75,9 @@ fn letter(body: &mut Bytes<'_>) -> Option<(Envelope, Letter)> {
             Content::Plan { when: When::of_number(when)?, text: body.text()? }
         }
         REFUSAL | ACCEPTANCE => {
-            Content::Answer { of: body.number()?, is_accepted: kind == ACCEPTANCE, sentence: body.text()? }
+            let (of, sentence) = (body.number()?, body.text()?);
+            let sentence = cut(&sentence, LONGEST_SENTENCE).to_owned();
+            Content::Answer { of, is_accepted: kind == ACCEPTANCE, sentence }
         }
         _ => return None,
     };
@@ -125,10 +127,24 @@ mod tests {
 
     #[test]
     fn a_long_text_is_cut_at_a_letter() {
-        let content = Content::Answer { of: 1, is_accepted: false, sentence: "Γ".repeat(LONGEST_TEXT) };
-        let letter = Letter { from: "ada".to_owned(), number: 1, content };
-        let frame = written(&envelope(), &letter, &Key::of("pair")).frame(&Challenge::NONE);
-        assert!(frame.len() <= LONGEST_LETTER);
-        assert!(read(&frame[4..], &Key::of("pair"), &Challenge::NONE).is_ok());
+        let key = Key::of("pair");
+        let plan = |text| Content::Plan { when: When::Now, text };
+        let answer = |sentence| Content::Answer { of: 1, is_accepted: false, sentence };
+        let of = |content| Letter { from: "ada".to_owned(), number: 1, content };
+        let long = "Γ".repeat(LONGEST_TEXT);
+        for (content, cut) in [
+            (plan(format!("e{long}")), plan(format!("e{}", "Γ".repeat(LONGEST_TEXT / 2 - 1)))),
+            (answer(format!("e{long}")), answer(format!("e{}", "Γ".repeat(LONGEST_SENTENCE / 2 - 1)))),
+        ] {
+            let frame = written(&envelope(), &of(content), &key).frame(&Challenge::NONE);
+            assert!(frame.len() <= LONGEST_LETTER);
+            assert_eq!(read(&frame[4..], &key, &Challenge::NONE), Ok((envelope(), of(cut))));
+        }
+        // A peer that cuts nothing.
+        let mut body = written(&envelope(), &of(answer(String::new())), &key).frame(&Challenge::NONE).split_off(45);
+        body.extend([b'x'; LONGEST_TEXT]);
+        let frame = Draft::new(MAGIC, None, body, &key).frame(&Challenge::NONE);
+        let cut = of(answer("x".repeat(LONGEST_SENTENCE)));
+        assert_eq!(read(&frame[4..], &key, &Challenge::NONE), Ok((envelope(), cut)));
     }
 }

@@ -185,7 +185,8 @@ impl Order {
     }
 }
 
-/// Returns the text of another robot, whose control characters are escaped.
+/// Returns the text of another robot, whose control characters are escaped. Lines after the first are indented, so that
+/// none of them looks like one of this robot's report.
 fn printable(text: &str) -> String {
-    text.lines().map(|line| Printable(line).to_string()).collect::<Vec<_>>().join("\n")
+    text.lines().map(|line| Printable(line).to_string()).collect::<Vec<_>>().join("\n    ")
 }

@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 const ANSWERS: Duration = Duration::from_secs(10);
 /// Maximum number of plans that are known.
 const KNOWN: usize = 64;
+/// Maximum number of answers to a plan: that it waits, that it begins, and one more.
+const MOST: u8 = 3;
 
 /// The plans that were sent last.
 #[derive(Debug, Default)]
@@ -19,6 +21,8 @@ struct Question {
     /// Number of the letter with the plan.
     number: u64,
     at: Instant,
+    /// Number of its answers.
+    answers: u8,
     /// `true` until an answer has arrived, or its absence was reported.
     is_open: bool,
 }
@@ -29,7 +33,7 @@ impl Questions {
         if self.0.len() >= KNOWN {
             self.0.pop_front();
         }
-        self.0.push_back(Question { to: to.to_owned(), number, at: now, is_open: true });
+        self.0.push_back(Question { to: to.to_owned(), number, at: now, answers: 0, is_open: true });
     }
 
     /// Forgets the plan in the letter of this number, which was not sent.
@@ -40,11 +44,14 @@ impl Questions {
     /// Notes an answer to the plan in the letter of this number.
     ///
     /// # Errors
-    /// The robot has not been sent this plan: the end of a sentence.
+    /// The robot has not been sent this plan, or has answered it too often: the end of a sentence.
     pub(super) fn answer(&mut self, from: &str, number: u64) -> Result<(), String> {
         let question = self.0.iter_mut().find(|question| question.to == from && question.number == number);
         let question = question.ok_or_else(|| "it answers a plan that was not sent".to_owned())?;
-        question.is_open = false;
+        if question.answers >= MOST {
+            return Err(format!("it is one of more than {MOST} answers to a plan"));
+        }
+        (question.answers, question.is_open) = (question.answers + 1, false);
         Ok(())
     }
 
@@ -77,6 +84,7 @@ mod tests {
         assert_eq!(questions.answer("bob", 3).unwrap_err(), "it answers a plan that was not sent");
         // A plan may have several answers: that it waits, and that it has taken over.
         assert_eq!([(); 3].map(|()| questions.answer("bob", 1)), [const { Ok(()) }; 3]);
+        assert_eq!(questions.answer("bob", 1).unwrap_err(), "it is one of more than 3 answers to a plan");
         assert_eq!((questions.unanswered(at(10)), questions.unanswered(at(11))), (vec!["eve".to_owned()], vec![]));
         assert_eq!(questions.answer("eve", 2), Ok(()), "late, and an answer");
     }

@@ -1,11 +1,11 @@
-//! Tests of answers over TCP on this machine: plans that are refused on their arrival.
+//! Tests of answers over TCP on this machine: plans that are refused on their arrival, and floods of answers.
 
-use std::io::Write as _;
+use std::io::{Read as _, Write as _};
 
 use mdle_runtime::Nanos;
 
-use super::letter_tests::{bob, envelope, letters, plan};
-use super::tests::{frame, greeted, read_messages, received, state, wait};
+use super::letter_tests::{bob, bob_with_listener, envelope, first_letter, letters, plan};
+use super::tests::{frame, greeted, message, read_messages, received, state, wait};
 use super::*;
 use crate::link::frame::{Draft, Key, Times};
 use crate::link::letter_frame::{self, Envelope};
@@ -60,4 +60,25 @@ fn a_plan_that_is_refused_on_arrival_is_answered() {
         let message = format!("warning: state link: a plan of ada is refused: {reason}");
         assert_eq!(messages.iter().filter(|other| **other == message).count(), 1, "{messages:?}");
     }
+}
+
+#[test]
+fn a_flood_of_answers_is_refused() {
+    let (mut bob, listener, mut stream) = bob_with_listener();
+    bob.send(&state("bob", 1), Nanos::ZERO);
+    let ada = std::thread::spawn(move || first_letter(&listener));
+    wait(|| bob.post("ada", &plan("bob", 1), Nanos::ZERO).ok());
+    assert_eq!(ada.join().unwrap(), plan("bob", 1));
+    let (mut again, challenge) = greeted(stream.peer_addr().unwrap());
+    again.write_all(&frame(&state("ada", 2), "key", &challenge)).unwrap();
+    let answer = |number: u64| {
+        let content = Content::Answer { of: 1, is_accepted: true, sentence: number.to_string() };
+        Letter { content, ..plan("ada", number) }
+    };
+    for number in 1..=10 {
+        again.write_all(&posted(bob.session(), 0, &answer(number)).frame(&challenge)).unwrap();
+    }
+    message(&mut bob, "a letter of ada is refused: it is one of more than 3 answers to a plan");
+    assert_eq!(letters(&mut bob), [1, 2, 3].map(answer));
+    assert_eq!(stream.read(&mut [0]).unwrap_or_default(), 0, "a new connection replaces the old one");
 }
