@@ -154,6 +154,12 @@ impl Draft {
         frame.extend(body);
         frame
     }
+
+    /// Returns the frame without its length, for a medium without connections.
+    #[must_use]
+    pub fn payload(&self) -> Vec<u8> {
+        self.frame(&Challenge::NONE).split_off(4)
+    }
 }
 
 fn checksum(body: &[u8]) -> [u8; 4] {

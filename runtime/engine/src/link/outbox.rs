@@ -84,7 +84,7 @@ impl Outbox {
         if letter.is_plan && !waiting.is_open {
             return Err(format!("{} cannot be reached at the moment", letter.to));
         }
-        let is_alike = |waits: &Waits| waits.letter.is_plan == letter.is_plan;
+        let is_alike = |waits: &Waits| (waits.letter.is_plan, &waits.letter.to) == (letter.is_plan, &letter.to);
         let count = waiting.letters.iter().filter(|waits| is_alike(waits)).count();
         if letter.is_plan && count >= UNREAD {
             return Err(format!("{UNREAD} plans wait for {} already", letter.to));
