@@ -91,10 +91,13 @@ fn a_plan_with_unknown_robots_is_refused() {
     let folder = folder("link_unknown");
     with_links(&folder, "key");
     fs::write(folder.join("plan.mdle"), "{ P (wait 2) (Atom (sync bop) stop) }").unwrap();
+    let router = "name = \"ada\"\nrouter = \"tcp/127.0.0.1:7447\"\nkey = \"key\"\nrobot = []\n";
+    fs::write(folder.join("router.toml"), router).unwrap();
     for (link, words) in [
         (" --link ada.toml", "did you mean `bob`?"),
         ("", "there is no link to it"),
         (" --link no.toml", "cannot be read"),
+        (" --link router.toml", "router.toml: this `mdle` has no links by a router\nhelp: "),
     ] {
         let line = format!("run plan.mdle --target sim{link}");
         let output = Command::new(mdle()).args(line.split(' ')).current_dir(&folder).output().unwrap();

@@ -11,6 +11,7 @@ mod evidence;
 mod examined;
 mod failure;
 mod link;
+mod link_addresses;
 mod link_text;
 mod log;
 mod manual;
@@ -46,6 +47,7 @@ use std::process::ExitCode;
 
 use arguments::Asked;
 use failure::Failure;
+pub use link::{OpenRouter, RouterSettings};
 pub use mdle_engine as engine;
 use mdle_engine::Library;
 pub use mdle_host::Program;
@@ -63,12 +65,22 @@ pub fn main() -> ExitCode {
 /// loads them after the module `sensors` and before the modules of options.
 #[must_use]
 pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
+    main_as(add, None)
+}
+
+/// Runs the command line of this process, as [`main_with`] does, with links by a router, which `open_router` opens.
+#[must_use]
+pub fn main_with_router(add: impl FnOnce(&mut Library<Sensed>), open_router: OpenRouter) -> ExitCode {
+    main_as(add, Some(open_router))
+}
+
+fn main_as(add: impl FnOnce(&mut Library<Sensed>), open_router: Option<OpenRouter>) -> ExitCode {
     let mut library = Library::new();
     modules::shipped(&mut library);
     add(&mut library);
     let arguments = std::env::args_os().collect();
     let run = |asked| match asked {
-        Asked::Run(arguments) => run::run(*arguments, &mut library),
+        Asked::Run(arguments) => run::run(*arguments, &mut library, open_router),
         Asked::Navigate(arguments) => navigate::navigate(arguments, &mut library),
         Asked::NewModule(arguments) => new_module::new_module(&arguments),
         Asked::Replay(arguments) => replay::replay(&arguments),

@@ -1,15 +1,18 @@
 //! The file of `--link`: the robot's name, its address and key, and the other robots (docs/src/many_robots.md).
 
+use std::io;
+use std::net::SocketAddr;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 
 use mdle_compiler::alphabet::did_you_mean;
-use mdle_engine::link::{LinkSettings, StateLink, Tcp, TcpSettings};
+use mdle_engine::link::{Link, LinkSettings, StateLink, Tcp, TcpSettings};
 use mdle_files::Group;
 use mdle_host::Refusal;
 use mdle_runtime::Pose;
 
 use crate::failure::{Failure, warning};
+use crate::link_addresses::Addresses;
 use crate::link_text::LinkText;
 
 /// Maximum size of the file, in bytes.
@@ -17,11 +20,39 @@ const LARGEST: u64 = 1_000_000;
 /// Permissions of a file that users other than its owner have.
 const OTHERS: u32 = 0o077;
 
+/// Sentence about a router in a program without links by routers.
+const NO_ROUTERS: &str = "this `mdle` has no links by a router\nhelp: the one that `cargo build --release` makes in the folder \
+                          `runtime/fleet` of a checkout has them";
+
+/// A link by a router.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RouterSettings {
+    /// Names and keys.
+    pub link: LinkSettings,
+    /// Address of the router.
+    pub router: SocketAddr,
+    /// File that names the router, for messages.
+    pub file: PathBuf,
+}
+
+/// Function that opens a link by a router. It does not wait until the router can be reached.
+///
+/// # Errors
+/// Fails if the system cannot create a thread.
+pub type OpenRouter = fn(&RouterSettings) -> io::Result<Box<dyn Link>>;
+
+/// Medium of a link, with its addresses.
+#[derive(Debug)]
+enum Medium {
+    Tcp(TcpSettings),
+    Router(RouterSettings, OpenRouter),
+}
+
 /// A link file that has been read.
 #[derive(Debug)]
 pub(crate) struct LinkFile {
     path: PathBuf,
-    settings: TcpSettings,
+    medium: Medium,
     /// Pose at which the robot's odometry begins, in the axes that all robots share.
     start: Pose,
     /// Names of the modules whose attributes the robot shares.
@@ -29,21 +60,35 @@ pub(crate) struct LinkFile {
 }
 
 impl LinkFile {
-    /// Reads the file, and prints warnings about its keys.
+    /// Reads the file, which may name a router if a function opens links by one, and prints warnings about its keys.
     ///
     /// # Errors
     /// Fails if the file cannot be read, or is no link file.
-    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
+    pub(crate) fn read(path: &Path, open_router: Option<OpenRouter>) -> Result<Self, Failure> {
         let name = path.display();
         let unread = |error| Failure::Usage(format!("the file {name} of the link cannot be read: {error}"));
         let text = mdle_host::read_text(path, LARGEST).map_err(unread)?;
-        let read = LinkText::read(&text).map_err(|sentence| Failure::Usage(format!("{name}: {sentence}")))?;
-        let LinkText { settings, start, shares, warnings } = read;
+        let refused = |sentence| Failure::Usage(format!("{name}: {sentence}"));
+        let LinkText { link, addresses, start, shares, warnings } = LinkText::read(&text).map_err(refused)?;
         warnings.iter().for_each(|sentence| warning(&format!("{name}: {sentence}")));
         if std::fs::metadata(path).is_ok_and(|file| file.permissions().mode() & OTHERS != 0) {
             warning(&format!("{name} has keys, and other users of this machine may read it\nhelp: `chmod 600 {name}`"));
         }
-        Ok(Self { path: path.to_owned(), settings, start, shares })
+        let medium = match addresses {
+            Addresses::Tcp { listen, addresses } => Medium::Tcp(TcpSettings { link, listen, addresses }),
+            Addresses::Router(router) => {
+                let open = open_router.ok_or_else(|| refused(NO_ROUTERS.to_owned()))?;
+                Medium::Router(RouterSettings { link, router, file: path.to_owned() }, open)
+            }
+        };
+        Ok(Self { path: path.to_owned(), medium, start, shares })
+    }
+
+    /// Returns the names and keys of the link.
+    fn link(&self) -> &LinkSettings {
+        match &self.medium {
+            Medium::Tcp(TcpSettings { link, .. }) | Medium::Router(RouterSettings { link, .. }, _) => link,
+        }
     }
 
     /// Returns the path of the file.
@@ -56,7 +101,7 @@ impl LinkFile {
     /// # Errors
     /// The robot is not in the group.
     pub(crate) fn part(&self, group: &Group) -> Result<String, Failure> {
-        let own = &self.settings.link.name;
+        let own = &self.link().name;
         group.plan_of(own).ok_or_else(|| {
             Failure::Usage(format!(
                 "{} is the link of the robot `{own}`, which is not in the group `{}`\nhelp: its robots are {}",
@@ -72,7 +117,7 @@ impl LinkFile {
     /// # Errors
     /// Fails if the link does not know a robot.
     pub(crate) fn check(&self, robots: &[&str]) -> Result<(), Failure> {
-        let names: Vec<&str> = self.settings.link.peers.iter().map(String::as_str).collect();
+        let names: Vec<&str> = self.link().peers.iter().map(String::as_str).collect();
         let Some(unknown) = robots.iter().find(|robot| !names.contains(*robot)) else { return Ok(()) };
         let near = did_you_mean(unknown, &names);
         Err(Failure::Usage(format!(
@@ -84,12 +129,12 @@ impl LinkFile {
 
     /// Returns the names of the other robots.
     pub(crate) fn robots(&self) -> Vec<String> {
-        self.settings.link.peers.clone()
+        self.link().peers.clone()
     }
 
     /// Returns `true` if the robot takes plans of another robot.
     pub(crate) fn takes_plans(&self) -> bool {
-        !self.settings.link.plans.is_empty()
+        !self.link().plans.is_empty()
     }
 
     /// Opens the link.
@@ -97,11 +142,16 @@ impl LinkFile {
     /// # Errors
     /// Fails if the robot cannot listen at the address, or the system cannot create threads (exit status 2).
     pub(crate) fn open(&self) -> Result<StateLink, Refusal> {
-        let LinkSettings { name, plans, .. } = &self.settings.link;
+        let LinkSettings { name, plans, .. } = self.link();
         let refused = |sentence| Refusal::Usage(format!("{}: {sentence}", self.path.display()));
-        let link = Tcp::open(&self.settings).map_err(refused)?;
+        let link: Box<dyn Link> = match &self.medium {
+            Medium::Tcp(settings) => Box::new(Tcp::open(settings).map_err(refused)?),
+            Medium::Router(settings, open) => {
+                open(settings).map_err(|error| refused(format!("the link cannot be opened: {error}")))?
+            }
+        };
         let names: Vec<_> = plans.iter().map(|(name, _)| name.clone()).collect();
-        let link = StateLink::new(Box::new(link), name, self.start).sharing(&self.shares);
+        let link = StateLink::new(link, name, self.start).sharing(&self.shares);
         Ok(link.exchanging_plans(names.clone(), names))
     }
 }

@@ -1,13 +1,13 @@
 //! The text of the file of `--link` (docs/src/many_robots.md).
 
 use std::collections::BTreeSet;
-use std::net::SocketAddr;
 
-use mdle_engine::link::{LinkSettings, TcpSettings};
+use mdle_engine::link::LinkSettings;
 use mdle_runtime::{Pose, Printable};
 use mdle_sim::Start;
 use serde::Deserialize;
 
+use crate::link_addresses::Addresses;
 use crate::robot_name::{FORM, is_robot_name};
 
 /// Minimum length of a key, in bytes, that nobody finds by trying.
@@ -18,7 +18,8 @@ const SHORTEST: usize = 16;
 #[serde(deny_unknown_fields)]
 struct WrittenLink {
     name: String,
-    listen: String,
+    listen: Option<String>,
+    router: Option<String>,
     key: String,
     start: Option<String>,
     #[serde(default)]
@@ -31,7 +32,7 @@ struct WrittenLink {
 #[serde(deny_unknown_fields)]
 struct WrittenPeer {
     name: String,
-    address: String,
+    address: Option<String>,
     /// Key that only the two robots have, with which they send each other plans.
     plans: Option<String>,
 }
@@ -39,7 +40,8 @@ struct WrittenPeer {
 /// Contents of a link file.
 #[derive(Debug)]
 pub(crate) struct LinkText {
-    pub(crate) settings: TcpSettings,
+    pub(crate) link: LinkSettings,
+    pub(crate) addresses: Addresses,
     /// Pose at which the robot's odometry begins, in the axes that all robots share.
     pub(crate) start: Pose,
     /// Names of the modules whose attributes the robot shares.
@@ -54,7 +56,7 @@ impl LinkText {
     /// # Errors
     /// Fails with a sentence if the text is no link file.
     pub(crate) fn read(text: &str) -> Result<Self, String> {
-        let WrittenLink { name, listen, key, start, shares, robot } =
+        let WrittenLink { name, listen, router, key, start, shares, robot } =
             toml::from_str(text).map_err(|error| refused(text, &error))?;
         check_names(&name, &robot)?;
         if key.is_empty() {
@@ -67,13 +69,12 @@ impl LinkText {
             .filter(|(_, key)| key.len() < SHORTEST)
             .map(|(which, _)| format!("{which} is short, so that others may find it by trying\nhelp: {GOOD_KEY}"))
             .collect();
-        let listen = address(&listen)?;
-        let addresses = robot.iter().map(|robot| address(&robot.address)).collect::<Result<_, _>>()?;
+        let robots: Vec<_> = robot.iter().map(|robot| (robot.name.as_str(), robot.address.as_deref())).collect();
+        let addresses = Addresses::read(listen.as_deref(), router.as_deref(), &robots)?;
         let peers = robot.into_iter().map(|robot| robot.name).collect();
         let start = start.map_or(Ok(Start(Pose::ORIGIN)), |start| start.parse());
         let Start(start) = start.map_err(|error| format!("start: {error}"))?;
-        let settings = TcpSettings { link: LinkSettings { name, peers, key, plans }, listen, addresses };
-        Ok(Self { settings, start, shares, warnings })
+        Ok(Self { link: LinkSettings { name, peers, key, plans }, addresses, start, shares, warnings })
     }
 }
 
@@ -130,11 +131,6 @@ fn refused(text: &str, error: &toml::de::Error) -> String {
     format!("line {line}: {message}")
 }
 
-/// Reads a literal address. A host name is refused, as its lookup may take long.
-fn address(text: &str) -> Result<SocketAddr, String> {
-    text.parse().map_err(|_| format!("`{text}` is no address: write numbers and a port, as in `192.168.1.7:7400`"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -144,13 +140,13 @@ mod tests {
 
     #[test]
     fn a_file_names_the_robots_and_their_addresses() {
-        let LinkText { settings, start, shares, .. } = LinkText::read(GOOD).unwrap();
+        let LinkText { link, addresses, start, shares, .. } = LinkText::read(GOOD).unwrap();
         assert_eq!(
-            (settings.link.name.as_str(), &settings.link.peers, start.x.0, shares),
+            (link.name.as_str(), &link.peers, start.x.0, shares),
             ("ada", &vec!["bob".to_owned()], 1.0, vec!["heading".to_owned()])
         );
         let [listen, bob] = ["127.0.0.1:7401", "[::1]:7402"].map(|text| text.parse().unwrap());
-        assert_eq!((settings.listen, settings.addresses), (listen, vec![bob]));
+        assert_eq!(addresses, Addresses::Tcp { listen, addresses: vec![bob] });
     }
 
     #[test]

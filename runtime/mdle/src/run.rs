@@ -13,7 +13,7 @@ use mdle_runtime::Sensed;
 use crate::arguments::{MapOption, Run};
 use crate::evidence::{MapFiles, pose};
 use crate::failure::{self, Failure};
-use crate::link::LinkFile;
+use crate::link::{LinkFile, OpenRouter};
 use crate::modules::{self, AudioSource, HEADING, MapRun, Saved, SoundInput};
 use crate::plans::texts;
 use crate::safety::SafetyFile;
@@ -25,11 +25,15 @@ use crate::targets::{self, LinkedTarget, Ready};
 const FAULT: u8 = 3;
 
 /// Runs a plan with these modules, and with the modules that its settings name; returns the exit status of the
-/// run.
+/// run. `open_router` opens a link by a router.
 ///
 /// # Errors
 /// Fails if the plan cannot be run.
-pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitCode, Failure> {
+pub(crate) fn run(
+    arguments: Run,
+    library: &mut Library<Sensed>,
+    open_router: Option<OpenRouter>,
+) -> Result<ExitCode, Failure> {
     if scenario::is_scenario(&arguments.file) {
         return scenario::run(&arguments, library);
     }
@@ -43,7 +47,7 @@ pub(crate) fn run(arguments: Run, library: &mut Library<Sensed>) -> Result<ExitC
     let linked = targets::linked(&name).map_err(Failure::Usage)?;
     let target = Arc::new(settings.target(arguments.target.as_deref())?);
     let safety = safety_file(&arguments, &settings)?;
-    let link = arguments.link.as_deref().map(LinkFile::read).transpose()?;
+    let link = arguments.link.as_deref().map(|link| LinkFile::read(link, open_router)).transpose()?;
     let mut input = read_plan(&arguments.file, &target)?;
     let named = arguments.plan.as_deref();
     let group = link.as_ref().and_then(|link| Some((link, input.group(named)?)));
