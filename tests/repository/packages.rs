@@ -23,6 +23,7 @@ pub(crate) const PACKAGES: &[(&str, &[&str])] = &[
             "mdle-atrv",
         ],
     ),
+    ("runtime/fleet", &["mdle", "mdle-runtime", "mdle-engine"]),
     ("runtime/serial", &["mdle-runtime", "mdle-host"]),
     ("runtime/sound", &[]),
     ("runtime/template", &["mdle", "mdle-runtime"]),

@@ -1,0 +1,168 @@
+//! The thread that keeps a session with the router, and publishes only the newest state, and each letter.
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use mdle::RouterSettings;
+use mdle_engine::link::{Draft, Endpoint, LONGEST_LETTER, Outbox};
+use zenoh::pubsub::Publisher;
+use zenoh::qos::{CongestionControl, Priority};
+use zenoh::{Config, Session, Wait as _};
+
+use crate::subscriptions::subscribe;
+use crate::topics;
+
+/// Time between two attempts to connect.
+const AGAIN: Duration = Duration::from_millis(200);
+/// Maximum time for an attempt to connect, in milliseconds.
+const OPENS: u64 = 2000;
+/// Time without a sign of this robot after which the router gives it up, in milliseconds.
+const LEASE: u64 = 2000;
+/// Minimum time between two states: only the newest counts, and a receiver takes 2000 a second.
+const SPACING: Duration = Duration::from_millis(1);
+/// Time between two looks at the connection.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// All that the thread has.
+pub(crate) struct Carrier {
+    name: String,
+    router: SocketAddr,
+    /// File that names the router.
+    file: String,
+    endpoint: Arc<Endpoint>,
+    outbox: Arc<Outbox>,
+    /// `true` while the session has a connection to the router.
+    is_up: bool,
+    /// `true` once it has been reported that the router cannot be reached.
+    is_known_as_down: bool,
+}
+
+impl Carrier {
+    pub(crate) fn new(settings: &RouterSettings, endpoint: &Arc<Endpoint>, outbox: &Arc<Outbox>) -> Self {
+        Self {
+            name: settings.link.name.clone(),
+            router: settings.router,
+            file: settings.file.display().to_string(),
+            endpoint: Arc::clone(endpoint),
+            outbox: Arc::clone(outbox),
+            is_up: false,
+            is_known_as_down: false,
+        }
+    }
+
+    /// Connects and publishes until the run is over. A router that cannot be reached is reported only once, until it
+    /// has been reached again.
+    pub(crate) fn carry(mut self) {
+        while !self.endpoint.is_over() {
+            let begun = Instant::now();
+            // The session connects again by itself; only a failure of it leads to a new one.
+            self.is_up = false;
+            if let Err(failure) = self.session().and_then(|session| self.publish(&session)) {
+                self.outbox.close();
+                self.is_down(&failure.to_string());
+            }
+            thread::sleep(AGAIN.saturating_sub(begun.elapsed()));
+        }
+    }
+
+    /// Opens a session, and subscribes.
+    ///
+    /// # Errors
+    /// The router cannot be reached.
+    fn session(&self) -> zenoh::Result<Session> {
+        let session = zenoh::open(self.config()?).wait()?;
+        subscribe(&session, &self.name, &self.endpoint)?;
+        Ok(session)
+    }
+
+    /// Returns the configuration of a session: one connection to the router, and no search for other routers or peers.
+    fn config(&self) -> zenoh::Result<Config> {
+        let again = AGAIN.as_millis();
+        let mut config = Config::default();
+        for (key, value) in [
+            ("mode", "\"client\"".to_owned()),
+            ("connect/endpoints", format!("[\"tcp/{}\"]", self.router)),
+            ("connect/timeout_ms", "0".to_owned()),
+            (
+                "connect/retry",
+                format!("{{ period_init_ms: {again}, period_max_ms: {again}, period_increase_factor: 1 }}"),
+            ),
+            ("scouting/multicast/enabled", "false".to_owned()),
+            ("scouting/gossip/enabled", "false".to_owned()),
+            ("transport/unicast/open_timeout", OPENS.to_string()),
+            ("transport/link/tx/lease", LEASE.to_string()),
+            // A frame with its key; what is longer is dropped unread.
+            ("transport/link/rx/max_message_size", (LONGEST_LETTER + 1024).to_string()),
+        ] {
+            config.insert_json5(key, &value)?;
+        }
+        Ok(config)
+    }
+
+    /// Publishes states and letters until the run is over.
+    ///
+    /// # Errors
+    /// The session fails.
+    fn publish(&mut self, session: &Session) -> zenoh::Result<()> {
+        let states = self.states(session)?;
+        let (mut last, mut looked) = (None::<Draft>, None::<Instant>);
+        while !self.endpoint.is_over() {
+            // A letter is taken only from a robot whose state has arrived: the last one goes first.
+            last = self.outbox.next().or(last);
+            self.outbox.late(Instant::now()).iter().for_each(|letter| self.endpoint.is_late(letter));
+            if looked.is_none_or(|at| at.elapsed() >= LOOK) {
+                self.look(session);
+                looked = Some(Instant::now());
+            }
+            if !self.is_up {
+                thread::sleep(LOOK);
+                continue;
+            }
+            let Some(state) = &last else { continue };
+            let written = Instant::now();
+            states.put(state.payload()).wait()?;
+            while let Some(letter) = self.outbox.letter(Instant::now()) {
+                let put = session.put(topics::of_letters(&self.name, &letter.to), letter.draft.payload());
+                put.congestion_control(CongestionControl::Block).wait()?;
+                self.outbox.is_sent(letter.number);
+            }
+            thread::sleep(SPACING.saturating_sub(written.elapsed()));
+        }
+        Ok(())
+    }
+
+    /// Returns the publisher of states: each is sent at once, and dropped where the connection is full.
+    fn states<'s>(&self, session: &'s Session) -> zenoh::Result<Publisher<'s>> {
+        let publisher = session.declare_publisher(topics::of_states(&self.name));
+        publisher.congestion_control(CongestionControl::Drop).priority(Priority::RealTime).express(true).wait()
+    }
+
+    /// Looks if the session has a connection to the router.
+    fn look(&mut self, session: &Session) {
+        let was_up = std::mem::replace(&mut self.is_up, session.info().routers_zid().wait().next().is_some());
+        if !self.is_up {
+            self.outbox.close();
+            self.is_down("it has closed the connection");
+        } else if !was_up {
+            // What was sent before may have got lost.
+            self.outbox.open();
+            if std::mem::take(&mut self.is_known_as_down) {
+                self.endpoint.say(format!("state link: connected to the router at {} again", self.router));
+            }
+        }
+    }
+
+    /// Reports that the router cannot be reached.
+    fn is_down(&mut self, failure: &str) {
+        if self.is_known_as_down || self.endpoint.is_over() {
+            return;
+        }
+        self.is_known_as_down = true;
+        let Self { router, file, .. } = self;
+        self.endpoint.say(format!(
+            "warning: state link: the router at {router} cannot be reached: {failure}; start it, or correct `router` in {file}"
+        ));
+    }
+}

@@ -1,0 +1,7 @@
+//! `mdle`, with links by a router.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    mdle::main_with_router(|_| (), mdle_fleet::open)
+}

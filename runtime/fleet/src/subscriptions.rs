@@ -1,0 +1,61 @@
+//! Frames that the router brings: the states of all other robots, and their letters to this one.
+
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use mdle_engine::link::{Endpoint, LONGEST_LETTER, Source};
+use zenoh::sample::Sample;
+use zenoh::{Session, Wait as _};
+
+use crate::topics;
+
+/// Maximum number of reasons that are reported for one robot.
+const REASONS: usize = 16;
+
+/// Subscribes to the frames for the robot of this name, until the session ends.
+///
+/// # Errors
+/// The session has ended, or a key is none.
+pub(crate) fn subscribe(session: &Session, name: &str, endpoint: &Arc<Endpoint>) -> zenoh::Result<()> {
+    for peer in endpoint.peers() {
+        let intake = Arc::new(Intake::new(peer));
+        for key in [topics::of_states(peer), topics::of_letters(peer, name)] {
+            let (intake, endpoint) = (Arc::clone(&intake), Arc::clone(endpoint));
+            let take = move |sample: Sample| intake.take(&sample, &endpoint);
+            session.declare_subscriber(key).callback(take).background().wait()?;
+        }
+    }
+    Ok(())
+}
+
+/// Frames under the keys of one robot.
+struct Intake(Mutex<Counted>);
+
+/// The number of frames of a robot, and the reasons for which some were refused.
+struct Counted {
+    source: Source,
+    reasons: BTreeSet<String>,
+}
+
+impl Intake {
+    fn new(robot: &str) -> Self {
+        Self(Mutex::new(Counted { source: Source::without_connection(robot), reasons: BTreeSet::new() }))
+    }
+
+    /// Takes a message, or refuses it. In contrast to a connection, a key cannot be closed: each reason is reported
+    /// once.
+    fn take(&self, sample: &Sample, endpoint: &Endpoint) {
+        let mut counted = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let payload = sample.payload();
+        let result = if payload.len() > LONGEST_LETTER {
+            Err("it sends no states".to_owned())
+        } else {
+            endpoint.take(&mut counted.source, &payload.to_bytes())
+        };
+        let Err(reason) = result else { return };
+        let reason = format!("a sender under {} is refused: {reason}", sample.key_expr());
+        if counted.reasons.len() < REASONS && counted.reasons.insert(reason.clone()) {
+            endpoint.say(format!("warning: state link: {reason}"));
+        }
+    }
+}
