@@ -8,6 +8,7 @@ mod fsm_files;
 mod golden;
 mod loaded;
 mod matrices;
+mod operators_plans;
 mod pictures;
 mod scxml;
 mod sent_plans;

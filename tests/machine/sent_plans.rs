@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 
 use mdle_engine::link::{Content, Letter, Link, RefusedPlan, State, StateLink};
-use mdle_engine::{CompiledPlans, PlanSource, StoredPlan, When};
+use mdle_engine::{CompiledPlans, PlanEvent, PlanSource, StoredPlan, When};
 use mdle_host::{Moment, Pilot};
 use mdle_runtime::{Nanos, Pose};
 use mdle_scripted::Output;
@@ -45,15 +45,15 @@ impl Link for Post {
 }
 
 /// The robot `bob`, who runs a plan and takes plans of `ada`.
-struct Bob {
-    run: Run,
+pub(crate) struct Bob {
+    pub(crate) run: Run,
     mail: Arc<Mutex<Mail>>,
     letters: u64,
 }
 
-const FIRST: &str = "{ Main (b) (Atom (a) seek) (Atom (null) climb) }";
-const DRIFT: &str = "{ Main (c) (Atom (f) drift) }";
-const IDLE: &str = "{ Main (e) (Atom (null) idle) }";
+pub(crate) const FIRST: &str = "{ Main (b) (Atom (a) seek) (Atom (null) climb) }";
+pub(crate) const DRIFT: &str = "{ Main (c) (Atom (f) drift) }";
+pub(crate) const IDLE: &str = "{ Main (e) (Atom (null) idle) }";
 
 /// A plan about which the compiler warns.
 const WARNED: &str = "{ Main (b) (Atom (null) idle) }";
@@ -70,7 +70,7 @@ fn compiled(source: &PlanSource) -> Result<CompiledPlans<Alphabet>, String> {
 }
 
 impl Bob {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let mail = Arc::default();
         let link = StateLink::new(Box::new(Post(Arc::clone(&mail))), "bob", Pose::ORIGIN);
         let link = link.exchanging_plans(vec!["ada".to_owned()], Vec::new());
@@ -82,7 +82,7 @@ impl Bob {
     }
 
     /// Returns the robot with a compiler that sends a message when it begins, and compiles when it gets one.
-    fn compiling_for(begun: Sender<()>, gate: Receiver<()>) -> Self {
+    pub(crate) fn compiling_for(begun: Sender<()>, gate: Receiver<()>) -> Self {
         let mut bob = Self::new();
         let compile = move |source: &PlanSource| {
             let _ = (begun.send(()), gate.recv());
@@ -93,14 +93,14 @@ impl Bob {
     }
 
     /// Lets a plan of `ada` arrive before the end of the next turn.
-    fn gets(&mut self, text: &str, when: When) {
+    pub(crate) fn gets(&mut self, text: &str, when: When) {
         self.letters += 1;
         let content = Content::Plan { when, text: text.to_owned() };
         self.mail.lock().unwrap().arrived.push(Letter { from: "ada".to_owned(), number: self.letters, content });
     }
 
     /// Returns the answers since the last call, each with the number of the plan and `true` if the plan is accepted.
-    fn answers(&mut self) -> Vec<(u64, bool, String)> {
+    pub(crate) fn answers(&mut self) -> Vec<(u64, bool, String)> {
         let sent: Vec<_> = self.mail.lock().unwrap().sent.drain(..).collect();
         let answer = |letter: Letter| match letter.content {
             Content::Answer { of, is_accepted, sentence } => (of, is_accepted, sentence),
@@ -110,24 +110,34 @@ impl Bob {
     }
 
     /// Makes a turn; returns its law.
-    fn turn(&mut self) -> String {
+    pub(crate) fn turn(&mut self) -> String {
         let turn = self.run.turn("");
         turn.split(' ').nth(1).unwrap_or(&turn).to_owned()
     }
 
     /// Makes turns until an answer has been sent; returns the answer.
-    fn answered(&mut self) -> (u64, bool, String) {
-        loop {
+    pub(crate) fn answered(&mut self) -> (u64, bool, String) {
+        self.until(|bob| bob.answers().pop())
+    }
+
+    /// Makes turns until `find` returns a value, after each turn; returns the value.
+    pub(crate) fn until<T>(&mut self, find: impl Fn(&mut Self) -> Option<T>) -> T {
+        let turns = (0..10_000).find_map(|_| {
             self.turn();
-            if let Some(answer) = self.answers().pop() {
-                return answer;
-            }
-            std::thread::yield_now();
-        }
+            // The compiler has a thread of its own.
+            std::thread::sleep(std::time::Duration::from_millis(1));
+            find(self)
+        });
+        turns.expect("something happens within ten seconds")
+    }
+
+    /// Makes turns until this event has been reported.
+    pub(crate) fn until_event(&mut self, event: &PlanEvent) {
+        self.until(|bob| bob.run.journal.contains(event).then_some(()));
     }
 
     /// Lets a safety rule replace the plan.
-    fn retreats(&mut self) {
+    pub(crate) fn retreats(&mut self) {
         let y = Output::default();
         let t = Nanos(self.run.turns * 100_000_000);
         self.run.engine.divert(loaded(IDLE).unwrap().plan(), Moment { y: &y, t, number: self.run.turns });
@@ -135,13 +145,15 @@ impl Bob {
 }
 
 /// The refusal of a plan.
-fn refused(of: u64, reason: &str) -> (u64, bool, String) {
+pub(crate) fn refused(of: u64, reason: &str) -> (u64, bool, String) {
     (of, false, reason.to_owned())
 }
 
-const REPLACED: &str = "a safety rule has replaced the plan";
-const ENDED: &str = "a safety rule has ended a plan";
-const TAKEN: &str = "another plan takes its place";
+pub(crate) const REPLACED: &str = "a safety rule has replaced the plan; the robot takes plans again once its operator lets one \
+                                   take over in `mdle shell`, or begins a new run";
+const ENDED: &str = "a safety rule has ended a plan; the robot takes plans again once its operator lets one take over \
+                     in `mdle shell`, or begins a new run";
+pub(crate) const TAKEN: &str = "another plan takes its place";
 
 #[test]
 fn no_sent_plan_replaces_that_of_a_safety_rule() {
@@ -189,9 +201,7 @@ fn a_safety_rule_overrules_plans_being_compiled() {
     let mut bob = Bob::compiling_for(channel().0, channel().1);
     bob.run.plans().swap(PlanSource::Text(DRIFT.to_owned()), When::Now);
     bob.retreats();
-    while !bob.run.journal.contains(&mdle_engine::PlanEvent::Cancelled(2)) {
-        assert_eq!(bob.turn(), "idle");
-    }
+    bob.until_event(&PlanEvent::Cancelled(2));
     assert_eq!([bob.turn(), bob.turn()], ["idle", "idle"]);
 }
 
@@ -254,7 +264,7 @@ fn a_robot_takes_one_plan_a_second_of_another() {
 }
 
 /// The acceptance of a plan.
-fn accepted(of: u64, sentence: &str) -> (u64, bool, String) {
+pub(crate) fn accepted(of: u64, sentence: &str) -> (u64, bool, String) {
     (of, true, sentence.to_owned())
 }
 
@@ -279,6 +289,7 @@ fn a_plan_that_never_begins_is_answered() {
     bob.run.plans().replace(loaded(IDLE).unwrap().plan(), When::PlanEnds);
     bob.turn();
     assert_eq!(bob.answers().pop().unwrap(), refused(1, TAKEN));
+    bob.run.plans().cancel();
     bob.gets(DRIFT, When::AtomEnds);
     bob.turn();
     bob.run.plans().cancel();

@@ -1,10 +1,11 @@
 //! A run in which plans are late, skipped and rolled back is made again by an engine that waits for nobody, to the bit.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 use std::thread;
 
-use mdle_engine::{Engine, Library, When};
+use mdle_engine::{Engine, Library, PlanEvent, When};
 use mdle_host::{Microphones, Moment, Pace, Pilot as _, RunTerms, StopRequest, Time, Transitions};
 use mdle_record::{Change, Step};
 use mdle_runtime::{Nanos, Robot as _, Sensed, Turn, Twist};
@@ -19,6 +20,9 @@ const SECOND: &str = "{ Second (null) ((Atom (wait 200ms) (go -16 0.2)) (Atom (w
 
 /// Number of turns.
 const TURNS: u64 = 40;
+
+/// Held by the test for whose turns slow laws wait.
+static SLOW_TURNS: Mutex<()> = Mutex::new(());
 
 /// A turn of a run, and all that led to it.
 #[derive(Debug)]
@@ -48,6 +52,7 @@ fn turn(engine: &mut Engine<Odd>, y: &Sensed, number: u64) -> Outcome {
 
 /// A run on workers with a deadline for each turn.
 fn live() -> Vec<Made> {
+    let _held = SLOW_TURNS.lock();
     let world = World::named("hall").unwrap().unwrap();
     let mut robot = Simulated::new(&world, world.start, Some(3), PERIOD).unwrap();
     let (mut engine, mut input, mut turns) = (engine(Time::Wall), Twist::default(), Vec::new());
@@ -88,4 +93,28 @@ fn late_turns_replay_to_the_bit() {
         }
         assert_eq!(turn(&mut again, y, number), *outcome, "turn {number} at {t:?} after {changes:?}");
     }
+}
+
+#[test]
+fn a_late_turn_loses_no_plan_that_waits() {
+    let _held = SLOW_TURNS.lock();
+    let world = World::named("hall").unwrap().unwrap();
+    let mut robot = Simulated::new(&world, world.start, Some(3), PERIOD).unwrap();
+    let (mut engine, mut input, mut requests, mut events) = (engine(Time::Wall), Twist::default(), vec![], vec![]);
+    for number in 0..9 {
+        TURN.store(number, Ordering::Relaxed);
+        // The first plan is on its way with turn 3, which is late, when the second one is armed.
+        if [3, 4].contains(&number) {
+            requests.push(engine.plans_mut().replace(loaded(SECOND).plan(), When::PlanEnds));
+        }
+        let y = robot.exchange(&input).unwrap();
+        input = turn(&mut engine, &y, number).0.input();
+        events.extend(engine.plans_mut().take_events());
+        thread::sleep(PERIOD / 10);
+    }
+    TURN.store(u64::MAX, Ordering::Relaxed);
+    let [first, second] = requests[..] else { panic!("{requests:?}") };
+    let replaced = PlanEvent::Replaced(first, "Second".into());
+    assert_eq!(events, [PlanEvent::Armed(first), PlanEvent::Armed(second), replaced]);
+    assert_eq!(engine.plans().armed(), Some(("Second", When::PlanEnds)));
 }

@@ -8,6 +8,7 @@ mod changes;
 mod compiler;
 mod event;
 mod flight;
+mod order;
 mod peers;
 pub(crate) mod reads;
 mod requests;
@@ -20,12 +21,13 @@ use std::sync::Arc;
 
 use changes::PlanChanges;
 use compiler::Compiler;
-pub use compiler::{Compile, CompiledPlans, PlanSource};
 pub use event::{NoTrial, PlanEvent, When};
 use flight::{Desk, Flight};
 use mdle_compiler::load::LoadedPlan;
 use mdle_record::Change;
 use mdle_runtime::{Machine, ModuleRead, Nanos, Plan as _};
+pub use order::{Compile, CompiledPlans, PlanSource};
+pub(crate) use peers::ENDED;
 use peers::PeerRequests;
 pub use running::EngineAlphabet;
 use running::Running;
@@ -35,6 +37,9 @@ pub(crate) use turns::PlanTurn;
 
 /// Time for which a new plan is on trial, unless [`Plans::set_trial`] sets another.
 pub const TRIAL: Nanos = Nanos(3_000_000_000);
+
+/// Reason to refuse the plan of another robot while a plan of the operator waits to take over.
+const OPERATOR_FIRST: &str = "a plan of the operator waits to take over: send the plan again later";
 
 /// The plans of one robot.
 pub struct Plans<A: EngineAlphabet> {
@@ -172,6 +177,14 @@ impl<A: EngineAlphabet> Plans<A> {
     #[must_use]
     pub fn armed(&self) -> Option<(&str, When)> {
         self.armed.as_ref().map(|(plan, when)| (&*plan.name, *when))
+    }
+
+    /// Returns the reason why the plan of this request must not take over at present, if another robot has sent it.
+    fn refuses(&self, ticket: u32) -> Option<&'static str> {
+        let mut waiting = self.armed.iter().map(|(plan, _)| plan.ticket).chain(self.aloft);
+        let waits = |waiting: u32| !self.peers.has(waiting);
+        let is_sent = self.peers.has(ticket);
+        self.peers.barred(ticket).or_else(|| (is_sent && waiting.any(waits)).then_some(OPERATOR_FIRST))
     }
 
     /// Returns the time at which the active plan's trial ends; `None` if it is not on trial.

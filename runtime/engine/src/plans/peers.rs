@@ -2,6 +2,13 @@
 
 use super::PlanEvent;
 
+/// Reason for a bar: a safety rule has replaced the plan.
+pub(crate) const REPLACED: &str = "a safety rule has replaced the plan; the robot takes plans again once its operator \
+                                   lets one take over in `mdle shell`, or begins a new run";
+/// Reason for a bar: a safety rule has ended a plan.
+pub(crate) const ENDED: &str = "a safety rule has ended a plan; the robot takes plans again once its operator lets one \
+                                take over in `mdle shell`, or begins a new run";
+
 /// The requests of other robots, and the bar that a safety rule has set to them.
 #[derive(Debug, Default)]
 pub(super) struct PeerRequests {

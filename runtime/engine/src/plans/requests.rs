@@ -8,8 +8,9 @@ use mdle_compiler::load::LoadedPlan;
 use mdle_record::Change;
 use mdle_runtime::Plan as _;
 
-use super::compiler::{Compile, Compiler, CompilerThread, Next, Order, PlanSource, Task};
+use super::compiler::{Compiler, CompilerThread};
 use super::event::{PlanEvent, When};
+use super::order::{Compile, Next, Order, PlanSource, Task};
 use super::running::{EngineAlphabet, Running};
 use super::stored::{MOST_STORED, StoredPlan};
 use super::{Plans, Spent};
@@ -75,7 +76,8 @@ impl<A: EngineAlphabet> Plans<A> {
     /// Requests that the plan of a text be stored, unless another robot has sent it, and take over; returns the
     /// number of the request. The answer is [`PlanEvent::Refused`] or [`PlanEvent::Armed`] at a later break, and then
     /// [`PlanEvent::Began`]. A request that is not compiled when the next one comes is superseded; a plan that is armed
-    /// and has not begun is replaced.
+    /// and has not begun is replaced. A plan of another robot does neither to one of the operator: it is refused while
+    /// a plan of the operator is armed.
     pub fn swap(&mut self, source: PlanSource, when: When) -> u32 {
         self.order(Task::Compile(source, Some(when)))
     }
@@ -124,8 +126,8 @@ impl<A: EngineAlphabet> Plans<A> {
 
     /// Cancels the plan that is to take over: see [`Plans::cancel`].
     pub(super) fn take_back(&mut self) {
-        let waiting = self.compiler.as_ref().and_then(Compiler::take_back);
-        if let Some(order) = waiting {
+        let waiting = self.compiler.as_ref().map_or([None, None], Compiler::take_back);
+        for order in waiting.into_iter().flatten() {
             self.tell(self.peers.cancelled(order.ticket));
             self.spent.push(Box::new(order));
         }
@@ -142,23 +144,27 @@ impl<A: EngineAlphabet> Plans<A> {
         format!("no plan `{name}` is stored{near}")
     }
 
-    /// Gives an order to the compiler; returns the number of the request.
+    /// Gives an order to the compiler; returns the number of the request. The compiler gets no plan of another robot
+    /// that must not take over.
     fn order(&mut self, task: Task<A>) -> u32 {
         self.last = self.last.saturating_add(1);
         let ticket = self.last;
-        if matches!(task, Task::Compile(PlanSource::Peer { .. }, _)) {
+        if task.is_sent() {
             self.peers.add(ticket);
+        }
+        if let Some(reason) = self.refuses(ticket) {
+            self.tell(PlanEvent::Refused(ticket, reason.to_owned()));
+            return ticket;
         }
         let given = match &mut self.compiler {
             Some(compiler) => compiler.order(Order { ticket, task }),
             None => Err("this engine has no compiler".to_owned()),
         };
         match given {
-            Ok(Some(superseded)) => {
-                self.tell(PlanEvent::Superseded(superseded.ticket));
-                self.spent.push(Box::new(superseded));
-            }
-            Ok(None) => {}
+            Ok(superseded) => superseded.into_iter().flatten().for_each(|order| {
+                self.tell(PlanEvent::Superseded(order.ticket));
+                self.spent.push(Box::new(order));
+            }),
             Err(sentence) => self.tell(PlanEvent::Refused(ticket, sentence)),
         }
         ticket
@@ -185,9 +191,14 @@ impl<A: EngineAlphabet> Plans<A> {
             changes.armed(&files, plan.name(0), when);
         }
         if let Some((old, _)) = self.armed.replace((Running::new(ticket, plan), when)) {
-            self.tell(PlanEvent::Replaced(old.ticket, Arc::clone(&old.name)));
-            self.discard(old);
+            self.replaced(old);
         }
         self.tell(PlanEvent::Armed(ticket));
+    }
+
+    /// Reports that another plan is armed in the place of this one, and drops it.
+    pub(super) fn replaced(&mut self, plan: Running<A>) {
+        self.tell(PlanEvent::Replaced(plan.ticket, Arc::clone(&plan.name)));
+        self.discard(plan);
     }
 }

@@ -6,8 +6,10 @@ use mdle_compiler::load::LoadedPlan;
 use mdle_host::Transitions;
 use mdle_runtime::{ModuleRead, Nanos, Published, Turn};
 
-use super::compiler::{Compiler, Outcome, Product};
+use super::compiler::Compiler;
 use super::flight::{Flight, Landed, PlanModule};
+use super::order::{Outcome, Product};
+use super::peers::REPLACED;
 use super::running::Running;
 use super::{Driving, EngineAlphabet, NoTrial, PlanEvent, Plans, When};
 use crate::board::Board;
@@ -92,9 +94,14 @@ impl<A: EngineAlphabet> Plans<A> {
             self.discard(old);
             self.tell(PlanEvent::Accepted(flight.current.ticket));
         }
-        // A request may have come while the turn was late.
-        let armed = flight.next.take();
-        self.armed = self.armed.take().or(armed);
+        if let Some((next, when)) = flight.next.take() {
+            if self.armed.is_none() {
+                self.armed = Some((next, when));
+            } else {
+                // The other plan was armed while the turn was late.
+                self.replaced(next);
+            }
+        }
         std::mem::swap(transitions, &mut flight.transitions);
         self.current = Some(flight);
         turn.map_or(PlanTurn::Late, PlanTurn::Made)
@@ -106,7 +113,7 @@ impl<A: EngineAlphabet> Plans<A> {
         let old = self.events.len().saturating_sub(MOST_EVENTS);
         self.events.drain(..old);
         let Some(Outcome { ticket, product }) = self.compiler.as_mut().and_then(Compiler::done) else { return };
-        let product = match self.peers.barred(ticket) {
+        let product = match self.refuses(ticket) {
             Some(reason) => {
                 self.spent.push(Box::new(product));
                 Err(reason.to_owned())
@@ -150,7 +157,7 @@ impl<A: EngineAlphabet> Plans<A> {
     /// Replaces the active plan at once and without a trial, for a supervisor. Plans that were to take over are
     /// cancelled, also those that are being compiled, and plans of other robots are barred.
     pub(crate) fn divert(&mut self, plan: LoadedPlan<A>) {
-        self.peers.bar(self.last, "a safety rule has replaced the plan");
+        self.peers.bar(self.last, REPLACED);
         self.take_back();
         self.overruled = self.last;
         self.last = self.last.saturating_add(1);
@@ -169,6 +176,10 @@ impl<A: EngineAlphabet> Plans<A> {
     /// call. Returns `true` if such a plan was armed.
     pub(crate) fn bar_peers(&mut self, reason: &'static str) -> bool {
         self.peers.bar(self.last, reason);
+        if let Some(order) = self.compiler.as_ref().and_then(Compiler::take_back_sent) {
+            self.tell(PlanEvent::Refused(order.ticket, reason.to_owned()));
+            self.spent.push(Box::new(order));
+        }
         let Some((plan, _)) = self.armed.take_if(|(plan, _)| self.peers.has(plan.ticket)) else { return false };
         self.tell(PlanEvent::Refused(plan.ticket, reason.to_owned()));
         self.discard(plan);

@@ -40,8 +40,8 @@ const OWN: [(&str, Node); 13] = [
 #[derive(Debug, Default)]
 pub(super) struct PlansPart {
     waiting: Vec<Waiting>,
-    /// Number of the request of the plan that was armed last, and the name of the plan.
-    armed: (u32, String),
+    /// Number of the request of each plan that is armed, and the name of the plan.
+    armed: Vec<(u32, String)>,
 }
 
 /// A request that waits for the compiler.
@@ -64,7 +64,7 @@ impl PlansPart {
     /// answered before.
     pub(super) fn answer<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>) -> Vec<String> {
         let mut messages = Vec::new();
-        let mut replaced = None;
+        let mut replaced = Vec::new();
         let events: Vec<_> = plans.take_events().collect();
         for event in events {
             match event {
@@ -73,9 +73,8 @@ impl PlansPart {
                     waiting.into_iter().for_each(|waiting| waiting.warnings.clone_from(&warnings));
                 }
                 PlanEvent::Refused(ticket, sentence) => {
-                    if self.armed.0 == ticket {
-                        messages.push(format!("warning: {} does not take over: {sentence}", self.armed.1));
-                    }
+                    let name = self.disarmed(ticket);
+                    messages.extend(name.map(|name| format!("warning: {name} does not take over: {sentence}")));
                     self.settle(ticket, Err(sentence));
                 }
                 PlanEvent::Stored(ticket, names) => {
@@ -86,25 +85,35 @@ impl PlansPart {
                     let is_own = self.waiting.iter().any(|waiting| waiting.ticket == ticket);
                     let armed = plans.name_of(ticket).zip(plans.armed()).filter(|_| is_own);
                     let Some((name, (_, when))) = armed else { continue };
-                    let replaced = replaced.take().map_or_else(String::new, |(_, old)| format!(", in place of {old}"));
+                    let replaced = replaced.pop().map_or_else(String::new, |(_, old)| format!(", in place of {old}"));
                     self.settle(ticket, Ok(format!("{name} takes over {when}{replaced}")));
-                    self.armed = (ticket, name.to_owned());
+                    self.armed.push((ticket, name.to_owned()));
                 }
                 PlanEvent::Replaced(ticket, name) => {
                     self.settle(ticket, Err(TAKEN.to_owned()));
-                    replaced = Some((ticket, name));
+                    replaced.push((self.disarmed(ticket).is_some(), name));
                 }
                 PlanEvent::Superseded(ticket) => {
                     self.settle(ticket, Err("a later request replaces this one".to_owned()))
                 }
-                PlanEvent::Cancelled(ticket) => self.settle(ticket, Err("the request was cancelled".to_owned())),
-                PlanEvent::Began(_) | PlanEvent::Accepted(_) | PlanEvent::RolledBack { .. } => {}
+                PlanEvent::Cancelled(ticket) => {
+                    self.disarmed(ticket);
+                    self.settle(ticket, Err("the request was cancelled".to_owned()));
+                }
+                PlanEvent::Began(ticket) => drop(self.disarmed(ticket)),
+                PlanEvent::Accepted(_) | PlanEvent::RolledBack { .. } => {}
             }
         }
-        // A plan of another robot has taken the place.
-        let taken = replaced.filter(|(ticket, _)| *ticket == self.armed.0);
-        messages.extend(taken.map(|(_, name)| format!("warning: {name} does not take over: {TAKEN}")));
+        // The request of the other plan was answered before, while the plan's turn was late.
+        let own = replaced.into_iter().filter(|(is_own, _)| *is_own);
+        messages.extend(own.map(|(_, name)| format!("warning: {name} does not take over: {TAKEN}")));
         messages
+    }
+
+    /// Returns the name of the plan of this request, which is armed no longer; `None` if it was not armed.
+    fn disarmed(&mut self, ticket: u32) -> Option<String> {
+        let place = self.armed.iter().position(|(armed, _)| *armed == ticket)?;
+        Some(self.armed.swap_remove(place).1)
     }
 
     /// Answers the request of this number, unless it has been answered.

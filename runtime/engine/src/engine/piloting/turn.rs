@@ -10,7 +10,7 @@ use mdle_runtime::{Machine, Nanos, Output as _, Plan as _, Turn};
 use super::Engine;
 use crate::engine::event::Event;
 use crate::module::PLAN;
-use crate::plans::{EngineAlphabet, NoTrial, PlanTurn, reads};
+use crate::plans::{ENDED, EngineAlphabet, NoTrial, PlanTurn, reads};
 use crate::replay::{History, Repeats};
 
 impl<A: EngineAlphabet> Pilot for Engine<A> {
@@ -106,7 +106,7 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
     fn ended_by(&mut self, rule: &str) -> bool {
         let goes_on = self.ends_trial(&format!("the safety rule {rule} ends it")).is_ok();
         // A replay finds by itself that the trial ends, and knows no requests of other robots.
-        if self.plans.bar_peers("a safety rule has ended a plan") {
+        if self.plans.bar_peers(ENDED) {
             self.plans.note(Change::Cancelled);
         }
         goes_on
