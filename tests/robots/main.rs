@@ -34,6 +34,7 @@ mod replays;
 mod safety;
 mod scenario_records;
 mod scout;
+mod sent_names;
 mod sessions;
 mod several;
 mod shared_modules;

@@ -13,14 +13,14 @@ const ROOM: &str = "t60 = 0.24\n[[wall]]\npoints = [[-2, -3], [5, -3], [5, 3], [
                     [[sound]]\nat = [3, 1]\nkind = \"white\"\n";
 
 /// Runs `mdle` with these words; returns its output, its messages and its exit status.
-fn run(folder: &Path, words: &str) -> (String, String, i32) {
+pub(super) fn run(folder: &Path, words: &str) -> (String, String, i32) {
     let output = Command::new(mdle()).args(words.split(' ')).current_dir(folder).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     (out, err, output.status.code().unwrap())
 }
 
 /// Writes the scenario of `ada` and `bob`, who stand 1 m apart, with these further keys, and their plans.
-fn scenario(folder: &Path, [ada, bob]: [(&str, &str); 2], more: &str) {
+pub(super) fn scenario(folder: &Path, [ada, bob]: [(&str, &str); 2], more: &str) {
     let mut text = "world = \"room.toml\"\nseed = 1\n".to_owned();
     for (name, (keys, plan), start) in [("ada", ada, "0, 0, 0"), ("bob", bob, "0, 1, 0")] {
         fs::write(folder.join(format!("{name}.mdle")), plan).unwrap();
@@ -117,6 +117,12 @@ fn a_plan_that_does_not_check_changes_nothing() {
     // Texts of a kilobyte that would take gigabytes.
     let doubling = (1..=13).map(|n| format!("{{ P{n} (wait {n}) P{} P{} }}\n", n - 1, n - 1));
     let doubled = doubling.collect::<String>() + "{ P0 (wait 9) (Atom (wait 1) stop) }";
+    let copied = |times: usize, condition: &str, count: usize| {
+        let one = format!("{{ P0 ({}) (Atom (wait 1) stop) }}\n", vec![condition; count].join("\n OR "));
+        format!("{{ Go (wait 9) {} }}\n{one}", vec!["P0"; times].join("\n "))
+    };
+    let wide = copied(40, "bumper", 600);
+    let wordy = copied(50, &format!("range({} module) > 1m", "a".repeat(100)), 180);
     let roots = (0..500).map(|n| format!("{{ R{n} (wait 9) P13 }}\n")).collect::<String>() + &doubled;
     let cases = [
         ("{ Go (wait 2s) (Atom (null) (goo 10 0)) }", "there is no law called `goo`"),
@@ -130,7 +136,9 @@ fn a_plan_that_does_not_check_changes_nothing() {
         ("{ Go (null) (Atom (null) (go 20 0)) }", "the plan never ends"),
         ("{ Go (range(none module) > 1m) (Atom (null) stop) }", "/usr/none/range"),
         ("{ Go (wait 2s) (Atom (rendezvous eve) stop) }", "the plan names the robot `eve`"),
-        (&doubled, "atoms, scopes and loops, and one that is sent has 10000 at most"),
+        (&doubled, "atoms, scopes and loops once every plan by name is copied in; the limit is 10000"),
+        (&wide, "operands of conditions once every plan by name is copied in; the limit is 10000"),
+        (&wordy, "bytes of text once every plan by name is copied in; the limit is 1000000"),
         (&roots, "the text has several plans, and one of them can drive: R0, R1…"),
     ];
     for (text, words) in cases {

@@ -91,7 +91,21 @@ pub fn compile_within(
     loader: &mut dyn syntax::Loader,
     limit: Limit,
 ) -> (Vec<Compiled>, Vec<Diagnostic>) {
-    stages(source, text, alphabet, wanted, loader, Some(limit))
+    stages(source, text, alphabet, wanted, loader, (plan::Bounds::FILES, Some(limit)))
+}
+
+/// Compiles like [`compile_with`] the plans of somebody who is not trusted: a plan that exceeds the bounds is an error
+/// before it takes their memory.
+#[must_use]
+pub fn compile_bounded(
+    source: SourceId,
+    text: &str,
+    alphabet: &Alphabet,
+    loader: &mut dyn syntax::Loader,
+    bounds: plan::Bounds,
+) -> (Vec<Compiled>, Vec<Diagnostic>) {
+    let all: Limit = |_| Ok(());
+    stages(source, text, alphabet, None, loader, (bounds, Some(all)))
 }
 
 /// Returns the diagnostics of [`compile_with`] for a file that may use others, without keeping the compiled plans.
@@ -102,7 +116,7 @@ pub fn check_with(
     alphabet: &Alphabet,
     loader: &mut dyn syntax::Loader,
 ) -> Vec<Diagnostic> {
-    stages(source, text, alphabet, None, loader, None).1
+    stages(source, text, alphabet, None, loader, (plan::Bounds::FILES, None)).1
 }
 
 /// Returns the names of the plans that [`compile_with`] compiles of a file. This takes far less time and memory,
@@ -115,21 +129,22 @@ pub fn roots(source: SourceId, text: &str, alphabet: &Alphabet, loader: &mut dyn
     plan::roots(&files, alphabet)
 }
 
-/// Runs all stages, one plan after the other, and keeps the compiled plans if there is a limit for them.
+/// Runs all stages within these bounds, one plan after the other, and keeps the compiled plans if there is a limit for
+/// them.
 fn stages(
     source: SourceId,
     text: &str,
     alphabet: &Alphabet,
     wanted: Option<&str>,
     loader: &mut dyn syntax::Loader,
-    limit: Option<Limit>,
+    (bounds, limit): (plan::Bounds, Option<Limit>),
 ) -> (Vec<Compiled>, Vec<Diagnostic>) {
     let arena = syntax::arena_for(text);
     let (mut files, mut found) = syntax::parse_with(source, text, &arena, loader);
     let (parts, groups) = projection::project(&mut files, &arena, alphabet);
     found.extend(groups);
     found.extend(plan::untyped::complete(&mut files, &arena, alphabet));
-    let (plans, names) = plan::resolve(&files, alphabet, wanted);
+    let (plans, names) = plan::resolve(&files, alphabet, wanted, bounds);
     found.extend(names);
     let mut compiled = Vec::new();
     if !diagnostic::has_errors(&found) {

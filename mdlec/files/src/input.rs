@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 
 use mdle_compiler::alphabet::{Alphabet, nearest};
 use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources};
+use mdle_compiler::plan::Bounds;
 use mdle_compiler::projection::{Part, part_name, projected};
 use mdle_compiler::rust::{self, Header};
 use mdle_compiler::syntax::tree::{Arg, Plan};
-use mdle_compiler::{Compiled, Limit, check_with, compile_within, roots, syntax};
+use mdle_compiler::{Compiled, Limit, check_with, compile_bounded, compile_within, roots, syntax};
 
 use crate::read::Unread;
 use crate::text::{read_text, shown, without_mark};
@@ -85,6 +86,14 @@ impl Input {
     ) -> (Vec<Compiled>, Vec<Diagnostic>) {
         let text = self.sources.text(self.source).to_owned();
         let compiled = compile_within(self.source, &text, alphabet, wanted, self, limit);
+        self.parts = compiled.0.iter().filter_map(|compiled| compiled.part.clone()).collect();
+        compiled
+    }
+
+    /// Compiles as [`Input::compile`] does; a plan that exceeds the bounds is an error before it is made.
+    pub fn compile_bounded(&mut self, alphabet: &Alphabet, bounds: Bounds) -> (Vec<Compiled>, Vec<Diagnostic>) {
+        let text = self.sources.text(self.source).to_owned();
+        let compiled = compile_bounded(self.source, &text, alphabet, self, bounds);
         self.parts = compiled.0.iter().filter_map(|compiled| compiled.part.clone()).collect();
         compiled
     }

@@ -1,24 +1,28 @@
 //! Plans that a session loads, and that other robots send, while the robot runs; their texts are compiled like the text
 //! of the first plan.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
 use codespan_reporting::term::termcolor::NoColor;
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::diagnostic::{Code, Diagnostic, Sources, judged};
-use mdle_compiler::load;
-use mdle_compiler::plan::Nondegenerate;
+use mdle_compiler::fsm::{self, Machine};
+use mdle_compiler::load::{self, LoadError, Loaded, NameBudget};
+use mdle_compiler::plan::Bounds;
 use mdle_engine::{CompiledPlans, EngineAlphabet, PlanSource, Plans, StoredPlan};
 use mdle_files::{FaultyFile, Input, InputError, Target, plan, read_plan};
 use mdle_host::Refusal;
-use mdle_runtime::{Alphabet, Plan as _};
 
 /// Name of a text that was typed, in diagnostics.
 const TYPED: &str = "main";
-/// Maximum number of atoms, scopes and loops of a plan that another robot sends, in which other plans are copied. Plans
-/// that use plans multiply: a short text may need much memory.
-const SENT: usize = 10_000;
+/// Bounds on a plan that another robot sends. Plans that use plans multiply: a short text may need much memory.
+const SENT: Bounds = Bounds { brackets: 10_000, operands: 10_000, text: 1_000_000, is_written_free: false };
+
+/// Number of bytes of names of modules that the plans of another robot may bring into the process, which keeps them.
+const NEW_NAMES: usize = 10_000;
 
 /// Stores the first plan of a run, and enables further plans of this target to be loaded, and plans that name these
 /// robots to be sent.
@@ -31,29 +35,30 @@ pub(crate) fn begin<A: EngineAlphabet>(
     target: &Arc<Target>,
     robots: Vec<String>,
 ) -> Result<(), Refusal> {
-    let target = Arc::clone(target);
-    let started = plans.compile_with(Box::new(move |source| compiled(source, &target, &robots)));
+    let (target, known) = (Arc::clone(target), Known::of(plans, robots));
+    let started = plans.compile_with(Box::new(move |source| compiled(source, &target, &known)));
     started.map_err(|error| Refusal::Fault(format!("the system gives no thread for the compiler: {error}")))?;
     plans.store(first).map_err(Refusal::Fault)
 }
 
 /// Enables other robots to send plans for this target that name these robots. In simulated time, turns wait for them.
 pub(crate) fn begin_at_once<A: EngineAlphabet>(plans: &mut Plans<A>, target: &Arc<Target>, robots: Vec<String>) {
-    let target = Arc::clone(target);
-    plans.compile_at_once_with(Box::new(move |source| compiled(source, &target, &robots)));
+    let (target, known) = (Arc::clone(target), Known::of(plans, robots));
+    plans.compile_at_once_with(Box::new(move |source| compiled(source, &target, &known)));
 }
 
-/// Compiles and loads the plans of a text that no other plan of the text uses. `robots` are those that a plan of
-/// another robot may name.
+/// Compiles and loads the plans of a text that no other plan of the text uses. A plan of another robot names only what
+/// is `known`.
 ///
 /// # Errors
 /// Fails with a sentence and the diagnostics, as `mdlec check` prints them.
 fn compiled<A: EngineAlphabet>(
     source: &PlanSource,
     target: &Target,
-    robots: &[String],
+    known: &Known,
 ) -> Result<CompiledPlans<A>, String> {
-    let is_sent = matches!(source, PlanSource::Peer { .. });
+    let sender = if let PlanSource::Peer { robot, .. } = source { Some(robot.as_str()) } else { None };
+    let is_sent = sender.is_some();
     let input = match source {
         PlanSource::File(path) => read_plan(path, target),
         PlanSource::Text(text) => plan(Path::new(TYPED), text.clone(), target),
@@ -64,7 +69,7 @@ fn compiled<A: EngineAlphabet>(
     let mut input = input.map_err(unread)?;
     let (machines, diagnostics) = if is_sent {
         one_of(&input.roots(&target.alphabet))?;
-        input.compile_within(&target.alphabet, None, is_small)
+        input.compile_bounded(&target.alphabet, SENT)
     } else {
         input.compile(&target.alphabet, None)
     };
@@ -81,25 +86,72 @@ fn compiled<A: EngineAlphabet>(
     if machines.is_empty() {
         return Err(input.only::<()>(Vec::new()).err().map(unread).unwrap_or_default());
     }
-    let files = texts(&input).into();
-    let stored = machines.into_iter().map(|(name, machine)| stored(name, &machine, &input, target, &files));
-    let plans: Vec<StoredPlan<A>> = stored.collect::<Result<_, _>>()?;
-    if is_sent {
-        plans.iter().try_for_each(|plan| names_only(robots, plan.loaded.plan().robots()))?;
-    }
-    Ok(CompiledPlans { plans, warnings })
+    let files: Arc<[(String, String)]> = texts(&input).into();
+    let load = |machine: &Machine| match sender {
+        Some(sender) => known.load(sender, machine, &input, target),
+        None => load::load(machine, &input.sources, &target.alphabet).map_err(|error| error.to_string()),
+    };
+    let plans = machines.into_iter().map(|(name, machine)| {
+        let loaded = Arc::new(load(&machine)?);
+        Ok(StoredPlan { name: name.into(), files: Arc::clone(&files), loaded })
+    });
+    Ok(CompiledPlans { plans: plans.collect::<Result<_, String>>()?, warnings })
 }
 
-/// Checks that the robots that a plan names are among these.
-///
-/// # Errors
-/// The plan names another robot: a sentence.
-fn names_only(robots: &[String], named: &[&str]) -> Result<(), String> {
-    let robots: Vec<&str> = robots.iter().map(String::as_str).collect();
-    let Some(unknown) = named.iter().find(|name| !robots.contains(name)) else { return Ok(()) };
-    let near = did_you_mean(unknown, &robots);
-    let robots = robots.join(", ");
-    Err(format!("the plan names the robot `{unknown}`, which this robot does not know{near}; it knows {robots}"))
+/// The names that plans of other robots may have.
+struct Known {
+    robots: Vec<String>,
+    /// Names of the paths of the run's first plan.
+    paths: Vec<&'static str>,
+    /// For each sender, what is left for new names, which the process keeps.
+    budgets: RefCell<BTreeMap<String, NameBudget>>,
+}
+
+impl Known {
+    /// Returns the names of these robots, and of the paths of these plans.
+    fn of<A: EngineAlphabet>(plans: &Plans<A>, robots: Vec<String>) -> Self {
+        Self { robots, paths: plans.paths().to_vec(), budgets: RefCell::default() }
+    }
+
+    /// Loads the plan that another robot has sent, after a check of the names that would be kept.
+    ///
+    /// # Errors
+    /// The plan has unknown names, too many new ones, or cannot be loaded: a sentence.
+    fn load<A: EngineAlphabet>(
+        &self,
+        sender: &str,
+        machine: &Machine,
+        input: &Input,
+        target: &Target,
+    ) -> Result<Loaded<A>, String> {
+        let robots: Vec<&str> = self.robots.iter().map(String::as_str).collect();
+        if let Some(unknown) = fsm::other_robots(machine).into_iter().find(|name| !robots.contains(name)) {
+            let near = did_you_mean(unknown, &robots);
+            let robots = robots.join(", ");
+            return Err(format!(
+                "the plan names the robot `{unknown}`, which this robot does not know{near}; it knows {robots}"
+            ));
+        }
+        let paths = fsm::replayed_files(machine, &target.alphabet);
+        if let Some(unknown) = paths.into_iter().find(|name| !self.paths.contains(name)) {
+            let near = did_you_mean(unknown, &self.paths);
+            return Err(format!(
+                "the plan replays the path `{unknown}`, which the first plan of the run does not{near}"
+            ));
+        }
+        let mut budgets = self.budgets.borrow_mut();
+        let budget = budgets.entry(sender.to_owned()).or_insert_with(|| NameBudget::new(NEW_NAMES));
+        let loaded = load::load_within(machine, &input.sources, &target.alphabet, budget);
+        loaded.map_err(|error| {
+            if error != LoadError::OverBudget {
+                return error.to_string();
+            }
+            let most = NEW_NAMES / 1000;
+            let sentence =
+                format!("the plans of {sender} have named modules with more than {most} kB of names in this run");
+            format!("{sentence}: use the names of earlier plans")
+        })
+    }
 }
 
 /// Refuses several plans of another robot before they are compiled.
@@ -113,33 +165,10 @@ fn one_of(names: &[String]) -> Result<(), String> {
     }
 }
 
-/// Limits the size of a plan of another robot.
-fn is_small(plan: &Nondegenerate) -> Result<(), Diagnostic> {
-    let plan = plan.plan();
-    let parts = plan.parts().count();
-    if parts <= SENT {
-        return Ok(());
-    }
-    let message = format!("this plan has {parts} atoms, scopes and loops, and one that is sent has {SENT} at most");
-    let help = "use a loop where the same is written many times";
-    Err(Diagnostic::new(Code::E0501, message, plan.root.span, "this plan").help(help))
-}
-
 /// Returns the names and texts of the files of a compiled plan, its own file first.
 pub(crate) fn texts(input: &Input) -> Vec<(String, String)> {
     let names = input.files().map(|path| path.display().to_string());
     names.zip(input.texts().map(str::to_owned)).collect()
-}
-
-fn stored<A: Alphabet + EngineAlphabet>(
-    name: String,
-    machine: &mdle_compiler::fsm::Machine,
-    input: &Input,
-    target: &Target,
-    files: &Arc<[(String, String)]>,
-) -> Result<StoredPlan<A>, String> {
-    let loaded = load::load(machine, &input.sources, &target.alphabet).map_err(|error| error.to_string())?;
-    Ok(StoredPlan { name: name.into(), files: Arc::clone(files), loaded: Arc::new(loaded) })
 }
 
 /// Returns the message about a text that cannot be read.

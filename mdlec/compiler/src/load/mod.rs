@@ -18,7 +18,7 @@ use crate::fsm::{self, Machine, PlanWords, Rows};
 pub use entries::Entered;
 pub use loaded_plan::LoadedPlan;
 pub use moments::{Moment, ScopeMoment};
-pub use names::MOST_NAMES;
+pub use names::{MOST_NAMES, NameBudget};
 use quarks::Quarks;
 pub use table::{Loaded, Shared};
 
@@ -32,6 +32,8 @@ pub enum LoadError {
     Unbound(String),
     /// The plans of this process have more than [`MOST_NAMES`] bytes of names in all.
     TooManyNames,
+    /// The plan has more bytes of new names than its [`NameBudget`].
+    OverBudget,
     /// The plan reads more than [`PUBLISHED`] attributes of modules: the number of attributes.
     TooManyReads(usize),
     /// The plan names more than [`PEERS`] other robots: the number of robots.
@@ -50,6 +52,7 @@ impl fmt::Display for LoadError {
                 "the plans of this program have more than {} kB of names of files and modules, which is the most",
                 MOST_NAMES / 1000
             ),
+            Self::OverBudget => f.write_str("too many new names of modules in the plans that were sent so far"),
             Self::TooManyRobots(count) => {
                 write!(f, "the plan names {count} other robots, and {PEERS} is the most")
             }
@@ -73,10 +76,23 @@ pub fn load<A: mdle_runtime::Alphabet>(
     sources: &Sources,
     alphabet: &alphabet::Alphabet,
 ) -> Result<Loaded<A>, LoadError> {
+    load_within(machine, sources, alphabet, &NameBudget::new(usize::MAX))
+}
+
+/// Loads the plan of a machine as [`load`] does, and spends its new names from this budget.
+///
+/// # Errors
+/// Fails as [`load`] does, and if the plan has more new names.
+pub fn load_within<A: mdle_runtime::Alphabet>(
+    machine: &Machine,
+    sources: &Sources,
+    alphabet: &alphabet::Alphabet,
+    budget: &NameBudget,
+) -> Result<Loaded<A>, LoadError> {
     if alphabet.hash() != A::HASH {
         return Err(LoadError::OtherAlphabet(A::NAME.to_owned()));
     }
-    with_rows(fsm::rows(machine), fsm::words(machine, sources, alphabet), machine, alphabet)
+    assemble(fsm::rows(machine), fsm::words(machine, sources, alphabet), machine, (alphabet, budget))
 }
 
 /// Loads the plan of a machine that has these rows and words.
@@ -89,7 +105,18 @@ pub fn with_rows<A: mdle_runtime::Alphabet>(
     machine: &Machine,
     alphabet: &alphabet::Alphabet,
 ) -> Result<Loaded<A>, LoadError> {
-    let quarks = Quarks { machine, alphabet };
+    assemble(rows, words, machine, (alphabet, &NameBudget::new(usize::MAX)))
+}
+
+/// Assembles a plan from its rows and words, and creates its quarks.
+fn assemble<A: mdle_runtime::Alphabet>(
+    rows: Rows,
+    words: PlanWords,
+    machine: &Machine,
+    (alphabet, budget): (&alphabet::Alphabet, &NameBudget),
+) -> Result<Loaded<A>, LoadError> {
+    let quarks = Quarks { machine, alphabet, budget };
+    let interned = |name| names::interned(name, budget);
     let Rows { guards, operands, laws, marks, facts } = rows;
     let guards = guards.into_iter().map(|Guard { condition, level, around, follows }| {
         Ok(Guard { condition: quarks.condition::<A>(condition)?, level, around, follows })
@@ -98,17 +125,17 @@ pub fn with_rows<A: mdle_runtime::Alphabet>(
     let laws = laws
         .into_iter()
         .map(|LawRow { control, frame }| Ok(LawRow { control: quarks.by_name(control, A::control)?, frame }));
-    let paths = fsm::replayed_files(machine, alphabet).into_iter().map(names::interned);
+    let paths = fsm::replayed_files(machine, alphabet).into_iter().map(interned);
     let (guards, operands, laws) =
         (guards.collect::<Result<_, _>>()?, operands.collect::<Result<_, _>>()?, laws.collect::<Result<_, _>>()?);
-    let reads = names::reads(fsm::module_reads(machine, alphabet))?;
-    let robots = fsm::other_robots(machine).into_iter().map(names::interned).collect::<Result<Vec<_>, _>>()?;
+    let reads = names::reads(fsm::module_reads(machine, alphabet), budget)?;
+    let robots = fsm::other_robots(machine).into_iter().map(interned).collect::<Result<Vec<_>, _>>()?;
     if robots.len() > PEERS {
         return Err(LoadError::TooManyRobots(robots.len()));
     }
-    let meetings = fsm::meetings(machine).into_iter().map(|fsm::Rendezvous { element, robot }| {
-        names::interned(robot).map(|robot| Meeting { scope: element, robot })
-    });
+    let meetings = fsm::meetings(machine)
+        .into_iter()
+        .map(|fsm::Rendezvous { element, robot }| interned(robot).map(|robot| Meeting { scope: element, robot }));
     let (paths, meetings) = (paths.collect::<Result<_, _>>()?, meetings.collect::<Result<_, _>>()?);
     let owned = table::Owned { guards, operands, laws, marks, facts, words, paths, reads, robots, meetings };
     Ok(Loaded::new(machine, owned))

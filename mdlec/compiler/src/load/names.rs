@@ -1,5 +1,6 @@
 //! The names in loaded plans, which are kept as long as the process runs.
 
+use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
@@ -17,25 +18,46 @@ pub const MOST_NAMES: usize = 1_000_000;
 /// The names of this process.
 static NAMES: Mutex<Names> = Mutex::new(Names { kept: BTreeSet::new(), bytes: 0 });
 
+/// Number of bytes of new names that the plans of one source may still bring: the plans of another robot use up none of
+/// the names that the operator's plans need.
+#[derive(Debug)]
+pub struct NameBudget(Cell<usize>);
+
+impl NameBudget {
+    /// Returns a budget of this number of bytes.
+    #[must_use]
+    pub fn new(bytes: usize) -> Self {
+        Self(Cell::new(bytes))
+    }
+
+    fn spend(&self, bytes: usize) -> Result<(), LoadError> {
+        self.0.set(self.0.get().checked_sub(bytes).ok_or(LoadError::OverBudget)?);
+        Ok(())
+    }
+}
+
 /// Returns a name that is never freed; equal texts are kept once.
 ///
 /// # Errors
 /// Fails if there are too many names.
-pub(super) fn interned(name: &str) -> Result<&'static str, LoadError> {
-    NAMES.lock().unwrap_or_else(PoisonError::into_inner).keep(name)
+pub(super) fn interned(name: &str, budget: &NameBudget) -> Result<&'static str, LoadError> {
+    NAMES.lock().unwrap_or_else(PoisonError::into_inner).keep(name, budget)
 }
 
 /// Returns attributes of modules as a list that is never freed; equal lists are kept once.
 ///
 /// # Errors
 /// Fails if there are too many names, or too many attributes for one plan.
-pub(super) fn reads(reads: BTreeSet<AttributeRead<'_>>) -> Result<&'static [ModuleRead], LoadError> {
+pub(super) fn reads(
+    reads: BTreeSet<AttributeRead<'_>>,
+    budget: &NameBudget,
+) -> Result<&'static [ModuleRead], LoadError> {
     static LISTS: Mutex<BTreeSet<&'static [ModuleRead]>> = Mutex::new(BTreeSet::new());
     if reads.len() > PUBLISHED {
         return Err(LoadError::TooManyReads(reads.len()));
     }
     let interned = reads.into_iter().map(|AttributeRead { module, attribute, unit }| {
-        Ok(ModuleRead { module: interned(module)?, attribute: interned(attribute)?, unit })
+        Ok(ModuleRead { module: interned(module, budget)?, attribute: interned(attribute, budget)?, unit })
     });
     let list: Vec<_> = interned.collect::<Result<_, _>>()?;
     let mut lists = LISTS.lock().unwrap_or_else(PoisonError::into_inner);
@@ -44,7 +66,7 @@ pub(super) fn reads(reads: BTreeSet<AttributeRead<'_>>) -> Result<&'static [Modu
     }
     // Its names count once more, so that lists have a limit as well.
     let bytes = list.iter().map(|read| read.module.len() + read.attribute.len()).sum();
-    NAMES.lock().unwrap_or_else(PoisonError::into_inner).count(bytes)?;
+    NAMES.lock().unwrap_or_else(PoisonError::into_inner).count(bytes, budget)?;
     let list: &'static [ModuleRead] = list.leak();
     lists.insert(list);
     Ok(list)
@@ -57,22 +79,23 @@ struct Names {
 }
 
 impl Names {
-    fn keep(&mut self, name: &str) -> Result<&'static str, LoadError> {
+    fn keep(&mut self, name: &str, budget: &NameBudget) -> Result<&'static str, LoadError> {
         if let Some(known) = self.kept.get(name) {
             return Ok(known);
         }
-        self.count(name.len())?;
+        self.count(name.len(), budget)?;
         let kept: &'static str = Box::leak(name.into());
         self.kept.insert(kept);
         Ok(kept)
     }
 
-    /// Includes `more` bytes in the number of bytes kept; fails if there are too many.
-    fn count(&mut self, more: usize) -> Result<(), LoadError> {
+    /// Includes `more` bytes in the number of bytes kept; fails if there are too many, or the budget has fewer.
+    fn count(&mut self, more: usize, budget: &NameBudget) -> Result<(), LoadError> {
         let bytes = self.bytes.saturating_add(more);
         if bytes > MOST_NAMES {
             return Err(LoadError::TooManyNames);
         }
+        budget.spend(more)?;
         self.bytes = bytes;
         Ok(())
     }
@@ -85,10 +108,22 @@ mod tests {
     #[test]
     fn a_name_is_kept_once_and_names_have_a_limit() {
         let mut names = Names { kept: BTreeSet::new(), bytes: 0 };
+        let budget = NameBudget::new(usize::MAX);
+        let mut keep = |name: &str| names.keep(name, &budget);
         let long = "a".repeat(MOST_NAMES - 4);
-        let first = names.keep(&long).unwrap();
-        assert!(std::ptr::eq(first, names.keep(&long).unwrap()));
-        assert_eq!((names.keep("hall"), names.keep("x")), (Ok("hall"), Err(LoadError::TooManyNames)));
-        assert_eq!(names.keep("hall"), Ok("hall"), "a name that is known is no new one");
+        let first = keep(&long).unwrap();
+        assert!(std::ptr::eq(first, keep(&long).unwrap()));
+        assert_eq!((keep("hall"), keep("x")), (Ok("hall"), Err(LoadError::TooManyNames)));
+        assert_eq!(keep("hall"), Ok("hall"), "a name that is known is no new one");
+    }
+
+    #[test]
+    fn a_budget_leaves_the_other_names_alone() {
+        let mut names = Names { kept: BTreeSet::new(), bytes: 0 };
+        let (small, large) = (NameBudget::new(6), NameBudget::new(100));
+        assert_eq!(names.keep("hall", &small), Ok("hall"));
+        assert_eq!((names.keep("door", &small), names.bytes), (Err(LoadError::OverBudget), 4));
+        assert_eq!((names.keep("hall", &small), names.keep("up", &small)), (Ok("hall"), Ok("up")));
+        assert_eq!((names.keep("door", &large), names.keep("door", &small)), (Ok("door"), Ok("door")));
     }
 }

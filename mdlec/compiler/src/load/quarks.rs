@@ -5,7 +5,7 @@ use mdle_runtime::{
     RadiansPerSecond, SonarId, Volts,
 };
 
-use super::{LoadError, names};
+use super::{LoadError, NameBudget, names};
 use crate::alphabet::{self, Kind};
 use crate::fsm::Machine;
 use crate::plan::{self, Compared, Quark, QuarkId, Value};
@@ -15,6 +15,7 @@ use crate::plan::{self, Compared, Quark, QuarkId, Value};
 pub(super) struct Quarks<'m> {
     pub(super) machine: &'m Machine,
     pub(super) alphabet: &'m alphabet::Alphabet,
+    pub(super) budget: &'m NameBudget,
 }
 
 impl Quarks<'_> {
@@ -55,7 +56,7 @@ impl Quarks<'_> {
         let Quark { name, overload, args, text, .. } = self.machine.quark(id);
         let declaration = self.alphabet.declarations_of(name).nth(*overload);
         let kinds = declaration.iter().flat_map(|declaration| declaration.params.iter().map(|param| param.kind));
-        let arguments = args.iter().zip(kinds).map(|(value, kind)| argument(value, kind));
+        let arguments = args.iter().zip(kinds).map(|(value, kind)| argument(value, kind, self.budget));
         let arguments: Vec<_> = arguments.collect::<Result<_, _>>()?;
         make(name, &arguments).ok_or_else(|| LoadError::Unbound(text.clone()))
     }
@@ -75,7 +76,7 @@ fn operator(comparison: &plan::Comparison) -> Operator {
 }
 
 /// Returns an argument for a parameter of this kind.
-fn argument(value: &Value, parameter: Kind) -> Result<Argument<'_>, LoadError> {
+fn argument<'v>(value: &'v Value, parameter: Kind, budget: &NameBudget) -> Result<Argument<'v>, LoadError> {
     let si = value.in_si();
     Ok(match value {
         Value::Quantity { kind, exact, .. } => match kind {
@@ -103,6 +104,6 @@ fn argument(value: &Value, parameter: Kind) -> Result<Argument<'_>, LoadError> {
             Ok(_) | Err(_) => Argument::Integer(*whole),
         },
         Value::Sonar(sonar) => Argument::Sonar(SonarId::new(*sonar)),
-        Value::Name(_, name) => Argument::Name(names::interned(name)?),
+        Value::Name(_, name) => Argument::Name(names::interned(name, budget)?),
     })
 }

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::size::{self, DEPTH, Excess, Measure, Size};
+use super::size::{self, Bounds, DEPTH, Excess, Measure, Size};
 use crate::alphabet::{Alphabet, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::Files;
@@ -30,6 +30,8 @@ pub(super) struct Definitions<'a> {
     written: Size,
     /// Length, in bytes, of the longest argument given to a plan.
     longest: u64,
+    /// Bounds on the sizes of plans.
+    bounds: Bounds,
 }
 
 /// The places in one plan that refer to one and the same other plan.
@@ -41,7 +43,7 @@ struct Uses {
 
 impl<'a> Definitions<'a> {
     /// Collects the plans of `files`; reports duplicate names, recursion and plans that are too large.
-    pub(super) fn collect(files: &'a Files<'a>, alphabet: &Alphabet) -> (Self, Vec<Diagnostic>) {
+    pub(super) fn collect(files: &'a Files<'a>, alphabet: &Alphabet, bounds: Bounds) -> (Self, Vec<Diagnostic>) {
         let mut found = Vec::new();
         let mut by_name = BTreeMap::new();
         for (index, plan) in files.plans.iter().enumerate() {
@@ -86,6 +88,7 @@ impl<'a> Definitions<'a> {
             is_incomplete: files.is_incomplete,
             written: Size::default(),
             longest,
+            bounds,
         };
         definitions.measure(&mut found);
         (definitions, found)
@@ -146,7 +149,7 @@ impl<'a> Definitions<'a> {
         }
         let plan = self.plans[index];
         let here = plan.name.span;
-        if let Some(excess) = sizes[index].excess(&self.written) {
+        if let Some(excess) = sizes[index].excess(&self.written, &self.bounds) {
             self.too_large.insert(index);
             found.push(self.explosion(index, &excess, sizes));
         } else if sizes[index].depth > DEPTH {

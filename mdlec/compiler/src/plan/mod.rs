@@ -36,6 +36,7 @@ pub use functions::{Function, Functions};
 pub use nondegenerate::{Nondegenerate, remove_degeneracy};
 pub use resolve::{resolve, roots};
 pub use resolve_conditions::condition_text;
+pub use size::Bounds;
 pub use walk::{Part, Visit, Walk};
 pub(crate) use words::Words;
 

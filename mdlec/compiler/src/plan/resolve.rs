@@ -10,6 +10,7 @@ use super::parameters::{self, Names, Parameter, Parameters};
 use super::plan_arguments::with_arguments;
 use super::quarks::Quarks;
 use super::resolve_conditions::{self, Around};
+use super::size::Bounds;
 use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, RecordId, Scope};
 use crate::alphabet::{Alphabet, DeclarationKind, Kind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
@@ -22,7 +23,7 @@ const FRAME: f64 = 100_000.0;
 /// Returns the names of the plans of a file to which no other plan refers, without copying plans into each other.
 #[must_use]
 pub fn roots(files: &Files, alphabet: &Alphabet) -> Vec<String> {
-    let (definitions, _) = Definitions::collect(files, alphabet);
+    let (definitions, _) = Definitions::collect(files, alphabet, Bounds::FILES);
     let roots = definitions.roots().into_iter().filter(|plan| plan.params.is_empty());
     roots.map(|plan| plan.name.node.to_owned()).collect()
 }
@@ -30,10 +31,15 @@ pub fn roots(files: &Files, alphabet: &Alphabet) -> Vec<String> {
 /// Resolves the plans of a file and of the files that it uses: the file's plans to which no other plan refers,
 /// or only the plan `wanted`.
 ///
-/// All plans are checked; if any plan has an error, no plan is returned.
+/// All plans are checked; if any plan has an error, or exceeds the bounds, no plan is returned.
 #[must_use]
-pub fn resolve(files: &Files, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Plan>, Vec<Diagnostic>) {
-    let (definitions, mut found) = Definitions::collect(files, alphabet);
+pub fn resolve(
+    files: &Files,
+    alphabet: &Alphabet,
+    wanted: Option<&str>,
+    bounds: Bounds,
+) -> (Vec<Plan>, Vec<Diagnostic>) {
+    let (definitions, mut found) = Definitions::collect(files, alphabet, bounds);
     let roots = || definitions.roots().into_iter().filter(|plan| plan.params.is_empty());
     let asked: Vec<_> = wanted.map_or_else(|| roots().collect(), |name| definitions.get(name).into_iter().collect());
     let names: BTreeSet<_> = asked.iter().map(|plan| plan.name.node).collect();

@@ -9,13 +9,24 @@ use std::collections::BTreeMap;
 use crate::diagnostic::Span;
 use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Element, Frame, Operand, Plan, Primary};
 
-/// Maximum number of atoms, scopes and loops of a plan, without expansion of loops. At this number, `check`
-/// takes half a second and `analyze` a second.
-const BRACKETS: u64 = 1 << 18;
-/// Maximum number of operands of a plan's conditions. At this number, `check` takes half a second.
-const OPERANDS: u64 = 1 << 19;
-/// Maximum length, in bytes, of a plan's text as `--emit plan` prints it.
-const TEXT: u64 = 1 << 26;
+/// Bounds on the size that a plan has once every plan used by name is copied in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bounds {
+    /// Maximum number of atoms, scopes and loops of a plan, without expansion of loops.
+    pub brackets: u64,
+    /// Maximum number of operands of a plan's conditions.
+    pub operands: u64,
+    /// Maximum length, in bytes, of a plan's text as `--emit plan` prints it.
+    pub text: u64,
+    /// `true` if a plan may always be as large as its files are written.
+    pub is_written_free: bool,
+}
+
+impl Bounds {
+    /// The bounds for files of the user. At these, `check` takes half a second and `analyze` a second.
+    pub const FILES: Self = Self { brackets: 1 << 18, operands: 1 << 19, text: 1 << 26, is_written_free: true };
+}
+
 /// Maximum nesting depth.
 pub(super) const DEPTH: u32 = 512;
 
@@ -49,15 +60,15 @@ impl Excess {
 }
 
 impl Size {
-    /// Returns the first limit that this size exceeds; each limit is at least the size `written` of the files as
-    /// written.
-    pub(super) fn excess(&self, written: &Self) -> Option<Excess> {
+    /// Returns the first bound that this size exceeds; `written` is the size of the files as written.
+    pub(super) fn excess(&self, written: &Self, bounds: &Bounds) -> Option<Excess> {
         let limits: [Excess; 3] = [
-            Excess { of: |size| size.brackets, unit: "atoms, scopes and loops", limit: BRACKETS },
-            Excess { of: |size| size.operands, unit: "operands of conditions", limit: OPERANDS },
-            Excess { of: |size| size.text, unit: "bytes of text", limit: TEXT },
+            Excess { of: |size| size.brackets, unit: "atoms, scopes and loops", limit: bounds.brackets },
+            Excess { of: |size| size.operands, unit: "operands of conditions", limit: bounds.operands },
+            Excess { of: |size| size.text, unit: "bytes of text", limit: bounds.text },
         ];
-        limits.into_iter().find(|excess| excess.count(self) > excess.limit.max(excess.count(written)))
+        let free = |excess: &Excess| if bounds.is_written_free { excess.count(written) } else { 0 };
+        limits.into_iter().find(|excess| excess.count(self) > excess.limit.max(free(excess)))
     }
 
     /// Returns the size of two parts in sequence.

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::size::Bounds;
 use super::{Condition, Interrupt, Node, Plan, QuarkId, resolve};
 use crate::alphabet::{self, Alphabet};
 use crate::diagnostic::{SourceId, has_errors};
@@ -76,7 +77,7 @@ impl<'p> Words<'p> {
         }
         let arena = Arena::new();
         let (files, found) = parse_with(SourceId(0), text, &arena, &mut NoFiles);
-        let (mut plans, more) = resolve(&files, self.alphabet, None);
+        let (mut plans, more) = resolve(&files, self.alphabet, None, Bounds::FILES);
         (!has_errors(&found) && !has_errors(&more) && plans.len() == 1).then(|| plans.remove(0))
     }
 }

@@ -166,6 +166,12 @@ impl<A: EngineAlphabet> Plans<A> {
         &self.driving.name
     }
 
+    /// Returns the names of the paths that plans of this run can replay.
+    #[must_use]
+    pub fn paths(&self) -> &[&'static str] {
+        &self.paths
+    }
+
     /// Returns the name of the plan of this request if it is active or armed.
     pub(crate) fn name_of(&self, ticket: u32) -> Option<&str> {
         let armed = self.armed.iter().map(|(plan, _)| (plan.ticket, &*plan.name));
