@@ -152,3 +152,27 @@ fn a_map_that_becomes_impossible_is_a_fault() {
     assert!(report.contains("error: the map maps/a.pgm cannot be written: No such file or directory"), "{report}");
     assert_eq!(output.status.code(), Some(3), "{report}");
 }
+
+#[test]
+fn a_map_that_cannot_be_saved_is_saved_later() {
+    let folder = folder("later");
+    fs::write(folder.join("around.mdle"), AROUND).unwrap();
+    fs::create_dir(folder.join("maps")).unwrap();
+    // A child process takes the folder away before the first turn, and brings it back after 2.5 s.
+    let child = "import os, sys\nos.rename('maps', 'away')\nprint('{}', flush=True)\nturn = 0\n\
+                 for line in sys.stdin:\n    turn += 1\n    if turn == 25:\n        os.rename('away', 'maps')\n    print('{}', flush=True)\n";
+    fs::write(folder.join("away.py"), child).unwrap();
+    let save = "set /usr/map/save true\nwait 1s\nget /usr/map/saved\nget /usr/map/pings\n";
+    fs::write(folder.join("commands"), format!("wait 1s\n{save}wait 2s\n{save}quit\n")).unwrap();
+    let words = "shell around.mdle --paused -x -c commands --target sim --world office --speed max --map maps/a.yaml";
+    let module = "away=exec python3 away.py";
+    let words = words.split(' ').chain(["--module", module]);
+    let output = Command::new(mdle()).args(words).current_dir(&folder).output().unwrap();
+    let report = text(&output);
+    let numbers: Vec<u64> = report.lines().filter_map(|line| line.parse().ok()).collect();
+    let [none, early, once, late] = numbers[..] else { panic!("{report}") };
+    assert!((none, once) == (0, 1) && early < late, "the module goes on: {report}");
+    let warning =
+        "warning: the map maps/a.pgm cannot be written: No such file or directory (os error 2); it can be saved";
+    assert!(report.contains(warning) && report.ends_with("[0]\n"), "{report}");
+}

@@ -377,17 +377,19 @@ fn a_map_shows_the_walls_at_lab_2() {
     let output = run(&folder, &["map", "drive.mcap", "lab2.yaml"]);
     insta::assert_snapshot!(text(&output), @r#"
     error: lab2.yaml exists already
+    help: remove it, or name another file
     [2]
 
     "#);
     fs::write(folder.join("other.pgm"), "").unwrap();
     let output = run(&folder, &["map", "drive.mcap", "third.yaml", "--png", "lab2.png"]);
-    assert_eq!(text(&output), "error: lab2.png exists already\n[2]\n");
+    assert_eq!(text(&output), "error: lab2.png exists already\nhelp: remove it, or name another file\n[2]\n");
     assert!(!folder.join("third.yaml").exists());
     let words = |name| ["map", "drive.mcap", name];
     let answers = ["other.yaml", "other.png", "other"].map(|name| text(&run(&folder, &words(name)))).concat();
     insta::assert_snapshot!(answers, @r#"
     error: other.pgm exists already
+    help: remove it, or name another file
     [2]
     error: other.png is no name of a map: it has to end in .yaml
     help: name it other.yaml

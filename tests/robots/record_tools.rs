@@ -60,7 +60,7 @@ fn a_part_of_a_record_is_a_record() {
         ["log cut square.mcap 10 part.mcap", "log cut square.mcap -1 new.mcap", "log cut none.mcap 1 new.mcap"];
     let refused = refused.map(|arguments| run(&folder, arguments));
     assert!(refused.iter().all(|(out, _, status)| out.is_empty() && *status == 2) && !folder.join("new.mcap").exists());
-    assert_eq!(refused[0].1, "error: part.mcap exists already\n");
+    assert_eq!(refused[0].1, "error: part.mcap exists already\nhelp: remove it, or name another file\n");
 }
 
 /// Viewers refuse messages without the keys that the schemas of Foxglove require.

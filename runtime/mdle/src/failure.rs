@@ -117,7 +117,7 @@ pub(crate) fn unprinted(error: &io::Error) -> Failure {
 
 /// Returns the failure for a file that exists.
 pub(crate) fn exists(path: &Path) -> Failure {
-    Failure::Usage(format!("{} exists already", path.display()))
+    Failure::Usage(format!("{} exists already\nhelp: remove it, or name another file", path.display()))
 }
 
 /// Returns the failure for a file or stream that cannot be written.

@@ -12,6 +12,7 @@ use mdle_engine::{Background, Declare, Exchange, Fault, In, Library, Module, Off
 use mdle_runtime::{Nanos, Pose, Sensed};
 
 use crate::evidence::{GridPing, MapFiles, MapMaker, PingOrder};
+use crate::failure;
 
 /// Name of the module that publishes about the map.
 const MAP: &str = "map";
@@ -176,12 +177,15 @@ impl MapModule {
     }
 
     /// Takes the pings up to the last break, and carries out a command.
-    fn turn(&mut self, offer: &mut Offer<'_>) -> Result<(), Fault> {
+    fn turn(&mut self, offer: &mut Offer<'_>) {
         let command = offer.reading(self.save).map(|reading| reading.at);
         if offer.get(self.save) == Some(true) && command != self.commanded {
             self.commanded = command;
-            let saved = self.run.save_until(offer.now()).map_err(Fault)?;
-            self.times = self.times.saturating_add(i64::from(saved));
+            match self.run.save_until(offer.now()) {
+                Ok(saved) => self.times = self.times.saturating_add(i64::from(saved)),
+                // The map goes on, and may be saved later.
+                Err(sentence) => failure::warning(&format!("the map {sentence}; it can be saved again")),
+            }
         }
         let making = self.run.take(offer.now());
         let (pings, cells) = (making.maker.pings(), making.maker.cells());
@@ -189,15 +193,12 @@ impl MapModule {
         offer.publish(self.pings, i64::try_from(pings).unwrap_or(i64::MAX));
         offer.publish(self.cells, i64::try_from(cells).unwrap_or(i64::MAX));
         offer.publish(self.saved, self.times);
-        Ok(())
     }
 }
 
 impl Background for MapModule {
     fn run(mut self: Box<Self>, mut exchange: Exchange) -> Result<(), Fault> {
-        while let Ok(turn) = exchange.exchange(|offer| self.turn(offer)) {
-            turn?;
-        }
+        while exchange.exchange(|offer| self.turn(offer)).is_ok() {}
         Ok(())
     }
 }
