@@ -204,3 +204,16 @@ fn no_output_goes_over_the_file() {
     assert!(draw.ends_with("exit status 2\n"), "{draw}");
     assert_eq!(fs::read_to_string(folder.join("home/mdle.toml")).unwrap(), "target = \"sim\"\n");
 }
+
+#[test]
+fn a_scenario_is_checked_for_the_robot_that_it_is_built_for() {
+    let folder = home("settings_scenario", "target = \"scout\"\n");
+    let robot = "[[robot]]\nname = \"one\"\nfile = \"plan.mdle\"\nstart = \"0, 0, 0\"\n";
+    fs::write(folder.join("home/one.toml"), robot).unwrap();
+    let refusal = "error: `home/one.toml` is a scenario, whose robots are simulated, and the target is `scout`";
+    for arguments in [&["check", "home/one.toml"][..], &["home/one.toml"]] {
+        let text = message(&folder, arguments);
+        assert!(text.contains(refusal) && text.ends_with("exit status 2\n"), "{text}");
+    }
+    assert!(message(&folder, &["check", "home/one.toml", "--target", "sim"]).ends_with("exit status 0\n"));
+}

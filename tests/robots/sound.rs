@@ -143,11 +143,13 @@ fn sound_that_cannot_be_used_is_refused() {
 }
 
 #[test]
-fn ears_are_for_one_robot() {
+fn options_of_one_robot_are_refused_for_a_scenario() {
     let scenario = root().join("plans/formation/formation.toml");
-    let output = Command::new(mdle()).arg("run").arg(&scenario).args(["--ears", "robot"]).output().unwrap();
-    let message = "[2] error: --ears is for one robot, and a scenario names the plan of each\nhelp: leave it out\n";
-    assert_eq!(refusal(&output), message);
+    for words in [&["--ears", "robot"][..], &["--deny-warnings"]] {
+        let output = Command::new(mdle()).arg("run").arg(&scenario).args(words).output().unwrap();
+        let sentence = "is for one robot, and a scenario names the plan of each\nhelp: leave it out\n";
+        assert_eq!(refusal(&output), format!("[2] error: {} {sentence}", words[0]));
+    }
 }
 
 #[test]

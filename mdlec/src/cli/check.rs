@@ -14,8 +14,10 @@ use mdle_files::{Settings, Target, file_beside};
 /// Checks each plan file and prints its diagnostics.
 pub(super) fn check(options: &Check) -> Result<(), Failure> {
     let mut scenarios = options.plans.iter().filter(|path| scenario::is_scenario(path));
-    let robot = options.target.as_deref().unwrap_or(scenario::SIM);
-    scenarios.try_for_each(|path| scenario::must_be_simulated(path, robot))?;
+    scenarios.try_for_each(|path| {
+        let robot = Settings::beside(path)?.name_of_target(options.target.as_deref());
+        scenario::must_be_simulated(path, robot.as_deref().unwrap_or(scenario::SIM))
+    })?;
     if options.target.as_deref() == Some(ALL) {
         return everywhere(options);
     }

@@ -43,6 +43,7 @@ impl Options {
         let of_a_plan = [
             (run.target.is_some(), "--target"),
             (run.plan.is_some(), "--plan"),
+            (run.deny_warnings, "--deny-warnings"),
             (run.safety.is_some(), "--safety"),
             (run.link.is_some(), "--link"),
             (run.records.is_some(), "--records"),

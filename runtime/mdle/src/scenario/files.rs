@@ -1,6 +1,6 @@
 //! The files that a scenario reads: those of the system, or copies of them inside an executable.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -20,6 +20,8 @@ pub(super) struct Files {
     pub(super) path: PathBuf,
     /// Contents of the files that were read, or of all files inside an executable.
     contents: RefCell<BTreeMap<PathBuf, Vec<u8>>>,
+    /// Texts of the files inside an executable, for the plans that use them.
+    texts: OnceCell<Unsaved>,
     /// `true` for copies inside an executable: no other file is read.
     are_inside: bool,
 }
@@ -27,12 +29,12 @@ pub(super) struct Files {
 impl Files {
     /// Returns the files of the system for the scenario in the file at `path`.
     pub(super) fn of_system(path: &Path) -> Self {
-        Self { path: path.to_owned(), contents: RefCell::default(), are_inside: false }
+        Self { path: path.to_owned(), contents: RefCell::default(), texts: OnceCell::new(), are_inside: false }
     }
 
     /// Returns copies of files for the scenario whose file is called `path`.
     pub(super) fn inside(path: &Path, contents: BTreeMap<PathBuf, Vec<u8>>) -> Self {
-        Self { path: path.to_owned(), contents: RefCell::new(contents), are_inside: true }
+        Self { path: path.to_owned(), contents: RefCell::new(contents), texts: OnceCell::new(), are_inside: true }
     }
 
     /// Returns the contents of all files that were read.
@@ -90,8 +92,8 @@ impl Files {
         let contents = self.contents.borrow();
         let text = |bytes: &[u8]| String::from_utf8_lossy(&without_mark(bytes.to_vec())).into_owned();
         let own = contents.get(path).map(|own| text(own)).ok_or_else(|| no_file(path))?;
-        let others = contents.iter().map(|(path, bytes)| (path.clone(), text(bytes)));
-        Ok(plan(path, own, target)?.with_unsaved(Unsaved::all(others)))
+        let all = || Unsaved::all(contents.iter().map(|(path, bytes)| (path.clone(), text(bytes))));
+        Ok(plan(path, own, target)?.with_unsaved(self.texts.get_or_init(all).clone()))
     }
 
     /// Keeps the files of a plan that has been compiled, and prints its diagnostics. For a plan inside an executable,

@@ -36,7 +36,8 @@ pub(super) fn sent_by(own: &str, file: &ScenarioText, files: &Files) -> Result<V
             return Err(ScenarioError::at(unknown.span(), message).help(help));
         }
         if text.from.get_ref() == text.to.get_ref() {
-            return Err(ScenarioError::at(text.to.span(), "a robot sends no plan to itself"));
+            let error = ScenarioError::at(text.to.span(), "a robot sends no plan to itself");
+            return Err(error.help("name another robot; a robot's own plan is the `file` of its `[[robot]]`"));
         }
         if text.from.get_ref() == own {
             plans.push(sent_plan(text, files)?);
@@ -51,7 +52,8 @@ fn sent_plan(text: &SentPlanText, files: &Files) -> Result<SentPlan, ScenarioErr
     let file = files.named(text.file.get_ref());
     let unread = |error| format!("the plan {} cannot be read: {error}", file.display());
     let plan = files.text(&file, LONGEST_TEXT as u64);
-    let plan = plan.map_err(|error| ScenarioError::at(text.file.span(), unread(error)))?;
+    let help = format!("name a file of at most {LONGEST_TEXT} bytes, by its path from the folder of the scenario");
+    let plan = plan.map_err(|error| ScenarioError::at(text.file.span(), unread(error)).help(help))?;
     let when = match &text.when {
         None => When::Now,
         Some(word) => {
