@@ -104,6 +104,6 @@ fn a_plan_of_a_stranger_is_refused() {
 #[test]
 fn a_plan_that_the_other_robot_cannot_run_is_refused() {
     let [ada, bob] = send("tcp_plan_faulty", [KEY, KEY], "{ Go (wait 1s) (Atom (null) path(way)) }");
-    assert!(ada.contains("bob refuses the plan: the plan replays the path `way`"), "{ada}");
+    assert!(ada.contains("bob refuses the plan Go: the plan replays the path `way`"), "{ada}");
     assert!(bob.contains("plan over: wait 5s (stand.mdle:1)"), "{bob}");
 }

@@ -147,7 +147,7 @@ fn a_plan_that_does_not_check_changes_nothing() {
         let (out, err, status) = run(&folder, "run two.toml --log run.mcap");
         assert_eq!(status, 0, "{text}: {out}{err}");
         let refused = "bob: warning: state link: the plan of ada is refused: ";
-        let told = "ada: warning: state link: bob refuses the plan: ";
+        let told = "ada: warning: state link: bob refuses the plan go.mdle: ";
         assert!(out.contains(refused) && out.contains(told) && out.contains(words), "{text}: {out}{err}");
         assert!(out.contains("8.0 s  bob: plan over: wait 8s (bob.mdle:1)"), "{text}: {out}{err}");
         assert_replayed(&folder, "bob");

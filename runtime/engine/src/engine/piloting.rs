@@ -157,13 +157,14 @@ impl<A: EngineAlphabet> Engine<A> {
         self.link.as_ref().map_or(&[], StateLink::recipients)
     }
 
-    /// Sends the text of a plan, which is to take over at the robot `to`; its answer becomes a message.
+    /// Sends a plan to the robot `to`, by its name and text, with the moment at which it is to take over; its answer
+    /// becomes a message.
     ///
     /// # Errors
     /// The plan cannot be sent: a sentence.
-    pub fn send_plan(&mut self, to: &str, text: &str, when: When, now: Nanos) -> Result<(), String> {
+    pub fn send_plan(&mut self, to: &str, plan: (&str, &str, When), now: Nanos) -> Result<(), String> {
         match &mut self.link {
-            Some(link) => link.send_plan(to, text, when, now),
+            Some(link) => link.send_plan(to, plan, now),
             None => Err("this robot has no state link".to_owned()),
         }
     }

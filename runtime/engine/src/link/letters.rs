@@ -60,7 +60,9 @@ impl Letters {
     /// Robot and peer have no key for letters, or the peer has not been heard: a sentence.
     pub(super) fn draft(&self, to: &str, letter: &Letter, session: Option<u64>, sent: Nanos) -> Result<Draft, String> {
         let key = self.key(to).ok_or_else(|| format!("the file of the link has no key `plans` for {to}"))?;
-        let meant_for = session.ok_or_else(|| format!("{to} has not been heard yet"))?;
+        let meant_for = session.ok_or_else(|| {
+            format!("{to} has not been heard yet; send the plan again once it runs with a link to this robot")
+        })?;
         let envelope = Envelope { from: self.own.clone(), to: to.to_owned(), sent_in: self.session, meant_for, sent };
         Ok(letter_frame::written(&envelope, letter, key))
     }

@@ -1,6 +1,6 @@
 //! Plans that other robots send, on their way to take over, and the answers to plans that this robot has sent.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use mdle_runtime::{Nanos, Printable};
 
@@ -10,6 +10,9 @@ use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
 
 /// Answer to a plan of a robot that sends plans too fast.
 const TOO_FAST: &str = "it sends more than one plan a second: send it again later";
+
+/// Number of plans that were sent whose names are kept.
+const NAMES: usize = 64;
 
 /// The plans that are exchanged with other robots.
 #[derive(Debug, Default)]
@@ -22,6 +25,8 @@ pub(super) struct Orders {
     pub(super) sends_to: Vec<String>,
     /// Number of the letter that was sent last.
     sent: u64,
+    /// Numbers and names of the plans that were sent last, for messages about their answers.
+    names: VecDeque<(u64, String)>,
     /// Plans of other robots that have neither taken over nor been refused.
     waiting: Vec<Order>,
     /// Paces of the robots that have sent plans.
@@ -48,7 +53,7 @@ impl Orders {
         Self { own: own.to_owned(), ..Self::default() }
     }
 
-    /// Sends the text of a plan, which is to take over at the robot `to`.
+    /// Sends the text of a plan of this name, which is to take over at the robot `to`.
     ///
     /// # Errors
     /// The plan cannot be sent: a sentence.
@@ -56,13 +61,22 @@ impl Orders {
         &mut self,
         link: &mut dyn Link,
         to: &str,
-        (text, when): (&str, When),
+        (name, text, when): (&str, &str, When),
         now: Nanos,
     ) -> Result<(), String> {
         if text.len() > LONGEST_TEXT {
             return Err(format!("the plan has {} bytes, and one that is sent has {LONGEST_TEXT} at most", text.len()));
         }
-        self.post(link, to, Content::Plan { when, text: text.to_owned() }, now)
+        self.post(link, to, Content::Plan { when, text: text.to_owned() }, now)?;
+        self.names.truncate(NAMES - 1);
+        self.names.push_front((self.sent, name.to_owned()));
+        Ok(())
+    }
+
+    /// Returns the words for the plan of the letter of this number, which this robot has sent.
+    fn plan(&self, number: u64) -> String {
+        let name = self.names.iter().find(|(sent, _)| *sent == number);
+        name.map_or_else(|| "a plan".to_owned(), |(_, name)| format!("the plan {name}"))
     }
 
     fn post(&mut self, link: &mut dyn Link, to: &str, content: Content, now: Nanos) -> Result<(), String> {
@@ -89,8 +103,8 @@ impl Orders {
             Content::Answer { is_accepted: true, sentence, .. } => {
                 Some(format!("state link: {from} takes the plan: {}", printable(&sentence)))
             }
-            Content::Answer { is_accepted: false, sentence, .. } => {
-                Some(format!("warning: state link: {from} refuses the plan: {}", printable(&sentence)))
+            Content::Answer { is_accepted: false, sentence, of } => {
+                Some(format!("warning: state link: {from} refuses {}: {}", self.plan(of), printable(&sentence)))
             }
             Content::Plan { .. } if !self.takes_from.contains(&from) => {
                 let sentence = format!("{} takes no plans of {from}", self.own);

@@ -77,12 +77,12 @@ impl StateLink {
         &self.orders.sends_to
     }
 
-    /// Sends the text of a plan, which is to take over at the robot `to`.
+    /// Sends the text of a plan of this name, which is to take over at the robot `to`.
     ///
     /// # Errors
     /// The plan cannot be sent: a sentence.
-    pub(crate) fn send_plan(&mut self, to: &str, text: &str, when: When, now: Nanos) -> Result<(), String> {
-        self.orders.send(&mut *self.link, to, (text, when), now)
+    pub(crate) fn send_plan(&mut self, to: &str, plan: (&str, &str, When), now: Nanos) -> Result<(), String> {
+        self.orders.send(&mut *self.link, to, plan, now)
     }
 
     /// Begins to compile the plans that have arrived; returns messages about them, and about answers.

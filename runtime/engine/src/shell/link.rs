@@ -49,6 +49,6 @@ fn send<A: EngineAlphabet>(
     if plan.files.len() > 1 {
         return Err(format!("{name} uses other files, and a plan is sent without them"));
     }
-    moment.pilot.send_plan(robot, plan.text(), when, moment.t)?;
+    moment.pilot.send_plan(robot, (&plan.name, plan.text(), when), moment.t)?;
     Ok(format!("{name} is sent to {robot}"))
 }

@@ -178,8 +178,8 @@ impl Runner {
         if let Some((ears, microphones)) = &mut self.ears {
             microphones.put(t, ears.heard(&self.robot.pose(), t));
         }
-        while let Some(SentPlan { to, text, when, .. }) = self.sends.pop_front_if(|plan| plan.at <= t) {
-            if let Err(sentence) = self.engine.send_plan(&to, &text, when, t) {
+        while let Some(SentPlan { to, name, text, when, .. }) = self.sends.pop_front_if(|plan| plan.at <= t) {
+            if let Err(sentence) = self.engine.send_plan(&to, (&name, &text, when), t) {
                 made.lines.push(format!("warning: no plan is sent to {to}: {sentence}"));
             }
         }

@@ -15,6 +15,8 @@ pub(super) struct SentPlan {
     pub(super) at: Nanos,
     /// Name of the robot that gets the plan.
     pub(super) to: String,
+    /// Name of the file, as the scenario gives it.
+    pub(super) name: String,
     pub(super) text: String,
     /// Moment at which the plan takes over.
     pub(super) when: When,
@@ -62,5 +64,6 @@ fn sent_plan(text: &SentPlanText, files: &Files) -> Result<SentPlan, ScenarioErr
         }
     };
     let at = Nanos(u64::try_from(at.as_nanos()).unwrap_or(u64::MAX));
-    Ok(SentPlan { at, to: text.to.get_ref().clone(), text: plan, when })
+    let (to, name) = (text.to.get_ref().clone(), text.file.get_ref().display().to_string());
+    Ok(SentPlan { at, to, name, text: plan, when })
 }

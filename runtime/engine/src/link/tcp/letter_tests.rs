@@ -54,7 +54,9 @@ fn letters_go_both_ways_once_both_are_heard() {
     let (at_ada, at_bob) = (address(&one), address(&other));
     let mut ada = Tcp::on(one, &exchanging("ada", ("bob", at_bob), "pair")).unwrap();
     let mut bob = Tcp::on(other, &exchanging("bob", ("ada", at_ada), "pair")).unwrap();
-    assert_eq!(ada.post("bob", &plan("ada", 1), Nanos::ZERO), Err("bob has not been heard yet".to_owned()));
+    let unheard =
+        Err("bob has not been heard yet; send the plan again once it runs with a link to this robot".to_owned());
+    assert_eq!(ada.post("bob", &plan("ada", 1), Nanos::ZERO), unheard);
     assert_eq!(ada.post("eve", &plan("ada", 1), Nanos::ZERO), Err("there is no robot `eve`".to_owned()));
     let mut number = 0;
     let mut send = |robot: &str, link: &mut Tcp| {
