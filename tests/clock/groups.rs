@@ -2,10 +2,11 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
-use std::net::TcpListener;
 use std::process::{Command, Stdio};
 
 use mdle_tests::executable::{folder, mdle};
+
+use super::addresses;
 
 const PLAN: &str = "{ Group [ada bob] Pair (any bumper OR wait 20s)
   (Atom (all rendezvous) stop)
@@ -13,12 +14,10 @@ const PLAN: &str = "{ Group [ada bob] Pair (any bumper OR wait 20s)
 }
 ";
 
-#[test]
-fn each_program_runs_the_part_of_its_link() {
+pub(crate) fn each_program_runs_the_part_of_its_link() {
     let folder = folder("group_over_tcp");
     fs::write(folder.join("pair.mdle"), PLAN).unwrap();
-    let listeners = [(); 2].map(|()| TcpListener::bind("127.0.0.1:0").unwrap());
-    let [ada, bob] = listeners.map(|listener| listener.local_addr().unwrap());
+    let [ada, bob] = addresses();
     let robots = [("ada", ada, "bob", bob), ("bob", bob, "ada", ada)];
     let children = robots.map(|(own, listen, other, address)| {
         let link = format!(

@@ -4,7 +4,7 @@
 
 use std::fs;
 use std::io::Write as _;
-use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::net::{SocketAddr, TcpStream};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
@@ -16,8 +16,7 @@ const NAMES: [&str; 3] = ["ada", "bob", "eve"];
 
 /// Writes the file of each robot's link; returns their addresses.
 fn with_links(folder: &Path, key_of_eve: &str) -> [SocketAddr; 3] {
-    let listeners = NAMES.map(|_| TcpListener::bind("127.0.0.1:0").unwrap());
-    let addresses = listeners.map(|listener| listener.local_addr().unwrap());
+    let addresses = super::addresses();
     for (name, address) in NAMES.into_iter().zip(addresses) {
         let key = if name == "eve" { key_of_eve } else { "key" };
         let mut text = format!("name = \"{name}\"\nlisten = \"{address}\"\nkey = \"{key}\"\n");
@@ -45,8 +44,7 @@ fn ended(child: Child) -> String {
     out + &err
 }
 
-#[test]
-fn three_processes_meet_and_go_on_when_one_is_killed() {
+pub(crate) fn three_processes_meet_and_go_on_when_one_is_killed() {
     let folder = folder("links");
     let addresses = with_links(&folder, "key");
     let waits = "{ P (wait 30s) (Atom (rendezvous bob AND rendezvous eve) stop) (Atom (NOT sync eve) stop) \
@@ -75,8 +73,7 @@ fn three_processes_meet_and_go_on_when_one_is_killed() {
     }
 }
 
-#[test]
-fn a_robot_with_another_key_is_no_peer() {
+pub(crate) fn a_robot_with_another_key_is_no_peer() {
     let folder = folder("link_keys");
     with_links(&folder, "another");
     let ada = begin(&folder, "ada", "{ P (wait 2) (Atom (sync eve) stop) }");

@@ -1,6 +1,10 @@
 //! Executables on emulated robots by the clock: signals, suspension and faults. No other program of tests runs beside
 //! them, as they mostly wait.
 
+use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::sync::atomic::{AtomicU16, Ordering};
+use std::thread;
+
 mod bad_line;
 mod faults;
 mod groups;
@@ -23,7 +27,37 @@ fn a_built_robot_stands_after_faults() {
     ]);
 }
 
+/// The rules for robots whose programs are linked: in one test, as each of them waits for most of its time.
+#[test]
+fn linked_robots_go_by_the_clock() {
+    at_once(&[
+        groups::each_program_runs_the_part_of_its_link,
+        links::three_processes_meet_and_go_on_when_one_is_killed,
+        links::a_robot_with_another_key_is_no_peer,
+        pursuits::simulated_robots_learn_over_a_bad_line,
+        pursuits::scouts_in_one_world_learn_over_tcp,
+        pursuits::a_program_that_dies_leaves_no_scout_waiting,
+        sent_plans::a_plan_reads_a_module_of_another_process,
+        sent_plans::a_plan_takes_over_in_another_process,
+        sent_plans::a_plan_with_another_key_is_refused,
+        sent_plans::a_plan_of_a_stranger_is_refused,
+        sent_plans::a_plan_for_a_stranger_is_not_sent,
+        sent_plans::a_plan_that_the_other_robot_cannot_run_is_refused,
+    ]);
+}
+
 /// Runs these at the same time: for most of their time they wait.
 fn at_once(rules: &[fn()]) {
-    std::thread::scope(|scope| rules.iter().for_each(|rule| drop(scope.spawn(rule))));
+    thread::scope(|scope| rules.iter().for_each(|rule| drop(scope.spawn(rule))));
+}
+
+/// Returns addresses at which nobody listens. Their host is that of one test, as others would get ports of it that are
+/// free, but not yet taken by the robots.
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+fn addresses<const COUNT: usize>() -> [SocketAddr; COUNT] {
+    static HOST: AtomicU16 = AtomicU16::new(2);
+    let [high, low] = HOST.fetch_add(1, Ordering::Relaxed).to_be_bytes();
+    let host = Ipv4Addr::new(127, 0, high, low);
+    let listeners = [(); COUNT].map(|()| TcpListener::bind((host, 0)).unwrap());
+    listeners.map(|listener| listener.local_addr().unwrap())
 }

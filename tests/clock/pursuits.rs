@@ -5,11 +5,12 @@
 
 use std::cell::{Cell, RefCell};
 use std::fs;
-use std::net::{SocketAddr, TcpListener};
+use std::iter;
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::rc::Rc;
-use std::thread::sleep;
+use std::thread::{self, sleep};
 use std::time::{Duration, Instant};
 
 use mdle_emulator::{Ailment, Embodied, Emulated, Pace, Port, Seat, Several};
@@ -50,8 +51,7 @@ fn prepared(test: &str, laps: u64, timer: &str, line: Option<Line>, seed: u64) -
     }
     fs::copy(plans.join("robot1/lastPath.csv"), folder.join("robot1/lastPath.csv")).unwrap();
     fs::write(folder.join("floor.toml"), FLOOR).unwrap();
-    let listeners = ROBOTS.map(|_| TcpListener::bind("127.0.0.1:0").unwrap());
-    let addresses = listeners.map(|listener| listener.local_addr().unwrap());
+    let addresses: [SocketAddr; 3] = super::addresses();
     for (own, ((name, _, x, _), listen)) in ROBOTS.into_iter().zip(addresses).enumerate() {
         let mut text = format!("name = \"{name}\"\nlisten = \"{listen}\"\nkey = \"key\"\nstart = \"{x},0,0\"\n");
         for (other, ((name, ..), peer)) in ROBOTS.into_iter().zip(addresses).enumerate() {
@@ -137,8 +137,7 @@ fn assert_converge(test: &str, courses: &[Course; 3], laps: u64) {
     assert!(laps < 4 || leaders[4] <= 2.0 && leaders[6] <= 1.0, "{leaders:?}\n{all}");
 }
 
-#[test]
-fn simulated_robots_learn_over_a_bad_line() {
+pub(crate) fn simulated_robots_learn_over_a_bad_line() {
     // As fast as the clock with all laps, or else four times as fast with a line that is.
     let (laps, speed) = (sized(2, 4), sized(4, 1));
     for seed in 0..sized(1, 5) {
@@ -244,8 +243,7 @@ fn on_scouts(folder: &Path, pace: Pace, seed: u64, victim: Option<Victim>) -> [C
     })
 }
 
-#[test]
-fn scouts_in_one_world_learn_over_tcp() {
+pub(crate) fn scouts_in_one_world_learn_over_tcp() {
     let laps = sized(2, 4);
     for seed in 0..sized(1, 10) {
         let folder = prepared("scouts", laps, "10min", None, 0);
@@ -254,27 +252,34 @@ fn scouts_in_one_world_learn_over_tcp() {
     }
 }
 
-#[test]
-fn a_program_that_dies_leaves_no_scout_waiting() {
+pub(crate) fn a_program_that_dies_leaves_no_scout_waiting() {
     let mut chance = Chance::new(7);
-    for run in 0..repeated(4) {
-        let folder = prepared("scouts_killed", 2, "2min", None, 0);
-        let victim = run as usize % 3;
-        let time = Duration::from_millis(chance.below(65_000) as u64);
-        let courses = on_scouts(&folder, Pace::Lockstep(PERIOD), run, Some((victim, time)));
-        let Course { status, report, .. } = &courses[victim];
-        assert!(status.is_none() || report.contains("plan over: bumper"), "it was killed: {report}");
-        println!("{} killed after {} s", ROBOTS[victim].0, time.as_secs_f64());
-        for (number, Course { status, report, .. }) in courses.iter().enumerate() {
-            let (name, ..) = ROBOTS[number];
-            let last = report.lines().rfind(|line| line.contains(" s  ")).unwrap_or_default();
-            if number == victim {
-                continue;
-            }
-            println!("    {name}: {last}");
-            assert_eq!(*status, Some(0), "{name}: {report}");
-            let words = ["plan over: wait 2min", "plan over: bumper", "plan over: completed"];
-            assert!(words.iter().any(|words| last.contains(words)), "{name}: {report}");
+    let mut times = (0..repeated(4)).map(|run| (run, Duration::from_millis(chance.below(65_000) as u64)));
+    // Two at the same time, as they mostly wait.
+    while let Some(first) = times.next() {
+        thread::scope(|scope| {
+            iter::once(first).chain(times.next()).for_each(|(run, time)| drop(scope.spawn(move || killed(run, time))));
+        });
+    }
+}
+
+/// Asserts that two Scouts go on or end their plans after the program of the third is killed at this time.
+fn killed(run: u64, time: Duration) {
+    let folder = prepared(&format!("scouts_killed_{}", run % 2), 2, "2min", None, 0);
+    let victim = run as usize % 3;
+    let courses = on_scouts(&folder, Pace::Lockstep(PERIOD), run, Some((victim, time)));
+    let Course { status, report, .. } = &courses[victim];
+    assert!(status.is_none() || report.contains("plan over: bumper"), "it was killed: {report}");
+    println!("{} killed after {} s", ROBOTS[victim].0, time.as_secs_f64());
+    for (number, Course { status, report, .. }) in courses.iter().enumerate() {
+        let (name, ..) = ROBOTS[number];
+        let last = report.lines().rfind(|line| line.contains(" s  ")).unwrap_or_default();
+        if number == victim {
+            continue;
         }
+        println!("    {name}: {last}");
+        assert_eq!(*status, Some(0), "{name}: {report}");
+        let words = ["plan over: wait 2min", "plan over: bumper", "plan over: completed"];
+        assert!(words.iter().any(|words| last.contains(words)), "{name}: {report}");
     }
 }

@@ -3,17 +3,17 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
-use std::net::TcpListener;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
 use mdle_tests::executable::{folder, mdle};
 
+use super::addresses;
+
 /// Writes the link files of `ada` and `bob`, with these keys besides those that every file has, for the robot and for
 /// its peer.
 fn with_links(folder: &Path, keys: [(&str, &str); 2]) {
-    let listeners = [(); 2].map(|()| TcpListener::bind("127.0.0.1:0").unwrap());
-    let [ada, bob] = listeners.map(|listener| listener.local_addr().unwrap());
+    let [ada, bob] = addresses();
     for ((own, at, other, address), (more, peer)) in
         [("ada", ada, "bob", bob), ("bob", bob, "ada", ada)].into_iter().zip(keys)
     {
@@ -38,8 +38,7 @@ fn ended(child: Child) -> String {
     format!("{out}{err}[{}]", status.code().unwrap())
 }
 
-#[test]
-fn a_plan_reads_a_module_of_another_process() {
+pub(crate) fn a_plan_reads_a_module_of_another_process() {
     let folder = folder("tcp_modules");
     with_links(&folder, [("", ""), ("shares = [\"near\"]", "")]);
     let near = "echo '{\"publishes\": {\"range\": \"m\"}}'; while read line; do echo '{\"range\": 0.25}'; done";
@@ -79,30 +78,32 @@ fn send(test: &str, [of_ada, of_bob]: [&str; 2], plan: &str) -> [String; 2] {
 const GO: &str = "{ Go (wait 1s) (Atom (null) (go 10 0)) }";
 const KEY: &str = "plans = \"a word of two\"";
 
-#[test]
-fn a_plan_takes_over_in_another_process() {
+pub(crate) fn a_plan_takes_over_in_another_process() {
     let [ada, bob] = send("tcp_plan", [KEY, KEY], GO);
     assert!(ada.contains("Go is sent to bob") && ada.contains("bob takes the plan: Go takes over"), "{ada}");
     assert!(bob.contains("go 10 0 (plan of ada:1)  <- main set to Go"), "{bob}");
     assert!(bob.contains("plan over: wait 1s (plan of ada:1)") && bob.ends_with("[0]"), "{bob}");
 }
 
-#[test]
-fn a_plan_of_a_stranger_is_refused() {
-    for (test, keys, words) in [
-        ("tcp_plan_key", [KEY, "plans = \"another\""], "a letter of ada is refused: it has another key `plans`"),
-        ("tcp_plan_stranger", [KEY, ""], "a letter of ada is refused: no plans are exchanged with ada"),
-    ] {
-        let [ada, bob] = send(test, keys, GO);
-        assert!(bob.contains(words) && bob.contains("plan over: wait 5s (stand.mdle:1)"), "{ada}{bob}");
-    }
+pub(crate) fn a_plan_with_another_key_is_refused() {
+    let [ada, bob] = send("tcp_plan_key", [KEY, "plans = \"another\""], GO);
+    let refused = bob.contains("a letter of ada is refused: it has another key `plans`");
+    assert!(refused && bob.contains("plan over: wait 5s (stand.mdle:1)"), "{ada}{bob}");
+}
+
+pub(crate) fn a_plan_of_a_stranger_is_refused() {
+    let [ada, bob] = send("tcp_plan_stranger", [KEY, ""], GO);
+    let refused = bob.contains("a letter of ada is refused: no plans are exchanged with ada");
+    assert!(refused && bob.contains("plan over: wait 5s (stand.mdle:1)"), "{ada}{bob}");
+}
+
+pub(crate) fn a_plan_for_a_stranger_is_not_sent() {
     let [ada, bob] = send("tcp_plan_none", ["", KEY], GO);
     assert!(ada.contains("/link/bob/send_plan") && ada.ends_with("[1]"), "{ada}");
     assert!(bob.contains("plan over: wait 5s (stand.mdle:1)"), "{bob}");
 }
 
-#[test]
-fn a_plan_that_the_other_robot_cannot_run_is_refused() {
+pub(crate) fn a_plan_that_the_other_robot_cannot_run_is_refused() {
     let [ada, bob] = send("tcp_plan_faulty", [KEY, KEY], "{ Go (wait 1s) (Atom (null) path(way)) }");
     assert!(ada.contains("bob refuses the plan Go: the plan replays the path `way`"), "{ada}");
     assert!(bob.contains("plan over: wait 5s (stand.mdle:1)"), "{bob}");

@@ -52,11 +52,6 @@ fn is_not_driven_off_again<R: Robot>() {
     assert!(ran.errors().contains("a fault stopped the robot: "), "{}", ran.errors());
 }
 
-#[test]
-fn a_robot_is_not_driven_off_again_after_a_suspension() {
-    at_once(&[is_not_driven_off_again::<Scout>, is_not_driven_off_again::<Atrv>]);
-}
-
 /// Suspends the program after its first motion command, which is to stop.
 fn is_not_driven<R: Robot>(words: &str) {
     let (ran, resumed) = suspended::<R>("opening", |robot| robot.orders().last().is_some());
@@ -67,8 +62,10 @@ fn is_not_driven<R: Robot>(words: &str) {
 }
 
 #[test]
-fn a_robot_is_not_driven_after_a_suspended_start() {
+fn a_robot_is_not_driven_after_a_suspension() {
     at_once(&[
+        is_not_driven_off_again::<Scout>,
+        is_not_driven_off_again::<Atrv>,
         || is_not_driven::<Scout>("the Scout has stopped itself, as no command came for 1 s:"),
         || is_not_driven::<Atrv>("the ATRV was stopped, as no command came for 500 ms:"),
     ]);

@@ -57,10 +57,12 @@ fn a_robot_without_a_fault_ends_as_the_plan_says() {
 
 fn an_atrv_that_receives_nothing_ends_the_plan() {
     // One that stops by itself after a second, and one that does not; over a serial line and TCP.
-    let ran_out = alone::<Atrv>(&["deaf"]);
+    let (ran_out, drives_on) = thread::scope(|scope| {
+        let drives_on = scope.spawn(|| ran::<Atrv>(&["deaf", "runaway"], &[], Way::Tcp, |_, _| {}));
+        (alone::<Atrv>(&["deaf"]), drives_on.join().unwrap())
+    });
     ran_out.assert(3, &["may not have stopped", "does not receive"], &[Order::Drive]);
     assert!(ran_out.robot.stands() && !ran_out.robot.is_braked());
-    let drives_on = ran::<Atrv>(&["deaf", "runaway"], &[], Way::Tcp, |_, _| {});
     drives_on.assert(3, &["may not have stopped", "does not"], &[Order::Drive]);
     assert!(!drives_on.robot.stands());
 }
