@@ -3,8 +3,9 @@
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
 
 use mdle_tests::chance::repeated;
 use mdle_tests::executable::{folder, mdle};
@@ -37,7 +38,7 @@ fn landmarks(output: &Output) -> String {
 
 /// Graph of four landmarks in a folder of its own: a plan that ends, one that never ends, one that is cut short, and
 /// two that only their own conditions can end.
-fn small_graph(test: &str) -> std::path::PathBuf {
+fn small_graph(test: &str) -> PathBuf {
     let folder = folder(test);
     let graph = "Γ_a^b = { AToB (bumper) (Atom (wait 1s) (go 20 0)) }\n\
                  Γ_b^c = { BToC (Atom (null) (go 0 0)) (Atom (wait 1s) (go 20 0)) }\n\
@@ -80,9 +81,21 @@ fn a_route_of_two_plans_is_driven() {
     "#);
 }
 
-/// A folder with the graph of the repository, and maps of its landmarks that a Scout has made.
-fn mapped(test: &str) -> std::path::PathBuf {
+/// A folder for a test with the graph of the repository, and maps of its landmarks that a Scout has made, once for all
+/// tests.
+fn mapped(test: &str) -> PathBuf {
+    static MADE: OnceLock<PathBuf> = OnceLock::new();
+    let made = MADE.get_or_init(with_maps);
     let folder = folder(test);
+    for file in fs::read_dir(made).unwrap() {
+        let file = file.unwrap();
+        fs::copy(file.path(), folder.join(file.file_name())).unwrap();
+    }
+    folder
+}
+
+fn with_maps() -> PathBuf {
+    let folder = folder("navigation_made");
     fs::copy(root().join("plans/navigation/office.mdle"), folder.join("office.mdle")).unwrap();
     let drive = root().join("plans/navigation/map.mdle");
     let mut landmarks = String::new();
