@@ -11,6 +11,8 @@ pub(crate) const HALF: f64 = CELL * CELLS as f64 / 2.0;
 const MOST: f64 = 5.0;
 /// Half the angle of a sonar's cone, in radians.
 const CONE: f64 = 12.5 * std::f64::consts::PI / 180.0;
+/// Tangent of half the angle of a cone that contains a sonar's with certainty, also in rounded numbers.
+const WIDER: f64 = 0.25;
 /// Half the depth of an echo's arc, in metres.
 const DEPTH: f64 = 0.05;
 /// Range, in metres, beyond which an echo marks no cell as occupied.
@@ -50,11 +52,12 @@ impl EvidenceGrid {
     pub(crate) fn take(&mut self, ping: &GridPing) {
         let reach = ping.range.map_or(SILENT, |range| range.min(FARTHEST) + DEPTH);
         let (columns, rows) = (near(ping.x, reach), near(ping.y, reach));
+        let direction = libm::sincos(ping.theta);
         for row in rows {
             let cells = self.odds.iter_mut().enumerate().skip(row * CELLS + columns.start).take(columns.len());
             for (number, odds) in cells {
                 let (x, y) = (middle(number % CELLS) - ping.x, middle(row) - ping.y);
-                *odds = (*odds + evidence(x, y, ping)).clamp(-MOST, MOST);
+                *odds = (*odds + evidence(x, y, direction, ping)).clamp(-MOST, MOST);
             }
         }
     }
@@ -102,11 +105,16 @@ fn near(position: f64, reach: f64) -> std::ops::Range<usize> {
     cell(position - reach)..cell(position + reach + CELL)
 }
 
-/// Returns the change of the log-odds of a cell at this distance from the transducer along both axes.
-fn evidence(x: f64, y: f64, ping: &GridPing) -> f64 {
+/// Returns the change of the log-odds of a cell at this distance from the transducer along both axes, with the sine and
+/// the cosine of the transducer's direction.
+fn evidence(x: f64, y: f64, (sin, cos): (f64, f64), ping: &GridPing) -> f64 {
+    let (ahead, aside) = (x * cos + y * sin, y * cos - x * sin);
+    // Nine cells of ten need no angle: they are beside a wider cone, or behind.
+    if aside.abs() > WIDER * ahead {
+        return 0.0;
+    }
     let distance = libm::hypot(x, y);
-    let (sin, cos) = libm::sincos(ping.theta);
-    let angle = libm::atan2(y * cos - x * sin, x * cos + y * sin);
+    let angle = libm::atan2(aside, ahead);
     if angle.abs() >= CONE || distance > ping.range.map_or(SILENT, |range| range + DEPTH) {
         return 0.0;
     }
@@ -141,6 +149,19 @@ mod tests {
         assert!(after(&echoes, 0.5, 0.0) < 0.3 && after(&echoes, 1.0, 0.0) > 0.8);
         for (x, y) in [(1.1, 0.0), (0.5, 0.3), (-0.5, 0.0), (1.0, 0.4)] {
             assert_eq!(after(&echoes, x, y).to_bits(), 0.5_f64.to_bits(), "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn a_ping_changes_what_is_in_its_cone() {
+        for direction in [0.0, 0.7, 2.0, -3.1] {
+            let ping = GridPing { x: 0.0, y: 0.0, theta: direction, range: None };
+            for tenth in -1800..1800_i32 {
+                let (sin, cos) = libm::sincos(direction + f64::from(tenth).to_radians() / 10.0);
+                let changed = evidence(0.4 * cos, 0.4 * sin, libm::sincos(direction), &ping) < 0.0;
+                // Its edges, which rounding moves, are left out.
+                assert!(tenth.abs() == 125 || changed == (tenth.abs() < 125), "{direction} {tenth}");
+            }
         }
     }
 
