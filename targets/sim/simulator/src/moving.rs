@@ -13,6 +13,8 @@ use crate::surfaces::{Ends, Surface, apart, ends, surface};
 /// Minimum distance, in metres, to which a moving object approaches the robot; the bumper feels the object at
 /// this distance.
 const STOPS_AT: f64 = 1e-4;
+/// Distance, in metres, from which an object is far from the robot; greater than `STOPS_AT` by more than rounding.
+const FAR: f64 = 0.01;
 
 /// A moving object.
 #[derive(Debug, Clone, PartialEq)]
@@ -182,17 +184,28 @@ impl Moving {
         let mut part = 1.0;
         // Halved until it is free, which it was before it moved; a door has no half way.
         while part > 1e-3 {
-            let moved = self.schedule.moved(self.t + seconds * part);
-            let (was, already) = (self.moved, self.gap(body, f64::INFINITY));
-            self.put(moved);
-            let gap = self.gap(body, f64::INFINITY);
-            if gap >= STOPS_AT || gap >= already {
+            if self.is_put(self.schedule.moved(self.t + seconds * part), body) {
                 self.t += seconds * part;
                 return;
             }
-            self.put(was);
             part /= 2.0;
         }
+    }
+
+    /// Puts the object at another place, unless it would then move into `body`; returns `true` if it is there.
+    fn is_put(&mut self, moved: Option<Place>, body: &Footprint) -> bool {
+        let was = self.moved;
+        self.put(moved);
+        let gap = self.gap(body, FAR);
+        if gap >= STOPS_AT {
+            return true;
+        }
+        self.put(was);
+        let is_no_closer = gap >= self.gap(body, f64::INFINITY);
+        if is_no_closer {
+            self.put(moved);
+        }
+        is_no_closer
     }
 
     /// Returns the current centre of the circle around the object; `None` for an open door.
