@@ -9,15 +9,13 @@ use mdle_serial::Moment;
 
 use crate::cdr::Payload;
 use crate::choices::{Distribution, Stamped};
+use crate::commands::{Commands, kind_of};
 use crate::config::Config;
 use crate::driver::LOOK;
 use crate::fault::Fault;
-use crate::graph::{Graph, TWIST, TWIST_STAMPED};
+use crate::graph::Graph;
 use crate::link::Link;
-use crate::messages::{
-    Gid, Header, NodeEntitiesInfo, ParticipantEntitiesInfo, Time, TwistMessage, TwistStamped, Vector3,
-};
-use crate::names::dds_type;
+use crate::messages::{Gid, NodeEntitiesInfo, ParticipantEntitiesInfo};
 use crate::pacing::Pacing;
 use crate::participant::{Delivery, Participant, Reader, Writer};
 use crate::report::StateMessages;
@@ -27,14 +25,17 @@ use crate::stamp::ros_now;
 
 /// Time between two checks of the graph for topics.
 const GRAPH: Duration = Duration::from_millis(50);
-/// Time between two repetitions of the zero velocity.
-const AGAIN: Duration = Duration::from_millis(100);
+/// Maximum number of participants with which a robot is stopped after the first participant has ended.
+const ATTEMPTS: u32 = 3;
 
 /// A link to the robot over DDS.
 pub struct DdsLink {
     participant: Participant,
     readers: Vec<(Input, Reader)>,
     commands: Commands,
+    /// Participant that stops the robot after `participant` has ended, and its writer.
+    successor: Option<(Participant, Commands)>,
+    config: Config,
     state: Option<Writer>,
     diagnostics: Option<Writer>,
     /// Writer that announces the node to the graph, kept for as long as the node exists.
@@ -43,14 +44,6 @@ pub struct DdsLink {
     odometer: Option<[u8; 16]>,
     /// Time of `/clock` in nanoseconds, for the headers of commands; `None` if headers have the system's time.
     clock: Option<i64>,
-}
-
-/// The writer of velocity commands.
-struct Commands {
-    topic: String,
-    frame: String,
-    writer: Writer,
-    is_stamped: bool,
 }
 
 impl DdsLink {
@@ -82,7 +75,18 @@ impl DdsLink {
         let diagnostics = optional(&config.diagnostics, "diagnostic_msgs/msg/DiagnosticArray")?;
         let commands = find(config, &participant, &readers, &mut sensing, request, begun)?;
         let clock = config.use_sim_time.then_some(0);
-        let mut link = Self { participant, readers, commands, state, diagnostics, node: None, odometer: None, clock };
+        let mut link = Self {
+            participant,
+            readers,
+            commands,
+            successor: None,
+            config: config.clone(),
+            state,
+            diagnostics,
+            node: None,
+            odometer: None,
+            clock,
+        };
         link.node = link.announce(config)?;
         Ok((link, sensing))
     }
@@ -131,22 +135,16 @@ fn find(
             receive(readers, &mut |index, payload, _| sensing.take(index, payload, now, Nanos::ZERO))?;
             sleep(LOOK);
         }
+        participant.check()?;
         let graph = participant.graph();
-        if commands.is_none()
-            && let Some(is_stamped) = is_stamped(config, &graph, &topic)
-        {
-            let writer = participant.writer(&topic, kind_of(is_stamped), Delivery::Reliable)?;
-            commands = Some(Commands { topic: topic.clone(), frame: config.frame_id.clone(), writer, is_stamped });
+        if commands.is_none() {
+            commands = Commands::found(config, participant, &graph, &topic)?;
         }
         let mut missing: Vec<_> = sensing.awaited().map(|(input, why)| graph.about_input(input, why)).collect();
         let is_awaited = |input: &Input| sensing.awaited().any(|(awaited, _)| awaited == input);
         let unpublished = sensing.inputs().filter(|input| !is_awaited(input) && graph.publishers(input) == 0);
         missing.extend(unpublished.map(|input| graph.about_input(input, "")));
-        // The middleware also matches a subscriber of another type, which understands nothing.
-        let is_heard = commands.as_mut().is_some_and(|commands| {
-            let kind = dds_type(commands.kind());
-            commands.writer.matched() > 0 && graph.readers_of(&topic).any(|reader| reader.kind == kind)
-        });
+        let is_heard = commands.as_mut().is_some_and(|commands| commands.are_heard(&graph));
         match commands.take() {
             Some(found) if is_heard && missing.is_empty() => {
                 several(sensing, &graph)?;
@@ -161,20 +159,6 @@ fn find(
             let help = graph.help(sensing.inputs(), &topic);
             return Err(Fault::Missing(format!("{}{help}", graph.about_missing(&missing, config))));
         }
-    }
-}
-
-/// Returns `true` if velocity commands have a time stamp; `None` if that depends on a subscriber that has not been
-/// found.
-fn is_stamped(config: &Config, graph: &Graph, topic: &str) -> Option<bool> {
-    match config.stamped {
-        Stamped::Yes => Some(true),
-        Stamped::No => Some(false),
-        Stamped::Auto => graph.readers_of(topic).find_map(|reader| match &*reader.kind {
-            kind if kind == dds_type(TWIST) => Some(false),
-            kind if kind == dds_type(TWIST_STAMPED) => Some(true),
-            _ => None,
-        }),
     }
 }
 
@@ -200,40 +184,42 @@ fn receive(readers: &[(Input, Reader)], take: &mut Take<'_>) -> Result<(), Fault
     Ok(())
 }
 
-/// Returns the type of velocity commands.
-fn kind_of(is_stamped: bool) -> &'static str {
-    if is_stamped { TWIST_STAMPED } else { TWIST }
-}
-
-impl Commands {
-    /// Returns the type of the velocity commands.
-    fn kind(&self) -> &'static str {
-        kind_of(self.is_stamped)
-    }
-
-    fn send(&self, twist: Twist, stamp: i64) -> Result<(), String> {
-        let vector = |x, z| (Vector3 { x, ..Vector3::default() }, Vector3 { z, ..Vector3::default() });
-        let (linear, angular) = vector(twist.v.0, twist.omega.0);
-        let twist = TwistMessage { linear, angular };
-        let payload = if self.is_stamped {
-            let header = Header { stamp: Time::of(stamp), frame_id: self.frame.clone() };
-            Payload::of(&TwistStamped { header, twist })
-        } else {
-            Payload::of(&twist)
-        };
-        self.writer.write(payload?)
-    }
-}
-
 impl DdsLink {
     /// Returns the time for the header of a command.
     fn stamp(&self) -> i64 {
         self.clock.unwrap_or_else(ros_now)
     }
+
+    /// Returns the participant that reaches the robot now.
+    fn current(&self) -> &Participant {
+        self.successor.as_ref().map_or(&self.participant, |(participant, _)| participant)
+    }
+
+    /// Stops the robot with the participant that reaches it now.
+    fn halt_by_current(&mut self, limit: Duration) -> Result<(), Fault> {
+        self.current().check()?;
+        let stamp = self.stamp();
+        match &mut self.successor {
+            None => self.commands.halt(&self.participant, limit, stamp),
+            Some((participant, commands)) => commands.halt(participant, limit, stamp),
+        }
+    }
+
+    /// Stops the robot with a new participant, which first finds the subscribers that the first one had.
+    fn halt_anew(&mut self, limit: Duration) -> Result<(), Fault> {
+        let (expected, stamp) = (self.commands.writer.matched().max(1), self.stamp());
+        let participant = Participant::join(&self.config)?;
+        let commands = self.commands.by(&participant)?;
+        let (participant, commands) = self.successor.insert((participant, commands));
+        let met = commands.meet(participant, expected, stamp);
+        let halted = commands.insist(participant, limit, stamp);
+        met.and(halted)
+    }
 }
 
 impl Link for DdsLink {
     fn command(&mut self, twist: Twist) -> Result<(), Fault> {
+        self.participant.check()?;
         if self.commands.writer.matched() == 0 {
             return Err(Fault::Unheard(self.commands.topic.clone()));
         }
@@ -242,6 +228,7 @@ impl Link for DdsLink {
 
     fn receive(&mut self, take: &mut dyn FnMut(usize, &Payload) -> Result<(), Fault>) -> Result<(), Fault> {
         let Self { readers, odometer, participant, clock, .. } = self;
+        participant.check()?;
         receive(readers, &mut |index, payload, writer| {
             let Some((input, _)) = readers.get(index) else { return Ok(()) };
             match input.source {
@@ -265,27 +252,15 @@ impl Link for DdsLink {
     }
 
     fn halt(&mut self, limit: Duration) -> Result<(), Fault> {
-        let begun = Instant::now();
-        let graph = self.participant.graph();
-        let acknowledges = graph.readers_of(&self.commands.topic).any(|reader| reader.is_reliable);
-        loop {
-            let sent = self.commands.send(Twist::default(), self.stamp());
-            if sent.is_ok() && acknowledges && self.commands.writer.is_acknowledged(AGAIN) {
-                return Ok(());
-            }
-            if begun.elapsed() >= limit {
+        let mut halted = self.halt_by_current(limit);
+        for _ in 0..ATTEMPTS {
+            // A suspension while the robot is being stopped ends the middleware as well.
+            if self.current().check().is_ok() {
                 break;
             }
-            if !acknowledges || sent.is_err() {
-                sleep(AGAIN);
-            }
+            halted = self.halt_anew(limit);
         }
-        let topic = self.commands.topic.clone();
-        match (acknowledges, self.commands.writer.matched()) {
-            (true, _) => Err(Fault::Unacknowledged(topic)),
-            (false, 0) => Err(Fault::Unheard(topic)),
-            (false, _) => Ok(()),
-        }
+        halted
     }
 
     fn publish(&mut self, messages: StateMessages) {
