@@ -132,7 +132,12 @@ fn find(
                 return Err(Fault::Ended);
             }
             let now = if config.use_sim_time { sensing.simulated() } else { begun.elapsed() };
-            receive(readers, &mut |index, payload, _| sensing.take(index, payload, now, Nanos::ZERO))?;
+            let received = receive(readers, &mut |index, payload, _| sensing.take(index, payload, now, Nanos::ZERO));
+            if let Err(fault) = received {
+                // Two publishers look like a robot that jumps.
+                several(sensing, &participant.graph())?;
+                return Err(fault);
+            }
             sleep(LOOK);
         }
         participant.check()?;

@@ -38,6 +38,23 @@ def test_two_publishers_of_odometry_are_refused():
         del other
 
 
+def test_two_publishers_with_different_poses_are_refused_as_two():
+    domain = new_domain()
+    with Robot(domain) as robot:
+        other = DataWriter(robot.dp, Topic(robot.dp, "rt/odom", m.Odometry), qos=RELIABLE)
+
+        def twice(message):
+            robot.writers["odom"].write(message)
+            message.pose.pose.position.x += 1.5
+            message.header.stamp.nanosec += 1
+            other.write(message)
+
+        robot.changed["odom"] = twice
+        with running("ride", configuration(domain)) as run:
+            ends_with(3, "`/odom` has 2 publishers", run)
+        del other
+
+
 def test_a_second_publisher_that_comes_later_is_a_fault():
     domain = new_domain()
     with Robot(domain) as robot, running("ride", configuration(domain)) as run:
