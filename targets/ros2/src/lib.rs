@@ -18,6 +18,7 @@ mod driver;
 mod fault;
 mod graph;
 mod link;
+mod local_addresses;
 pub mod messages;
 mod middleware_threads;
 pub mod names;

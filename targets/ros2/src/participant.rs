@@ -14,6 +14,7 @@ use crate::cdr::Payload;
 use crate::config::Config;
 use crate::fault::Fault;
 use crate::graph::{Endpoint, Graph};
+use crate::local_addresses;
 use crate::middleware_threads::MiddlewareThreads;
 use crate::names::{dds_topic, dds_type};
 use crate::payload_adapter::PayloadAdapter;
@@ -87,6 +88,7 @@ impl Participant {
         let domain = u16::try_from(config.domain).map_err(|_| failed("there is no such domain"))?;
         let mut builder = DomainParticipantBuilder::new(domain);
         if let Ok(address) = config.network.parse::<IpAddr>() {
+            local_addresses::check(address).map_err(Fault::Middleware)?;
             builder = builder.with_only_networks([address]);
         }
         let threads = || {
@@ -94,7 +96,7 @@ impl Participant {
             threads.map_err(|error| failed(&format!("the system does not list its threads: {error}")))
         };
         let others = threads()?;
-        let participant = builder.build().map_err(|error| failed(&error.to_string()))?;
+        let participant = builder.build().map_err(|error| failed(&plain(&error.to_string())))?;
         let threads = threads()?.without(&others);
         let qos = QosPolicyBuilder::new().build();
         let publisher = participant.create_publisher(&qos).map_err(|error| failed(&error.to_string()))?;
@@ -172,6 +174,14 @@ impl Participant {
     }
 }
 
+/// Returns the text of the system's error that `error`, a message of the middleware, contains as Rust prints it for
+/// programmers; without such an error, returns `error`.
+fn plain(error: &str) -> String {
+    let code = error.split_once("Os { code: ").and_then(|(_, rest)| rest.split_once(','));
+    let code = code.and_then(|(code, _)| code.parse().ok());
+    code.map_or_else(|| error.to_owned(), |code| std::io::Error::from_raw_os_error(code).to_string())
+}
+
 /// Returns the fault of a topic that the middleware refused to create.
 fn refused(topic: &str, why: &str) -> Fault {
     Fault::Middleware(format!("`{topic}` cannot be used: {why}"))
@@ -224,5 +234,17 @@ impl Writer {
     /// Returns the id of the writer.
     pub(crate) fn gid(&self) -> [u8; 16] {
         self.writer.guid().to_bytes()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_the_system_are_plain_words() {
+        let error = "Internal error: Os { code: 92, kind: Uncategorized, message: \"Protocol not available\" }";
+        assert_eq!(plain(error), "Protocol not available (os error 92)");
+        assert_eq!(plain("there is no such domain"), "there is no such domain");
     }
 }
