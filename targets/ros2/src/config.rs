@@ -178,10 +178,15 @@ impl Configured {
     }
 }
 
-/// Prints the configuration as TOML that `--config` can read.
+/// Prints the configuration as TOML that `--config` can read. The default domain is a comment: in the file it would
+/// overrule `ROS_DOMAIN_ID`.
 impl fmt::Display for Configured {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.settings.fmt(f)
+        for line in self.settings.to_string().lines() {
+            let is_default = line.starts_with("domain = ") && line.ends_with("(default)");
+            writeln!(f, "{}{line}", if is_default { "# " } else { "" })?;
+        }
+        Ok(())
     }
 }
 
@@ -191,12 +196,18 @@ impl Config {
         if !self.network.is_empty() && self.network.parse::<IpAddr>().is_err() {
             return Err(format!("`network` is `{}`, and has to be an address such as 192.168.1.5", self.network));
         }
-        let optional = [&self.scan, &self.battery, &self.state, &self.diagnostics].into_iter();
-        let required = [&self.cmd_vel, &self.odom].into_iter();
-        let required = required.chain(has_topic(self.bumper_type).then_some(&self.bumper));
-        let required = required.chain(self.ranges.0.iter().map(|sensor| &sensor.topic));
-        for topic in required.chain(optional.filter(|topic| !topic.is_empty())) {
-            self.topic(topic)?;
+        let optional = [
+            ("scan", &self.scan),
+            ("battery", &self.battery),
+            ("state", &self.state),
+            ("diagnostics", &self.diagnostics),
+        ];
+        let optional = optional.into_iter().filter(|(_, topic)| !topic.is_empty());
+        let required = [("cmd-vel", &self.cmd_vel), ("odom", &self.odom)].into_iter();
+        let required = required.chain(has_topic(self.bumper_type).then_some(("bumper", &self.bumper)));
+        let required = required.chain(self.ranges.0.iter().map(|sensor| ("ranges", &sensor.topic)));
+        for (key, topic) in required.chain(optional) {
+            self.topic(topic).map_err(|why| format!("`{key}`: {why}"))?;
         }
         if self.bumper_type == BumperSource::Scan && self.scan.is_empty() {
             return Err("`bumper-type` is \"scan\", and there is no `scan`".to_owned());

@@ -63,11 +63,22 @@ fn what_is_printed_is_read_again() {
 }
 
 #[test]
+fn the_default_domain_is_printed_as_a_comment() {
+    let printed = Configured::read(None).unwrap().to_string();
+    assert!(printed.contains("\n# domain = 0 ") && !printed.contains("\ndomain"), "{printed}");
+    let path = file("domain", "domain = 7");
+    let printed = Configured::read(Some(&path)).unwrap().to_string();
+    fs::remove_file(path).unwrap();
+    assert!(printed.contains("\ndomain = 7 "), "{printed}");
+}
+
+#[test]
 fn what_makes_no_sense_is_refused() {
     for (text, sentence) in [
         ("stamped = \"maybe\"", "`stamped` is \"maybe\", and has to be true or false or \"auto\""),
         ("domain = 233", "`domain` is 233, and has to be from 0 to 232"),
         ("bumper-type = \"bool\"\nbumper = \"\"", "`` is no name of a topic"),
+        ("odom = \"\"", "`odom`: `` is no name of a topic"),
         ("bumper-type = \"button\"", "has to be \"none\" or \"bool\" or \"hazard\" or \"scan\""),
         ("ranges = [{ topic = \"a\", x = 1e9 }]", "the place of the range sensor `a` is more than 10 m away"),
         ("ranges = [{ topic = \"a\", z = 1 }]", "unknown field `z`"),
