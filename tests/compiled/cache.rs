@@ -4,7 +4,7 @@
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
-use std::os::unix::fs::PermissionsExt;
+use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -204,6 +204,29 @@ fn without_rust_it_says_what_to_install() {
         message,
         format!("error: mdlec needs `rustc` to build an executable, and it is not installed: {advice}")
     );
+}
+
+#[test]
+fn without_a_c_compiler_it_says_what_to_install() {
+    let folder = with_plan("no_linker", 1);
+    let tools = folder.join("tools");
+    fs::create_dir(&tools).unwrap();
+    let path = std::env::var_os("PATH").unwrap();
+    for tool in ["cargo", "rustc", "rustup", "sh"] {
+        let mut places = std::env::split_paths(&path).map(|place| place.join(tool));
+        if let Some(place) = places.find(|place| place.exists()) {
+            symlink(place, tools.join(tool)).unwrap();
+        }
+    }
+    // The second build finds what the first compiled before it failed.
+    for _ in 0..2 {
+        let message = refused(command(&folder, &BUILD).env("MDLEC_CACHE", "cache").env("PATH", &tools));
+        assert!(
+            message.contains("error: the linker cannot make a static executable: install the C compiler"),
+            "{message}"
+        );
+        assert!(!message.contains("damaged"), "{message}");
+    }
 }
 
 #[test]

@@ -217,8 +217,8 @@ pub(super) struct Build {
     pub(super) combine: bool,
     /// Machine to build for: aarch64, armv7, x86_64, or a target triple of Rust [default: this one]
     ///
-    /// The short names stand for static executables for Linux with the C library musl, which need no C compiler. Rust's
-    /// library for the machine comes with `rustup target add TRIPLE`.
+    /// The short names stand for static executables for Linux with the C library musl, which need no C compiler for
+    /// it. Rust's library for the machine comes with `rustup target add TRIPLE`.
     #[arg(long, value_name = "NAME|TRIPLE")]
     pub(super) machine: Option<String>,
 }

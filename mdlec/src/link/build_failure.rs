@@ -1,10 +1,10 @@
 //! Finds the cause of a failed build: the plan, the target's crate, the machine or mdlec.
 
 use std::os::unix::process::ExitStatusExt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::cargo::Job;
-use super::messages::Run;
+use super::messages::{Complaint, NO_LINKER, Run};
 use super::target::Dependencies;
 use super::{LinkError, TargetCrate};
 
@@ -12,7 +12,7 @@ use super::{LinkError, TargetCrate};
 const NETWORK: &str = "spurious network error";
 
 /// Messages of rustc when there is no linker, or when the linker fails.
-const LINKER: [&str; 2] = ["error: linker `", "error: linking with `"];
+const LINKER: [&str; 2] = [NO_LINKER, "error: linking with `"];
 
 /// Returns the fault for which a run of cargo ended without an executable.
 pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependencies: &Dependencies) -> LinkError {
@@ -35,12 +35,10 @@ pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependen
         return LinkError::Cargo { log, cache: job.cache.folder().to_owned() };
     }
     let errors = run.complaints.iter().filter(|complaint| complaint.is_error);
-    if errors.clone().any(|error| LINKER.iter().any(|sign| error.text.starts_with(sign))) {
-        let foreign = job.machine.foreign().map(str::to_owned);
-        return foreign
-            .map_or(LinkError::Linker { log: log.clone() }, |triple| LinkError::MachineLinker { triple, log });
-    }
     let (plan, ours) = (job.plan.manifest(), &dependencies.ours);
+    if let Some(error) = errors.clone().find(|error| LINKER.iter().any(|sign| error.text.starts_with(sign))) {
+        return linker(error, &plan, job.machine.foreign(), log);
+    }
     // The crate that fails first is the cause: what depends on it is not compiled.
     match errors.map(|error| &error.manifest).next() {
         Some(manifest) if *manifest == plan => emitted(target, log),
@@ -48,6 +46,16 @@ pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependen
         Some(_) | None => {
             others(job, run, target, &text, log, &|manifest| *manifest == plan || manifest.starts_with(ours))
         }
+    }
+}
+
+/// Returns the fault for an error of the linker: of the one for the machine `foreign` where the executable of
+/// the package `plan` is linked, and otherwise of this machine's.
+fn linker(error: &Complaint, plan: &Path, foreign: Option<&str>, log: PathBuf) -> LinkError {
+    // Of libraries only build scripts and procedural macros are linked, which run on this machine.
+    match foreign.filter(|_| error.manifest == plan) {
+        Some(triple) => LinkError::MachineLinker { triple: triple.to_owned(), log },
+        None => LinkError::Linker { log },
     }
 }
 
@@ -86,5 +94,27 @@ fn others(
             let output = if run.complaints.iter().any(|complaint| complaint.is_error) { theirs.as_str() } else { text };
             LinkError::TargetBroken { crate_name: (*crate_name).to_owned(), text: output.trim_end().to_owned() }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::{Complaint, LinkError, linker};
+
+    #[test]
+    fn build_scripts_need_the_linker_of_this_machine() {
+        let plan = Path::new("plans/plan/Cargo.toml");
+        let fault = |manifest: &str, foreign| {
+            let text = "error: linker `cc` not found\n".to_owned();
+            linker(&Complaint { manifest: manifest.into(), is_error: true, text }, plan, foreign, "build.log".into())
+        };
+        let script = "registry/quote/Cargo.toml";
+        assert!(matches!(fault(script, Some("armv7")), LinkError::Linker { .. }));
+        assert!(matches!(fault(script, None), LinkError::Linker { .. }));
+        assert!(matches!(fault("plans/plan/Cargo.toml", None), LinkError::Linker { .. }));
+        let own = fault("plans/plan/Cargo.toml", Some("armv7"));
+        assert!(matches!(own, LinkError::MachineLinker { triple, .. } if triple == "armv7"));
     }
 }

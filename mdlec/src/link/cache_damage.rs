@@ -5,7 +5,7 @@ use std::os::unix::process::ExitStatusExt;
 
 use super::cache::remove;
 use super::cargo::Job;
-use super::messages::{Complaint, Run};
+use super::messages::{Complaint, NO_LINKER, Run};
 use super::plan_package::PlanPackage;
 use super::{LinkError, Progress, TargetCrate, build_record};
 
@@ -24,8 +24,15 @@ const UNREADABLE: [&str; 5] = [
     "error: internal compiler error",
 ];
 
-/// Messages of the linker about a library or symbol that the system or a target's crate lacks.
-const LACKING: [&str; 4] = ["unable to find library", "cannot find -l", "undefined symbol", "undefined reference"];
+/// Messages of rustc or the linker about a linker, a C library or a symbol that the system or a target's crate lacks.
+const LACKING: [&str; 6] = [
+    NO_LINKER,
+    "crt1.o: No such file",
+    "unable to find library",
+    "cannot find -l",
+    "undefined symbol",
+    "undefined reference",
+];
 
 /// Part of the cache that must be built again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,5 +88,25 @@ pub(super) fn clear(damage: Damage, job: &Job<'_>, progress: &mut dyn FnMut(Prog
             progress(Progress::Mending);
             remove(&job.cache.target())
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::folder;
+    use super::{Complaint, PlanPackage, TargetCrate, is_of_damage};
+
+    #[test]
+    fn a_linker_that_the_system_lacks_is_no_damage() {
+        let plan = PlanPackage { folder: folder("lacking"), hash: String::new() };
+        let target = TargetCrate::Builtin { name: "sim", crate_name: "mdle_sim" };
+        let is_damage = |text: &str| {
+            let manifest = plan.folder.join("registry/quote/Cargo.toml");
+            is_of_damage(&Complaint { manifest, is_error: true, text: text.to_owned() }, &plan, &target)
+        };
+        assert!(!is_damage("error: linker `cc` not found\n"));
+        let failed = "error: linking with `cc` failed: exit status: 1\n";
+        assert!(!is_damage(&format!("{failed}/usr/bin/ld: cannot find Scrt1.o: No such file or directory\n")));
+        assert!(is_damage(&format!("{failed}libquote-1.rlib: file format not recognized\n")));
     }
 }

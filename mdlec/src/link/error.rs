@@ -118,7 +118,7 @@ pub enum LinkError {
         /// File with the output of cargo and rustc.
         log: PathBuf,
     },
-    /// There is no linker, or no static C library.
+    /// There is no linker, or no static C library, on the machine that builds.
     #[error(
         "the linker cannot make a static executable: install the C compiler and the static C library of this system \
          (Debian: build-essential, Fedora: gcc and glibc-static); its output is in `{log}`"

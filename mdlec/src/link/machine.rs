@@ -9,7 +9,8 @@ use toml::de::DeTable;
 use super::LinkError;
 use super::toolchain::{command, output};
 
-/// Short names of machines, with the target triples of static executables that rustc links without a C compiler.
+/// Short names of machines, with the target triples of static executables that rustc links without a C compiler
+/// for them.
 const SHORT: [(&str, &str); 3] = [
     ("aarch64", "aarch64-unknown-linux-musl"),
     ("armv7", "armv7-unknown-linux-musleabihf"),

@@ -17,6 +17,9 @@ use super::seal::Seal;
 const FULL: [&str; 5] =
     ["No space left on device", "Disk quota exceeded", "File too large", "(signal: 25", "File size limit exceeded"];
 
+/// Beginning of rustc's message when there is no linker.
+pub(super) const NO_LINKER: &str = "error: linker `";
+
 /// Beginning of cargo's line about a lock that another cargo holds.
 const BLOCKED: &[u8] = b"Blocking waiting for file lock";
 

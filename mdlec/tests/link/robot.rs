@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use mdlec::link::{Built, Cache, LinkError, Package, Progress, TargetCrate, build};
+use mdlec::link::{Built, Cache, Entry, LinkError, Package, Progress, TargetCrate, build};
 
 pub(crate) const PLAN: &str = include_str!("plan.rs");
 
@@ -76,7 +76,7 @@ impl Robot {
             plan_name: "Nap",
             version: "",
             plan_file: &plan_file,
-            plan_type: "Nap",
+            entry: Entry::Plan("Nap"),
             inputs: &inputs,
             rust,
             target: &target,
