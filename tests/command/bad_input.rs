@@ -170,6 +170,7 @@ fn options_of_other_commands_name_these() {
         &["check", "-o", "rest", "plan.mdle"],
         &["fmt", "--deny-warnings", "plan.mdle"],
         &["run", "plan.mdle", "--emit", "plan"],
+        &["run", "plan.mdle", "--machine", "aarch64"],
         &["check", "plan.mdle", "--nonsense"],
         &["check", "plan.mdle", "-t", "sim"],
         &["fmt", "plan.mdle", "--in-place"],

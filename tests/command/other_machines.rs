@@ -28,6 +28,15 @@ fn machines_without_a_library_are_refused() {
         "error: executables run on Linux, and `thumbv7m-none-eabi` does not: for a microcontroller, print the plan as Rust \
          with `--emit rust`\n"
     );
+    for system in ["x86_64-apple-darwin", "x86_64-pc-windows-msvc"] {
+        assert_eq!(
+            machine(system),
+            format!(
+                "error: executables run on Linux, and `{system}` is another system: name aarch64, armv7, x86_64 or another \
+                 triple of Linux\n"
+            )
+        );
+    }
     // rustup has no library for it.
     assert_eq!(
         machine("aarch64_be-unknown-linux-gnu"),

@@ -54,8 +54,15 @@ pub(super) fn option(answer: &clap::Error) -> Option<Failure> {
         let long = option.get_long().is_some_and(|long| given.strip_prefix("--") == Some(long));
         long || option.get_short().is_some_and(|short| given.strip_prefix('-') == Some(short.encode_utf8(&mut [0; 4])))
     };
-    let owners = cli.get_subcommands().filter(|command| command.get_arguments().any(is_given));
-    let owners: Vec<_> = owners.map(|command| format!("`mdlec {}`", command.get_name())).collect();
+    let owners = cli.get_subcommands();
+    let owners: Vec<_> =
+        owners.filter_map(|owner| Some((owner, owner.get_arguments().find(|arg| is_given(arg))?))).collect();
+    let is_ambiguous = owners.windows(2).any(|pair| pair[0].1.get_value_names() != pair[1].1.get_value_names());
+    let owner = |(owner, option): &(&Command, &Arg)| {
+        let about = if is_ambiguous { format!(" ({})", meaning(option)) } else { String::new() };
+        format!("`mdlec {}`{about}", owner.get_name())
+    };
+    let owners: Vec<_> = owners.iter().map(owner).collect();
     let owners = match owners.split_last() {
         Some((only, [])) => only.clone(),
         Some((last, others)) => format!("{} and {last}", others.join(", ")),
@@ -68,6 +75,16 @@ pub(super) fn option(answer: &clap::Error) -> Option<Failure> {
     Some(Failure::usage(format!(
         "`mdlec {command}` has no option `{given}`: it belongs to {owners}\nhelp: `mdlec {command} --help` lists the options"
     )))
+}
+
+/// Returns what an option is, without its values and default, in the middle of a sentence.
+fn meaning(option: &Arg) -> String {
+    let help = option.get_help().map(ToString::to_string).unwrap_or_default();
+    let mut phrase = help.split([':', ';', '[']).next().unwrap_or_default().trim_end().to_owned();
+    if let Some(first) = phrase.get_mut(..1) {
+        first.make_ascii_lowercase();
+    }
+    phrase
 }
 
 /// Returns the error for the name of a robot without `--target`; `answer` is the error of clap.

@@ -93,9 +93,14 @@ pub enum LinkError {
          `rustc --print target-list`"
     )]
     NoMachine(String),
-    /// The machine does not run Linux.
+    /// The machine has no operating system.
     #[error(
         "executables run on Linux, and `{0}` does not: for a microcontroller, print the plan as Rust with `--emit rust`"
+    )]
+    NoSystem(String),
+    /// The machine has another operating system.
+    #[error(
+        "executables run on Linux, and `{0}` is another system: name aarch64, armv7, x86_64 or another triple of Linux"
     )]
     NotLinux(String),
     /// The standard library of the machine is not installed, but rustup offers it: the target triple.
@@ -253,6 +258,7 @@ impl LinkError {
             | Self::NoRust { .. }
             | Self::OldRust { .. }
             | Self::NoMachine(_)
+            | Self::NoSystem(_)
             | Self::NotLinux(_)
             | Self::MachineToAdd(_)
             | Self::MachineMissing(_)

@@ -53,7 +53,10 @@ impl Machine {
         let Some((libraries, about)) = text.split_once('\n').filter(|_| found.status.success()) else {
             return Err(LinkError::NoMachine(triple));
         };
-        if !about.lines().any(|line| line == "target_os=\"linux\"") {
+        let is_for = |system: &str| about.lines().any(|line| line == format!("target_os=\"{system}\""));
+        if is_for("none") {
+            return Err(LinkError::NoSystem(triple));
+        } else if !is_for("linux") {
             return Err(LinkError::NotLinux(triple));
         }
         if has_standard_library(Path::new(libraries)) {
