@@ -94,6 +94,8 @@ fn shells_and_man_know_every_command() {
         text(run_mdlec(&folder, &arguments))
     });
     assert!(pages.iter().all(|page| page.starts_with(".ie ") && page.contains(".TH mdlec")), "{}", &pages[1][..300]);
+    let source = format!("\"mdlec {}\"", env!("CARGO_PKG_VERSION"));
+    assert!(pages.iter().all(|page| page.lines().nth(2).unwrap().contains(&source)), "{source}");
     assert!(COMMANDS[1..].iter().all(|command| pages[0].replace('\\', "").contains(&format!("mdlec-{command}(1)"))));
     assert!(pages[1].replace('\\', "").contains("--augment"));
 }

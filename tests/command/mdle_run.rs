@@ -108,6 +108,8 @@ fn shells_and_man_know_every_command_of_mdle() {
     assert_eq!(String::from_utf8(completed.stdout).unwrap(), "replay\n");
     let [all, replay, cut] = ["man", "man replay", "man log cut"].map(|line| text(line).replace('\\', ""));
     assert!(all.contains(".TH mdle 1"), "{all}");
+    let source = format!("\"mdle {}\"", env!("CARGO_PKG_VERSION"));
+    assert!([&all, &replay, &cut].iter().all(|page| page.contains(&source)), "{cut}");
     assert!(commands.iter().all(|command| all.contains(&format!("mdle-{command}(1)"))), "{all}");
     assert!(replay.contains(".TH mdle-replay 1") && replay.contains("--until"), "{replay}");
     assert!(cut.contains(".TH mdle-log-cut 1") && cut.contains("TIME"), "{cut}");

@@ -55,6 +55,8 @@ fn arguments_are_those_of_the_emulator() {
     let text = String::from_utf8(help.stdout).unwrap();
     assert!(help.status.success() && text.contains("Usage: atrv-emulator [OPTIONS]"), "{text}");
     assert!(text.contains("--marks") && text.contains("--lockstep"), "{text}");
+    let version = run_mdlec(&folder, &["emulator", "atrv", "--", "--version"]);
+    assert_eq!(String::from_utf8(version.stdout).unwrap(), concat!("atrv-emulator ", env!("CARGO_PKG_VERSION"), "\n"));
     let refused = run_mdlec(&folder, &["emulator", "scout", "--", "--world", "moon"]);
     assert_eq!(refused.status.code(), Some(2), "{}", String::from_utf8_lossy(&refused.stderr));
     assert_eq!(fs::read_dir(folder).unwrap().count(), 0, "the executable stays in the cache");

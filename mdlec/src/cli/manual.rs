@@ -23,7 +23,8 @@ pub(super) fn man(options: &Man) -> Result<(), Failure> {
         Some(name) => command(&mdlec, name)?.clone(),
     };
     let mut text = Vec::new();
-    clap_mangen::Man::new(page).render(&mut text).map_err(|error: io::Error| Failure::usage(error.to_string()))?;
+    let page = clap_mangen::Man::new(page).source(concat!("mdlec ", env!("CARGO_PKG_VERSION")));
+    page.render(&mut text).map_err(|error: io::Error| Failure::usage(error.to_string()))?;
     report::print_exactly(&String::from_utf8_lossy(&text))
 }
 

@@ -23,7 +23,8 @@ pub(crate) fn man(words: &[String]) -> Result<ExitCode, Failure> {
     mdle.build();
     let page = words.iter().try_fold(&mdle, |command, word| subcommand(command, word))?.clone();
     let mut text = Vec::new();
-    clap_mangen::Man::new(page).render(&mut text).map_err(|error| Failure::Usage(error.to_string()))?;
+    let page = clap_mangen::Man::new(page).source(concat!("mdle ", env!("CARGO_PKG_VERSION")));
+    page.render(&mut text).map_err(|error| Failure::Usage(error.to_string()))?;
     print(&text)
 }
 

@@ -23,10 +23,10 @@ pub struct Options {
 }
 
 impl Options {
-    /// Returns `command` with the options of all robot emulators.
+    /// Returns `command` with the options of all robot emulators, and their version.
     #[must_use]
     pub fn arguments(command: Command) -> Command {
-        of_behavior(of_robots(command))
+        of_behavior(of_robots(command.version(env!("CARGO_PKG_VERSION"))))
     }
 
     /// Returns the options in `matches`, which come from a command with [`Options::arguments`].
