@@ -32,6 +32,13 @@ fn its_first_command_is_the_tour_that_is_tested() {
 }
 
 #[test]
+fn a_release_is_tested_with_the_command_that_the_readme_begins_with() {
+    let command = "mdle run dock.mdle --target sim";
+    assert!(readme().contains(&format!("`{command} --watch`")));
+    assert!(fs::read_to_string(root().join(".ci/installed")).unwrap().contains(&format!("{command} --speed max")));
+}
+
+#[test]
 fn it_is_two_screens_long() {
     let lines = readme().lines().count();
     assert!((60..=110).contains(&lines), "{lines} lines");
