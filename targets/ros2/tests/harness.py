@@ -30,11 +30,11 @@ PLANS = {
 # Under nohup the tests, and all that they start, would take no hangup.
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-_domains = itertools.count(60)
+_domains = itertools.count(30)
 
 
 def new_domain():
-    """A domain that no other test uses; above 120 its ports would be those of other programs."""
+    """A domain that no other test uses. Above 101 its ports are among those that the system gives to other programs."""
     return next(_domains)
 
 
