@@ -225,6 +225,9 @@ mod tests {
         outbox.open();
         let plans = (0..=UNREAD as u64).map(|number| outbox.post(letter(number, true, 10), now));
         assert_eq!(plans.last().unwrap(), Err("8 plans wait for bob already".to_owned()));
+        let to_eve = Posted { to: "eve".to_owned(), ..letter(50, true, 10) };
+        assert_eq!(outbox.post(to_eve, now), Ok(()), "each robot has a number of its own");
+        outbox.is_answered(50);
         let answers = (100..=100 + ANSWERS as u64).map(|number| outbox.post(letter(number, false, 10), now));
         assert_eq!(answers.last().unwrap(), Err("16 answers wait for bob already".to_owned()));
         outbox.is_sent(103);
