@@ -175,8 +175,11 @@ fn recorded_causes_have_the_texts_of_their_plan() {
 fn a_plan_that_uses_others_replays_without_their_files() {
     let folder = folder("used");
     fs::create_dir(folder.join("parts")).unwrap();
-    fs::write(folder.join("main.mdle"), "use \"parts/leg.mdle\"\n{ Main (bumper) Leg(2s) Leg(1s) }\n").unwrap();
+    let main = "use \"parts/leg.mdle\"\nuse \"parts/both.mdle\"\n{ Main (bumper) Leg(2s) Rest }\n";
+    fs::write(folder.join("main.mdle"), main).unwrap();
     fs::write(folder.join("parts/leg.mdle"), "{ Leg(long: time) (Atom (wait long) (go 20 0)) }\n").unwrap();
+    // The file with another name than above.
+    fs::write(folder.join("parts/both.mdle"), "use \"../parts/./leg.mdle\"\n{ Rest Leg(1s) }\n").unwrap();
     let options = ["run", "main.mdle", "--target", "sim", "--speed", "max", "--log", "run.mcap"];
     assert!(run(&folder, &options).status.success());
     fs::remove_file(folder.join("main.mdle")).unwrap();

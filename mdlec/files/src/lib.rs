@@ -17,4 +17,4 @@ pub use input::{Group, Input, add, plan, read_plan};
 pub use settings::{Known, NamedProcess, RunOption, SafetyEntry, Settings, file_beside};
 pub use target::{Target, alphabet, bound, out_of_date, target};
 pub use text::{read_text, without_mark};
-pub use unsaved::{Unsaved, place};
+pub use unsaved::{Unsaved, normal, place};

@@ -46,7 +46,8 @@ impl Unsaved {
 }
 
 /// Returns a path without `.`, and without `..` after the name of a folder.
-fn normal(path: &Path) -> PathBuf {
+#[must_use]
+pub fn normal(path: &Path) -> PathBuf {
     let mut normal = PathBuf::new();
     for component in path.components() {
         match component {

@@ -7,7 +7,7 @@ use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, judged};
 use mdle_compiler::fsm::Machine;
 use mdle_compiler::syntax::Loader;
 use mdle_compiler::{Compiled, compile_with};
-use mdle_files::{InputError, Target};
+use mdle_files::{InputError, Target, normal};
 
 use crate::failure::{self, Failure};
 
@@ -65,7 +65,7 @@ impl<'b> RecordedFiles<'b> {
     fn new((name, text): &(String, String), used: &'b [(String, String)], target: &Target) -> Self {
         let mut sources = target.sources();
         let own = sources.add(name.clone(), text.clone());
-        Self { sources, own, used, names: vec![(own, name.into())] }
+        Self { sources, own, used, names: vec![(own, normal(Path::new(name)))] }
     }
 
     fn compile(&mut self, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Compiled>, Vec<Diagnostic>) {
@@ -77,11 +77,12 @@ impl<'b> RecordedFiles<'b> {
 impl Loader for RecordedFiles<'_> {
     fn find(&mut self, from: SourceId, path: &str) -> Result<SourceId, String> {
         let folder = self.names.iter().find(|(source, _)| *source == from).and_then(|(_, name)| name.parent());
-        let name = folder.unwrap_or(Path::new("")).join(path);
+        // Plans may name one file in several ways, and its record has the first of them.
+        let name = normal(&folder.unwrap_or(Path::new("")).join(path));
         if let Some((source, _)) = self.names.iter().find(|(_, known)| *known == name) {
             return Ok(*source);
         }
-        let text = self.used.iter().find(|(known, _)| Path::new(known) == name).map(|(_, text)| text);
+        let text = self.used.iter().find(|(known, _)| normal(Path::new(known)) == name).map(|(_, text)| text);
         let text = text.ok_or_else(|| format!("the record has no file `{}`", name.display()))?;
         let source = self.sources.add(name.display().to_string(), text.clone());
         self.names.push((source, name));
