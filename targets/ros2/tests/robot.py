@@ -51,10 +51,10 @@ class Robot:
     """The robot; `muted` names the topics that are silent, and a function in `changed` may change a message."""
 
     def __init__(self, domain, world=None, stamped=False, lockstep=False, rate=20.0, bumper="bool", namespace="",
-                 reliable=True, rays=RAYS, watchdog=0.5):
+                 reliable=True, rays=RAYS, watchdog=0.5, network="multicast"):
         self.body, self.lockstep, self.rate, self.rays = Body(Floor(world)), lockstep, rate, rays
         self.domain, self.stamped, self.watchdog = domain, stamped, watchdog
-        self.dp = participant(domain)
+        self.dp = participant(domain, network)
         self.qos = RELIABLE if reliable or lockstep else BEST_EFFORT
         prefix = f"rt/{namespace}/" if namespace else "rt/"
         self.prefix = prefix
@@ -172,8 +172,7 @@ def main():
     parser.add_argument("--stamped", action="store_true")
     parser.add_argument("--network", choices=NETWORKS, default="multicast")
     options = parser.parse_args()
-    participant(options.domain, options.network)
-    Robot(options.domain, options.world, options.stamped, options.lockstep).run()
+    Robot(options.domain, options.world, options.stamped, options.lockstep, network=options.network).run()
 
 
 if __name__ == "__main__":
