@@ -1,30 +1,28 @@
 //! The link to the robot over DDS: finds the robot's topics, sends velocities and receives messages.
 
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use mdle_host::StopRequest;
-use mdle_runtime::{Nanos, Twist};
+use mdle_runtime::Twist;
 use mdle_serial::Moment;
 
 use crate::cdr::Payload;
-use crate::choices::{Distribution, Stamped};
-use crate::commands::{Commands, kind_of};
+use crate::choices::Distribution;
+use crate::commands::Commands;
 use crate::config::Config;
-use crate::driver::LOOK;
 use crate::fault::Fault;
-use crate::graph::Graph;
 use crate::link::Link;
 use crate::messages::{Gid, NodeEntitiesInfo, ParticipantEntitiesInfo};
 use crate::pacing::Pacing;
 use crate::participant::{Delivery, Participant, Reader, Writer};
 use crate::report::StateMessages;
+use crate::search::{Search, receive};
 use crate::sensing::Sensing;
 use crate::source::{Input, Source};
 use crate::stamp::ros_now;
 
-/// Time between two checks of the graph for topics.
-const GRAPH: Duration = Duration::from_millis(50);
+/// Maximum number of new participants with which the driver looks for the robot after the first participant.
+const REJOINS: u32 = 2;
 /// Maximum number of participants with which a robot is stopped after the first participant has ended.
 const ATTEMPTS: u32 = 3;
 
@@ -57,6 +55,20 @@ impl DdsLink {
         request: &StopRequest,
         begun: Moment,
     ) -> Result<(Self, Sensing), Fault> {
+        let search = Search { config, request, begun };
+        let mut rejoins = REJOINS;
+        loop {
+            if let Some(found) = Self::join(&search, pacing, rejoins > 0)? {
+                return Ok(found);
+            }
+            rejoins = rejoins.saturating_sub(1);
+        }
+    }
+
+    /// Joins the domain, and waits until all topics have been found. Returns `None` if `may_rejoin` is `true` and a
+    /// publisher does not seem to know this participant.
+    fn join(search: &Search<'_>, pacing: Pacing, may_rejoin: bool) -> Result<Option<(Self, Sensing)>, Fault> {
+        let config = search.config;
         let mut sensing = Sensing::new(config).map_err(Fault::Middleware)?;
         let participant = Participant::join(config)?;
         let delivery = match pacing {
@@ -73,7 +85,7 @@ impl DdsLink {
         };
         let state = optional(&config.state, "std_msgs/msg/String")?;
         let diagnostics = optional(&config.diagnostics, "diagnostic_msgs/msg/DiagnosticArray")?;
-        let commands = find(config, &participant, &readers, &mut sensing, request, begun)?;
+        let Some(commands) = search.find(&participant, &readers, &mut sensing, may_rejoin)? else { return Ok(None) };
         let clock = config.use_sim_time.then_some(0);
         let mut link = Self {
             participant,
@@ -88,7 +100,7 @@ impl DdsLink {
             clock,
         };
         link.node = link.announce(config)?;
-        Ok((link, sensing))
+        Ok(Some((link, sensing)))
     }
 
     /// Announces to the graph the node that owns the readers and writers.
@@ -111,82 +123,6 @@ impl DdsLink {
         // Without it the robot drives as well.
         Ok(Payload::of(&info).and_then(|payload| writer.write(payload)).ok().map(|()| writer))
     }
-}
-
-/// Waits until all topics of the robot have been found, and returns the writer of velocity commands.
-fn find(
-    config: &Config,
-    participant: &Participant,
-    readers: &[(Input, Reader)],
-    sensing: &mut Sensing,
-    request: &StopRequest,
-    begun: Moment,
-) -> Result<Commands, Fault> {
-    let topic = config.topic(&config.cmd_vel).map_err(Fault::Middleware)?;
-    let limit = Duration::from_millis(config.discovery);
-    let mut commands: Option<Commands> = None;
-    loop {
-        let looked = Instant::now();
-        while looked.elapsed() < GRAPH {
-            if request.is_made() {
-                return Err(Fault::Ended);
-            }
-            let now = if config.use_sim_time { sensing.simulated() } else { begun.elapsed() };
-            let received = receive(readers, &mut |index, payload, _| sensing.take(index, payload, now, Nanos::ZERO));
-            if let Err(fault) = received {
-                // Two publishers look like a robot that jumps.
-                several(sensing, &participant.graph())?;
-                return Err(fault);
-            }
-            sleep(LOOK);
-        }
-        participant.check()?;
-        let graph = participant.graph();
-        if commands.is_none() {
-            commands = Commands::found(config, participant, &graph, &topic)?;
-        }
-        let mut missing: Vec<_> = sensing.awaited().map(|(input, why)| graph.about_input(input, why)).collect();
-        let is_awaited = |input: &Input| sensing.awaited().any(|(awaited, _)| awaited == input);
-        let unpublished = sensing.inputs().filter(|input| !is_awaited(input) && graph.publishers(input) == 0);
-        missing.extend(unpublished.map(|input| graph.about_input(input, "")));
-        let is_heard = commands.as_mut().is_some_and(|commands| commands.are_heard(&graph));
-        match commands.take() {
-            Some(found) if is_heard && missing.is_empty() => {
-                several(sensing, &graph)?;
-                return Ok(found);
-            }
-            other => commands = other,
-        }
-        if begun.elapsed() > limit {
-            if !is_heard {
-                missing.insert(0, graph.about_commands(&topic, kind_of(config.stamped == Stamped::Yes)));
-            }
-            let help = graph.help(sensing.inputs(), &topic);
-            return Err(Fault::Missing(format!("{}{help}", graph.about_missing(&missing, config))));
-        }
-    }
-}
-
-/// Returns a fault if several programs publish the odometry.
-fn several(sensing: &Sensing, graph: &Graph) -> Result<(), Fault> {
-    let odometry = sensing.inputs().find(|input| input.source == Source::Odometry);
-    match odometry.map(|input| (input, graph.publishers(input))) {
-        Some((input, count)) if count > 1 => Err(Fault::Several { topic: input.topic.clone(), count }),
-        Some(_) | None => Ok(()),
-    }
-}
-
-/// A function that receives a message: the index of its topic, its bytes, and the id of its publisher.
-type Take<'a> = dyn FnMut(usize, &Payload, [u8; 16]) -> Result<(), Fault> + 'a;
-
-/// Calls `take` with each message that has arrived.
-fn receive(readers: &[(Input, Reader)], take: &mut Take<'_>) -> Result<(), Fault> {
-    for (index, (_, reader)) in readers.iter().enumerate() {
-        while let Some(arrival) = reader.take() {
-            take(index, &arrival.payload, arrival.writer)?;
-        }
-    }
-    Ok(())
 }
 
 impl DdsLink {

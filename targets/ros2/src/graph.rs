@@ -52,6 +52,14 @@ impl Graph {
         self.writers_of(&input.topic).filter(|writer| writer.kind == kind).count()
     }
 
+    /// Returns `true` if the topic of `input` has publishers, and all have its type and its quality of service.
+    #[must_use]
+    pub fn is_offered(&self, input: &Input) -> bool {
+        let kind = dds_type(input.kind);
+        let mut writers = self.writers_of(&input.topic).peekable();
+        writers.peek().is_some() && writers.all(|writer| writer.kind == kind && writer.mismatch.is_none())
+    }
+
     /// Returns a sentence about a topic from which no message could be read; `left_out` is the reason why a message was
     /// rejected.
     #[must_use]
@@ -166,11 +174,14 @@ mod tests {
             Input { source: Source::Odometry, topic: "/odom".to_owned(), kind: "nav_msgs/msg/Odometry", limit: 500 };
         let mut graph = Graph::default();
         assert_eq!(graph.about_input(&odom, ""), "nobody publishes `/odom` (nav_msgs/msg/Odometry)");
+        assert!(!graph.is_offered(&odom));
         graph.writers.push(endpoint("/odom", "nav_msgs/msg/Odometry"));
         assert_eq!(graph.about_input(&odom, ""), "`/odom` has a publisher, and no message has come");
+        assert!(graph.is_offered(&odom));
         assert_eq!(graph.about_input(&odom, "9 bytes"), "`/odom` has messages that cannot be used: 9 bytes");
         graph.writers[0].mismatch = Some("Deadline".to_owned());
         assert!(graph.about_input(&odom, "").ends_with("offers another quality of service (Deadline)"));
+        assert!(!graph.is_offered(&odom));
         graph.writers.push(endpoint("/odom", "geometry_msgs/msg/Pose"));
         assert!(graph.about_input(&odom, "").contains("of the type geometry_msgs/msg/Pose, and nav_msgs"));
         assert_eq!(graph.publishers(&odom), 1);

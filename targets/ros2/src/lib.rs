@@ -29,6 +29,7 @@ mod payload_adapter;
 pub mod quarks;
 pub mod report;
 pub mod scan;
+mod search;
 pub mod sensing;
 pub mod source;
 mod stamp;

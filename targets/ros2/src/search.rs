@@ -1,0 +1,151 @@
+//! The search for the robot's topics at the start.
+
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use mdle_host::StopRequest;
+use mdle_runtime::Nanos;
+use mdle_serial::Moment;
+
+use crate::cdr::Payload;
+use crate::choices::Stamped;
+use crate::commands::{Commands, kind_of};
+use crate::config::Config;
+use crate::driver::LOOK;
+use crate::fault::Fault;
+use crate::graph::Graph;
+use crate::participant::{Participant, Reader};
+use crate::sensing::Sensing;
+use crate::source::{Input, Source};
+
+/// Time between two checks of the graph for topics.
+const GRAPH: Duration = Duration::from_millis(50);
+/// Minimum time without a message of a topic that has a publisher, after which the publisher does not seem to know this
+/// participant.
+const DEAF: Duration = Duration::from_secs(3);
+
+/// The search for the robot's topics.
+pub(crate) struct Search<'s> {
+    pub(crate) config: &'s Config,
+    pub(crate) request: &'s StopRequest,
+    /// Moment at which connecting to the robot began.
+    pub(crate) begun: Moment,
+}
+
+impl Search<'_> {
+    /// Waits until all topics of the robot have been found, and returns the writer of velocity commands. Returns `None`
+    /// if `may_rejoin` is `true` and a topic has a publisher of which no message comes.
+    ///
+    /// RustDDS sends to an address of this computer's loopback interface only after it has received a datagram of the
+    /// participant itself. A participant that was first announced in a datagram of another participant of its program
+    /// is never answered: it learns of no reader of the driver. A new participant of the driver is announced anew.
+    ///
+    /// # Errors
+    /// Fails if topics are missing, or if the middleware does not work.
+    pub(crate) fn find(
+        &self,
+        participant: &Participant,
+        readers: &[(Input, Reader)],
+        sensing: &mut Sensing,
+        may_rejoin: bool,
+    ) -> Result<Option<Commands>, Fault> {
+        let topic = self.config.topic(&self.config.cmd_vel).map_err(Fault::Middleware)?;
+        let limit = Duration::from_millis(self.config.discovery);
+        let mut commands: Option<Commands> = None;
+        let mut silence = None;
+        loop {
+            self.listen(participant, readers, sensing)?;
+            participant.check()?;
+            let graph = participant.graph();
+            if commands.is_none() {
+                commands = Commands::found(self.config, participant, &graph, &topic)?;
+            }
+            let mut missing = missing(sensing, &graph);
+            let is_heard = commands.as_mut().is_some_and(|commands| commands.are_heard(&graph));
+            match commands.take() {
+                Some(found) if is_heard && missing.is_empty() => {
+                    several(sensing, &graph)?;
+                    return Ok(Some(found));
+                }
+                other => commands = other,
+            }
+            let passed = self.begun.elapsed();
+            if passed > limit {
+                if !is_heard {
+                    missing.insert(0, graph.about_commands(&topic, kind_of(self.config.stamped == Stamped::Yes)));
+                }
+                let help = graph.help(sensing.inputs(), &topic);
+                return Err(Fault::Missing(format!("{}{help}", graph.about_missing(&missing, self.config))));
+            }
+            let patience = patience(sensing, &graph);
+            let since = *silence.get_or_insert(passed);
+            silence = patience.map(|_| since);
+            // A new participant needs time to find what this participant has found.
+            let is_deaf = patience.is_some_and(|patience| passed.saturating_sub(since) > patience);
+            if may_rejoin && is_deaf && passed + DEAF < limit {
+                return Ok(None);
+            }
+        }
+    }
+
+    /// Receives messages for a short time.
+    fn listen(
+        &self,
+        participant: &Participant,
+        readers: &[(Input, Reader)],
+        sensing: &mut Sensing,
+    ) -> Result<(), Fault> {
+        let looked = Instant::now();
+        while looked.elapsed() < GRAPH {
+            if self.request.is_made() {
+                return Err(Fault::Ended);
+            }
+            let now = if self.config.use_sim_time { sensing.simulated() } else { self.begun.elapsed() };
+            let received = receive(readers, &mut |index, payload, _| sensing.take(index, payload, now, Nanos::ZERO));
+            if let Err(fault) = received {
+                // Two publishers look like a robot that jumps.
+                several(sensing, &participant.graph())?;
+                return Err(fault);
+            }
+            sleep(LOOK);
+        }
+        Ok(())
+    }
+}
+
+/// Returns a sentence about each topic that the plan cannot begin without.
+fn missing(sensing: &Sensing, graph: &Graph) -> Vec<String> {
+    let mut missing: Vec<_> = sensing.awaited().map(|(input, why)| graph.about_input(input, why)).collect();
+    let is_awaited = |input: &Input| sensing.awaited().any(|(awaited, _)| awaited == input);
+    let unpublished = sensing.inputs().filter(|input| !is_awaited(input) && graph.publishers(input) == 0);
+    missing.extend(unpublished.map(|input| graph.about_input(input, "")));
+    missing
+}
+
+/// Returns the time to wait for the first message of a topic that has a publisher; `None` if there is no such topic.
+fn patience(sensing: &Sensing, graph: &Graph) -> Option<Duration> {
+    let silent = sensing.awaited().filter(|(input, left_out)| left_out.is_empty() && graph.is_offered(input));
+    silent.map(|(input, _)| Duration::from_millis(input.limit).max(DEAF)).min()
+}
+
+/// Returns a fault if several programs publish the odometry.
+fn several(sensing: &Sensing, graph: &Graph) -> Result<(), Fault> {
+    let odometry = sensing.inputs().find(|input| input.source == Source::Odometry);
+    match odometry.map(|input| (input, graph.publishers(input))) {
+        Some((input, count)) if count > 1 => Err(Fault::Several { topic: input.topic.clone(), count }),
+        Some(_) | None => Ok(()),
+    }
+}
+
+/// A function that receives a message: the index of its topic, its bytes, and the id of its publisher.
+type Take<'a> = dyn FnMut(usize, &Payload, [u8; 16]) -> Result<(), Fault> + 'a;
+
+/// Calls `take` with each message that has arrived.
+pub(crate) fn receive(readers: &[(Input, Reader)], take: &mut Take<'_>) -> Result<(), Fault> {
+    for (index, (_, reader)) in readers.iter().enumerate() {
+        while let Some(arrival) = reader.take() {
+            take(index, &arrival.payload, arrival.writer)?;
+        }
+    }
+    Ok(())
+}
