@@ -103,6 +103,13 @@ impl DdsLink {
         Ok(Some((link, sensing)))
     }
 
+    /// Returns a sentence about other publishers of the velocity commands, as far as they have been found; `None` if
+    /// there are none.
+    #[must_use]
+    pub fn about_rivals(&self) -> Option<String> {
+        self.participant.graph().about_rivals(&self.commands.topic)
+    }
+
     /// Announces to the graph the node that owns the readers and writers.
     fn announce(&self, config: &Config) -> Result<Option<Writer>, Fault> {
         let is_long = match config.distribution {

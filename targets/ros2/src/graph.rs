@@ -94,6 +94,20 @@ impl Graph {
         }
     }
 
+    /// Returns a sentence about the other publishers of the velocity commands `topic`; `None` if there are none.
+    #[must_use]
+    pub fn about_rivals(&self, topic: &str) -> Option<String> {
+        let (others, them) = match self.writers_of(topic).count() {
+            0 => return None,
+            1 => ("another publisher".to_owned(), "it"),
+            count => (format!("{count} other publishers"), "them"),
+        };
+        Some(format!(
+            "`{topic}` has {others}, and the base obeys whichever command came last: stop {them}, or set `cmd-vel` to \
+             an input of a multiplexer"
+        ))
+    }
+
     /// Returns sentences about all missing topics and about the topics that are on the graph instead. If no program
     /// answers, the text says only that.
     #[must_use]
@@ -194,6 +208,18 @@ mod tests {
         assert_eq!(about(&graph), "nobody subscribes to `/cmd_vel` (geometry_msgs/msg/Twist)");
         graph.readers.push(endpoint("/cmd_vel", "geometry_msgs/msg/TwistStamped"));
         assert!(about(&graph).contains("takes geometry_msgs/msg/TwistStamped, and commands are"));
+    }
+
+    #[test]
+    fn rivals_are_counted() {
+        let mut graph = Graph::default();
+        let about = |graph: &Graph| graph.about_rivals("/cmd_vel");
+        graph.writers.push(endpoint("/odom", "nav_msgs/msg/Odometry"));
+        assert_eq!(about(&graph), None);
+        graph.writers.push(endpoint("/cmd_vel", "geometry_msgs/msg/Twist"));
+        assert!(about(&graph).unwrap().starts_with("`/cmd_vel` has another publisher, and the base obeys"));
+        graph.writers.push(endpoint("/cmd_vel", "geometry_msgs/msg/TwistStamped"));
+        assert!(about(&graph).unwrap().starts_with("`/cmd_vel` has 2 other publishers, and the base obeys"));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The target `ros2`, on which the host runs plans.
 
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -84,6 +85,10 @@ impl mdle_host::Target for Target {
         let config = configured(matches)?.config;
         let (pacing, begun) = (pacing(matches, period)?, Moment::now());
         let (link, sensing) = DdsLink::connect(&config, pacing, request, begun)?;
+        if let Some(sentence) = link.about_rivals() {
+            // Without standard error the plan runs as well.
+            let _ = writeln!(io::stderr(), "warning: {sentence}");
+        }
         Ok(Ros2::new(config, link, sensing, pacing, request.clone(), begun))
     }
 }

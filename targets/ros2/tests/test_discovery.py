@@ -9,8 +9,10 @@ import threading
 import time
 from pathlib import Path
 
+from cyclonedds.pub import DataWriter
+
 from harness import LONG, built, configuration, new_domain, running, until
-from robot import Robot
+from robot import RELIABLE, Robot
 
 # The first bytes of a datagram of RTPS: its mark, version, vendor, and the id of the participant that sends it.
 VENDOR, PREFIX, HEADER = 6, 8, 20
@@ -101,3 +103,17 @@ def test_a_silent_topic_is_reported_after_the_time_to_find_it():
             code, out, err = run.end()
         assert code == 3 and "`/odom` has a publisher, and no message has come" in err, out + err
         assert 8 < time.monotonic() - begun < 20
+
+
+def test_other_publishers_of_velocities_are_counted_at_the_start():
+    domain = new_domain()
+    with Robot(domain) as robot:
+        # The first odometry comes when the driver has found the others.
+        robot.muted.add("odom")
+        others = [DataWriter(robot.dp, robot.command_topic, qos=RELIABLE) for _ in range(2)]
+        with running("hop", configuration(domain)) as run:
+            time.sleep(2)
+            robot.muted.clear()
+            code, out, err = run.end()
+            assert code == 0 and "warning: `/cmd_vel` has 2 other publishers" in err, out + err
+        del others
