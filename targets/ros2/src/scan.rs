@@ -5,6 +5,9 @@ use mdle_runtime::{Meters, Mount, Pose, Radians, SONARS, SonarId};
 use crate::config::Config;
 use crate::messages::LaserScan;
 
+/// Numbers of the virtual sonars that point ahead.
+const AHEAD: [usize; 3] = [SONARS - 1, 0, 1];
+
 /// Content of one direction in a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Direction {
@@ -73,6 +76,19 @@ impl Scanner {
         self.rays(scan).filter_map(|(angle, range)| Some(self.place(angle, range?)))
     }
 
+    /// Returns `true` if `scan` has rays, valid or not, in the three directions ahead.
+    #[must_use]
+    pub fn looks_ahead(&self, scan: &LaserScan) -> bool {
+        let angles =
+            || (0..scan.ranges.len()).map(|number| self.angle(scan, number)).filter(|angle| angle.0.is_finite());
+        AHEAD.iter().all(|sonar| angles().any(|angle| sonar_at(angle).number() == *sonar))
+    }
+
+    /// Returns the angle on the body of the ray with this number.
+    fn angle(&self, scan: &LaserScan, number: usize) -> Radians {
+        Radians(self.mount.theta.0 + f64::from(scan.angle_min) + f64::from(scan.angle_increment) * number as f64)
+    }
+
     /// Returns the position, in metres relative to the body, of an obstacle at this angle and range.
     fn place(&self, angle: Radians, range: f64) -> (f64, f64) {
         let (sin, cos) = libm::sincos(angle.0);
@@ -82,10 +98,9 @@ impl Scanner {
     /// Returns the valid rays of `scan`: their angle on the body, and their range in metres; `None` for a ray that met
     /// nothing.
     fn rays<'s>(&'s self, scan: &'s LaserScan) -> impl Iterator<Item = (Radians, Option<f64>)> + 's {
-        let (first, step) = (f64::from(scan.angle_min), f64::from(scan.angle_increment));
         let (least, most) = (f64::from(scan.range_min), f64::from(scan.range_max));
         scan.ranges.iter().enumerate().filter_map(move |(number, range)| {
-            let angle = Radians(self.mount.theta.0 + first + step * number as f64);
+            let angle = self.angle(scan, number);
             let range = f64::from(*range);
             let is_free = range == f64::INFINITY || (self.zero_is_free && range == 0.0);
             let is_valid = is_free || (range.is_finite() && range >= least && range <= most && range > 0.0);
@@ -129,6 +144,18 @@ mod tests {
             Direction::Echo { range, .. } => format!("{:.2}", range.0),
         };
         directions.iter().map(text).collect()
+    }
+
+    #[test]
+    fn a_scan_looks_ahead_with_rays_in_three_directions() {
+        let looks =
+            |yaw: f64, rays: usize| scanner(|config| config.scan_yaw = yaw).looks_ahead(&scan(vec![f32::NAN; rays]));
+        assert!(looks(0.0, 16) && looks(0.0, 360) && looks(PI, 360));
+        assert!(!looks(0.0, 0) && !looks(0.0, 1) && !looks(PI, 1) && !looks(0.0, 8));
+        // Half a circle of which the robot sees what is behind it.
+        let half = LaserScan { angle_increment: (PI / 360.0) as f32, ..scan(vec![1.0; 360]) };
+        let turned = |yaw: f64| scanner(|config| config.scan_yaw = yaw).looks_ahead(&half);
+        assert!(turned(PI / 2.0) && !turned(-PI / 2.0));
     }
 
     #[test]

@@ -123,6 +123,9 @@ impl Sensing {
     }
 
     fn take_scan(&mut self, scan: &LaserScan, now: Duration, at: Nanos) -> Result<i64, String> {
+        if self.config.bumper_type == BumperSource::Scan && !self.scanner.looks_ahead(scan) {
+            return Err("its rays do not look ahead, which `bumper-type = \"scan\"` needs; see `scan-yaw`".to_owned());
+        }
         let pose = self.pose_of(&scan.header);
         let directions = self.scanner.directions(scan);
         if directions.iter().all(|direction| *direction == Direction::Unknown) {
