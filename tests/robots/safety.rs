@@ -228,6 +228,40 @@ fn no_random_plan_passes_fence_or_limits() {
     assert!(near > 200, "the fence was tried: {near}");
 }
 
+/// Corners of a fence with slanting edges and a corner that points inwards.
+const SLANTING: [[f64; 2]; 5] = [[-0.5, -0.5], [2.0, -0.5], [2.0, 0.6], [0.8, 0.1], [-0.5, 0.5]];
+
+/// Returns the distance of a place from the edges of `SLANTING`, in metres; below 0 if it is outside.
+fn inside_slanting([x, y]: [f64; 2]) -> f64 {
+    let edges = || SLANTING.into_iter().zip(SLANTING.into_iter().cycle().skip(1));
+    let crossed =
+        edges().filter(|([ax, ay], [bx, by])| (*ay > y) != (*by > y) && x < ax + (bx - ax) * (y - ay) / (by - ay));
+    let distances = edges().map(|([ax, ay], [bx, by])| {
+        let [dx, dy] = [bx - ax, by - ay];
+        let part = (((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
+        libm::hypot(ax + part * dx - x, ay + part * dy - y)
+    });
+    let distance = distances.fold(f64::INFINITY, f64::min);
+    if crossed.count() % 2 == 1 { distance } else { -distance }
+}
+
+#[test]
+fn random_plans_keep_the_margin_of_a_slanting_fence() {
+    let corners = SLANTING.map(|[x, y]| format!("[{x:?}, {y:?}]")).join(", ");
+    let text = format!("[[fence]]\ninside = [{corners}]\nmargin = \"10cm\"\ndeceleration = \"50cm/s2\"\n");
+    let rules = read(&text).unwrap();
+    let mut nearest = f64::INFINITY;
+    for seed in 0..repeated(PLANS) {
+        let plan = random_plan(&mut Chance::new(1000 + seed));
+        for body in BODIES {
+            for Turned { pose, .. } in run(&plan, &rules, &exact(body), 600) {
+                nearest = nearest.min(inside_slanting([pose.x.0, pose.y.0]));
+            }
+        }
+    }
+    assert!((0.098..0.105).contains(&nearest), "{nearest} m from the edges");
+}
+
 /// A plan that drives about at any speed, straight and in circles.
 fn random_plan(chance: &mut Chance) -> String {
     let mut plan = String::from("{ Main (wait 60)\n");

@@ -9,6 +9,7 @@ mod envelope;
 mod error;
 mod fence;
 mod guardian;
+mod plane;
 mod read;
 mod rules;
 mod section;

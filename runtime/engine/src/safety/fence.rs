@@ -7,6 +7,8 @@
 
 use mdle_runtime::Pose;
 
+use super::plane::{Edge, Point, between, cross, cross_over, direction, dot, hit, nearest, reach};
+
 /// A polygon that the centre of the robot must not leave, in the axes of its odometry.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fence {
@@ -20,9 +22,6 @@ pub struct Fence {
     pub deceleration: f64,
 }
 
-/// A vector or a point in the plane.
-type Point = [f64; 2];
-
 impl Fence {
     /// Returns the maximum speed, in metres per second, of a robot at this pose that has the speed `v` and the turn
     /// rate `omega`; `period` is in seconds. A negative `v` drives backwards.
@@ -34,17 +33,31 @@ impl Fence {
         let backwards = if v < 0.0 { core::f64::consts::PI } else { 0.0 };
         let heading = pose.theta.0 + backwards;
         let late = 2.0 * period;
-        if !self.contains(here) {
-            // Back in is the only way.
-            let is_inward = self.edges().any(|edge| hit(here, direction(heading), edge).is_some());
-            return if is_inward { f64::INFINITY } else { 0.0 };
-        }
         let turned = omega * (late + v.abs() / self.deceleration);
-        let room = (self.room(here, heading, turned) - self.margin).max(0.0);
+        let room =
+            if self.contains(here) { self.room(here, heading, turned) } else { self.way_in(here, heading, turned) };
         self.deceleration * (libm::sqrt(late * late + 2.0 * room / self.deceleration) - late)
     }
 
-    /// Returns the distance to the nearest point of the fence in the directions from `heading` to `heading + turned`.
+    /// Returns the distance from a place outside, through the fence, to where it is left again; 0 if the robot
+    /// does not come nearer to the fence in all directions from `heading` to `heading + turned`.
+    fn way_in(&self, here: Point, heading: f64, turned: f64) -> f64 {
+        let to_fence = self.edges().map(|edge| between(here, nearest(here, edge)));
+        let [x, y] = to_fence
+            .min_by(|[ax, ay], [bx, by]| libm::hypot(*ax, *ay).total_cmp(&libm::hypot(*bx, *by)))
+            .unwrap_or_default();
+        let is_nearer = |heading| dot(direction(heading), [x, y]) > 0.0;
+        if turned.abs() >= core::f64::consts::PI || !is_nearer(heading) || !is_nearer(heading + turned) {
+            return 0.0;
+        }
+        let hits = || self.edges().filter_map(|edge| hit(here, direction(heading), edge));
+        let entry = hits().fold(f64::INFINITY, f64::min);
+        let exit = hits().filter(|distance| *distance > entry).fold(f64::INFINITY, f64::min);
+        if exit.is_finite() { (exit - self.margin).max(0.0) } else { 0.0 }
+    }
+
+    /// Returns the distance to where the robot comes within the margin of the fence, in the directions from `heading`
+    /// to `heading + turned`.
     fn room(&self, here: Point, heading: f64, turned: f64) -> f64 {
         let (from, to) = if turned < 0.0 { (heading + turned, heading) } else { (heading, heading + turned) };
         let (first, last) = (direction(from), direction(to));
@@ -52,22 +65,21 @@ impl Fence {
         let is_ahead =
             |[x, y]: Point| is_all || cross(first, [x, y]) >= 0.0 && cross([x, y], last) >= 0.0 && turned != 0.0;
         self.edges().fold(f64::INFINITY, |least, edge| {
-            let along = [first, last].into_iter().filter_map(|way| hit(here, way, edge));
-            let near = [nearest(here, edge), edge.0].into_iter().map(|point| [point[0] - here[0], point[1] - here[1]]);
-            let near = near.filter(|way| is_ahead(*way)).map(|[x, y]| libm::hypot(x, y));
+            let along = [first, last].into_iter().filter_map(|way| reach(here, way, edge, self.margin));
+            let near = [nearest(here, edge), edge.0].into_iter().map(|point| between(here, point));
+            let near = near.filter(|way| is_ahead(*way)).map(|[x, y]| (libm::hypot(x, y) - self.margin).max(0.0));
             along.chain(near).fold(least, f64::min)
         })
     }
 
     /// Returns `true` if the point is inside.
     pub(super) fn contains(&self, [x, y]: Point) -> bool {
-        let crosses =
-            |([ax, ay], [bx, by]): (Point, Point)| (ay > y) != (by > y) && x < ax + (bx - ax) * (y - ay) / (by - ay);
+        let crosses = |([ax, ay], [bx, by]): Edge| (ay > y) != (by > y) && x < ax + (bx - ax) * (y - ay) / (by - ay);
         self.edges().filter(|edge| crosses(*edge)).count() % 2 == 1
     }
 
     /// Returns the edges, from corner to corner.
-    fn edges(&self) -> impl Iterator<Item = (Point, Point)> {
+    fn edges(&self) -> impl Iterator<Item = Edge> {
         self.corners.iter().copied().zip(self.corners.iter().copied().cycle().skip(1))
     }
 
@@ -102,57 +114,6 @@ impl Fence {
         (2.0 * self.margin >= width)
             .then(|| format!("a margin of {} m leaves no room: the fence is {width} m wide", self.margin))
     }
-}
-
-fn direction(heading: f64) -> Point {
-    [libm::cos(heading), libm::sin(heading)]
-}
-
-fn cross([ax, ay]: Point, [bx, by]: Point) -> f64 {
-    ax * by - ay * bx
-}
-
-/// Returns the distance from `here` along `way`, a unit vector, to the edge; `None` if the edge is not in that
-/// direction.
-fn hit(here: Point, way: Point, (from, to): (Point, Point)) -> Option<f64> {
-    let edge = [to[0] - from[0], to[1] - from[1]];
-    let between = [from[0] - here[0], from[1] - here[1]];
-    let across = cross(way, edge);
-    let along = cross(between, edge) / across;
-    let part = cross(between, way) / across;
-    (across != 0.0 && along >= 0.0 && (0.0..=1.0).contains(&part)).then_some(along)
-}
-
-/// Returns the point of the edge that is nearest to `here`.
-fn nearest(here: Point, (from, to): (Point, Point)) -> Point {
-    let edge = [to[0] - from[0], to[1] - from[1]];
-    let length = edge[0] * edge[0] + edge[1] * edge[1];
-    let part = ((here[0] - from[0]) * edge[0] + (here[1] - from[1]) * edge[1]) / length;
-    let part = part.clamp(0.0, 1.0);
-    [from[0] + part * edge[0], from[1] + part * edge[1]]
-}
-
-/// Returns `true` if the edges have a point in common.
-fn cross_over(one: (Point, Point), other: (Point, Point)) -> bool {
-    let side = |(from, to): (Point, Point), point: Point| {
-        let way = cross([to[0] - from[0], to[1] - from[1]], [point[0] - from[0], point[1] - from[1]]);
-        if way == 0.0 {
-            0
-        } else if way > 0.0 {
-            1
-        } else {
-            -1
-        }
-    };
-    let sides = (side(one, other.0), side(one, other.1), side(other, one.0), side(other, one.1));
-    if sides == (0, 0, 0, 0) {
-        let overlap = |axis: usize| {
-            let [a, b, c, d] = [one.0, one.1, other.0, other.1].map(|point| point[axis]);
-            a.max(b) >= c.min(d) && c.max(d) >= a.min(b)
-        };
-        return overlap(0) && overlap(1);
-    }
-    sides.0 * sides.1 <= 0 && sides.2 * sides.3 <= 0
 }
 
 #[cfg(test)]
@@ -197,8 +158,48 @@ mod tests {
     #[test]
     fn from_outside_the_way_is_back() {
         assert_eq!(hall().fastest(&at(2.1, 0.0, 0.0), 0.3, 0.0, 0.1), 0.0);
-        assert_eq!(hall().fastest(&at(2.1, 0.0, 0.0), -0.3, 0.0, 0.1), f64::INFINITY);
-        assert_eq!(hall().fastest(&at(2.1, 0.0, 180.0), 0.3, 0.0, 0.1), f64::INFINITY);
+        for (degrees, v) in [(0.0, -0.3), (180.0, 0.3)] {
+            let fastest = hall().fastest(&at(2.1, 0.0, degrees), v, 0.0, 0.1);
+            let way = fastest * 0.2 + fastest * fastest;
+            assert!((way - 2.57).abs() < 1e-9, "so that it stops at the other edge: {way}");
+        }
+        assert_eq!(hall().fastest(&at(2.1, 0.0, 95.0), 0.3, -0.3, 0.1), 0.0, "it would turn away");
+        assert_eq!(hall().fastest(&at(2.1, 0.0, 100.0), 0.3, 0.0, 0.1), 0.0, "past the fence");
+    }
+
+    /// A notch between two arms: who leaves one of them may not drive on to the other.
+    #[test]
+    fn a_notch_is_not_crossed() {
+        let corners =
+            vec![[-1.0, -1.0], [4.0, -1.0], [4.0, 1.0], [2.0, 1.0], [2.0, -0.5], [1.0, -0.5], [1.0, 1.0], [-1.0, 1.0]];
+        let fence = Fence { corners, margin: 0.0, ..hall() };
+        for x in [1.000_01, 1.1, 1.49] {
+            assert_eq!(fence.fastest(&at(x, 0.5, 0.0), 0.6, 0.0, 0.1), 0.0, "{x}");
+            assert!(fence.fastest(&at(x, 0.5, 0.0), -0.6, 0.0, 0.1) > 0.5, "{x}");
+        }
+    }
+
+    /// At an edge that the robot meets at an angle, the margin is the distance from the edge, not along its way.
+    #[test]
+    fn the_margin_is_kept_at_any_angle() {
+        let corners = vec![[-1.0, -1.0], [3.0, -1.0], [3.0, -0.3], [-1.0, 0.5]];
+        let fence = Fence { corners, margin: 0.1, ..hall() };
+        let edge = ([3.0, -0.3], [-1.0, 0.5]);
+        for (degrees, omega) in [(0.0, 0.0), (20.0, 0.0), (60.0, 0.0), (90.0, 0.0), (-15.0, 0.0), (0.0, 0.2)] {
+            let pose = at(0.0, 0.0, degrees);
+            let fastest = fence.fastest(&pose, 0.5, omega, 0.1);
+            let way = fastest * 0.2 + fastest * fastest;
+            let [x, y] = direction(pose.theta.0);
+            let end = [way * x, way * y];
+            let left = between(end, nearest(end, edge));
+            let left = libm::hypot(left[0], left[1]);
+            assert!(left > 0.1 - 1e-9, "{degrees}: {left}");
+            assert!(omega != 0.0 || degrees < 0.0 || left < 0.1 + 1e-9, "{degrees}: {left}");
+        }
+        // As near as the margin allows: towards the edge not at all, away from it as before.
+        let near = at(0.0, 0.21, 0.0);
+        assert_eq!(fence.fastest(&near, 0.5, 0.0, 0.1), 0.0);
+        assert!(fence.fastest(&near, -0.5, 0.0, 0.1) > 0.5);
     }
 
     #[test]
