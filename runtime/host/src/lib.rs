@@ -31,6 +31,7 @@ mod microphones;
 mod named_file;
 mod observation;
 mod observer;
+mod one_run;
 mod operand_text;
 mod outcome;
 mod output_format;
@@ -63,6 +64,7 @@ mod stop_request;
 mod summary;
 mod supervised;
 mod supervisor;
+mod surroundings;
 mod target;
 mod target_options;
 #[cfg(test)]
@@ -218,7 +220,7 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
     let elapsed = shows_progress.then(|| Box::new(move || begun.elapsed()) as Box<dyn FnMut() -> _>);
     let out = || Box::new(out) as Box<dyn Write>;
     let surroundings =
-        session::Surroundings { instants: instants::SinceBoot, signals, watch, out, err: &mut err, elapsed };
+        surroundings::Surroundings { instants: instants::SinceBoot, signals, watch, out, err: &mut err, elapsed };
     ExitCode::from(session::session(program, call, executable, surroundings))
 }
 

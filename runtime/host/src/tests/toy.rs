@@ -16,8 +16,9 @@ use crate::call::Call;
 use crate::executable::PlanOnTarget;
 use crate::instants::Instants;
 use crate::pilot::PlanAlone;
-use crate::session::{Surroundings, session};
+use crate::session::session;
 use crate::signals::{Signal, Signals};
+use crate::surroundings::Surroundings;
 use crate::turn_watch::TurnWatch;
 use crate::{
     Around, Ended, Judgement, Observation, Observer, Pace, PlanPosition, Refusal, RunTerms, StopRequest, Supervision,

@@ -1,0 +1,60 @@
+//! Environment and settings of a run.
+
+use std::io::Write;
+use std::time::Duration;
+
+use clap::ArgMatches;
+use mdle_runtime::PathStore;
+
+use crate::Program;
+use crate::arguments::Options;
+use crate::call::Call;
+use crate::cycle::Limits;
+use crate::required::Required;
+use crate::signals::Signals;
+use crate::turn_watch::TurnWatch;
+
+/// Environment of a run: time, signals and output; tests provide their own.
+pub(crate) struct Surroundings<'e, I, O> {
+    /// Source of real time.
+    pub(crate) instants: I,
+    /// Signals that end the run.
+    pub(crate) signals: Signals,
+    /// Watchdog that limits the time of each turn.
+    pub(crate) watch: TurnWatch,
+    /// Function that opens standard output.
+    pub(crate) out: O,
+    /// Standard error.
+    pub(crate) err: &'e mut dyn Write,
+    /// Clock of the line that shows that a fast run goes on, if standard error is a terminal.
+    pub(crate) elapsed: Option<Box<dyn FnMut() -> Duration + 'e>>,
+}
+
+/// Options of a run, and words that its reports need.
+pub(crate) struct Settings<'a> {
+    /// Plan's name and version.
+    pub(crate) program: Program<'a>,
+    /// Words by which the program was called.
+    pub(crate) call: &'a Call,
+    /// All options, among them those of the target.
+    pub(crate) matches: &'a ArgMatches,
+    /// Options that all targets have.
+    pub(crate) options: &'a Options,
+}
+
+impl Settings<'_> {
+    /// Returns the limits of the run.
+    pub(crate) fn limits(&self) -> Limits {
+        Limits { timeout: self.options.timeout, turns: self.options.turns }
+    }
+}
+
+/// Data of the plan that the options determine.
+pub(crate) struct PlanData {
+    /// Paths that the plan replays.
+    pub(crate) store: PathStore,
+    /// Names of these paths.
+    pub(crate) paths: Vec<&'static str>,
+    /// Causes by which the plan must end.
+    pub(crate) required: Required,
+}
