@@ -1,5 +1,6 @@
 //! Quarks and their arguments as Rust values, in SI units.
 
+use mdle_runtime::Radians;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -71,12 +72,17 @@ pub(super) fn arguments(quark: &Quark) -> impl Iterator<Item = TokenStream> {
 
 /// An angle, in degrees where that gives the same value.
 pub(super) fn angle(radians: f64) -> TokenStream {
-    if let Some(degrees) = in_degrees(radians) {
-        let degrees = number(degrees);
+    if let Some(degrees) = exact_degrees(radians).map(number) {
         return quote!(runtime::Radians::from_degrees(#degrees));
     }
     let radians = number(radians);
     quote!(runtime::Radians(#radians))
+}
+
+/// Returns the number of degrees that gives this very angle. Frames in frames add up in radians: 30° in 45° is not the
+/// value of 75°, but the one next to it.
+pub(super) fn exact_degrees(radians: f64) -> Option<f64> {
+    in_degrees(radians).filter(|degrees| Radians::from_degrees(*degrees).0 == radians)
 }
 
 /// Emits a number. In Rust's syntax, its sign is a separate token.
@@ -124,5 +130,24 @@ fn argument(value: &Value) -> TokenStream {
             quote!(runtime::SonarId::new(#sonar))
         }
         Value::Name(_, name) => quote!(#name),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Radians, angle, exact_degrees};
+
+    #[test]
+    fn an_angle_is_emitted_in_degrees_only_where_these_give_the_same_value() {
+        let [alone, sum] = [30.0, 30.0 + 45.0].map(|degrees| Radians::from_degrees(degrees).0);
+        assert_eq!(angle(alone).to_string(), "runtime :: Radians :: from_degrees (30.0)");
+        let nested = alone + Radians::from_degrees(45.0).0;
+        assert_ne!(nested, sum);
+        assert_eq!(angle(nested).to_string(), format!("runtime :: Radians ({nested})"));
+        for (outer, inner) in (-720..720).zip((0..360).rev().cycle()) {
+            let nested = Radians::from_degrees(f64::from(outer)).0 + Radians::from_degrees(f64::from(inner)).0;
+            let same = exact_degrees(nested).is_none_or(|degrees| Radians::from_degrees(degrees).0 == nested);
+            assert!(same, "{outer}° + {inner}°");
+        }
     }
 }

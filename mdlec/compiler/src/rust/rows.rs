@@ -4,14 +4,13 @@ use mdle_runtime::{Fact, Follows, Guard, LawRow, MarkRow, Radians};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-use super::arguments::{angle, number};
+use super::arguments::{angle, exact_degrees, number};
 use super::conditions::{row, variant};
 use super::quark_functions::QuarkFunctions;
 use super::scopes::asks_for_progress;
 use super::tables::entries;
 use crate::alphabet::Alphabet;
 use crate::fsm::{self, Machine, Rows};
-use crate::plan::in_degrees;
 
 /// Emits the plan's type, which delegates to the runtime's type, and its rows.
 pub(super) fn machine(
@@ -185,7 +184,7 @@ fn row_functions(rows: &Rows) -> TokenStream {
             }
         }
     });
-    let degrees = rows.laws.iter().any(|law| in_degrees(law.frame.0).is_some()).then(|| {
+    let degrees = rows.laws.iter().any(|law| exact_degrees(law.frame.0).is_some()).then(|| {
         quote! {
             #[doc = " An angle."]
             const fn degrees(angle: f64) -> runtime::Radians { runtime::Radians::from_degrees(angle) }
@@ -221,7 +220,7 @@ fn follower(Follows { atom, from, to }: Follows) -> TokenStream {
 
 /// Emits the angle by which a frame is turned: `degrees(90.0)` where that gives the same value.
 fn turn(Radians(radians): Radians) -> TokenStream {
-    let Some(degrees) = in_degrees(radians).map(number) else { return angle(radians) };
+    let Some(degrees) = exact_degrees(radians).map(number) else { return angle(radians) };
     quote!(degrees(#degrees))
 }
 
