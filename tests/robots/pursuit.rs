@@ -194,6 +194,25 @@ fn a_robot_that_dies_in_any_atom_leaves_nobody_waiting() {
 }
 
 #[test]
+fn a_robot_that_dies_is_not_run_into() {
+    let bad = "\n[link]\nlatency = \"0ms..200ms\"\nloss = 0.1\n";
+    // In these runs two robots met, in the last one two living ones, if none ended `go` when others were silent.
+    let runs =
+        [("robot2", "0.8s", "", "9940350"), ("robot1", "35.1s", "", "9940313"), ("robot3", "52.4s", bad, "9940398")];
+    for (victim, time, link, seed) in runs {
+        let folder = scenario(&format!("pursuit_met_{victim}"), link);
+        let file = folder.join("pursuit.toml");
+        let named = format!("name = \"{victim}\"\n");
+        let text = fs::read_to_string(&file).unwrap().replace(&named, &format!("{named}killed = \"{time}\"\n"));
+        fs::write(&file, text.replace("180s", "80s")).unwrap();
+        let report = String::from_utf8(run(&folder, &["--seed", seed]).stdout).unwrap();
+        assert!(report.contains(&format!("{victim}: its program was killed\n")), "{report}");
+        assert!(!report.contains("plan over: bumper"), "{victim} at {time}: {report}");
+        assert!(!report.contains("least gap between robots: 0.0 cm"), "{victim} at {time}: {report}");
+    }
+}
+
+#[test]
 fn a_robot_that_dies_leaves_nobody_waiting() {
     for (number, time) in (0..repeated(6)).zip([0.0f64, 7.0, 23.0, 41.0].into_iter().cycle()) {
         let victim = ["robot1", "robot2", "robot3"][number as usize % 3];

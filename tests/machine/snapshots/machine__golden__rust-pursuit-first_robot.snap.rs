@@ -58,6 +58,10 @@ mod machine {
     const TURN_180: robot::Turn = robot::Turn::new(
         runtime::Radians::from_degrees(180.0),
     );
+    /// `sync robot2`
+    const SYNC_ROBOT2: robot::Sync = robot::Sync::new("robot2");
+    /// `sync robot3`
+    const SYNC_ROBOT3: robot::Sync = robot::Sync::new("robot3");
     /// `Follow robot2`
     const FOLLOW_ROBOT2: robot::Follow = robot::Follow::new("robot2");
     /// The law of the current atom, with its state since the atom began.
@@ -75,7 +79,7 @@ mod machine {
         Atom4(<robot::Turn as runtime::Control<Output>>::Law),
         /// `(Atom (rendezvous robot2 AND rendezvous robot3) stop)`
         Atom5(<robot::Stop as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 2.5) go 50 0)`
+        /// `(Atom (wait 2.5 OR NOT (sync robot2 AND sync robot3)) go 50 0)`
         Atom6(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (null) Follow robot2)`
         Atom7(<robot::Follow as runtime::Control<Output>>::Law),
@@ -205,7 +209,10 @@ mod machine {
                     }
                 }
                 Running::Atom6(_) => {
-                    if cursor.since(1u16, t) >= Nanos(2500000000) {
+                    if (cursor.since(1u16, t) >= Nanos(2500000000))
+                        | !(runtime::Interrupt::fired(&SYNC_ROBOT2, y)
+                            & runtime::Interrupt::fired(&SYNC_ROBOT3, y))
+                    {
                         return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(6, 1, 2)),
@@ -308,7 +315,7 @@ mod machine {
             runtime::Condition::Wait(Nanos(2000000000)),
             runtime::Condition::Wait(Nanos(10000000000)),
             runtime::Condition::And(4, 2),
-            runtime::Condition::Wait(Nanos(2500000000)),
+            runtime::Condition::Or(6, 2),
             runtime::Condition::Null,
             runtime::Condition::Wait(Nanos(10000000000)),
         ],
@@ -330,6 +337,15 @@ mod machine {
             runtime::Condition::Lasting(
                 robot::AnyInterrupt::Rendezvous(robot::Rendezvous::new("robot3")),
                 Nanos(1),
+            ),
+            runtime::Condition::Wait(Nanos(2500000000)),
+            runtime::Condition::Not(8),
+            runtime::Condition::And(9, 2),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Sync(robot::Sync::new("robot2")),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Sync(robot::Sync::new("robot3")),
             ),
         ],
     };
@@ -371,10 +387,10 @@ mod machine {
     const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
         concat![
             "bumper OR wait 600", "rendezvous robot2 AND rendezvous robot3", "null",
-            "wait 2", "wait 10", "rendezvous robot2 AND rendezvous robot3", "wait 2.5",
-            "null", "wait 10"
+            "wait 2", "wait 10", "rendezvous robot2 AND rendezvous robot3",
+            "wait 2.5 OR NOT (sync robot2 AND sync robot3)", "null", "wait 10"
         ],
-        &[18, 18, 57, 61, 67, 74, 113, 121, 125, 132],
+        &[18, 18, 57, 61, 67, 74, 113, 158, 162, 169],
     );
     /// The name of each bracket; empty for an atom and a loop.
     const NAMES: runtime::TextList<'static> = runtime::TextList::new(
@@ -392,17 +408,17 @@ mod machine {
             [0, 8, 5, 1],
             [0, 9, 6, 1],
             [0, 10, 7, 2],
-            [0, 11, 9, 1],
-            [0, 12, 10, 1],
-            [0, 13, 11, 1],
+            [0, 11, 9, 2],
+            [0, 12, 11, 1],
+            [0, 13, 12, 1],
         ],
         conditions: runtime::TextList::new(
             concat![
                 "bumper OR wait 10min", "rendezvous robot2 AND rendezvous robot3",
                 "null", "wait 2", "wait 10", "rendezvous robot2 AND rendezvous robot3",
-                "wait 2.5", "null", "wait 10"
+                "wait 2.5 OR NOT (sync robot2 AND sync robot3)", "null", "wait 10"
             ],
-            &[20, 20, 59, 63, 69, 76, 115, 123, 127, 134],
+            &[20, 20, 59, 63, 69, 76, 115, 160, 164, 171],
         ),
         operands: &[
             [0, 4, 0, 0],
@@ -415,6 +431,7 @@ mod machine {
             [0, 10, 0, 0],
             [0, 10, 0, 0],
             [0, 11, 0, 0],
+            [0, 11, 0, 0],
             [0, 12, 0, 0],
             [0, 13, 0, 0],
         ],
@@ -422,17 +439,17 @@ mod machine {
             concat![
                 "bumper", "wait 600", "rendezvous robot2", "rendezvous robot3", "null",
                 "wait 2", "wait 10", "rendezvous robot2", "rendezvous robot3",
-                "wait 2.5", "null", "wait 10"
+                "wait 2.5", "NOT (sync robot2 AND sync robot3)", "null", "wait 10"
             ],
-            &[6, 14, 31, 48, 52, 58, 65, 82, 99, 107, 111, 118],
+            &[6, 14, 31, 48, 52, 58, 65, 82, 99, 107, 140, 144, 151],
         ),
         written: runtime::TextList::new(
             concat![
                 "bumper", "wait 10min", "rendezvous robot2", "rendezvous robot3", "null",
                 "wait 2", "wait 10", "rendezvous robot2", "rendezvous robot3",
-                "wait 2.5", "null", "wait 10"
+                "wait 2.5", "NOT (sync robot2 AND sync robot3)", "null", "wait 10"
             ],
-            &[6, 16, 33, 50, 54, 60, 67, 84, 101, 109, 113, 120],
+            &[6, 16, 33, 50, 54, 60, 67, 84, 101, 109, 142, 146, 153],
         ),
         values: &[],
     };

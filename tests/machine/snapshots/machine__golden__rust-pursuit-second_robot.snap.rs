@@ -47,6 +47,8 @@ mod machine {
     const RENDEZVOUS_ROBOT3: robot::Rendezvous = robot::Rendezvous::new("robot3");
     /// `stop`
     const STOP: robot::Stop = robot::Stop::new();
+    /// `sync robot1`
+    const SYNC_ROBOT1: robot::Sync = robot::Sync::new("robot1");
     /// `go 50 0`
     const GO_50_0: robot::Go = robot::Go::new(
         runtime::MetersPerSecond(0.5),
@@ -58,6 +60,8 @@ mod machine {
     const TURN_180: robot::Turn = robot::Turn::new(
         runtime::Radians::from_degrees(180.0),
     );
+    /// `sync robot3`
+    const SYNC_ROBOT3: robot::Sync = robot::Sync::new("robot3");
     /// `Follow robot3`
     const FOLLOW_ROBOT3: robot::Follow = robot::Follow::new("robot3");
     /// The law of the current atom, with its state since the atom began.
@@ -67,7 +71,7 @@ mod machine {
         Idle,
         /// `(Atom (rendezvous robot1 AND rendezvous robot3) stop)`
         Atom1(<robot::Stop as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 1) go 50 0)`
+        /// `(Atom (wait 1 OR NOT sync robot1) go 50 0)`
         Atom2(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (null) Follow robot1)`
         Atom3(<robot::Follow as runtime::Control<Output>>::Law),
@@ -75,7 +79,7 @@ mod machine {
         Atom4(<robot::Turn as runtime::Control<Output>>::Law),
         /// `(Atom (rendezvous robot3 AND rendezvous robot1) stop)`
         Atom5(<robot::Stop as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 1) go 50 0)`
+        /// `(Atom (wait 1 OR NOT sync robot3) go 50 0)`
         Atom6(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (null) Follow robot3)`
         Atom7(<robot::Follow as runtime::Control<Output>>::Law),
@@ -157,7 +161,9 @@ mod machine {
                     }
                 }
                 Running::Atom2(_) => {
-                    if cursor.since(1u16, t) >= Nanos(1000000000) {
+                    if (cursor.since(1u16, t) >= Nanos(1000000000))
+                        | !runtime::Interrupt::fired(&SYNC_ROBOT1, y)
+                    {
                         return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(2, 1, 2)),
@@ -205,7 +211,9 @@ mod machine {
                     }
                 }
                 Running::Atom6(_) => {
-                    if cursor.since(1u16, t) >= Nanos(1000000000) {
+                    if (cursor.since(1u16, t) >= Nanos(1000000000))
+                        | !runtime::Interrupt::fired(&SYNC_ROBOT3, y)
+                    {
                         return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(6, 1, 2)),
@@ -301,11 +309,11 @@ mod machine {
             runtime::Condition::Or(0, 2),
             runtime::Condition::Null,
             runtime::Condition::And(2, 2),
-            runtime::Condition::Wait(Nanos(1000000000)),
+            runtime::Condition::Or(4, 2),
             runtime::Condition::Null,
             runtime::Condition::Wait(Nanos(10000000000)),
-            runtime::Condition::And(4, 2),
-            runtime::Condition::Wait(Nanos(1000000000)),
+            runtime::Condition::And(6, 2),
+            runtime::Condition::Or(8, 2),
             runtime::Condition::Null,
             runtime::Condition::Wait(Nanos(10000000000)),
         ],
@@ -320,6 +328,8 @@ mod machine {
                 robot::AnyInterrupt::Rendezvous(robot::Rendezvous::new("robot3")),
                 Nanos(1),
             ),
+            runtime::Condition::Wait(Nanos(1000000000)),
+            runtime::Condition::Not(10),
             runtime::Condition::Lasting(
                 robot::AnyInterrupt::Rendezvous(robot::Rendezvous::new("robot3")),
                 Nanos(1),
@@ -327,6 +337,14 @@ mod machine {
             runtime::Condition::Lasting(
                 robot::AnyInterrupt::Rendezvous(robot::Rendezvous::new("robot1")),
                 Nanos(1),
+            ),
+            runtime::Condition::Wait(Nanos(1000000000)),
+            runtime::Condition::Not(11),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Sync(robot::Sync::new("robot1")),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Sync(robot::Sync::new("robot3")),
             ),
         ],
     };
@@ -367,11 +385,12 @@ mod machine {
     /// The condition text of each bracket; empty for a loop.
     const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
         concat![
-            "bumper OR wait 600", "rendezvous robot1 AND rendezvous robot3", "wait 1",
-            "null", "wait 10", "rendezvous robot3 AND rendezvous robot1", "wait 1",
+            "bumper OR wait 600", "rendezvous robot1 AND rendezvous robot3",
+            "wait 1 OR NOT sync robot1", "null", "wait 10",
+            "rendezvous robot3 AND rendezvous robot1", "wait 1 OR NOT sync robot3",
             "null", "wait 10"
         ],
-        &[18, 18, 57, 63, 67, 74, 113, 119, 123, 130],
+        &[18, 18, 57, 82, 86, 93, 132, 157, 161, 168],
     );
     /// The name of each bracket; empty for an atom and a loop.
     const NAMES: runtime::TextList<'static> = runtime::TextList::new(
@@ -385,21 +404,22 @@ mod machine {
             [0, 3, 0, 2],
             [0, 0, 2, 0],
             [0, 5, 2, 2],
-            [0, 6, 4, 1],
-            [0, 7, 5, 1],
-            [0, 8, 6, 1],
-            [0, 9, 7, 2],
-            [0, 10, 9, 1],
-            [0, 11, 10, 1],
-            [0, 12, 11, 1],
+            [0, 6, 4, 2],
+            [0, 7, 6, 1],
+            [0, 8, 7, 1],
+            [0, 9, 8, 2],
+            [0, 10, 10, 2],
+            [0, 11, 12, 1],
+            [0, 12, 13, 1],
         ],
         conditions: runtime::TextList::new(
             concat![
                 "bumper OR wait 10min", "rendezvous robot1 AND rendezvous robot3",
-                "wait 1", "null", "wait 10", "rendezvous robot3 AND rendezvous robot1",
-                "wait 1", "null", "wait 10"
+                "wait 1 OR NOT sync robot1", "null", "wait 10",
+                "rendezvous robot3 AND rendezvous robot1", "wait 1 OR NOT sync robot3",
+                "null", "wait 10"
             ],
-            &[20, 20, 59, 65, 69, 76, 115, 121, 125, 132],
+            &[20, 20, 59, 84, 88, 95, 134, 159, 163, 170],
         ),
         operands: &[
             [0, 3, 0, 0],
@@ -407,10 +427,12 @@ mod machine {
             [0, 5, 0, 0],
             [0, 5, 0, 0],
             [0, 6, 0, 0],
+            [0, 6, 0, 0],
             [0, 7, 0, 0],
             [0, 8, 0, 0],
             [0, 9, 0, 0],
             [0, 9, 0, 0],
+            [0, 10, 0, 0],
             [0, 10, 0, 0],
             [0, 11, 0, 0],
             [0, 12, 0, 0],
@@ -418,18 +440,18 @@ mod machine {
         texts: runtime::TextList::new(
             concat![
                 "bumper", "wait 600", "rendezvous robot1", "rendezvous robot3", "wait 1",
-                "null", "wait 10", "rendezvous robot3", "rendezvous robot1", "wait 1",
-                "null", "wait 10"
+                "NOT sync robot1", "null", "wait 10", "rendezvous robot3",
+                "rendezvous robot1", "wait 1", "NOT sync robot3", "null", "wait 10"
             ],
-            &[6, 14, 31, 48, 54, 58, 65, 82, 99, 105, 109, 116],
+            &[6, 14, 31, 48, 54, 69, 73, 80, 97, 114, 120, 135, 139, 146],
         ),
         written: runtime::TextList::new(
             concat![
                 "bumper", "wait 10min", "rendezvous robot1", "rendezvous robot3",
-                "wait 1", "null", "wait 10", "rendezvous robot3", "rendezvous robot1",
-                "wait 1", "null", "wait 10"
+                "wait 1", "NOT sync robot1", "null", "wait 10", "rendezvous robot3",
+                "rendezvous robot1", "wait 1", "NOT sync robot3", "null", "wait 10"
             ],
-            &[6, 16, 33, 50, 56, 60, 67, 84, 101, 107, 111, 118],
+            &[6, 16, 33, 50, 56, 71, 75, 82, 99, 116, 122, 137, 141, 148],
         ),
         values: &[],
     };

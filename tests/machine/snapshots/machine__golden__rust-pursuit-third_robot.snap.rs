@@ -47,6 +47,10 @@ mod machine {
     const RENDEZVOUS_ROBOT1: robot::Rendezvous = robot::Rendezvous::new("robot1");
     /// `stop`
     const STOP: robot::Stop = robot::Stop::new();
+    /// `sync robot2`
+    const SYNC_ROBOT2: robot::Sync = robot::Sync::new("robot2");
+    /// `sync robot1`
+    const SYNC_ROBOT1: robot::Sync = robot::Sync::new("robot1");
     /// `go 50 0`
     const GO_50_0: robot::Go = robot::Go::new(
         runtime::MetersPerSecond(0.5),
@@ -67,7 +71,7 @@ mod machine {
         Idle,
         /// `(Atom (rendezvous robot2 AND rendezvous robot1) stop)`
         Atom1(<robot::Stop as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 2.5) go 50 0)`
+        /// `(Atom (wait 2.5 OR NOT (sync robot2 AND sync robot1)) go 50 0)`
         Atom2(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (null) Follow robot2)`
         Atom3(<robot::Follow as runtime::Control<Output>>::Law),
@@ -157,7 +161,10 @@ mod machine {
                     }
                 }
                 Running::Atom2(_) => {
-                    if cursor.since(1u16, t) >= Nanos(2500000000) {
+                    if (cursor.since(1u16, t) >= Nanos(2500000000))
+                        | !(runtime::Interrupt::fired(&SYNC_ROBOT2, y)
+                            & runtime::Interrupt::fired(&SYNC_ROBOT1, y))
+                    {
                         return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(2, 1, 2)),
@@ -304,10 +311,10 @@ mod machine {
             runtime::Condition::Or(0, 2),
             runtime::Condition::Null,
             runtime::Condition::And(2, 2),
-            runtime::Condition::Wait(Nanos(2500000000)),
+            runtime::Condition::Or(4, 2),
             runtime::Condition::Null,
             runtime::Condition::Wait(Nanos(10000000000)),
-            runtime::Condition::And(4, 2),
+            runtime::Condition::And(6, 2),
             runtime::Condition::Null,
             runtime::Condition::Wait(Nanos(2000000000)),
             runtime::Condition::Wait(Nanos(10000000000)),
@@ -323,6 +330,8 @@ mod machine {
                 robot::AnyInterrupt::Rendezvous(robot::Rendezvous::new("robot1")),
                 Nanos(1),
             ),
+            runtime::Condition::Wait(Nanos(2500000000)),
+            runtime::Condition::Not(8),
             runtime::Condition::Lasting(
                 robot::AnyInterrupt::Rendezvous(robot::Rendezvous::new("robot2")),
                 Nanos(1),
@@ -330,6 +339,13 @@ mod machine {
             runtime::Condition::Lasting(
                 robot::AnyInterrupt::Rendezvous(robot::Rendezvous::new("robot1")),
                 Nanos(1),
+            ),
+            runtime::Condition::And(9, 2),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Sync(robot::Sync::new("robot2")),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Sync(robot::Sync::new("robot1")),
             ),
         ],
     };
@@ -370,11 +386,11 @@ mod machine {
     /// The condition text of each bracket; empty for a loop.
     const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
         concat![
-            "bumper OR wait 600", "rendezvous robot2 AND rendezvous robot1", "wait 2.5",
-            "null", "wait 10", "rendezvous robot2 AND rendezvous robot1", "null",
-            "wait 2", "wait 10"
+            "bumper OR wait 600", "rendezvous robot2 AND rendezvous robot1",
+            "wait 2.5 OR NOT (sync robot2 AND sync robot1)", "null", "wait 10",
+            "rendezvous robot2 AND rendezvous robot1", "null", "wait 2", "wait 10"
         ],
-        &[18, 18, 57, 65, 69, 76, 115, 119, 125, 132],
+        &[18, 18, 57, 102, 106, 113, 152, 156, 162, 169],
     );
     /// The name of each bracket; empty for an atom and a loop.
     const NAMES: runtime::TextList<'static> = runtime::TextList::new(
@@ -388,27 +404,28 @@ mod machine {
             [0, 3, 0, 2],
             [0, 0, 2, 0],
             [0, 5, 2, 2],
-            [0, 6, 4, 1],
-            [0, 7, 5, 1],
-            [0, 8, 6, 1],
-            [0, 9, 7, 2],
-            [0, 10, 9, 1],
-            [0, 11, 10, 1],
-            [0, 12, 11, 1],
+            [0, 6, 4, 2],
+            [0, 7, 6, 1],
+            [0, 8, 7, 1],
+            [0, 9, 8, 2],
+            [0, 10, 10, 1],
+            [0, 11, 11, 1],
+            [0, 12, 12, 1],
         ],
         conditions: runtime::TextList::new(
             concat![
                 "bumper OR wait 10min", "rendezvous robot2 AND rendezvous robot1",
-                "wait 2.5", "null", "wait 10", "rendezvous robot2 AND rendezvous robot1",
-                "null", "wait 2", "wait 10"
+                "wait 2.5 OR NOT (sync robot2 AND sync robot1)", "null", "wait 10",
+                "rendezvous robot2 AND rendezvous robot1", "null", "wait 2", "wait 10"
             ],
-            &[20, 20, 59, 67, 71, 78, 117, 121, 127, 134],
+            &[20, 20, 59, 104, 108, 115, 154, 158, 164, 171],
         ),
         operands: &[
             [0, 3, 0, 0],
             [0, 3, 0, 0],
             [0, 5, 0, 0],
             [0, 5, 0, 0],
+            [0, 6, 0, 0],
             [0, 6, 0, 0],
             [0, 7, 0, 0],
             [0, 8, 0, 0],
@@ -421,18 +438,18 @@ mod machine {
         texts: runtime::TextList::new(
             concat![
                 "bumper", "wait 600", "rendezvous robot2", "rendezvous robot1",
-                "wait 2.5", "null", "wait 10", "rendezvous robot2", "rendezvous robot1",
-                "null", "wait 2", "wait 10"
+                "wait 2.5", "NOT (sync robot2 AND sync robot1)", "null", "wait 10",
+                "rendezvous robot2", "rendezvous robot1", "null", "wait 2", "wait 10"
             ],
-            &[6, 14, 31, 48, 56, 60, 67, 84, 101, 105, 111, 118],
+            &[6, 14, 31, 48, 56, 89, 93, 100, 117, 134, 138, 144, 151],
         ),
         written: runtime::TextList::new(
             concat![
                 "bumper", "wait 10min", "rendezvous robot2", "rendezvous robot1",
-                "wait 2.5", "null", "wait 10", "rendezvous robot2", "rendezvous robot1",
-                "null", "wait 2", "wait 10"
+                "wait 2.5", "NOT (sync robot2 AND sync robot1)", "null", "wait 10",
+                "rendezvous robot2", "rendezvous robot1", "null", "wait 2", "wait 10"
             ],
-            &[6, 16, 33, 50, 58, 62, 69, 86, 103, 107, 113, 120],
+            &[6, 16, 33, 50, 58, 91, 95, 102, 119, 136, 140, 146, 153],
         ),
         values: &[],
     };
