@@ -86,6 +86,10 @@ mod machine {
         runtime::Meters(40.0),
         runtime::MetersPerSecond(0.2),
     );
+    /// `rotate 90`
+    const ROTATE_90: robot::Rotate = robot::Rotate::new(
+        runtime::Radians::from_degrees(90.0),
+    );
     /// `atIsection 1001`
     const AT_ISECTION_1001: robot::AtIsection = robot::AtIsection::new(
         runtime::Bits([true, false, false, true]),
@@ -104,10 +108,6 @@ mod machine {
         runtime::Radians::from_degrees(180.0),
         runtime::Meters(40.0),
         runtime::MetersPerSecond(0.2),
-    );
-    /// `rotate 90`
-    const ROTATE_90: robot::Rotate = robot::Rotate::new(
-        runtime::Radians::from_degrees(90.0),
     );
     /// `atIsection 1100`
     const AT_ISECTION_1100: robot::AtIsection = robot::AtIsection::new(
@@ -150,98 +150,100 @@ mod machine {
         Atom7(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 1000) goAvoid 270 40 20)`
         Atom8(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (atIsection 1001) goAvoid 90 40 20)`
-        Atom9(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (atIsection 0011) go 0 0.36)`
-        Atom10(<robot::Go as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (wait inf) align 11 13)`
-        Atom11(<robot::Align as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (atIsection 0100) goAvoid 180 40 20)`
-        Atom12(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (wait 10) rotate 90)`
-        Atom13(<robot::Rotate as runtime::Control<Output>>::Law),
-        /// `FRAME 270deg (Atom (wait 5) goAvoid 270 40 20)`
-        Atom14(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 270deg (Atom (atIsection 0100 OR atIsection 1100) goAvoid 270 40 20)`
-        Atom15(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 270deg (Atom (wait 3) goAvoid 270 40 20)`
-        Atom16(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 270deg (Atom (wait 3) goAvoid 180 40 20)`
-        Atom17(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 270deg (Atom (wait 10) rotate 0)`
-        Atom18(<robot::Rotate as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (wait 10) goAvoid 270 40 20)`
-        Atom19(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (atIsection 0001) goAvoid 270 40 20)`
-        Atom20(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (atIsection 0010) go 0 0.36)`
-        Atom21(<robot::Go as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (wait 10) align 7 9)`
-        Atom22(<robot::Align as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (atIsection 1000) goAvoid 0 40 20)`
-        Atom23(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (atIsection 0001) go 0 0.36)`
-        Atom24(<robot::Go as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (wait 10) align 11 13)`
-        Atom25(<robot::Align as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (wait 7) goAvoid 90 40 20)`
-        Atom26(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        Atom9(<robot::Rotate as runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (atIsection 1001) goAvoid 90 40 20)`
-        Atom27(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (wait 10) rotate 180)`
-        Atom28(<robot::Rotate as runtime::Control<Output>>::Law),
-        /// `(Atom (atIsection 0100) goAvoid 90 40 20)`
-        Atom29(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `(Atom (atIsection 0010) go 0 0.36)`
-        Atom30(<robot::Go as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 10) align 7 9)`
-        Atom31(<robot::Align as runtime::Control<Output>>::Law),
-        /// `(Atom (atIsection 1000) goAvoid 0 40 20)`
-        Atom32(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `(Atom (atIsection 0100) go 0 0.36)`
-        Atom33(<robot::Go as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 10) align 3 5)`
-        Atom34(<robot::Align as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 7) goAvoid 270 40 20)`
-        Atom35(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `(Atom (atIsection 1000) goAvoid 270 40 20)`
-        Atom36(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `(Atom (atIsection 1001) goAvoid 270 40 20)`
-        Atom37(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `(Atom (atIsection 0011) go 0 0.36)`
-        Atom38(<robot::Go as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 10) align 11 13)`
-        Atom39(<robot::Align as runtime::Control<Output>>::Law),
-        /// `(Atom (atIsection 0100) goAvoid 0 40 20)`
-        Atom40(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 10) rotate 270)`
-        Atom41(<robot::Rotate as runtime::Control<Output>>::Law),
+        Atom10(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (atIsection 0011) go 0 0.36)`
+        Atom11(<robot::Go as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (wait inf) align 11 13)`
+        Atom12(<robot::Align as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (atIsection 0100) goAvoid 180 40 20)`
+        Atom13(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (wait 10) rotate 90)`
+        Atom14(<robot::Rotate as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (wait 5) goAvoid 270 40 20)`
-        Atom42(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        Atom15(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (atIsection 0100 OR atIsection 1100) goAvoid 270 40 20)`
-        Atom43(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        Atom16(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (wait 3) goAvoid 270 40 20)`
+        Atom17(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `FRAME 270deg (Atom (wait 3) goAvoid 180 40 20)`
+        Atom18(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `FRAME 270deg (Atom (wait 10) rotate 0)`
+        Atom19(<robot::Rotate as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (wait 10) goAvoid 270 40 20)`
+        Atom20(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (atIsection 0001) goAvoid 270 40 20)`
+        Atom21(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (atIsection 0010) go 0 0.36)`
+        Atom22(<robot::Go as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (wait 10) align 7 9)`
+        Atom23(<robot::Align as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (atIsection 1000) goAvoid 0 40 20)`
+        Atom24(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (atIsection 0001) go 0 0.36)`
+        Atom25(<robot::Go as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (wait 10) align 11 13)`
+        Atom26(<robot::Align as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (wait 7) goAvoid 90 40 20)`
+        Atom27(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (atIsection 1001) goAvoid 90 40 20)`
+        Atom28(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `FRAME 180deg (Atom (wait 10) rotate 180)`
+        Atom29(<robot::Rotate as runtime::Control<Output>>::Law),
+        /// `(Atom (atIsection 0100) goAvoid 90 40 20)`
+        Atom30(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `(Atom (atIsection 0010) go 0 0.36)`
+        Atom31(<robot::Go as runtime::Control<Output>>::Law),
+        /// `(Atom (wait 10) align 7 9)`
+        Atom32(<robot::Align as runtime::Control<Output>>::Law),
+        /// `(Atom (atIsection 1000) goAvoid 0 40 20)`
+        Atom33(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `(Atom (atIsection 0100) go 0 0.36)`
+        Atom34(<robot::Go as runtime::Control<Output>>::Law),
+        /// `(Atom (wait 10) align 3 5)`
+        Atom35(<robot::Align as runtime::Control<Output>>::Law),
+        /// `(Atom (wait 7) goAvoid 270 40 20)`
+        Atom36(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `(Atom (atIsection 1000) goAvoid 270 40 20)`
+        Atom37(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `(Atom (atIsection 1001) goAvoid 270 40 20)`
+        Atom38(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `(Atom (atIsection 0011) go 0 0.36)`
+        Atom39(<robot::Go as runtime::Control<Output>>::Law),
+        /// `(Atom (wait 10) align 11 13)`
+        Atom40(<robot::Align as runtime::Control<Output>>::Law),
+        /// `(Atom (atIsection 0100) goAvoid 0 40 20)`
+        Atom41(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `(Atom (wait 10) rotate 270)`
+        Atom42(<robot::Rotate as runtime::Control<Output>>::Law),
+        /// `FRAME 270deg (Atom (wait 5) goAvoid 270 40 20)`
+        Atom43(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `FRAME 270deg (Atom (atIsection 0100 OR atIsection 1100) goAvoid 270 40 20)`
         Atom44(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 270deg (Atom (wait 10) goAvoid 180 40 20)`
+        /// `FRAME 270deg (Atom (wait 3) goAvoid 270 40 20)`
         Atom45(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 270deg (Atom (atIsection 0001) goAvoid 180 40 20)`
+        /// `FRAME 270deg (Atom (wait 10) goAvoid 180 40 20)`
         Atom46(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `FRAME 270deg (Atom (atIsection 0001) goAvoid 180 40 20)`
+        Atom47(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (atIsection 0010) go 0 0.36)`
-        Atom47(<robot::Go as runtime::Control<Output>>::Law),
+        Atom48(<robot::Go as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (wait 10) align 7 9)`
-        Atom48(<robot::Align as runtime::Control<Output>>::Law),
+        Atom49(<robot::Align as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (atIsection 1000) goAvoid 270 40 20)`
-        Atom49(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        Atom50(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (atIsection 0001) go 0 0.36)`
-        Atom50(<robot::Go as runtime::Control<Output>>::Law),
+        Atom51(<robot::Go as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (wait 10) align 11 13)`
-        Atom51(<robot::Align as runtime::Control<Output>>::Law),
+        Atom52(<robot::Align as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (wait 7) goAvoid 0 40 20)`
-        Atom52(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 270deg (Atom (atIsection 1001) goAvoid 0 40 20)`
         Atom53(<robot::GoAvoid as runtime::Control<Output>>::Law),
+        /// `FRAME 270deg (Atom (atIsection 1001) goAvoid 0 40 20)`
+        Atom54(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (wait 10) rotate 90)`
-        Atom54(<robot::Rotate as runtime::Control<Output>>::Law),
+        Atom55(<robot::Rotate as runtime::Control<Output>>::Law),
     }
 
     impl Running {
@@ -285,7 +287,7 @@ mod machine {
                 8 => {
                     *self = Running::Atom9(
                         runtime::Control::begin(
-                            &GO_AVOID_90_40_20,
+                            &ROTATE_90,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
@@ -294,7 +296,7 @@ mod machine {
                 9 => {
                     *self = Running::Atom10(
                         runtime::Control::begin(
-                            &GO_0_0_36,
+                            &GO_AVOID_90_40_20,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
@@ -303,7 +305,7 @@ mod machine {
                 10 => {
                     *self = Running::Atom11(
                         runtime::Control::begin(
-                            &ALIGN_11_13,
+                            &GO_0_0_36,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
@@ -312,7 +314,7 @@ mod machine {
                 11 => {
                     *self = Running::Atom12(
                         runtime::Control::begin(
-                            &GO_AVOID_180_40_20,
+                            &ALIGN_11_13,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
@@ -321,7 +323,7 @@ mod machine {
                 12 => {
                     *self = Running::Atom13(
                         runtime::Control::begin(
-                            &ROTATE_90,
+                            &GO_AVOID_180_40_20,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
@@ -330,9 +332,9 @@ mod machine {
                 13 => {
                     *self = Running::Atom14(
                         runtime::Control::begin(
-                            &GO_AVOID_270_40_20,
+                            &ROTATE_90,
                             y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
                     );
                 }
@@ -357,7 +359,7 @@ mod machine {
                 16 => {
                     *self = Running::Atom17(
                         runtime::Control::begin(
-                            &GO_AVOID_180_40_20,
+                            &GO_AVOID_270_40_20,
                             y,
                             begin.turned(runtime::Radians::from_degrees(270.0)),
                         ),
@@ -366,7 +368,7 @@ mod machine {
                 17 => {
                     *self = Running::Atom18(
                         runtime::Control::begin(
-                            &ROTATE_0,
+                            &GO_AVOID_180_40_20,
                             y,
                             begin.turned(runtime::Radians::from_degrees(270.0)),
                         ),
@@ -375,9 +377,9 @@ mod machine {
                 18 => {
                     *self = Running::Atom19(
                         runtime::Control::begin(
-                            &GO_AVOID_270_40_20,
+                            &ROTATE_0,
                             y,
-                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
                         ),
                     );
                 }
@@ -393,7 +395,7 @@ mod machine {
                 20 => {
                     *self = Running::Atom21(
                         runtime::Control::begin(
-                            &GO_0_0_36,
+                            &GO_AVOID_270_40_20,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
@@ -402,7 +404,7 @@ mod machine {
                 21 => {
                     *self = Running::Atom22(
                         runtime::Control::begin(
-                            &ALIGN_7_9,
+                            &GO_0_0_36,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
@@ -411,7 +413,7 @@ mod machine {
                 22 => {
                     *self = Running::Atom23(
                         runtime::Control::begin(
-                            &GO_AVOID_0_40_20,
+                            &ALIGN_7_9,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
@@ -420,7 +422,7 @@ mod machine {
                 23 => {
                     *self = Running::Atom24(
                         runtime::Control::begin(
-                            &GO_0_0_36,
+                            &GO_AVOID_0_40_20,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
@@ -429,7 +431,7 @@ mod machine {
                 24 => {
                     *self = Running::Atom25(
                         runtime::Control::begin(
-                            &ALIGN_11_13,
+                            &GO_0_0_36,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
@@ -438,7 +440,7 @@ mod machine {
                 25 => {
                     *self = Running::Atom26(
                         runtime::Control::begin(
-                            &GO_AVOID_90_40_20,
+                            &ALIGN_11_13,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
@@ -456,7 +458,7 @@ mod machine {
                 27 => {
                     *self = Running::Atom28(
                         runtime::Control::begin(
-                            &ROTATE_180,
+                            &GO_AVOID_90_40_20,
                             y,
                             begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
@@ -464,37 +466,41 @@ mod machine {
                 }
                 28 => {
                     *self = Running::Atom29(
-                        runtime::Control::begin(&GO_AVOID_90_40_20, y, begin),
+                        runtime::Control::begin(
+                            &ROTATE_180,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
+                        ),
                     );
                 }
                 29 => {
                     *self = Running::Atom30(
-                        runtime::Control::begin(&GO_0_0_36, y, begin),
+                        runtime::Control::begin(&GO_AVOID_90_40_20, y, begin),
                     );
                 }
                 30 => {
                     *self = Running::Atom31(
-                        runtime::Control::begin(&ALIGN_7_9, y, begin),
+                        runtime::Control::begin(&GO_0_0_36, y, begin),
                     );
                 }
                 31 => {
                     *self = Running::Atom32(
-                        runtime::Control::begin(&GO_AVOID_0_40_20, y, begin),
+                        runtime::Control::begin(&ALIGN_7_9, y, begin),
                     );
                 }
                 32 => {
                     *self = Running::Atom33(
-                        runtime::Control::begin(&GO_0_0_36, y, begin),
+                        runtime::Control::begin(&GO_AVOID_0_40_20, y, begin),
                     );
                 }
                 33 => {
                     *self = Running::Atom34(
-                        runtime::Control::begin(&ALIGN_3_5, y, begin),
+                        runtime::Control::begin(&GO_0_0_36, y, begin),
                     );
                 }
                 34 => {
                     *self = Running::Atom35(
-                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
+                        runtime::Control::begin(&ALIGN_3_5, y, begin),
                     );
                 }
                 35 => {
@@ -509,31 +515,27 @@ mod machine {
                 }
                 37 => {
                     *self = Running::Atom38(
-                        runtime::Control::begin(&GO_0_0_36, y, begin),
+                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
                     );
                 }
                 38 => {
                     *self = Running::Atom39(
-                        runtime::Control::begin(&ALIGN_11_13, y, begin),
+                        runtime::Control::begin(&GO_0_0_36, y, begin),
                     );
                 }
                 39 => {
                     *self = Running::Atom40(
-                        runtime::Control::begin(&GO_AVOID_0_40_20, y, begin),
+                        runtime::Control::begin(&ALIGN_11_13, y, begin),
                     );
                 }
                 40 => {
                     *self = Running::Atom41(
-                        runtime::Control::begin(&ROTATE_270, y, begin),
+                        runtime::Control::begin(&GO_AVOID_0_40_20, y, begin),
                     );
                 }
                 41 => {
                     *self = Running::Atom42(
-                        runtime::Control::begin(
-                            &GO_AVOID_270_40_20,
-                            y,
-                            begin.turned(runtime::Radians::from_degrees(270.0)),
-                        ),
+                        runtime::Control::begin(&ROTATE_270, y, begin),
                     );
                 }
                 42 => {
@@ -557,7 +559,7 @@ mod machine {
                 44 => {
                     *self = Running::Atom45(
                         runtime::Control::begin(
-                            &GO_AVOID_180_40_20,
+                            &GO_AVOID_270_40_20,
                             y,
                             begin.turned(runtime::Radians::from_degrees(270.0)),
                         ),
@@ -575,7 +577,7 @@ mod machine {
                 46 => {
                     *self = Running::Atom47(
                         runtime::Control::begin(
-                            &GO_0_0_36,
+                            &GO_AVOID_180_40_20,
                             y,
                             begin.turned(runtime::Radians::from_degrees(270.0)),
                         ),
@@ -584,7 +586,7 @@ mod machine {
                 47 => {
                     *self = Running::Atom48(
                         runtime::Control::begin(
-                            &ALIGN_7_9,
+                            &GO_0_0_36,
                             y,
                             begin.turned(runtime::Radians::from_degrees(270.0)),
                         ),
@@ -593,7 +595,7 @@ mod machine {
                 48 => {
                     *self = Running::Atom49(
                         runtime::Control::begin(
-                            &GO_AVOID_270_40_20,
+                            &ALIGN_7_9,
                             y,
                             begin.turned(runtime::Radians::from_degrees(270.0)),
                         ),
@@ -602,7 +604,7 @@ mod machine {
                 49 => {
                     *self = Running::Atom50(
                         runtime::Control::begin(
-                            &GO_0_0_36,
+                            &GO_AVOID_270_40_20,
                             y,
                             begin.turned(runtime::Radians::from_degrees(270.0)),
                         ),
@@ -611,7 +613,7 @@ mod machine {
                 50 => {
                     *self = Running::Atom51(
                         runtime::Control::begin(
-                            &ALIGN_11_13,
+                            &GO_0_0_36,
                             y,
                             begin.turned(runtime::Radians::from_degrees(270.0)),
                         ),
@@ -620,7 +622,7 @@ mod machine {
                 51 => {
                     *self = Running::Atom52(
                         runtime::Control::begin(
-                            &GO_AVOID_0_40_20,
+                            &ALIGN_11_13,
                             y,
                             begin.turned(runtime::Radians::from_degrees(270.0)),
                         ),
@@ -637,6 +639,15 @@ mod machine {
                 }
                 53 => {
                     *self = Running::Atom54(
+                        runtime::Control::begin(
+                            &GO_AVOID_0_40_20,
+                            y,
+                            begin.turned(runtime::Radians::from_degrees(270.0)),
+                        ),
+                    );
+                }
+                54 => {
+                    *self = Running::Atom55(
                         runtime::Control::begin(
                             &ROTATE_90,
                             y,
@@ -766,7 +777,7 @@ mod machine {
                     }
                 }
                 Running::Atom9(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_1001, y) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(9, 2, 3)),
@@ -779,29 +790,29 @@ mod machine {
                         );
                     }
                 }
-                Running::Atom10(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0011, y) {
+                Running::Atom10(law) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_1001, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(10, 2, 3)),
                         );
                     }
-                }
-                Running::Atom11(law) => {
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(10, 2, 3)),
+                        );
+                    }
+                }
+                Running::Atom11(_) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0011, y) {
+                        return Some(
+                            runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(11, 2, 3)),
                         );
                     }
                 }
                 Running::Atom12(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
-                        return Some(
-                            runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(12, 2, 3)),
-                        );
-                    }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
@@ -810,37 +821,35 @@ mod machine {
                     }
                 }
                 Running::Atom13(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(13, 1, 3)),
+                                .then(runtime::Follows::new(13, 2, 3)),
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(13, 1, 3)),
+                                .then(runtime::Follows::new(13, 2, 3)),
                         );
                     }
                 }
                 Running::Atom14(law) => {
-                    if cursor.since(2u16, t) >= Nanos(5000000000) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(14, 2, 3)),
+                                .then(runtime::Follows::new(14, 1, 3)),
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(14, 2, 3)),
+                                .then(runtime::Follows::new(14, 1, 3)),
                         );
                     }
                 }
                 Running::Atom15(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y)
-                        | runtime::Interrupt::fired(&AT_ISECTION_1100, y)
-                    {
+                    if cursor.since(2u16, t) >= Nanos(5000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(15, 2, 3)),
@@ -854,7 +863,9 @@ mod machine {
                     }
                 }
                 Running::Atom16(law) => {
-                    if cursor.since(2u16, t) >= Nanos(3000000000) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y)
+                        | runtime::Interrupt::fired(&AT_ISECTION_1100, y)
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(16, 2, 3)),
@@ -882,16 +893,16 @@ mod machine {
                     }
                 }
                 Running::Atom18(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                    if cursor.since(2u16, t) >= Nanos(3000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(18, 1, 3)),
+                                .then(runtime::Follows::new(18, 2, 3)),
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(18, 1, 3)),
+                                .then(runtime::Follows::new(18, 2, 3)),
                         );
                     }
                 }
@@ -899,18 +910,18 @@ mod machine {
                     if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(19, 2, 3)),
+                                .then(runtime::Follows::new(19, 1, 3)),
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(19, 2, 3)),
+                                .then(runtime::Follows::new(19, 1, 3)),
                         );
                     }
                 }
                 Running::Atom20(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0001, y) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(20, 2, 3)),
@@ -923,30 +934,30 @@ mod machine {
                         );
                     }
                 }
-                Running::Atom21(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
+                Running::Atom21(law) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0001, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(21, 2, 3)),
                         );
                     }
-                }
-                Running::Atom22(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
-                        return Some(
-                            runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(22, 2, 3)),
-                        );
-                    }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(21, 2, 3)),
+                        );
+                    }
+                }
+                Running::Atom22(_) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
+                        return Some(
+                            runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(22, 2, 3)),
                         );
                     }
                 }
                 Running::Atom23(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(23, 2, 3)),
@@ -959,30 +970,30 @@ mod machine {
                         );
                     }
                 }
-                Running::Atom24(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0001, y) {
+                Running::Atom24(law) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(24, 2, 3)),
                         );
                     }
+                    if runtime::Completes::completed(law, y, t) {
+                        return Some(
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(24, 2, 3)),
+                        );
+                    }
                 }
-                Running::Atom25(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                Running::Atom25(_) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0001, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(25, 2, 3)),
                         );
                     }
-                    if runtime::Completes::completed(law, y, t) {
-                        return Some(
-                            runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(25, 2, 3)),
-                        );
-                    }
                 }
                 Running::Atom26(law) => {
-                    if cursor.since(2u16, t) >= Nanos(7000000000) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(26, 2, 3)),
@@ -996,7 +1007,7 @@ mod machine {
                     }
                 }
                 Running::Atom27(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_1001, y) {
+                    if cursor.since(2u16, t) >= Nanos(7000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(27, 2, 3)),
@@ -1010,57 +1021,57 @@ mod machine {
                     }
                 }
                 Running::Atom28(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_1001, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(28, 1, 3)),
+                                .then(runtime::Follows::new(28, 2, 3)),
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(28, 1, 3)),
+                                .then(runtime::Follows::new(28, 2, 3)),
                         );
                     }
                 }
                 Running::Atom29(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(29, 2, 3)),
+                                .then(runtime::Follows::new(29, 1, 3)),
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(29, 2, 3)),
+                                .then(runtime::Follows::new(29, 1, 3)),
                         );
                     }
                 }
-                Running::Atom30(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
+                Running::Atom30(law) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(30, 2, 3)),
                         );
                     }
-                }
-                Running::Atom31(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
-                        return Some(
-                            runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(31, 2, 3)),
-                        );
-                    }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(30, 2, 3)),
+                        );
+                    }
+                }
+                Running::Atom31(_) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
+                        return Some(
+                            runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(31, 2, 3)),
                         );
                     }
                 }
                 Running::Atom32(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(32, 2, 3)),
@@ -1073,30 +1084,30 @@ mod machine {
                         );
                     }
                 }
-                Running::Atom33(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
+                Running::Atom33(law) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(33, 2, 3)),
                         );
                     }
+                    if runtime::Completes::completed(law, y, t) {
+                        return Some(
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(33, 2, 3)),
+                        );
+                    }
                 }
-                Running::Atom34(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                Running::Atom34(_) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(34, 2, 3)),
                         );
                     }
-                    if runtime::Completes::completed(law, y, t) {
-                        return Some(
-                            runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(34, 2, 3)),
-                        );
-                    }
                 }
                 Running::Atom35(law) => {
-                    if cursor.since(2u16, t) >= Nanos(7000000000) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(35, 2, 3)),
@@ -1110,7 +1121,7 @@ mod machine {
                     }
                 }
                 Running::Atom36(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
+                    if cursor.since(2u16, t) >= Nanos(7000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(36, 2, 3)),
@@ -1124,7 +1135,7 @@ mod machine {
                     }
                 }
                 Running::Atom37(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_1001, y) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(37, 2, 3)),
@@ -1137,30 +1148,30 @@ mod machine {
                         );
                     }
                 }
-                Running::Atom38(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0011, y) {
+                Running::Atom38(law) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_1001, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(38, 2, 3)),
                         );
                     }
+                    if runtime::Completes::completed(law, y, t) {
+                        return Some(
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(38, 2, 3)),
+                        );
+                    }
                 }
-                Running::Atom39(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                Running::Atom39(_) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0011, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(39, 2, 3)),
                         );
                     }
-                    if runtime::Completes::completed(law, y, t) {
-                        return Some(
-                            runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(39, 2, 3)),
-                        );
-                    }
                 }
                 Running::Atom40(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(40, 2, 3)),
@@ -1174,37 +1185,35 @@ mod machine {
                     }
                 }
                 Running::Atom41(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(41, 1, 3)),
+                                .then(runtime::Follows::new(41, 2, 3)),
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(41, 1, 3)),
+                                .then(runtime::Follows::new(41, 2, 3)),
                         );
                     }
                 }
                 Running::Atom42(law) => {
-                    if cursor.since(2u16, t) >= Nanos(5000000000) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(42, 2, 3)),
+                                .then(runtime::Follows::new(42, 1, 3)),
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(42, 2, 3)),
+                                .then(runtime::Follows::new(42, 1, 3)),
                         );
                     }
                 }
                 Running::Atom43(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y)
-                        | runtime::Interrupt::fired(&AT_ISECTION_1100, y)
-                    {
+                    if cursor.since(2u16, t) >= Nanos(5000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(43, 2, 3)),
@@ -1218,7 +1227,9 @@ mod machine {
                     }
                 }
                 Running::Atom44(law) => {
-                    if cursor.since(2u16, t) >= Nanos(3000000000) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y)
+                        | runtime::Interrupt::fired(&AT_ISECTION_1100, y)
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(44, 2, 3)),
@@ -1232,7 +1243,7 @@ mod machine {
                     }
                 }
                 Running::Atom45(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                    if cursor.since(2u16, t) >= Nanos(3000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(45, 2, 3)),
@@ -1246,7 +1257,7 @@ mod machine {
                     }
                 }
                 Running::Atom46(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0001, y) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(46, 2, 3)),
@@ -1259,30 +1270,30 @@ mod machine {
                         );
                     }
                 }
-                Running::Atom47(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
+                Running::Atom47(law) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0001, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(47, 2, 3)),
                         );
                     }
-                }
-                Running::Atom48(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
-                        return Some(
-                            runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(48, 2, 3)),
-                        );
-                    }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(47, 2, 3)),
+                        );
+                    }
+                }
+                Running::Atom48(_) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
+                        return Some(
+                            runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(48, 2, 3)),
                         );
                     }
                 }
                 Running::Atom49(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(49, 2, 3)),
@@ -1295,30 +1306,30 @@ mod machine {
                         );
                     }
                 }
-                Running::Atom50(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0001, y) {
+                Running::Atom50(law) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(50, 2, 3)),
                         );
                     }
+                    if runtime::Completes::completed(law, y, t) {
+                        return Some(
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(50, 2, 3)),
+                        );
+                    }
                 }
-                Running::Atom51(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                Running::Atom51(_) => {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0001, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(51, 2, 3)),
                         );
                     }
-                    if runtime::Completes::completed(law, y, t) {
-                        return Some(
-                            runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(51, 2, 3)),
-                        );
-                    }
                 }
                 Running::Atom52(law) => {
-                    if cursor.since(2u16, t) >= Nanos(7000000000) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(52, 2, 3)),
@@ -1332,7 +1343,7 @@ mod machine {
                     }
                 }
                 Running::Atom53(law) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_1001, y) {
+                    if cursor.since(2u16, t) >= Nanos(7000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(53, 2, 3)),
@@ -1346,16 +1357,30 @@ mod machine {
                     }
                 }
                 Running::Atom54(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_1001, y) {
                         return Some(
                             runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(54, 0, 0)),
+                                .then(runtime::Follows::new(54, 2, 3)),
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(54, 0, 0)),
+                                .then(runtime::Follows::new(54, 2, 3)),
+                        );
+                    }
+                }
+                Running::Atom55(law) => {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                        return Some(
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(55, 0, 0)),
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return Some(
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(55, 0, 0)),
                         );
                     }
                 }
@@ -1419,6 +1444,7 @@ mod machine {
                 Running::Atom52(law) => runtime::Law::input(law, y, t),
                 Running::Atom53(law) => runtime::Law::input(law, y, t),
                 Running::Atom54(law) => runtime::Law::input(law, y, t),
+                Running::Atom55(law) => runtime::Law::input(law, y, t),
             }
         }
         fn operands(
@@ -1451,7 +1477,7 @@ mod machine {
     fn circuit(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y) {
             return Some(
-                runtime::Cause::Fired(0u16).then(runtime::Follows::new(54, 0, 0)),
+                runtime::Cause::Fired(0u16).then(runtime::Follows::new(55, 0, 0)),
             );
         }
         None
@@ -1491,6 +1517,7 @@ mod machine {
                 ),
             ),
             runtime::Condition::Null,
+            runtime::Condition::Wait(Nanos(10000000000)),
             runtime::Condition::Quark(
                 robot::AnyInterrupt::AtIsection(
                     robot::AtIsection::new(runtime::Bits([true, false, false, true])),
@@ -1652,7 +1679,7 @@ mod machine {
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[
-            Bracket::scope(0, 0, 53, 0),
+            Bracket::scope(0, 0, 54, 0),
             Bracket::scope(1, 0, 7, 0),
             Bracket::scope(2, 0, 0, 1),
             Bracket::scope(2, 1, 1, 1),
@@ -1662,57 +1689,58 @@ mod machine {
             Bracket::scope(2, 5, 5, 1),
             Bracket::scope(2, 6, 6, 1),
             Bracket::scope(2, 7, 7, 1),
-            Bracket::scope(1, 8, 12, 0),
+            Bracket::scope(1, 8, 13, 0),
             Bracket::scope(2, 8, 8, 10),
             Bracket::scope(2, 9, 9, 10),
             Bracket::scope(2, 10, 10, 10),
             Bracket::scope(2, 11, 11, 10),
             Bracket::scope(2, 12, 12, 10),
-            Bracket::scope(1, 13, 17, 0),
-            Bracket::scope(2, 13, 13, 16),
-            Bracket::scope(2, 14, 14, 16),
-            Bracket::scope(2, 15, 15, 16),
-            Bracket::scope(2, 16, 16, 16),
-            Bracket::scope(2, 17, 17, 16),
-            Bracket::scope(1, 18, 27, 0),
-            Bracket::scope(2, 18, 18, 22),
-            Bracket::scope(2, 19, 19, 22),
-            Bracket::scope(2, 20, 20, 22),
-            Bracket::scope(2, 21, 21, 22),
-            Bracket::scope(2, 22, 22, 22),
-            Bracket::scope(2, 23, 23, 22),
-            Bracket::scope(2, 24, 24, 22),
-            Bracket::scope(2, 25, 25, 22),
-            Bracket::scope(2, 26, 26, 22),
-            Bracket::scope(2, 27, 27, 22),
-            Bracket::scope(1, 28, 40, 0),
-            Bracket::scope(2, 28, 28, 33),
-            Bracket::scope(2, 29, 29, 33),
-            Bracket::scope(2, 30, 30, 33),
-            Bracket::scope(2, 31, 31, 33),
-            Bracket::scope(2, 32, 32, 33),
-            Bracket::scope(2, 33, 33, 33),
-            Bracket::scope(2, 34, 34, 33),
-            Bracket::scope(2, 35, 35, 33),
-            Bracket::scope(2, 36, 36, 33),
-            Bracket::scope(2, 37, 37, 33),
-            Bracket::scope(2, 38, 38, 33),
-            Bracket::scope(2, 39, 39, 33),
-            Bracket::scope(2, 40, 40, 33),
-            Bracket::scope(1, 41, 53, 0),
-            Bracket::scope(2, 41, 41, 47),
-            Bracket::scope(2, 42, 42, 47),
-            Bracket::scope(2, 43, 43, 47),
-            Bracket::scope(2, 44, 44, 47),
-            Bracket::scope(2, 45, 45, 47),
-            Bracket::scope(2, 46, 46, 47),
-            Bracket::scope(2, 47, 47, 47),
-            Bracket::scope(2, 48, 48, 47),
-            Bracket::scope(2, 49, 49, 47),
-            Bracket::scope(2, 50, 50, 47),
-            Bracket::scope(2, 51, 51, 47),
-            Bracket::scope(2, 52, 52, 47),
-            Bracket::scope(2, 53, 53, 47),
+            Bracket::scope(2, 13, 13, 10),
+            Bracket::scope(1, 14, 18, 0),
+            Bracket::scope(2, 14, 14, 17),
+            Bracket::scope(2, 15, 15, 17),
+            Bracket::scope(2, 16, 16, 17),
+            Bracket::scope(2, 17, 17, 17),
+            Bracket::scope(2, 18, 18, 17),
+            Bracket::scope(1, 19, 28, 0),
+            Bracket::scope(2, 19, 19, 23),
+            Bracket::scope(2, 20, 20, 23),
+            Bracket::scope(2, 21, 21, 23),
+            Bracket::scope(2, 22, 22, 23),
+            Bracket::scope(2, 23, 23, 23),
+            Bracket::scope(2, 24, 24, 23),
+            Bracket::scope(2, 25, 25, 23),
+            Bracket::scope(2, 26, 26, 23),
+            Bracket::scope(2, 27, 27, 23),
+            Bracket::scope(2, 28, 28, 23),
+            Bracket::scope(1, 29, 41, 0),
+            Bracket::scope(2, 29, 29, 34),
+            Bracket::scope(2, 30, 30, 34),
+            Bracket::scope(2, 31, 31, 34),
+            Bracket::scope(2, 32, 32, 34),
+            Bracket::scope(2, 33, 33, 34),
+            Bracket::scope(2, 34, 34, 34),
+            Bracket::scope(2, 35, 35, 34),
+            Bracket::scope(2, 36, 36, 34),
+            Bracket::scope(2, 37, 37, 34),
+            Bracket::scope(2, 38, 38, 34),
+            Bracket::scope(2, 39, 39, 34),
+            Bracket::scope(2, 40, 40, 34),
+            Bracket::scope(2, 41, 41, 34),
+            Bracket::scope(1, 42, 54, 0),
+            Bracket::scope(2, 42, 42, 48),
+            Bracket::scope(2, 43, 43, 48),
+            Bracket::scope(2, 44, 44, 48),
+            Bracket::scope(2, 45, 45, 48),
+            Bracket::scope(2, 46, 46, 48),
+            Bracket::scope(2, 47, 47, 48),
+            Bracket::scope(2, 48, 48, 48),
+            Bracket::scope(2, 49, 49, 48),
+            Bracket::scope(2, 50, 50, 48),
+            Bracket::scope(2, 51, 51, 48),
+            Bracket::scope(2, 52, 52, 48),
+            Bracket::scope(2, 53, 53, 48),
+            Bracket::scope(2, 54, 54, 48),
         ],
         atoms: &[
             Atom::new(2, 1),
@@ -1728,12 +1756,12 @@ mod machine {
             Atom::new(13, 11),
             Atom::new(14, 12),
             Atom::new(15, 13),
-            Atom::new(17, 14),
+            Atom::new(16, 14),
             Atom::new(18, 15),
             Atom::new(19, 16),
             Atom::new(20, 17),
             Atom::new(21, 18),
-            Atom::new(23, 19),
+            Atom::new(22, 19),
             Atom::new(24, 20),
             Atom::new(25, 21),
             Atom::new(26, 22),
@@ -1743,7 +1771,7 @@ mod machine {
             Atom::new(30, 26),
             Atom::new(31, 27),
             Atom::new(32, 28),
-            Atom::new(34, 29),
+            Atom::new(33, 29),
             Atom::new(35, 30),
             Atom::new(36, 31),
             Atom::new(37, 32),
@@ -1756,7 +1784,7 @@ mod machine {
             Atom::new(44, 39),
             Atom::new(45, 40),
             Atom::new(46, 41),
-            Atom::new(48, 42),
+            Atom::new(47, 42),
             Atom::new(49, 43),
             Atom::new(50, 44),
             Atom::new(51, 45),
@@ -1769,16 +1797,17 @@ mod machine {
             Atom::new(58, 52),
             Atom::new(59, 53),
             Atom::new(60, 54),
+            Atom::new(61, 55),
         ],
-        termination: 55,
+        termination: 56,
     };
     /// The quark text of each atom's law.
     const LAWS: runtime::TextList<'static> = runtime::TextList::new(
         concat![
             "goAvoid 90 40 20", "go 0 0.36", "align 7 9", "goAvoid 0 40 20", "go 0 0.36",
-            "align 3 5", "goAvoid 270 40 20", "goAvoid 270 40 20", "goAvoid 90 40 20",
-            "go 0 0.36", "align 11 13", "goAvoid 180 40 20", "rotate 90",
-            "goAvoid 270 40 20", "goAvoid 270 40 20", "goAvoid 270 40 20",
+            "align 3 5", "goAvoid 270 40 20", "goAvoid 270 40 20", "rotate 90",
+            "goAvoid 90 40 20", "go 0 0.36", "align 11 13", "goAvoid 180 40 20",
+            "rotate 90", "goAvoid 270 40 20", "goAvoid 270 40 20", "goAvoid 270 40 20",
             "goAvoid 180 40 20", "rotate 0", "goAvoid 270 40 20", "goAvoid 270 40 20",
             "go 0 0.36", "align 7 9", "goAvoid 0 40 20", "go 0 0.36", "align 11 13",
             "goAvoid 90 40 20", "goAvoid 90 40 20", "rotate 180", "goAvoid 90 40 20",
@@ -1790,10 +1819,10 @@ mod machine {
             "go 0 0.36", "align 11 13", "goAvoid 0 40 20", "goAvoid 0 40 20", "rotate 90"
         ],
         &[
-            16, 25, 34, 49, 58, 67, 84, 101, 117, 126, 137, 154, 163, 180, 197, 214, 231,
-            239, 256, 273, 282, 291, 306, 315, 326, 342, 358, 368, 384, 393, 402, 417,
-            426, 435, 452, 469, 486, 495, 506, 521, 531, 548, 565, 582, 599, 616, 625,
-            634, 651, 660, 671, 686, 701, 710,
+            16, 25, 34, 49, 58, 67, 84, 101, 110, 126, 135, 146, 163, 172, 189, 206, 223,
+            240, 248, 265, 282, 291, 300, 315, 324, 335, 351, 367, 377, 393, 402, 411,
+            426, 435, 444, 461, 478, 495, 504, 515, 530, 540, 557, 574, 591, 608, 625,
+            634, 643, 660, 669, 680, 695, 710, 719,
         ],
     );
     /// The condition text of each bracket; empty for a loop.
@@ -1801,7 +1830,7 @@ mod machine {
         concat![
             "bumper", "bumper", "atIsection 0100", "atIsection 0010", "wait inf",
             "atIsection 1000", "atIsection 0100", "wait inf", "wait 7",
-            "atIsection 1000", "bumper", "atIsection 1001", "atIsection 0011",
+            "atIsection 1000", "bumper", "wait 10", "atIsection 1001", "atIsection 0011",
             "wait inf", "atIsection 0100", "wait 10", "bumper", "wait 5",
             "atIsection 0100 OR atIsection 1100", "wait 3", "wait 3", "wait 10",
             "bumper", "wait 10", "atIsection 0001", "atIsection 0010", "wait 10",
@@ -1815,10 +1844,10 @@ mod machine {
             "wait 10"
         ],
         &[
-            6, 12, 27, 42, 50, 65, 80, 88, 94, 109, 115, 130, 145, 153, 168, 175, 181,
-            187, 221, 227, 233, 240, 246, 253, 268, 283, 290, 305, 320, 327, 333, 348,
-            355, 361, 376, 391, 398, 413, 428, 435, 441, 456, 471, 486, 493, 508, 515,
-            521, 527, 561, 567, 574, 589, 604, 611, 626, 641, 648, 654, 669, 676,
+            6, 12, 27, 42, 50, 65, 80, 88, 94, 109, 115, 122, 137, 152, 160, 175, 182,
+            188, 194, 228, 234, 240, 247, 253, 260, 275, 290, 297, 312, 327, 334, 340,
+            355, 362, 368, 383, 398, 405, 420, 435, 442, 448, 463, 478, 493, 500, 515,
+            522, 528, 534, 568, 574, 581, 596, 611, 618, 633, 648, 655, 661, 676, 683,
         ],
     );
     /// The name of each bracket; empty for an atom and a loop.
@@ -1828,87 +1857,88 @@ mod machine {
             "Lab1ToLab2Plan", "Lab2ToOfficePlan", "OfficeToLab2Plan"
         ],
         &[
-            7, 21, 21, 21, 21, 21, 21, 21, 21, 21, 37, 37, 37, 37, 37, 37, 53, 53, 53,
-            53, 53, 53, 67, 67, 67, 67, 67, 67, 67, 67, 67, 67, 67, 83, 83, 83, 83, 83,
-            83, 83, 83, 83, 83, 83, 83, 83, 83, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99,
-            99, 99, 99, 99,
+            7, 21, 21, 21, 21, 21, 21, 21, 21, 21, 37, 37, 37, 37, 37, 37, 37, 53, 53,
+            53, 53, 53, 53, 67, 67, 67, 67, 67, 67, 67, 67, 67, 67, 67, 83, 83, 83, 83,
+            83, 83, 83, 83, 83, 83, 83, 83, 83, 83, 99, 99, 99, 99, 99, 99, 99, 99, 99,
+            99, 99, 99, 99, 99,
         ],
     );
     /// The words and lines of the plan's text.
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["office.mdle"],
         brackets: &[
-            [0, 9, 0, 1],
-            [0, 19, 1, 1],
-            [0, 20, 2, 1],
-            [0, 21, 3, 1],
-            [0, 22, 4, 1],
-            [0, 23, 5, 1],
-            [0, 24, 6, 1],
-            [0, 25, 7, 1],
-            [0, 26, 8, 1],
-            [0, 27, 9, 1],
-            [0, 31, 10, 1],
-            [0, 32, 11, 1],
-            [0, 33, 12, 1],
-            [0, 34, 13, 1],
-            [0, 35, 14, 1],
-            [0, 36, 15, 1],
-            [0, 56, 16, 1],
-            [0, 57, 17, 1],
-            [0, 58, 18, 2],
-            [0, 59, 20, 1],
-            [0, 60, 21, 1],
-            [0, 61, 22, 1],
-            [0, 41, 23, 1],
-            [0, 42, 24, 1],
-            [0, 43, 25, 1],
-            [0, 44, 26, 1],
-            [0, 45, 27, 1],
-            [0, 46, 28, 1],
-            [0, 47, 29, 1],
-            [0, 48, 30, 1],
-            [0, 49, 31, 1],
-            [0, 50, 32, 1],
-            [0, 51, 33, 1],
-            [0, 66, 34, 1],
-            [0, 67, 35, 1],
-            [0, 68, 36, 1],
-            [0, 69, 37, 1],
-            [0, 70, 38, 1],
-            [0, 71, 39, 1],
-            [0, 72, 40, 1],
-            [0, 73, 41, 1],
-            [0, 74, 42, 1],
-            [0, 75, 43, 1],
-            [0, 76, 44, 1],
-            [0, 77, 45, 1],
-            [0, 78, 46, 1],
-            [0, 79, 47, 1],
-            [0, 83, 48, 1],
-            [0, 84, 49, 1],
-            [0, 85, 50, 2],
-            [0, 86, 52, 1],
-            [0, 87, 53, 1],
-            [0, 88, 54, 1],
-            [0, 89, 55, 1],
-            [0, 90, 56, 1],
-            [0, 91, 57, 1],
-            [0, 92, 58, 1],
-            [0, 93, 59, 1],
-            [0, 94, 60, 1],
-            [0, 95, 61, 1],
-            [0, 96, 62, 1],
+            [0, 10, 0, 1],
+            [0, 20, 1, 1],
+            [0, 21, 2, 1],
+            [0, 22, 3, 1],
+            [0, 23, 4, 1],
+            [0, 24, 5, 1],
+            [0, 25, 6, 1],
+            [0, 26, 7, 1],
+            [0, 27, 8, 1],
+            [0, 28, 9, 1],
+            [0, 33, 10, 1],
+            [0, 34, 11, 1],
+            [0, 35, 12, 1],
+            [0, 36, 13, 1],
+            [0, 37, 14, 1],
+            [0, 38, 15, 1],
+            [0, 39, 16, 1],
+            [0, 59, 17, 1],
+            [0, 60, 18, 1],
+            [0, 61, 19, 2],
+            [0, 62, 21, 1],
+            [0, 63, 22, 1],
+            [0, 64, 23, 1],
+            [0, 44, 24, 1],
+            [0, 45, 25, 1],
+            [0, 46, 26, 1],
+            [0, 47, 27, 1],
+            [0, 48, 28, 1],
+            [0, 49, 29, 1],
+            [0, 50, 30, 1],
+            [0, 51, 31, 1],
+            [0, 52, 32, 1],
+            [0, 53, 33, 1],
+            [0, 54, 34, 1],
+            [0, 69, 35, 1],
+            [0, 70, 36, 1],
+            [0, 71, 37, 1],
+            [0, 72, 38, 1],
+            [0, 73, 39, 1],
+            [0, 74, 40, 1],
+            [0, 75, 41, 1],
+            [0, 76, 42, 1],
+            [0, 77, 43, 1],
+            [0, 78, 44, 1],
+            [0, 79, 45, 1],
+            [0, 80, 46, 1],
+            [0, 81, 47, 1],
+            [0, 82, 48, 1],
+            [0, 86, 49, 1],
+            [0, 87, 50, 1],
+            [0, 88, 51, 2],
+            [0, 89, 53, 1],
+            [0, 90, 54, 1],
+            [0, 91, 55, 1],
+            [0, 92, 56, 1],
+            [0, 93, 57, 1],
+            [0, 94, 58, 1],
+            [0, 95, 59, 1],
+            [0, 96, 60, 1],
+            [0, 97, 61, 1],
+            [0, 98, 62, 1],
+            [0, 99, 63, 1],
         ],
         conditions: runtime::TextList::new(
             concat![
                 "bumper", "bumper", "atIsection 0100", "atIsection 0010", "wait inf",
                 "atIsection 1000", "atIsection 0100", "wait inf", "wait 7",
-                "atIsection 1000", "bumper", "atIsection 1001", "atIsection 0011",
-                "wait inf", "atIsection 0100", "wait 10", "bumper", "wait 5",
-                "atIsection 0100 OR atIsection 1100", "wait 3", "wait 3", "wait 10",
-                "bumper", "wait 10", "atIsection 0001", "atIsection 0010", "wait 10",
-                "atIsection 1000", "atIsection 0001", "wait 10", "wait 7",
+                "atIsection 1000", "bumper", "wait 10", "atIsection 1001",
+                "atIsection 0011", "wait inf", "atIsection 0100", "wait 10", "bumper",
+                "wait 5", "atIsection 0100 OR atIsection 1100", "wait 3", "wait 3",
+                "wait 10", "bumper", "wait 10", "atIsection 0001", "atIsection 0010",
+                "wait 10", "atIsection 1000", "atIsection 0001", "wait 10", "wait 7",
                 "atIsection 1001", "wait 10", "bumper", "atIsection 0100",
                 "atIsection 0010", "wait 10", "atIsection 1000", "atIsection 0100",
                 "wait 10", "wait 7", "atIsection 1000", "atIsection 1001",
@@ -1918,16 +1948,15 @@ mod machine {
                 "atIsection 0001", "wait 10", "wait 7", "atIsection 1001", "wait 10"
             ],
             &[
-                6, 12, 27, 42, 50, 65, 80, 88, 94, 109, 115, 130, 145, 153, 168, 175,
-                181, 187, 221, 227, 233, 240, 246, 253, 268, 283, 290, 305, 320, 327,
-                333, 348, 355, 361, 376, 391, 398, 413, 428, 435, 441, 456, 471, 486,
-                493, 508, 515, 521, 527, 561, 567, 574, 589, 604, 611, 626, 641, 648,
-                654, 669, 676,
+                6, 12, 27, 42, 50, 65, 80, 88, 94, 109, 115, 122, 137, 152, 160, 175,
+                182, 188, 194, 228, 234, 240, 247, 253, 260, 275, 290, 297, 312, 327,
+                334, 340, 355, 362, 368, 383, 398, 405, 420, 435, 442, 448, 463, 478,
+                493, 500, 515, 522, 528, 534, 568, 574, 581, 596, 611, 618, 633, 648,
+                655, 661, 676, 683,
             ],
         ),
         operands: &[
-            [0, 9, 0, 0],
-            [0, 19, 0, 0],
+            [0, 10, 0, 0],
             [0, 20, 0, 0],
             [0, 21, 0, 0],
             [0, 22, 0, 0],
@@ -1936,22 +1965,21 @@ mod machine {
             [0, 25, 0, 0],
             [0, 26, 0, 0],
             [0, 27, 0, 0],
-            [0, 31, 0, 0],
-            [0, 32, 0, 0],
+            [0, 28, 0, 0],
             [0, 33, 0, 0],
             [0, 34, 0, 0],
             [0, 35, 0, 0],
             [0, 36, 0, 0],
-            [0, 56, 0, 0],
-            [0, 57, 0, 0],
-            [0, 58, 0, 0],
-            [0, 58, 0, 0],
+            [0, 37, 0, 0],
+            [0, 38, 0, 0],
+            [0, 39, 0, 0],
             [0, 59, 0, 0],
             [0, 60, 0, 0],
             [0, 61, 0, 0],
-            [0, 41, 0, 0],
-            [0, 42, 0, 0],
-            [0, 43, 0, 0],
+            [0, 61, 0, 0],
+            [0, 62, 0, 0],
+            [0, 63, 0, 0],
+            [0, 64, 0, 0],
             [0, 44, 0, 0],
             [0, 45, 0, 0],
             [0, 46, 0, 0],
@@ -1960,9 +1988,9 @@ mod machine {
             [0, 49, 0, 0],
             [0, 50, 0, 0],
             [0, 51, 0, 0],
-            [0, 66, 0, 0],
-            [0, 67, 0, 0],
-            [0, 68, 0, 0],
+            [0, 52, 0, 0],
+            [0, 53, 0, 0],
+            [0, 54, 0, 0],
             [0, 69, 0, 0],
             [0, 70, 0, 0],
             [0, 71, 0, 0],
@@ -1974,12 +2002,12 @@ mod machine {
             [0, 77, 0, 0],
             [0, 78, 0, 0],
             [0, 79, 0, 0],
-            [0, 83, 0, 0],
-            [0, 84, 0, 0],
-            [0, 85, 0, 0],
-            [0, 85, 0, 0],
+            [0, 80, 0, 0],
+            [0, 81, 0, 0],
+            [0, 82, 0, 0],
             [0, 86, 0, 0],
             [0, 87, 0, 0],
+            [0, 88, 0, 0],
             [0, 88, 0, 0],
             [0, 89, 0, 0],
             [0, 90, 0, 0],
@@ -1989,16 +2017,19 @@ mod machine {
             [0, 94, 0, 0],
             [0, 95, 0, 0],
             [0, 96, 0, 0],
+            [0, 97, 0, 0],
+            [0, 98, 0, 0],
+            [0, 99, 0, 0],
         ],
         texts: runtime::TextList::new(
             concat![
                 "bumper", "null", "atIsection 0100", "atIsection 0010", "wait inf",
                 "atIsection 1000", "atIsection 0100", "wait inf", "wait 7",
-                "atIsection 1000", "null", "atIsection 1001", "atIsection 0011",
-                "wait inf", "atIsection 0100", "wait 10", "null", "wait 5",
-                "atIsection 0100", "atIsection 1100", "wait 3", "wait 3", "wait 10",
-                "null", "wait 10", "atIsection 0001", "atIsection 0010", "wait 10",
-                "atIsection 1000", "atIsection 0001", "wait 10", "wait 7",
+                "atIsection 1000", "null", "wait 10", "atIsection 1001",
+                "atIsection 0011", "wait inf", "atIsection 0100", "wait 10", "null",
+                "wait 5", "atIsection 0100", "atIsection 1100", "wait 3", "wait 3",
+                "wait 10", "null", "wait 10", "atIsection 0001", "atIsection 0010",
+                "wait 10", "atIsection 1000", "atIsection 0001", "wait 10", "wait 7",
                 "atIsection 1001", "wait 10", "null", "atIsection 0100",
                 "atIsection 0010", "wait 10", "atIsection 1000", "atIsection 0100",
                 "wait 10", "wait 7", "atIsection 1000", "atIsection 1001",
@@ -2008,22 +2039,22 @@ mod machine {
                 "atIsection 0001", "wait 10", "wait 7", "atIsection 1001", "wait 10"
             ],
             &[
-                6, 10, 25, 40, 48, 63, 78, 86, 92, 107, 111, 126, 141, 149, 164, 171,
-                175, 181, 196, 211, 217, 223, 230, 234, 241, 256, 271, 278, 293, 308,
-                315, 321, 336, 343, 347, 362, 377, 384, 399, 414, 421, 427, 442, 457,
-                472, 479, 494, 501, 505, 511, 526, 541, 547, 554, 569, 584, 591, 606,
-                621, 628, 634, 649, 656,
+                6, 10, 25, 40, 48, 63, 78, 86, 92, 107, 111, 118, 133, 148, 156, 171,
+                178, 182, 188, 203, 218, 224, 230, 237, 241, 248, 263, 278, 285, 300,
+                315, 322, 328, 343, 350, 354, 369, 384, 391, 406, 421, 428, 434, 449,
+                464, 479, 486, 501, 508, 512, 518, 533, 548, 554, 561, 576, 591, 598,
+                613, 628, 635, 641, 656, 663,
             ],
         ),
         written: runtime::TextList::new(
             concat![
                 "bumper", "bumper", "atIsection 0100", "atIsection 0010", "wait inf",
                 "atIsection 1000", "atIsection 0100", "wait inf", "wait 7",
-                "atIsection 1000", "bumper", "atIsection 1001", "atIsection 0011",
-                "wait inf", "atIsection 0100", "wait 10", "bumper", "wait 5",
-                "atIsection 0100", "atIsection 1100", "wait 3", "wait 3", "wait 10",
-                "bumper", "wait 10", "atIsection 0001", "atIsection 0010", "wait 10",
-                "atIsection 1000", "atIsection 0001", "wait 10", "wait 7",
+                "atIsection 1000", "bumper", "wait 10", "atIsection 1001",
+                "atIsection 0011", "wait inf", "atIsection 0100", "wait 10", "bumper",
+                "wait 5", "atIsection 0100", "atIsection 1100", "wait 3", "wait 3",
+                "wait 10", "bumper", "wait 10", "atIsection 0001", "atIsection 0010",
+                "wait 10", "atIsection 1000", "atIsection 0001", "wait 10", "wait 7",
                 "atIsection 1001", "wait 10", "bumper", "atIsection 0100",
                 "atIsection 0010", "wait 10", "atIsection 1000", "atIsection 0100",
                 "wait 10", "wait 7", "atIsection 1000", "atIsection 1001",
@@ -2033,11 +2064,11 @@ mod machine {
                 "atIsection 0001", "wait 10", "wait 7", "atIsection 1001", "wait 10"
             ],
             &[
-                6, 12, 27, 42, 50, 65, 80, 88, 94, 109, 115, 130, 145, 153, 168, 175,
-                181, 187, 202, 217, 223, 229, 236, 242, 249, 264, 279, 286, 301, 316,
-                323, 329, 344, 351, 357, 372, 387, 394, 409, 424, 431, 437, 452, 467,
-                482, 489, 504, 511, 517, 523, 538, 553, 559, 566, 581, 596, 603, 618,
-                633, 640, 646, 661, 668,
+                6, 12, 27, 42, 50, 65, 80, 88, 94, 109, 115, 122, 137, 152, 160, 175,
+                182, 188, 194, 209, 224, 230, 236, 243, 249, 256, 271, 286, 293, 308,
+                323, 330, 336, 351, 358, 364, 379, 394, 401, 416, 431, 438, 444, 459,
+                474, 489, 496, 511, 518, 524, 530, 545, 560, 566, 573, 588, 603, 610,
+                625, 640, 647, 653, 668, 675,
             ],
         ),
         values: &[],
