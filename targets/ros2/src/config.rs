@@ -1,7 +1,6 @@
 //! Configuration of a robot that speaks ROS 2: a TOML file, the defaults, and the source of each value.
 
 use std::fmt;
-use std::net::IpAddr;
 use std::path::Path;
 
 use mdle_runtime::Meters;
@@ -10,6 +9,7 @@ use mdle_serial::{Key, Settings, Steering};
 use serde::Deserialize;
 
 use crate::choices::{BumperSource, Distribution, RangeSensors, Stamped};
+use crate::local_addresses;
 use crate::names::absolute;
 
 /// Maximum id of a DDS domain: higher ids have no ports.
@@ -193,9 +193,7 @@ impl fmt::Display for Configured {
 impl Config {
     /// Checks the conditions that the ranges of single values cannot express.
     fn check(&self) -> Result<(), String> {
-        if !self.network.is_empty() && self.network.parse::<IpAddr>().is_err() {
-            return Err(format!("`network` is `{}`, and has to be an address such as 192.168.1.5", self.network));
-        }
+        local_addresses::read(&self.network)?;
         let optional = [
             ("scan", &self.scan),
             ("battery", &self.battery),

@@ -9,6 +9,8 @@ use mdle_host::Refusal;
 pub enum Fault {
     /// The middleware does not work, for the reason in this sentence.
     Middleware(String),
+    /// This computer does not have the address of the only network to use, for the reason in this sentence.
+    Network(String),
     /// Topics are missing; the sentences name these topics and those on the graph.
     Missing(String),
     /// The middleware has ended, because the program was suspended.
@@ -57,7 +59,7 @@ pub enum Fault {
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Middleware(sentence) | Self::Missing(sentence) => f.write_str(sentence),
+            Self::Middleware(sentence) | Self::Network(sentence) | Self::Missing(sentence) => f.write_str(sentence),
             Self::Suspended => f.write_str(
                 "the middleware of ROS 2 has ended, as it does when this program is suspended, however shortly (SIGSTOP, \
                  Ctrl-Z), or when a debugger is attached to it; start the plan again",
@@ -98,6 +100,12 @@ impl fmt::Display for Fault {
 
 impl From<Fault> for Refusal {
     fn from(fault: Fault) -> Self {
-        if fault == Fault::Ended { Self::Ended(Ok(())) } else { Self::Fault(fault.to_string()) }
+        if fault == Fault::Ended {
+            Self::Ended(Ok(()))
+        } else if let Fault::Network(sentence) = fault {
+            Self::Usage(sentence)
+        } else {
+            Self::Fault(fault.to_string())
+        }
     }
 }

@@ -87,9 +87,9 @@ impl Participant {
         };
         let domain = u16::try_from(config.domain).map_err(|_| failed("there is no such domain"))?;
         let mut builder = DomainParticipantBuilder::new(domain);
-        if let Ok(address) = config.network.parse::<IpAddr>() {
-            local_addresses::check(address).map_err(Fault::Middleware)?;
-            builder = builder.with_only_networks([address]);
+        if let Some(address) = local_addresses::read(&config.network).map_err(Fault::Network)? {
+            local_addresses::check(address).map_err(Fault::Network)?;
+            builder = builder.with_only_networks([IpAddr::V4(address)]);
         }
         let threads = || {
             let threads = MiddlewareThreads::all();

@@ -214,10 +214,15 @@ def test_an_empty_graph_is_a_fault():
         ends_with(3, f"error: no program of ROS 2 answers in domain {domain}", run)
 
 
-def test_an_unknown_network_is_a_fault():
-    with running("ride", configuration(new_domain(), network="203.0.113.9", discovery=60000)) as run:
+@pytest.mark.parametrize("network, kind", [
+    ("203.0.113.9", "no address of this computer"),
+    ("224.0.0.1", "an address of multicast"),
+    ("::1", "an address of IPv6, and the driver uses only IPv4"),
+])
+def test_an_unknown_network_is_refused(network, kind):
+    with running("ride", configuration(new_domain(), network=network, discovery=60000)) as run:
         begun = time.monotonic()
-        err = ends_with(3, "`network` is `203.0.113.9`, which is no address of this computer; it has 127.0.0.1", run)
+        err = ends_with(2, f"`network` is `{network}`, which is {kind}; this computer has 127.0.0.1", run)
         assert time.monotonic() - begun < 30, err
 
 
