@@ -6,11 +6,11 @@ use std::time::{Duration, Instant};
 use mdle_runtime::Twist;
 
 use crate::cdr::Payload;
-use crate::choices::Stamped;
+use crate::command_graph::{TWIST, TWIST_STAMPED};
 use crate::config::Config;
 use crate::driver::LOOK;
 use crate::fault::Fault;
-use crate::graph::{Graph, TWIST, TWIST_STAMPED};
+use crate::graph::Graph;
 use crate::messages::{Header, Time, TwistMessage, TwistStamped, Vector3};
 use crate::names::dds_type;
 use crate::participant::{Delivery, Participant, Writer};
@@ -25,21 +25,19 @@ pub(crate) struct Commands {
     pub(crate) topic: String,
     frame: String,
     pub(crate) writer: Writer,
-    is_stamped: bool,
+    pub(crate) is_stamped: bool,
 }
 
 impl Commands {
-    /// Returns the writer of commands of the type that the configuration, or else a subscriber on the graph,
-    /// determines; `None` if that depends on a subscriber that has not been found.
-    pub(crate) fn found(
+    /// Returns a writer of commands to `topic`, with a time stamp if `is_stamped` is `true`.
+    pub(crate) fn new(
         config: &Config,
         participant: &Participant,
-        graph: &Graph,
         topic: &str,
-    ) -> Result<Option<Self>, Fault> {
-        let Some(is_stamped) = is_stamped(config, graph, topic) else { return Ok(None) };
+        is_stamped: bool,
+    ) -> Result<Self, Fault> {
         let writer = participant.writer(topic, kind_of(is_stamped), Delivery::Reliable)?;
-        Ok(Some(Self { topic: topic.to_owned(), frame: config.frame_id.clone(), writer, is_stamped }))
+        Ok(Self { topic: topic.to_owned(), frame: config.frame_id.clone(), writer, is_stamped })
     }
 
     /// Returns a writer of the same commands by another participant.
@@ -143,21 +141,7 @@ impl Commands {
     }
 }
 
-/// Returns `true` if velocity commands have a time stamp; `None` if that depends on a subscriber that has not been
-/// found.
-fn is_stamped(config: &Config, graph: &Graph, topic: &str) -> Option<bool> {
-    match config.stamped {
-        Stamped::Yes => Some(true),
-        Stamped::No => Some(false),
-        Stamped::Auto => graph.readers_of(topic).find_map(|reader| match &*reader.kind {
-            kind if kind == dds_type(TWIST) => Some(false),
-            kind if kind == dds_type(TWIST_STAMPED) => Some(true),
-            _ => None,
-        }),
-    }
-}
-
 /// Returns the type of velocity commands.
-pub(crate) fn kind_of(is_stamped: bool) -> &'static str {
+fn kind_of(is_stamped: bool) -> &'static str {
     if is_stamped { TWIST_STAMPED } else { TWIST }
 }

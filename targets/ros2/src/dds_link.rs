@@ -103,11 +103,13 @@ impl DdsLink {
         Ok(Some((link, sensing)))
     }
 
-    /// Returns a sentence about other publishers of the velocity commands, as far as they have been found; `None` if
-    /// there are none.
+    /// Returns sentences about other publishers of the velocity commands, and about subscribers of two types, as far as
+    /// they have been found.
     #[must_use]
-    pub fn about_rivals(&self) -> Option<String> {
-        self.participant.graph().about_rivals(&self.commands.topic)
+    pub fn warnings(&self) -> Vec<String> {
+        let (graph, Commands { topic, is_stamped, .. }) = (self.participant.graph(), &self.commands);
+        let types = graph.about_types(topic, self.config.stamped, *is_stamped);
+        graph.about_rivals(topic).into_iter().chain(types).collect()
     }
 
     /// Announces to the graph the node that owns the readers and writers.

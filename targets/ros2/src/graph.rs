@@ -1,13 +1,11 @@
 //! The topics of other programs on the graph, and sentences about missing topics.
 
+use crate::command_graph::{TWIST, TWIST_STAMPED};
 use crate::config::Config;
 use crate::names::{dds_topic, dds_type, ros_topic, ros_type};
 use crate::source::Input;
 
-/// Type of a velocity command without a time stamp.
-pub(crate) const TWIST: &str = "geometry_msgs/msg/Twist";
-pub(crate) const TWIST_STAMPED: &str = "geometry_msgs/msg/TwistStamped";
-/// Maximum number of topics in a sentence.
+/// Maximum number of topics in a list.
 const LISTED: usize = 30;
 
 /// A reader or writer of another program.
@@ -79,35 +77,6 @@ impl Graph {
         }
     }
 
-    /// Returns a sentence about velocity commands to which no program subscribes.
-    #[must_use]
-    pub fn about_commands(&self, topic: &str, kind: &str) -> String {
-        let readers: Vec<_> = self.readers_of(topic).collect();
-        if let Some(other) = readers.iter().find(|reader| reader.kind != dds_type(kind)) {
-            let hint = "`stamped` in the configuration chooses the type";
-            let has = ros_type(&other.kind);
-            return format!("the subscriber of `{topic}` takes {has}, and commands are {kind}: {hint}");
-        }
-        match readers.iter().find_map(|reader| reader.mismatch.as_ref()) {
-            Some(policy) => format!("the subscriber of `{topic}` wants another quality of service ({policy})"),
-            None => format!("nobody subscribes to `{topic}` ({kind})"),
-        }
-    }
-
-    /// Returns a sentence about the other publishers of the velocity commands `topic`; `None` if there are none.
-    #[must_use]
-    pub fn about_rivals(&self, topic: &str) -> Option<String> {
-        let (others, them) = match self.writers_of(topic).count() {
-            0 => return None,
-            1 => ("another publisher".to_owned(), "it"),
-            count => (format!("{count} other publishers"), "them"),
-        };
-        Some(format!(
-            "`{topic}` has {others}, and the base obeys whichever command came last: stop {them}, or set `cmd-vel` to \
-             an input of a multiplexer"
-        ))
-    }
-
     /// Returns sentences about all missing topics and about the topics that are on the graph instead. If no program
     /// answers, the text says only that.
     #[must_use]
@@ -131,32 +100,38 @@ impl Graph {
         format!("\nhelp: write {} into the file of --config", entries.join(" and "))
     }
 
-    /// Returns a sentence that lists all topics on the graph.
+    /// Returns a sentence that lists all topics on the graph, those with publishers before those with subscribers.
     #[must_use]
     pub fn listed(&self, config: &Config) -> String {
-        let mut topics: Vec<_> = self
-            .writers
-            .iter()
-            .chain(&self.readers)
-            .filter_map(|endpoint| {
-                ros_topic(&endpoint.topic).map(|topic| format!("{topic} ({})", ros_type(&endpoint.kind)))
-            })
-            .collect();
-        topics.sort();
-        topics.dedup();
         let domain = config.domain;
-        if topics.is_empty() {
+        let lists = [("publishers", &self.writers), ("subscribers", &self.readers)];
+        let lists = lists.map(|(who, endpoints)| listed_topics(endpoints).map(|topics| format!("{who} of {topics}")));
+        let lists: Vec<_> = lists.into_iter().flatten().collect();
+        if lists.is_empty() {
             let network = if config.network.is_empty() { "" } else { " and `network`" };
             return format!(
                 "no program of ROS 2 answers in domain {domain}: compare `domain`{network} with ROS_DOMAIN_ID of the \
                  robot, and see that the network passes multicast"
             );
         }
-        let more = topics.len().saturating_sub(LISTED);
-        topics.truncate(LISTED);
-        let more = if more == 0 { String::new() } else { format!(" and {more} more") };
-        format!("domain {domain} has {}{more}", topics.join(", "))
+        format!("domain {domain} has {}", lists.join(", and "))
     }
+}
+
+/// Returns a list of the topics of `endpoints` with their types; `None` if no topic belongs to ROS 2.
+fn listed_topics(endpoints: &[Endpoint]) -> Option<String> {
+    let mut topics: Vec<_> = endpoints
+        .iter()
+        .filter_map(|endpoint| {
+            ros_topic(&endpoint.topic).map(|topic| format!("{topic} ({})", ros_type(&endpoint.kind)))
+        })
+        .collect();
+    topics.sort();
+    topics.dedup();
+    let more = topics.len().saturating_sub(LISTED);
+    topics.truncate(LISTED);
+    let more = if more == 0 { String::new() } else { format!(" and {more} more") };
+    (!topics.is_empty()).then(|| format!("{}{more}", topics.join(", ")))
 }
 
 /// Returns the configuration entry that names the only topic with one of the types `kinds`; `None` if `topic` is on the
@@ -202,27 +177,6 @@ mod tests {
     }
 
     #[test]
-    fn commands_name_the_type_of_their_subscriber() {
-        let mut graph = Graph::default();
-        let about = |graph: &Graph| graph.about_commands("/cmd_vel", "geometry_msgs/msg/Twist");
-        assert_eq!(about(&graph), "nobody subscribes to `/cmd_vel` (geometry_msgs/msg/Twist)");
-        graph.readers.push(endpoint("/cmd_vel", "geometry_msgs/msg/TwistStamped"));
-        assert!(about(&graph).contains("takes geometry_msgs/msg/TwistStamped, and commands are"));
-    }
-
-    #[test]
-    fn rivals_are_counted() {
-        let mut graph = Graph::default();
-        let about = |graph: &Graph| graph.about_rivals("/cmd_vel");
-        graph.writers.push(endpoint("/odom", "nav_msgs/msg/Odometry"));
-        assert_eq!(about(&graph), None);
-        graph.writers.push(endpoint("/cmd_vel", "geometry_msgs/msg/Twist"));
-        assert!(about(&graph).unwrap().starts_with("`/cmd_vel` has another publisher, and the base obeys"));
-        graph.writers.push(endpoint("/cmd_vel", "geometry_msgs/msg/TwistStamped"));
-        assert!(about(&graph).unwrap().starts_with("`/cmd_vel` has 2 other publishers, and the base obeys"));
-    }
-
-    #[test]
     fn the_only_topic_of_a_type_is_proposed() {
         let config = Configured::read(None).unwrap().config;
         let inputs = crate::source::inputs(&config).unwrap();
@@ -241,6 +195,18 @@ mod tests {
     }
 
     #[test]
+    fn subscribers_are_listed_apart() {
+        let config = Configured::read(None).unwrap().config;
+        let mut graph = Graph::default();
+        graph.readers.push(endpoint("/odom", "nav_msgs/msg/Odometry"));
+        assert_eq!(graph.listed(&config), "domain 0 has subscribers of /odom (nav_msgs/msg/Odometry)");
+        graph.writers.push(endpoint("/odom", "nav_msgs/msg/Odometry"));
+        let expected = "domain 0 has publishers of /odom (nav_msgs/msg/Odometry), and subscribers of /odom \
+                        (nav_msgs/msg/Odometry)";
+        assert_eq!(graph.listed(&config), expected);
+    }
+
+    #[test]
     fn an_empty_graph_names_the_settings() {
         let config = Configured::read(None).unwrap().config;
         let missing = ["nobody publishes `/odom`".to_owned()];
@@ -252,9 +218,10 @@ mod tests {
         for number in 0..35 {
             graph.writers.push(endpoint(&format!("/t{number:02}"), "std_msgs/msg/Bool"));
         }
-        graph.readers.push(endpoint("/t00", "std_msgs/msg/Bool"));
-        assert!(graph.about_missing(&missing, &config).starts_with("nobody publishes `/odom`; domain 0 has /t00 "));
+        let missing = graph.about_missing(&missing, &config);
+        assert!(missing.starts_with("nobody publishes `/odom`; domain 0 has publishers of /t00 "), "{missing}");
         let listed = graph.listed(&config);
-        assert!(listed.starts_with("domain 0 has /t00 (std_msgs/msg/Bool), /t01") && listed.ends_with("and 5 more"));
+        let begins = listed.starts_with("domain 0 has publishers of /t00 (std_msgs/msg/Bool), /t01");
+        assert!(begins && listed.ends_with("and 5 more"), "{listed}");
     }
 }

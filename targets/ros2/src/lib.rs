@@ -10,6 +10,7 @@ pub mod battery;
 pub mod capabilities;
 pub mod cdr;
 pub mod choices;
+mod command_graph;
 mod commands;
 pub mod config;
 pub mod contact;

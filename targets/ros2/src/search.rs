@@ -8,8 +8,7 @@ use mdle_runtime::Nanos;
 use mdle_serial::Moment;
 
 use crate::cdr::Payload;
-use crate::choices::Stamped;
-use crate::commands::{Commands, kind_of};
+use crate::commands::Commands;
 use crate::config::Config;
 use crate::driver::LOOK;
 use crate::fault::Fault;
@@ -57,8 +56,11 @@ impl Search<'_> {
             self.listen(participant, readers, sensing)?;
             participant.check()?;
             let graph = participant.graph();
-            if commands.is_none() {
-                commands = Commands::found(self.config, participant, &graph, &topic)?;
+            let is_stamped = graph.is_stamped(&topic, self.config.stamped);
+            // A subscriber that is found later may change the type.
+            let current = commands.as_ref().map(|commands| commands.is_stamped);
+            if let Some(is_stamped) = is_stamped.filter(|_| is_stamped != current) {
+                commands = Some(Commands::new(self.config, participant, &topic, is_stamped)?);
             }
             let mut missing = missing(sensing, &graph);
             let is_heard = commands.as_mut().is_some_and(|commands| commands.are_heard(&graph));
@@ -72,7 +74,7 @@ impl Search<'_> {
             let passed = self.begun.elapsed();
             if passed > limit {
                 if !is_heard {
-                    missing.insert(0, graph.about_commands(&topic, kind_of(self.config.stamped == Stamped::Yes)));
+                    missing.insert(0, graph.about_commands(&topic, self.config.stamped));
                 }
                 let help = graph.help(sensing.inputs(), &topic);
                 return Err(Fault::Missing(format!("{}{help}", graph.about_missing(&missing, self.config))));

@@ -85,7 +85,7 @@ impl mdle_host::Target for Target {
         let config = configured(matches)?.config;
         let (pacing, begun) = (pacing(matches, period)?, Moment::now());
         let (link, sensing) = DdsLink::connect(&config, pacing, request, begun)?;
-        if let Some(sentence) = link.about_rivals() {
+        for sentence in link.warnings() {
             // Without standard error the plan runs as well.
             let _ = writeln!(io::stderr(), "warning: {sentence}");
         }

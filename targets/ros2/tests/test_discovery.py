@@ -10,9 +10,12 @@ import time
 from pathlib import Path
 
 from cyclonedds.pub import DataWriter
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic
 
+import messages as m
 from harness import LONG, built, configuration, new_domain, running, until
-from robot import RELIABLE, Robot
+from robot import RELIABLE, Robot, participant
 
 # The first bytes of a datagram of RTPS: its mark, version, vendor, and the id of the participant that sends it.
 VENDOR, PREFIX, HEADER = 6, 8, 20
@@ -117,3 +120,19 @@ def test_other_publishers_of_velocities_are_counted_at_the_start():
             code, out, err = run.end()
             assert code == 0 and "warning: `/cmd_vel` has 2 other publishers" in err, out + err
         del others
+
+
+def test_subscribers_of_two_types_are_a_warning():
+    domain = new_domain()
+    with Robot(domain) as robot:
+        # The first odometry comes when the driver has found the other.
+        robot.muted.add("odom")
+        dp = participant(domain)
+        other = DataReader(dp, Topic(dp, "rt/cmd_vel", m.TwistStamped), qos=RELIABLE)
+        with running("hop", configuration(domain)) as run:
+            time.sleep(3)
+            robot.muted.clear()
+            code, out, err = run.end()
+            warning = "warning: `/cmd_vel` has subscribers of two types, geometry_msgs/msg/Twist and geometry_msgs/msg/Tw"
+            assert code == 0 and warning in err and "commands are geometry_msgs/msg/Twist, and" in err, out + err
+        del other
