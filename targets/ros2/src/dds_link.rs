@@ -12,9 +12,10 @@ use crate::commands::Commands;
 use crate::config::Config;
 use crate::fault::Fault;
 use crate::link::Link;
-use crate::messages::{Gid, NodeEntitiesInfo, ParticipantEntitiesInfo};
+use crate::messages::{ClockMessage, Gid, NodeEntitiesInfo, ParticipantEntitiesInfo};
 use crate::pacing::Pacing;
 use crate::participant::{Delivery, Participant, Reader, Writer};
+use crate::publishers::Publishers;
 use crate::report::StateMessages;
 use crate::search::{Search, receive};
 use crate::sensing::Sensing;
@@ -38,8 +39,7 @@ pub struct DdsLink {
     diagnostics: Option<Writer>,
     /// Writer that announces the node to the graph, kept for as long as the node exists.
     node: Option<Writer>,
-    /// Id of the program that publishes the odometry.
-    odometer: Option<[u8; 16]>,
+    publishers: Publishers,
     /// Time of `/clock` in nanoseconds, for the headers of commands; `None` if headers have the system's time.
     clock: Option<i64>,
 }
@@ -85,7 +85,9 @@ impl DdsLink {
         };
         let state = optional(&config.state, "std_msgs/msg/String")?;
         let diagnostics = optional(&config.diagnostics, "diagnostic_msgs/msg/DiagnosticArray")?;
-        let Some(commands) = search.find(&participant, &readers, &mut sensing, may_rejoin)? else { return Ok(None) };
+        let mut publishers = Publishers::default();
+        let commands = search.find(&participant, &readers, &mut sensing, &mut publishers, may_rejoin)?;
+        let Some(commands) = commands else { return Ok(None) };
         let clock = config.use_sim_time.then_some(0);
         let mut link = Self {
             participant,
@@ -96,7 +98,7 @@ impl DdsLink {
             state,
             diagnostics,
             node: None,
-            odometer: None,
+            publishers,
             clock,
         };
         link.node = link.announce(config)?;
@@ -177,27 +179,15 @@ impl Link for DdsLink {
     }
 
     fn receive(&mut self, take: &mut dyn FnMut(usize, &Payload) -> Result<(), Fault>) -> Result<(), Fault> {
-        let Self { readers, odometer, participant, clock, .. } = self;
+        let Self { readers, publishers, participant, clock, .. } = self;
         participant.check()?;
-        receive(readers, &mut |index, payload, writer| {
-            let Some((input, _)) = readers.get(index) else { return Ok(()) };
-            match input.source {
-                Source::Odometry if *odometer != Some(writer) => {
-                    let count = participant.graph().publishers(input);
-                    if odometer.replace(writer).is_some() && count > 1 {
-                        return Err(Fault::Several { topic: input.topic.clone(), count });
-                    }
-                }
-                Source::Clock => {
-                    if let (Some(clock), Ok(message)) =
-                        (clock.as_mut(), payload.read::<crate::messages::ClockMessage>())
-                    {
-                        *clock = message.clock.nanos();
-                    }
-                }
-                Source::Odometry | Source::Scan | Source::Range(_) | Source::Bumper | Source::Battery => {}
+        receive(readers, &mut |input, index, payload, writer| {
+            if let (Source::Clock, Some(clock)) = (input.source, clock.as_mut())
+                && let Ok(message) = payload.read::<ClockMessage>()
+            {
+                *clock = message.clock.nanos();
             }
-            take(index, payload)
+            publishers.pass(input, writer, || participant.graph(), || take(index, payload))
         })
     }
 

@@ -38,6 +38,8 @@ pub enum Fault {
         topic: String,
         /// Number of programs that publish the topic.
         count: usize,
+        /// `true` if each publisher sent only after the one before had ceased, as after a restart of the robot.
+        may_be_restart: bool,
     },
     /// The last message of a topic is too old.
     Stale {
@@ -80,12 +82,17 @@ impl fmt::Display for Fault {
                  have moved; odometry must be continuous, so take a topic that no localisation corrects, or set \
                  `fastest`, `fastest-turn` and `jump`"
             ),
-            Self::Several { topic, count } => {
+            Self::Several { topic, count, may_be_restart: false } => {
                 write!(
                     f,
                     "`{topic}` has {count} publishers, and the pose is that of one; stop the others, or set a namespace"
                 )
             }
+            Self::Several { topic, count, may_be_restart: true } => write!(
+                f,
+                "`{topic}` has {count} publishers, and the last one has sent another pose or time than the one before; \
+                 stop the others, or, if the robot was restarted, start the plan again"
+            ),
             Self::Stale { topic, age, limit, why } => {
                 write!(f, "`{topic}` has been silent for {age} ms, and its limit is {limit} ms")?;
                 if why.is_empty() { Ok(()) } else { write!(f, "; the last message was left out: {why}") }

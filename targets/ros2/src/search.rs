@@ -14,6 +14,7 @@ use crate::driver::LOOK;
 use crate::fault::Fault;
 use crate::graph::Graph;
 use crate::participant::{Participant, Reader};
+use crate::publishers::{Probation, Publishers};
 use crate::sensing::Sensing;
 use crate::source::{Input, Source};
 
@@ -46,14 +47,15 @@ impl Search<'_> {
         participant: &Participant,
         readers: &[(Input, Reader)],
         sensing: &mut Sensing,
+        publishers: &mut Publishers,
         may_rejoin: bool,
     ) -> Result<Option<Commands>, Fault> {
         let topic = self.config.topic(&self.config.cmd_vel).map_err(Fault::Middleware)?;
         let limit = Duration::from_millis(self.config.discovery);
         let mut commands: Option<Commands> = None;
-        let mut silence = None;
+        let (mut silence, mut probation) = (None, Probation::default());
         loop {
-            self.listen(participant, readers, sensing)?;
+            self.listen(participant, readers, sensing, publishers)?;
             participant.check()?;
             let graph = participant.graph();
             let is_stamped = graph.is_stamped(&topic, self.config.stamped);
@@ -64,14 +66,15 @@ impl Search<'_> {
             }
             let mut missing = missing(sensing, &graph);
             let is_heard = commands.as_mut().is_some_and(|commands| commands.are_heard(&graph));
+            let passed = self.begun.elapsed();
+            let mut odometry = sensing.inputs().filter(|input| input.source == Source::Odometry);
+            let is_alone = odometry.all(|input| probation.is_over(input, &graph, passed));
             match commands.take() {
-                Some(found) if is_heard && missing.is_empty() => {
-                    several(sensing, &graph)?;
+                Some(found) if is_heard && missing.is_empty() && (is_alone || passed > limit) => {
                     return Ok(Some(found));
                 }
                 other => commands = other,
             }
-            let passed = self.begun.elapsed();
             if passed > limit {
                 if !is_heard {
                     missing.insert(0, graph.about_commands(&topic, self.config.stamped));
@@ -96,6 +99,7 @@ impl Search<'_> {
         participant: &Participant,
         readers: &[(Input, Reader)],
         sensing: &mut Sensing,
+        publishers: &mut Publishers,
     ) -> Result<(), Fault> {
         let looked = Instant::now();
         while looked.elapsed() < GRAPH {
@@ -103,12 +107,10 @@ impl Search<'_> {
                 return Err(Fault::Ended);
             }
             let now = if self.config.use_sim_time { sensing.simulated() } else { self.begun.elapsed() };
-            let received = receive(readers, &mut |index, payload, _| sensing.take(index, payload, now, Nanos::ZERO));
-            if let Err(fault) = received {
-                // Two publishers look like a robot that jumps.
-                several(sensing, &participant.graph())?;
-                return Err(fault);
-            }
+            receive(readers, &mut |input, index, payload, writer| {
+                let take = || sensing.take(index, payload, now, Nanos::ZERO);
+                publishers.pass(input, writer, || participant.graph(), take)
+            })?;
             sleep(LOOK);
         }
         Ok(())
@@ -130,23 +132,14 @@ fn patience(sensing: &Sensing, graph: &Graph) -> Option<Duration> {
     silent.map(|(input, _)| Duration::from_millis(input.limit).max(DEAF)).min()
 }
 
-/// Returns a fault if several programs publish the odometry.
-fn several(sensing: &Sensing, graph: &Graph) -> Result<(), Fault> {
-    let odometry = sensing.inputs().find(|input| input.source == Source::Odometry);
-    match odometry.map(|input| (input, graph.publishers(input))) {
-        Some((input, count)) if count > 1 => Err(Fault::Several { topic: input.topic.clone(), count }),
-        Some(_) | None => Ok(()),
-    }
-}
-
-/// A function that receives a message: the index of its topic, its bytes, and the id of its publisher.
-type Take<'a> = dyn FnMut(usize, &Payload, [u8; 16]) -> Result<(), Fault> + 'a;
+/// A function that receives a message: its topic with its index, its bytes, and the id of its publisher.
+type Take<'a> = dyn FnMut(&Input, usize, &Payload, [u8; 16]) -> Result<(), Fault> + 'a;
 
 /// Calls `take` with each message that has arrived.
 pub(crate) fn receive(readers: &[(Input, Reader)], take: &mut Take<'_>) -> Result<(), Fault> {
-    for (index, (_, reader)) in readers.iter().enumerate() {
+    for (index, (input, reader)) in readers.iter().enumerate() {
         while let Some(arrival) = reader.take() {
-            take(index, &arrival.payload, arrival.writer)?;
+            take(input, index, &arrival.payload, arrival.writer)?;
         }
     }
     Ok(())

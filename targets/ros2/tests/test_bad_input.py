@@ -29,13 +29,42 @@ def ends_with(status, sentence, run, robot=None):
     return err
 
 
-def test_two_publishers_of_odometry_are_refused():
+def test_a_second_publisher_of_odometry_counts_if_it_sends():
     domain = new_domain()
     with Robot(domain) as robot:
         other = DataWriter(robot.dp, Topic(robot.dp, "rt/odom", m.Odometry), qos=RELIABLE)
+        with running("hop", configuration(domain)) as run:
+            code, out, err = run.end()
+            assert code == 0, out + err
+        robot.changed["odom"] = lambda message: other.write(message) or message
         with running("ride", configuration(domain)) as run:
-            ends_with(3, "`/odom` has 2 publishers", run)
+            ends_with(3, "`/odom` has 2 publishers, and the pose is that of one", run)
         del other
+
+
+@pytest.mark.parametrize("clock", [1000.0, 2000.0])
+def test_a_robot_that_was_restarted_is_one_publisher(clock):
+    domain = new_domain()
+    built("hop")
+    command = [sys.executable, Path(__file__).with_name("robot.py"), "--domain", str(domain)]
+    first = subprocess.Popen(command)
+    try:
+        with running("hop", configuration(domain, bumper_type="bool", bumper="late")) as run:
+            # The driver waits for the bumper, and hears the first robot.
+            time.sleep(5)
+            first.kill()
+            with Robot(domain) as second:
+                second.clock = clock
+                second.add("late", m.Bool)
+                if clock < 1001:
+                    sentence = "has 2 publishers, and the last one has sent another pose or time than the one before"
+                    assert "if the robot was restarted, start the plan again" in ends_with(3, sentence, run)
+                else:
+                    code, out, err = run.end()
+                    assert code == 0, out + err
+    finally:
+        first.kill()
+        first.wait()
 
 
 def test_two_publishers_with_different_poses_are_refused_as_two():

@@ -1,0 +1,140 @@
+//! The publishers of the odometry, as far as their messages have come.
+
+use std::time::Duration;
+
+use crate::fault::Fault;
+use crate::graph::Graph;
+use crate::source::{Input, Source};
+
+/// Minimum time for which the start waits for messages of a second publisher on the graph.
+const WATCH: Duration = Duration::from_secs(1);
+
+/// The publishers of a topic from which messages have come.
+///
+/// A program that has ended without a farewell stays on the graph for some time: after a restart of a robot there are
+/// two publishers, of which the first is silent. Two publishers that drive the plan with two poses both send: the first
+/// of them sends again after the second.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct Publishers {
+    /// Publishers before the last one.
+    earlier: Vec<[u8; 16]>,
+    last: Option<[u8; 16]>,
+    /// `true` if a publisher has sent again after another one.
+    is_mixed: bool,
+}
+
+impl Publishers {
+    /// Calls `take` for a message of `input` from this publisher.
+    ///
+    /// # Errors
+    /// Fails if `take` fails, or if a publisher of the odometry has sent again after another one.
+    pub(crate) fn pass(
+        &mut self,
+        input: &Input,
+        publisher: [u8; 16],
+        graph: impl Fn() -> Graph,
+        take: impl FnOnce() -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        if input.source != Source::Odometry {
+            return take();
+        }
+        let several = |may_be_restart| {
+            let count = graph().publishers(input).max(2);
+            Fault::Several { topic: input.topic.clone(), count, may_be_restart }
+        };
+        if self.last != Some(publisher) {
+            self.is_mixed |= self.earlier.contains(&publisher);
+            self.earlier.extend(self.last.replace(publisher));
+        }
+        if self.is_mixed {
+            return Err(several(false));
+        }
+        take().map_err(|fault| {
+            // Two publishers look like a robot that jumps, or like a clock that goes back.
+            let is_break = matches!(fault, Fault::Jumped { .. } | Fault::Backwards(_));
+            let are_two = is_break && !self.earlier.is_empty() && graph().publishers(input) > 1;
+            if are_two { several(true) } else { fault }
+        })
+    }
+}
+
+/// The time in which a second publisher on the graph has to send before it counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Probation(Option<Duration>);
+
+impl Probation {
+    /// Returns `true` if `input` has one publisher on the graph at the time `now`, or has had several for long enough.
+    pub(crate) fn is_over(&mut self, input: &Input, graph: &Graph, now: Duration) -> bool {
+        if graph.publishers(input) < 2 {
+            return true;
+        }
+        now.saturating_sub(*self.0.get_or_insert(now)) >= WATCH.max(Duration::from_millis(input.limit))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::Endpoint;
+    use crate::names::{dds_topic, dds_type};
+
+    const KIND: &str = "nav_msgs/msg/Odometry";
+
+    fn input(source: Source) -> Input {
+        Input { source, topic: "/odom".to_owned(), kind: KIND, limit: 1 }
+    }
+
+    /// A graph with this number of publishers of the odometry.
+    fn graph(count: usize) -> Graph {
+        let (topic, kind) = (dds_topic("/odom"), dds_type(KIND));
+        let endpoint = Endpoint { topic, kind, is_reliable: true, mismatch: None };
+        Graph { readers: Vec::new(), writers: vec![endpoint; count] }
+    }
+
+    /// Passes messages of these publishers, of which the last one causes `fault`.
+    fn passed(ids: &[u8], source: Source, fault: Option<Fault>) -> Result<(), Fault> {
+        let (input, mut publishers) = (input(source), Publishers::default());
+        let pass = |publishers: &mut Publishers, id: u8, fault: Option<Fault>| {
+            publishers.pass(&input, [id; 16], || graph(2), || fault.map_or(Ok(()), Err))
+        };
+        let (last, first) = ids.split_last().unwrap();
+        first.iter().try_for_each(|id| pass(&mut publishers, *id, None))?;
+        pass(&mut publishers, *last, fault)
+    }
+
+    fn several(may_be_restart: bool) -> Result<(), Fault> {
+        Err(Fault::Several { topic: "/odom".to_owned(), count: 2, may_be_restart })
+    }
+
+    #[test]
+    fn a_publisher_after_another_is_a_restart() {
+        assert_eq!(passed(&[1, 1, 2, 2, 2], Source::Odometry, None), Ok(()));
+        assert_eq!(passed(&[1, 2, 1], Source::Odometry, None), several(false));
+        assert_eq!(passed(&[1, 2, 3, 2], Source::Odometry, None), several(false));
+        assert_eq!(passed(&[1, 2, 1], Source::Scan, None), Ok(()));
+    }
+
+    #[test]
+    fn a_jump_between_publishers_is_no_jump() {
+        let jumped = || Fault::Jumped { way: 1.0, degrees: 0.0, seconds: 0.1 };
+        assert_eq!(passed(&[1, 2], Source::Odometry, Some(jumped())), several(true));
+        assert_eq!(passed(&[1, 2], Source::Odometry, Some(Fault::Backwards(2.0))), several(true));
+        assert_eq!(passed(&[1, 2], Source::Odometry, Some(Fault::NoPose)), Err(Fault::NoPose));
+        assert_eq!(passed(&[1, 1], Source::Odometry, Some(jumped())), Err(jumped()));
+        let alone = Publishers { last: Some([1; 16]), ..Publishers::default() }.pass(
+            &input(Source::Odometry),
+            [2; 16],
+            || graph(1),
+            || Err(jumped()),
+        );
+        assert_eq!(alone, Err(jumped()));
+    }
+
+    #[test]
+    fn a_silent_second_publisher_delays_the_start() {
+        let (odometry, mut probation) = (input(Source::Odometry), Probation::default());
+        let mut is_over =
+            |count: usize, millis: u64| probation.is_over(&odometry, &graph(count), Duration::from_millis(millis));
+        assert_eq!([is_over(1, 0), is_over(2, 500), is_over(2, 1499), is_over(2, 1500)], [true, false, false, true]);
+    }
+}
