@@ -9,7 +9,6 @@ use mdle_serial::{Key, Settings, Steering};
 use serde::Deserialize;
 
 use crate::choices::{BumperSource, Distribution, RangeSensors, Stamped};
-use crate::local_addresses;
 use crate::names::absolute;
 
 /// Maximum id of a DDS domain: higher ids have no ports.
@@ -191,28 +190,6 @@ impl fmt::Display for Configured {
 }
 
 impl Config {
-    /// Checks the conditions that the ranges of single values cannot express.
-    fn check(&self) -> Result<(), String> {
-        local_addresses::read(&self.network)?;
-        let optional = [
-            ("scan", &self.scan),
-            ("battery", &self.battery),
-            ("state", &self.state),
-            ("diagnostics", &self.diagnostics),
-        ];
-        let optional = optional.into_iter().filter(|(_, topic)| !topic.is_empty());
-        let required = [("cmd-vel", &self.cmd_vel), ("odom", &self.odom)].into_iter();
-        let required = required.chain(has_topic(self.bumper_type).then_some(("bumper", &self.bumper)));
-        let required = required.chain(self.ranges.0.iter().map(|sensor| ("ranges", &sensor.topic)));
-        for (key, topic) in required.chain(optional) {
-            self.topic(topic).map_err(|why| format!("`{key}`: {why}"))?;
-        }
-        if self.bumper_type == BumperSource::Scan && self.scan.is_empty() {
-            return Err("`bumper-type` is \"scan\", and there is no `scan`".to_owned());
-        }
-        Ok(())
-    }
-
     /// Returns the absolute name of the topic `name`.
     ///
     /// # Errors
@@ -246,5 +223,6 @@ pub(crate) fn has_topic(bumper: BumperSource) -> bool {
     }
 }
 
+mod checks;
 #[cfg(test)]
 mod tests;

@@ -10,15 +10,25 @@ pub fn absolute(namespace: &str, name: &str) -> Result<String, String> {
         "" => format!("/{name}"),
         namespace => format!("/{namespace}/{name}"),
     };
-    let is_word = |word: &str| {
-        let starts = word.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_');
-        starts && word.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
-    };
     if whole.split('/').skip(1).all(is_word) {
         Ok(whole)
     } else {
         Err(format!("`{name}` is no name of a topic: words of letters, digits and `_` between slashes"))
     }
+}
+
+/// Returns `true` if `text` is a namespace, which may be empty and may have a slash at each end.
+#[must_use]
+pub fn is_namespace(text: &str) -> bool {
+    let words = text.strip_prefix('/').unwrap_or(text);
+    let words = words.strip_suffix('/').unwrap_or(words);
+    words.is_empty() || words.split('/').all(is_word)
+}
+
+/// Returns `true` if `word` may stand between two slashes of a name.
+fn is_word(word: &str) -> bool {
+    let starts = word.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_');
+    starts && word.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
 }
 
 /// Returns the DDS topic of the ROS topic with this absolute name.
@@ -66,6 +76,12 @@ mod tests {
         for wrong in ["", "2nd", "a b", "a//b", "a/", "größe", "~/x"] {
             assert!(absolute("", wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn a_namespace_has_words_between_slashes() {
+        assert!(["", "/", "a", "/a", "a/", "/robot1/base_2/"].iter().all(|text| is_namespace(text)));
+        assert!(["a b", "//a", "a//b", "1", "größe", "~"].iter().all(|text| !is_namespace(text)));
     }
 
     #[test]

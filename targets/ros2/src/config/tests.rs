@@ -82,8 +82,15 @@ fn what_makes_no_sense_is_refused() {
         ("bumper-type = \"button\"", "has to be \"none\" or \"bool\" or \"hazard\" or \"scan\""),
         ("ranges = [{ topic = \"a\", x = 1e9 }]", "the place of the range sensor `a` is more than 10 m away"),
         ("ranges = [{ topic = \"a\", z = 1 }]", "unknown field `z`"),
-        ("namespace = \"a b\"", "is no name of a topic"),
+        ("namespace = \"a b\"", "`namespace` is `a b`, and has to be words of letters, digits and `_` between slashes"),
+        ("half-length = 0.5", "`half-length` is 0.5 m, and `body-radius` is 0.18 m: it is the radius of the smallest"),
+        ("body-radius = 0.3\nhalf-width = 0.4", "`half-width` is 0.4 m, and `body-radius` is 0.3 m"),
         ("domain = -1", "domain"),
+        ("state = \"cmd_vel\"", "`cmd-vel` and `state` are the same topic, `/cmd_vel`; each needs a topic of its own"),
+        ("odom = \"scan\"", "`odom` and `scan` are the same topic, `/scan`"),
+        ("namespace = \"a\"\nstate = \"/a/odom\"", "`odom` and `state` are the same topic, `/a/odom`"),
+        ("odom = \"/clock\"\nuse-sim-time = true", "`odom` and `use-sim-time` are the same topic, `/clock`"),
+        ("ranges = [{ topic = \"a\" }, { topic = \"/a\" }]", "two of `ranges` are the same topic, `/a`"),
     ] {
         let refused = read("refused", text).unwrap_err();
         assert!(refused.contains(sentence), "{text}: {refused}");

@@ -1,0 +1,69 @@
+//! Checks of values of a configuration that are valid each by itself but not together.
+
+use super::{Config, has_topic};
+use crate::choices::BumperSource;
+use crate::local_addresses;
+use crate::names::is_namespace;
+
+impl Config {
+    /// Checks the conditions that the ranges of single values cannot express.
+    pub(super) fn check(&self) -> Result<(), String> {
+        local_addresses::read(&self.network)?;
+        self.check_topics()?;
+        if self.bumper_type == BumperSource::Scan && self.scan.is_empty() {
+            return Err("`bumper-type` is \"scan\", and there is no `scan`".to_owned());
+        }
+        self.check_body()
+    }
+
+    /// Checks that the body fits into its circle.
+    fn check_body(&self) -> Result<(), String> {
+        let Self { body_radius, half_length, half_width, .. } = self;
+        for (key, half) in [("half-length", half_length), ("half-width", half_width)] {
+            if half > body_radius {
+                return Err(format!(
+                    "`{key}` is {half} m, and `body-radius` is {body_radius} m: it is the radius of the smallest \
+                     circle around the body, so no less than {half} m"
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that all topics have names, and each a name of its own.
+    fn check_topics(&self) -> Result<(), String> {
+        if !is_namespace(&self.namespace) {
+            return Err(format!(
+                "`namespace` is `{}`, and has to be words of letters, digits and `_` between slashes, such as \
+                 `/robot1`, or empty",
+                self.namespace
+            ));
+        }
+        let mut named: Vec<(&str, String)> = Vec::new();
+        let clock = self.use_sim_time.then_some(("use-sim-time", "/clock"));
+        for (key, name) in self.topics().into_iter().chain(clock) {
+            let topic = self.topic(name).map_err(|why| format!("`{key}`: {why}"))?;
+            if let Some((other, _)) = named.iter().find(|(_, known)| *known == topic) {
+                let keys = if *other == key { format!("two of `{key}`") } else { format!("`{other}` and `{key}`") };
+                return Err(format!("{keys} are the same topic, `{topic}`; each needs a topic of its own"));
+            }
+            named.push((key, topic));
+        }
+        Ok(())
+    }
+
+    /// Returns the topics in use by the keys that name them.
+    fn topics(&self) -> Vec<(&'static str, &str)> {
+        let optional = [
+            ("scan", &self.scan),
+            ("battery", &self.battery),
+            ("state", &self.state),
+            ("diagnostics", &self.diagnostics),
+        ];
+        let optional = optional.into_iter().filter(|(_, topic)| !topic.is_empty());
+        let required = [("cmd-vel", &self.cmd_vel), ("odom", &self.odom)].into_iter();
+        let required = required.chain(has_topic(self.bumper_type).then_some(("bumper", &self.bumper)));
+        let required = required.chain(self.ranges.0.iter().map(|sensor| ("ranges", &sensor.topic)));
+        required.chain(optional).map(|(key, topic)| (key, topic.as_str())).collect()
+    }
+}
