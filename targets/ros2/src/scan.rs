@@ -7,6 +7,8 @@ use crate::messages::LaserScan;
 
 /// Numbers of the virtual sonars that point ahead.
 const AHEAD: [usize; 3] = [SONARS - 1, 0, 1];
+/// Number in the place of a direction ahead that has a ray.
+const SEEN: usize = SONARS;
 
 /// Content of one direction in a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -71,17 +73,45 @@ impl Scanner {
         directions
     }
 
+    /// Returns `true` if a ray in one of the three directions ahead is valid.
+    #[must_use]
+    pub fn sees_ahead(directions: &[Direction; SONARS]) -> bool {
+        AHEAD.iter().any(|sonar| directions.get(*sonar).is_some_and(|direction| *direction != Direction::Unknown))
+    }
+
     /// Returns the positions of obstacles relative to the body, in metres ahead of its centre and to the left of it.
     pub fn obstacles<'s>(&'s self, scan: &'s LaserScan) -> impl Iterator<Item = (f64, f64)> + 's {
         self.rays(scan).filter_map(|(angle, range)| Some(self.place(angle, range?)))
     }
 
-    /// Returns `true` if `scan` has rays, valid or not, in the three directions ahead.
-    #[must_use]
-    pub fn looks_ahead(&self, scan: &LaserScan) -> bool {
-        let angles =
-            || (0..scan.ranges.len()).map(|number| self.angle(scan, number)).filter(|angle| angle.0.is_finite());
-        AHEAD.iter().all(|sonar| angles().any(|angle| sonar_at(angle).number() == *sonar))
+    /// Checks that `scan` has rays, valid or not, in the three directions ahead.
+    ///
+    /// # Errors
+    /// Returns the reason why a direction has no ray, as the end of a sentence about the scan.
+    pub fn looks_ahead(&self, scan: &LaserScan) -> Result<(), String> {
+        let mut missing = AHEAD;
+        for number in 0..scan.ranges.len() {
+            let angle = self.angle(scan, number);
+            if angle.0.is_finite() {
+                let sonar = sonar_at(angle).number();
+                missing.iter_mut().filter(|direction| **direction == sonar).for_each(|direction| *direction = SEEN);
+                if missing == [SEEN; 3] {
+                    return Ok(());
+                }
+            }
+        }
+        let (apart, wide) = (f64::from(scan.angle_increment).to_degrees().abs(), 360.0 / SONARS as f64);
+        Err(if scan.ranges.is_empty() {
+            "it has no rays".to_owned()
+        } else if !(scan.angle_min.is_finite() && scan.angle_increment.is_finite()) {
+            "the angles of its rays are no numbers".to_owned()
+        } else if apart == 0.0 {
+            "its `angle_increment` is 0, so that all its rays have the same angle".to_owned()
+        } else if apart > wide {
+            format!("its rays are {apart:.1}° apart, and each of the three directions ahead is {wide}° wide")
+        } else {
+            "its rays do not look ahead; see `scan-yaw`".to_owned()
+        })
     }
 
     /// Returns the angle on the body of the ray with this number.
@@ -150,12 +180,21 @@ mod tests {
     fn a_scan_looks_ahead_with_rays_in_three_directions() {
         let looks =
             |yaw: f64, rays: usize| scanner(|config| config.scan_yaw = yaw).looks_ahead(&scan(vec![f32::NAN; rays]));
-        assert!(looks(0.0, 16) && looks(0.0, 360) && looks(PI, 360));
-        assert!(!looks(0.0, 0) && !looks(0.0, 1) && !looks(PI, 1) && !looks(0.0, 8));
+        assert!(looks(0.0, 16).is_ok() && looks(0.0, 360).is_ok() && looks(PI, 360).is_ok());
+        assert!(looks(0.0, 1).is_err() && looks(PI, 1).is_err());
+        assert_eq!(looks(0.0, 0), Err("it has no rays".to_owned()));
+        let coarse = "its rays are 45.0° apart, and each of the three directions ahead is 22.5° wide";
+        assert_eq!(looks(0.0, 8), Err(coarse.to_owned()));
         // Half a circle of which the robot sees what is behind it.
         let half = LaserScan { angle_increment: (PI / 360.0) as f32, ..scan(vec![1.0; 360]) };
         let turned = |yaw: f64| scanner(|config| config.scan_yaw = yaw).looks_ahead(&half);
-        assert!(turned(PI / 2.0) && !turned(-PI / 2.0));
+        assert_eq!(turned(PI / 2.0), Ok(()));
+        assert_eq!(turned(-PI / 2.0), Err("its rays do not look ahead; see `scan-yaw`".to_owned()));
+        let increment = |angle_increment: f32| {
+            scanner(|_| {}).looks_ahead(&LaserScan { angle_increment, ..half.clone() }).unwrap_err()
+        };
+        assert_eq!(increment(0.0), "its `angle_increment` is 0, so that all its rays have the same angle");
+        assert_eq!(increment(f32::NAN), "the angles of its rays are no numbers");
     }
 
     #[test]

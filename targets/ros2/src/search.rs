@@ -24,6 +24,22 @@ const GRAPH: Duration = Duration::from_millis(50);
 /// participant.
 const DEAF: Duration = Duration::from_secs(3);
 
+/// Minimum time for which all messages of a topic are rejected before the run ends.
+const REJECTED: Duration = Duration::from_secs(1);
+
+/// The time since when a condition has held without interruption.
+#[derive(Debug, Clone, Copy, Default)]
+struct Lasting(Option<Duration>);
+
+impl Lasting {
+    /// Returns the time for which the condition has held; `holds` is `true` if it holds at the time `now`.
+    fn time(&mut self, holds: bool, now: Duration) -> Duration {
+        let since = *self.0.get_or_insert(now);
+        self.0 = holds.then_some(since);
+        now.saturating_sub(if holds { since } else { now })
+    }
+}
+
 /// The search for the robot's topics.
 pub(crate) struct Search<'s> {
     pub(crate) config: &'s Config,
@@ -53,7 +69,8 @@ impl Search<'_> {
         let topic = self.config.topic(&self.config.cmd_vel).map_err(Fault::Middleware)?;
         let limit = Duration::from_millis(self.config.discovery);
         let mut commands: Option<Commands> = None;
-        let (mut silence, mut probation) = (None, Probation::default());
+        let (mut silence, mut rejection, mut probation) =
+            (Lasting::default(), Lasting::default(), Probation::default());
         loop {
             self.listen(participant, readers, sensing, publishers)?;
             participant.check()?;
@@ -64,7 +81,7 @@ impl Search<'_> {
             if let Some(is_stamped) = is_stamped.filter(|_| is_stamped != current) {
                 commands = Some(Commands::new(self.config, participant, &topic, is_stamped)?);
             }
-            let mut missing = missing(sensing, &graph);
+            let missing = missing(sensing, &graph);
             let is_heard = commands.as_mut().is_some_and(|commands| commands.are_heard(&graph));
             let passed = self.begun.elapsed();
             let mut odometry = sensing.inputs().filter(|input| input.source == Source::Odometry);
@@ -76,21 +93,29 @@ impl Search<'_> {
                 other => commands = other,
             }
             if passed > limit {
-                if !is_heard {
-                    missing.insert(0, graph.about_commands(&topic, self.config.stamped));
-                }
-                let help = graph.help(sensing.inputs(), &topic);
-                return Err(Fault::Missing(format!("{}{help}", graph.about_missing(&missing, self.config))));
+                return Err(self.fault(sensing, &graph, missing, &topic, is_heard));
+            }
+            let rejected = sensing.awaited().find(|(_, why)| !why.is_empty());
+            let lasts = rejection.time(rejected.is_some(), passed);
+            if let Some((input, why)) = rejected.filter(|(input, _)| lasts > REJECTED.max(limit_of(input))) {
+                return Err(Fault::Missing(graph.about_input(input, why)));
             }
             let patience = patience(sensing, &graph);
-            let since = *silence.get_or_insert(passed);
-            silence = patience.map(|_| since);
+            let lasts = silence.time(patience.is_some(), passed);
             // A new participant needs time to find what this participant has found.
-            let is_deaf = patience.is_some_and(|patience| passed.saturating_sub(since) > patience);
-            if may_rejoin && is_deaf && passed + DEAF < limit {
+            if may_rejoin && patience.is_some_and(|patience| lasts > patience) && passed + DEAF < limit {
                 return Ok(None);
             }
         }
+    }
+
+    /// Returns the fault of topics that were not found in time.
+    fn fault(&self, sensing: &Sensing, graph: &Graph, mut missing: Vec<String>, topic: &str, is_heard: bool) -> Fault {
+        if !is_heard {
+            missing.insert(0, graph.about_commands(topic, self.config.stamped));
+        }
+        let help = graph.help(sensing.inputs(), topic);
+        Fault::Missing(format!("{}{help}", graph.about_missing(&missing, self.config)))
     }
 
     /// Receives messages for a short time.
@@ -126,10 +151,15 @@ fn missing(sensing: &Sensing, graph: &Graph) -> Vec<String> {
     missing
 }
 
+/// Returns the maximum age of the last message of `input`.
+fn limit_of(input: &Input) -> Duration {
+    Duration::from_millis(input.limit)
+}
+
 /// Returns the time to wait for the first message of a topic that has a publisher; `None` if there is no such topic.
 fn patience(sensing: &Sensing, graph: &Graph) -> Option<Duration> {
     let silent = sensing.awaited().filter(|(input, left_out)| left_out.is_empty() && graph.is_offered(input));
-    silent.map(|(input, _)| Duration::from_millis(input.limit).max(DEAF)).min()
+    silent.map(|(input, _)| limit_of(input).max(DEAF)).min()
 }
 
 /// A function that receives a message: its topic with its index, its bytes, and the id of its publisher.

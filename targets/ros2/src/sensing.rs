@@ -123,13 +123,18 @@ impl Sensing {
     }
 
     fn take_scan(&mut self, scan: &LaserScan, now: Duration, at: Nanos) -> Result<i64, String> {
-        if self.config.bumper_type == BumperSource::Scan && !self.scanner.looks_ahead(scan) {
-            return Err("its rays do not look ahead, which `bumper-type = \"scan\"` needs; see `scan-yaw`".to_owned());
+        let is_bumper = self.config.bumper_type == BumperSource::Scan;
+        let as_bumper = |why: &str| format!("as a bumper (`bumper-type = \"scan\"`) the scan has to look ahead: {why}");
+        if is_bumper {
+            self.scanner.looks_ahead(scan).map_err(|why| as_bumper(&why))?;
         }
         let pose = self.pose_of(&scan.header);
         let directions = self.scanner.directions(scan);
         if directions.iter().all(|direction| *direction == Direction::Unknown) {
             return Err(format!("none of its {} rays is valid", scan.ranges.len()));
+        }
+        if is_bumper && !Scanner::sees_ahead(&directions) {
+            return Err(as_bumper("none of its rays ahead is valid"));
         }
         let limit = Duration::from_millis(self.config.stale_scan);
         for ((direction, pings), known) in directions.into_iter().zip(&mut self.pings).zip(&mut self.known) {
@@ -146,7 +151,7 @@ impl Sensing {
             *known = now;
             pings.push(Ping { range, at, pose, mount });
         }
-        if self.config.bumper_type == BumperSource::Scan {
+        if is_bumper {
             self.switches = contact::of_scan(&self.config, &self.scanner, scan);
         }
         Ok(scan.header.stamp.nanos())

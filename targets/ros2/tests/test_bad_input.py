@@ -150,8 +150,12 @@ def test_any_number_of_rays_will_do(rays):
 
 def test_a_scan_that_does_not_look_ahead_is_no_bumper():
     domain = new_domain()
-    with Robot(domain, rays=1), running("ride", configuration(domain, bumper_type="scan", discovery=8000)) as run:
-        ends_with(3, '`/scan` has messages that cannot be used: its rays do not look ahead, which `bumper-type =', run)
+    built("ride")
+    with Robot(domain, rays=1), running("ride", configuration(domain, bumper_type="scan")) as run:
+        begun = time.monotonic()
+        ends_with(3, "`/scan` has messages that cannot be used: as a bumper (`bumper-type = \"scan\"`) the scan has", run)
+        # After the limit of the scan, which is a second, and not at the end of `discovery`.
+        assert time.monotonic() - begun < 30
 
 
 def test_a_scan_without_a_valid_ray_is_no_scan():

@@ -173,6 +173,23 @@ fn a_scan_can_be_the_bumper() {
 }
 
 #[test]
+fn a_scan_that_is_blind_ahead_is_no_bumper() {
+    let mut robot = Robot::new(|config| config.bumper_type = BumperSource::Scan);
+    robot.odometry(0.0).unwrap();
+    let mut ranges = vec![2.0; 360];
+    ranges[140..220].fill(f32::NAN);
+    let (angle_min, angle_increment, range_max) = (-PI as f32, (PI / 180.0) as f32, 10.0);
+    let mut scan = LaserScan { angle_min, angle_increment, range_max, ranges, ..LaserScan::default() };
+    robot.take(Source::Scan, &scan).unwrap();
+    let why = "as a bumper (`bumper-type = \"scan\"`) the scan has to look ahead: none of its rays ahead is valid";
+    let rejected = |robot: &Robot| robot.sensing.awaited().map(|(_, why)| why.to_owned()).next();
+    assert_eq!(rejected(&robot).as_deref(), Some(why));
+    scan.ranges[180] = 2.0;
+    robot.take(Source::Scan, &scan).unwrap();
+    assert_eq!(rejected(&robot), None);
+}
+
+#[test]
 fn messages_before_the_first_clock_are_not_stale() {
     let mut robot = Robot::new(|config| config.use_sim_time = true);
     robot.odometry(0.0).unwrap();
