@@ -1,6 +1,5 @@
 //! The topics of other programs on the graph, and sentences about missing topics.
 
-use crate::command_graph::{TWIST, TWIST_STAMPED};
 use crate::config::Config;
 use crate::names::{dds_topic, dds_type, ros_topic, ros_type};
 use crate::source::Input;
@@ -86,20 +85,6 @@ impl Graph {
         if is_empty { listed } else { format!("{}; {listed}", missing.join("; ")) }
     }
 
-    /// Returns a help line with the configuration entry for each missing topic, where the graph has one other topic of
-    /// the same type; empty if there is no such topic.
-    #[must_use]
-    pub fn help<'i>(&self, inputs: impl Iterator<Item = &'i Input>, commands: &str) -> String {
-        let mut entries: Vec<_> = inputs
-            .filter_map(|input| proposed(&self.writers, &input.topic, &[input.kind], input.source.key()?))
-            .collect();
-        entries.extend(proposed(&self.readers, commands, &[TWIST, TWIST_STAMPED], "cmd-vel"));
-        if entries.is_empty() {
-            return String::new();
-        }
-        format!("\nhelp: write {} into the file of --config", entries.join(" and "))
-    }
-
     /// Returns a sentence that lists all topics on the graph, those with publishers before those with subscribers.
     #[must_use]
     pub fn listed(&self, config: &Config) -> String {
@@ -134,19 +119,6 @@ fn listed_topics(endpoints: &[Endpoint]) -> Option<String> {
     (!topics.is_empty()).then(|| format!("{}{more}", topics.join(", ")))
 }
 
-/// Returns the configuration entry that names the only topic with one of the types `kinds`; `None` if `topic` is on the
-/// graph, or if several topics have such a type.
-fn proposed(endpoints: &[Endpoint], topic: &str, kinds: &[&str], key: &str) -> Option<String> {
-    let name = dds_topic(topic);
-    if endpoints.iter().any(|endpoint| endpoint.topic == name) {
-        return None;
-    }
-    let has_type = |endpoint: &&Endpoint| kinds.iter().any(|kind| endpoint.kind == dds_type(kind));
-    let mut topics = endpoints.iter().filter(has_type).filter_map(|endpoint| ros_topic(&endpoint.topic));
-    let first = topics.next()?;
-    topics.all(|other| other == first).then(|| format!("`{key} = \"{first}\"`"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -174,24 +146,6 @@ mod tests {
         graph.writers.push(endpoint("/odom", "geometry_msgs/msg/Pose"));
         assert!(graph.about_input(&odom, "").contains("of the type geometry_msgs/msg/Pose, and nav_msgs"));
         assert_eq!(graph.publishers(&odom), 1);
-    }
-
-    #[test]
-    fn the_only_topic_of_a_type_is_proposed() {
-        let config = Configured::read(None).unwrap().config;
-        let inputs = crate::source::inputs(&config).unwrap();
-        let help = |graph: &Graph| graph.help(inputs.iter(), "/cmd_vel");
-        let mut graph = Graph::default();
-        assert_eq!(help(&graph), "");
-        graph.writers.push(endpoint("/robot/odom", "nav_msgs/msg/Odometry"));
-        graph.writers.push(endpoint("/robot/odom", "nav_msgs/msg/Odometry"));
-        graph.readers.push(endpoint("/robot/cmd_vel", "geometry_msgs/msg/TwistStamped"));
-        let expected =
-            "\nhelp: write `odom = \"/robot/odom\"` and `cmd-vel = \"/robot/cmd_vel\"` into the file of --config";
-        assert_eq!(help(&graph), expected);
-        graph.writers.push(endpoint("/odom_filtered", "nav_msgs/msg/Odometry"));
-        graph.readers.push(endpoint("/cmd_vel", "geometry_msgs/msg/Twist"));
-        assert_eq!(help(&graph), "", "one of several would be a guess");
     }
 
     #[test]

@@ -27,6 +27,7 @@ pub mod odometer;
 mod pacing;
 mod participant;
 mod payload_adapter;
+mod proposals;
 mod publishers;
 pub mod quarks;
 pub mod report;

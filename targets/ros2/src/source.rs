@@ -21,16 +21,17 @@ pub enum Source {
 }
 
 impl Source {
-    /// Returns the configuration key that names the topic; `None` if no other topic of its type can be proposed. This
-    /// holds for range sensors, which are in tables, for the clock, whose name is fixed, and for the bumper, whose type
-    /// is common.
+    /// Returns the configuration key that names the topic, and `true` if the only topic of its type may be proposed,
+    /// which a bumper's may not, as its type is common. Returns `None` for range sensors, which are in tables, and for
+    /// the clock, whose name is fixed.
     #[must_use]
-    pub const fn key(self) -> Option<&'static str> {
+    pub const fn key(self) -> Option<(&'static str, bool)> {
         match self {
-            Self::Odometry => Some("odom"),
-            Self::Scan => Some("scan"),
-            Self::Battery => Some("battery"),
-            Self::Bumper | Self::Range(_) | Self::Clock => None,
+            Self::Odometry => Some(("odom", true)),
+            Self::Scan => Some(("scan", true)),
+            Self::Battery => Some(("battery", true)),
+            Self::Bumper => Some(("bumper", false)),
+            Self::Range(_) | Self::Clock => None,
         }
     }
 }

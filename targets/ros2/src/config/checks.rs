@@ -42,6 +42,9 @@ impl Config {
         let mut named: Vec<(&str, String)> = Vec::new();
         let clock = self.use_sim_time.then_some(("use-sim-time", "/clock"));
         for (key, name) in self.topics().into_iter().chain(clock) {
+            if name.is_empty() {
+                return Err(empty(key));
+            }
             let topic = self.topic(name).map_err(|why| format!("`{key}`: {why}"))?;
             if let Some((other, _)) = named.iter().find(|(_, known)| *known == topic) {
                 let keys = if *other == key { format!("two of `{key}`") } else { format!("`{other}` and `{key}`") };
@@ -65,5 +68,19 @@ impl Config {
         let required = required.chain(has_topic(self.bumper_type).then_some(("bumper", &self.bumper)));
         let required = required.chain(self.ranges.0.iter().map(|sensor| ("ranges", &sensor.topic)));
         required.chain(optional).map(|(key, topic)| (key, topic.as_str())).collect()
+    }
+}
+
+/// Returns the sentence about a key that needs a topic and is empty.
+fn empty(key: &str) -> String {
+    match key {
+        "bumper" => "`bumper` is empty: write the topic that `bumper-type` needs, as in `bumper = \"bumper\"`, or \
+                     `bumper-type = \"none\"`"
+            .to_owned(),
+        "ranges" => "a sensor in `ranges` has an empty `topic`: write the topic of its messages".to_owned(),
+        key => format!(
+            "`{key}` is empty, and no plan can drive without it: write the topic, as in `{key} = \"{}\"`",
+            key.replace('-', "_")
+        ),
     }
 }

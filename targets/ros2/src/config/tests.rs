@@ -77,8 +77,8 @@ fn what_makes_no_sense_is_refused() {
     for (text, sentence) in [
         ("stamped = \"maybe\"", "`stamped` is \"maybe\", and has to be true or false or \"auto\""),
         ("domain = 233", "`domain` is 233, and has to be from 0 to 232"),
-        ("bumper-type = \"bool\"\nbumper = \"\"", "`` is no name of a topic"),
-        ("odom = \"\"", "`odom`: `` is no name of a topic"),
+        ("bumper-type = \"bool\"\nbumper = \"\"", "`bumper` is empty: write the topic that `bumper-type` needs"),
+        ("odom = \"\"", "`odom` is empty, and no plan can drive without it: write the topic, as in `odom = \"odom\"`"),
         ("bumper-type = \"button\"", "has to be \"none\" or \"bool\" or \"hazard\" or \"scan\""),
         ("ranges = [{ topic = \"a\", x = 1e9 }]", "the place of the range sensor `a` is more than 10 m away"),
         ("ranges = [{ topic = \"a\", z = 1 }]", "unknown field `z`"),
