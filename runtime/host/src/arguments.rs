@@ -27,7 +27,9 @@ const STATUSES: [(&str, &str); 7] = [
     ("128+N", "terminated by signal N"),
 ];
 
-const STOPPED: &str = "The robot is stopped in every case.";
+/// The promise of docs/src/promises.md, in short.
+const STOPPED: &str = "The robot is stopped at the end, except after SIGKILL, a crash or a lost line: then only its \
+                       own watchdog stops it.";
 
 const TIMING: &str = "On a real robot, SIGUSR1 prints how late turns began and how long they took.";
 

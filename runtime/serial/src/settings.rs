@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
-use mdle_host::read_text;
+use mdle_host::read_piped_text;
 use mdle_runtime::capability::Steering;
 use serde::de::DeserializeOwned;
 
@@ -37,7 +37,7 @@ impl Settings {
     pub fn read<F: DeserializeOwned + Default>(file: Option<&Path>) -> Result<(F, Self), String> {
         let Some(path) = file else { return Ok((F::default(), Self::default())) };
         let name = path.display().to_string();
-        let text = read_text(path, LARGEST).map_err(|error| format!("{name}: {error}"))?;
+        let text = read_piped_text(path, LARGEST).map_err(|error| format!("{name}: {error}"))?;
         let values = toml::from_str(&text).map_err(|error| format!("{name}: {}", error.to_string().trim_end()))?;
         Ok((values, Self { file: Some(name), entries: Vec::new() }))
     }

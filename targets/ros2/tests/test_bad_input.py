@@ -324,3 +324,15 @@ def test_a_plan_that_needs_more_is_refused():
         ends_with(2, "the plan uses `bumper`, which needs bumper, and this configuration gives the robot none", run)
     with running("until_near", configuration(new_domain(), scan="")) as run:
         ends_with(2, "the plan uses `r`, which needs sonar[16]", run)
+
+
+def test_a_configuration_is_read_from_a_pipe():
+    domain = new_domain()
+    text = configuration(domain).read_text()
+    printed = subprocess.run([built("hop"), "--print-config", "--config", "/dev/stdin"], input=text, capture_output=True,
+                             text=True, timeout=LONG)
+    assert printed.returncode == 0 and f"domain = {domain} " in printed.stdout, printed
+    with Robot(domain):
+        run = subprocess.run([built("hop"), "--config", "/dev/stdin"], input=printed.stdout, capture_output=True, text=True,
+                             timeout=LONG)
+        assert run.returncode == 0, run

@@ -37,7 +37,7 @@ fn help_lists_all_options_and_opens_no_robot() {
       4      timeout or turn limit
       5      the plan ended otherwise than required
       128+N  terminated by signal N
-    The robot is stopped in every case.
+    The robot is stopped at the end, except after SIGKILL, a crash or a lost line: then only its own watchdog stops it.
     ");
 }
 
