@@ -1,12 +1,14 @@
 //! Quantities as people write and read them: in the values of options, a number and its unit as in a plan, or a number
-//! alone; and measured values in the words of a plan.
+//! alone; and measured values in the words of a plan. Also similar names for unknown ones.
 
 mod measured;
+mod near;
 mod rounded;
 
 use std::time::Duration;
 
 pub use measured::{cause_text, file_line, operand_words};
+pub use near::{did_you_mean, nearest};
 pub use rounded::{Clocked, rounded};
 
 /// A kind of quantity that options take.

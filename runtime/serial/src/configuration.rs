@@ -71,19 +71,9 @@ macro_rules! configuration {
                 file: Option<&::std::path::Path>,
                 device: Option<&str>,
             ) -> Result<(Self, $crate::Settings), String> {
-                /// Contents of a configuration file; a missing key keeps its default value.
-                #[derive(Default, $crate::serde::Deserialize)]
-                #[serde(crate = "mdle_serial::serde", deny_unknown_fields, rename_all = "kebab-case")]
-                struct File {
-                    device: Option<String>,
-                    $($key: Option<<$type as $crate::Setting>::Written>,)*
-                    rotate_gain: Option<f64>,
-                    align_gain: Option<f64>,
-                    avoid_gain: Option<f64>,
-                }
-                let (file, mut settings) = $crate::Settings::read::<File>(file)?;
+                let mut settings = $crate::Settings::read(file)?;
                 let config = Self {
-                    device: settings.device(device, file.device),
+                    device: settings.device(device)?,
                     $($key: settings.value(
                         $crate::Key {
                             name: stringify!($key),
@@ -92,11 +82,11 @@ macro_rules! configuration {
                             is_verified: $crate::configuration!(@is_verified $($confidence)?),
                             range: $crate::configuration!(@range $($least, $most)?),
                         },
-                        file.$key,
                         $default,
                     )?,)*
-                    steering: settings.steering([file.rotate_gain, file.align_gain, file.avoid_gain])?,
+                    steering: settings.steering()?,
                 };
+                settings.check()?;
                 config.check().map_err(|why| settings.blamed(&why))?;
                 Ok((config, settings))
             }

@@ -2,7 +2,10 @@
 
 use std::fmt;
 
+use mdle_quantity::did_you_mean;
 use serde::de::DeserializeOwned;
+
+use crate::shown::{number, shortened};
 
 /// A key of a configuration, as its table declares it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,8 +28,14 @@ impl Key {
         Self { name, unit, help, is_verified: true, range: None }
     }
 
+    /// Returns `true` if the range of the key, if it has one, contains `value`.
+    fn has(&self, value: f64) -> bool {
+        self.range.is_none_or(|(least, most)| (least..=most).contains(&value))
+    }
+
     /// Returns the name of the key in a configuration file.
-    pub(crate) fn in_a_file(&self) -> String {
+    #[must_use]
+    pub fn in_a_file(&self) -> String {
         self.name.replace('_', "-")
     }
 
@@ -42,6 +51,9 @@ pub trait Setting: Sized {
     /// Type of the value in a file, and of its default.
     type Written: DeserializeOwned + fmt::Debug;
 
+    /// Returns what the value of `key` in a file has to be, as the end of a sentence.
+    fn expected(key: &Key) -> String;
+
     /// Converts a written value to a value of this type.
     ///
     /// # Errors
@@ -49,40 +61,64 @@ pub trait Setting: Sized {
     fn of(key: &Key, written: Self::Written) -> Result<Self, String>;
 }
 
+/// Returns the end of a sentence that expects `what` within the range of `key`, with its unit.
+fn ranged(what: &str, key: &Key) -> String {
+    let range = key.range.map(|(least, most)| format!(" from {least} to {most}")).unwrap_or_default();
+    let unit = if key.unit.is_empty() { String::new() } else { format!(" {}", key.unit) };
+    let of_unit = if range.is_empty() && !unit.is_empty() { " in" } else { "" };
+    format!("{what}{range}{of_unit}{unit}")
+}
+
 macro_rules! written_as_it_is {
-    ($($type:ty, $value:ident, $number:expr;)*) => {
+    ($($type:ty, $value:ident, $number:expr, |$key:ident| $expected:expr;)*) => {
         $(impl Setting for $type {
             type Written = Self;
 
+            fn expected($key: &Key) -> String {
+                $expected
+            }
+
             fn of(key: &Key, $value: Self) -> Result<Self, String> {
-                if let (Some((least, most)), Some(number)) = (key.range, $number) {
-                    within(&key.in_a_file(), number, least, most)?;
+                let as_number: Option<f64> = $number;
+                match as_number.filter(|found| !found.is_finite() || !key.has(*found)) {
+                    Some(wrong) => {
+                        let (name, wrong) = (key.in_a_file(), number(wrong));
+                        Err(format!("`{name}` is {wrong}, and has to be {}", Self::expected(key)))
+                    }
+                    None => Ok($value),
                 }
-                Ok($value)
             }
         })*
     };
 }
 
 written_as_it_is! {
-    f64, value, Some(value);
-    u8, value, Some(f64::from(value));
-    u32, value, Some(f64::from(value));
-    u64, value, Some(value as f64);
-    bool, value, None::<f64>;
-    String, value, None::<f64>;
-    Vec<u8>, value, None::<f64>;
+    f64, value, Some(value), |key| ranged("a number", key);
+    u8, value, Some(f64::from(value)), |key| ranged("a whole number", key);
+    u32, value, Some(f64::from(value)), |key| ranged("a whole number", key);
+    u64, value, Some(value as f64), |key| ranged("a whole number", key);
+    bool, value, None, |_key| "true or false".to_owned();
+    String, value, None, |_key| "a text in quotes".to_owned();
+    Vec<u8>, value, None, |_key| "a list of whole numbers from 0 to 255".to_owned();
 }
 
 /// Returns the value in `choices` whose name is `written`.
 ///
 /// # Errors
-/// Returns a sentence with all names if no choice has this name.
+/// Returns a sentence with all names, and the most similar one, if no choice has this name.
 pub fn one_of<T: Copy>(key: &Key, written: &str, choices: &[(&str, T)]) -> Result<T, String> {
     choices.iter().find(|(name, _)| *name == written).map(|(_, choice)| *choice).ok_or_else(|| {
-        let names: Vec<_> = choices.iter().map(|(name, _)| format!("{name:?}")).collect();
-        format!("`{}` is {written:?}, and has to be {}", key.in_a_file(), names.join(" or "))
+        let names: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
+        let (written, near) = (shortened(&format!("{written:?}")), did_you_mean(written, &names));
+        format!("`{}` is {written}, and has to be {}{near}", key.in_a_file(), quoted(&names))
     })
+}
+
+/// Returns a list of words in quotes, of which a value has to be one.
+#[must_use]
+pub fn quoted(words: &[&str]) -> String {
+    let words: Vec<_> = words.iter().map(|word| format!("{word:?}")).collect();
+    words.join(" or ")
 }
 
 /// Checks that `value` is between `least` and `most`, ends included.
@@ -93,6 +129,6 @@ pub fn within(name: &str, value: f64, least: f64, most: f64) -> Result<(), Strin
     if (least..=most).contains(&value) {
         Ok(())
     } else {
-        Err(format!("`{name}` is {value}, and has to be from {least} to {most}"))
+        Err(format!("`{name}` is {}, and has to be from {least} to {most}", number(value)))
     }
 }

@@ -11,17 +11,17 @@ mod moment;
 mod obedience;
 pub mod options;
 mod settings;
+mod shown;
 mod target;
 
 pub use capacity::{carries, time_of};
 pub use clock::{Clock, Times};
 pub use configuration::{Configuration, Configured};
-pub use key::{Key, Setting, one_of, within};
+pub use key::{Key, Setting, one_of, quoted, within};
 pub use line::{Line, LineFault};
 pub use mdle_runtime::capability::Steering;
 pub use moment::Moment;
 pub use obedience::Obedience;
-#[doc(hidden)]
-pub use serde;
 pub use settings::Settings;
+pub use shown::shortened;
 pub use target::{SerialRobot, SerialTarget};

@@ -4,10 +4,12 @@ use std::fmt;
 use std::path::Path;
 
 use mdle_host::read_piped_text;
+use mdle_quantity::did_you_mean;
 use mdle_runtime::capability::Steering;
-use serde::de::DeserializeOwned;
+use toml::Table;
 
 use crate::key::{Key, Setting};
+use crate::shown::{shortened, shown, syntax_error};
 
 /// Maximum size of a configuration file, in bytes.
 const LARGEST: u64 = 1_000_000;
@@ -24,45 +26,75 @@ struct Entry {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings {
     file: Option<String>,
+    /// Values of the file whose keys have not been asked for yet.
+    written: Table,
     entries: Vec<Entry>,
 }
 
 impl Settings {
-    /// Reads the configuration file, if there is one. `F` is a type whose fields are options; a missing value is
-    /// `None`.
+    /// Reads the configuration file, if there is one.
     ///
     /// # Errors
-    /// Fails if the file cannot be read, is not TOML, or has an unknown key or an invalid value. The sentence gives the
-    /// place and reason.
-    pub fn read<F: DeserializeOwned + Default>(file: Option<&Path>) -> Result<(F, Self), String> {
-        let Some(path) = file else { return Ok((F::default(), Self::default())) };
+    /// Fails if the file cannot be read or is not TOML. The sentence gives the place and reason.
+    pub fn read(file: Option<&Path>) -> Result<Self, String> {
+        let Some(path) = file else { return Ok(Self::default()) };
         let name = path.display().to_string();
         let text = read_piped_text(path, LARGEST).map_err(|error| format!("{name}: {error}"))?;
-        let values = toml::from_str(&text).map_err(|error| format!("{name}: {}", error.to_string().trim_end()))?;
-        Ok((values, Self { file: Some(name), entries: Vec::new() }))
+        let written = toml::from_str(&text).map_err(|error| format!("{name}: {}", syntax_error(&text, &error)))?;
+        Ok(Self { file: Some(name), written, entries: Vec::new() })
+    }
+
+    /// Checks that every key of the file has been asked for.
+    ///
+    /// # Errors
+    /// Returns a sentence with the file's name, the unknown key and the most similar key.
+    pub fn check(&self) -> Result<(), String> {
+        let Some(unknown) = self.written.keys().next() else { return Ok(()) };
+        let known: Vec<_> = self.entries.iter().map(|entry| entry.key.in_a_file()).collect();
+        let known: Vec<_> = known.iter().map(String::as_str).collect();
+        let near = did_you_mean(unknown, &known);
+        let unknown = shortened(unknown);
+        let keys = known.join(", ");
+        Err(self.blamed(&format!("there is no key `{unknown}`{near}\nhelp: the keys are {keys}")))
+    }
+
+    /// Returns `true` if the file has the key with this name, and it has not been asked for.
+    #[must_use]
+    pub fn has(&self, name: &str) -> bool {
+        self.written.contains_key(name)
     }
 
     /// Returns the value of `key` in the file, or the default.
     ///
     /// # Errors
     /// Returns a sentence with the file's name and the reason if the key cannot have this value.
-    pub fn value<T: Setting>(
-        &mut self,
-        key: Key,
-        written: Option<T::Written>,
-        default: T::Written,
-    ) -> Result<T, String> {
+    pub fn value<T: Setting>(&mut self, key: Key, default: T::Written) -> Result<T, String> {
+        let written = self.taken::<T>(&key)?;
         let written = self.chosen(key, written, default);
         T::of(&key, written).map_err(|why| self.blamed(&why))
     }
 
     /// Returns the device on the command line; if there is none, the device in the file, or else the first serial port.
-    pub fn device(&mut self, given: Option<&str>, written: Option<String>) -> String {
+    ///
+    /// # Errors
+    /// Returns a sentence with the file's name if the device in the file is not a text.
+    pub fn device(&mut self, given: Option<&str>) -> Result<String, String> {
         let key = Key::of("device", "", "the serial port, or tcp:ADDRESS:PORT");
-        match given {
+        let written = self.taken::<String>(&key)?;
+        Ok(match given {
             Some(device) => self.noted(key, device.to_owned(), "--device".to_owned()),
             None => self.chosen(key, written, "/dev/ttyS0".to_owned()),
-        }
+        })
+    }
+
+    /// Takes the value of `key` out of those of the file.
+    fn taken<T: Setting>(&mut self, key: &Key) -> Result<Option<T::Written>, String> {
+        let Some(value) = self.written.remove(&key.in_a_file()) else { return Ok(None) };
+        let shown = shown(&value);
+        value.try_into().map(Some).map_err(|_| {
+            let (name, expected) = (key.in_a_file(), T::expected(key));
+            self.blamed(&format!("`{name}` is {shown}, and has to be {expected}"))
+        })
     }
 
     /// Returns the steering gains: `rotate`, `align` and `avoid` of the file, and the default for each missing gain.
@@ -70,17 +102,13 @@ impl Settings {
     ///
     /// # Errors
     /// Returns a sentence about a gain that is too small or too large.
-    pub fn steering(&mut self, [rotate, align, avoid]: [Option<f64>; 3]) -> Result<Steering, String> {
+    pub fn steering(&mut self) -> Result<Steering, String> {
         let usual = Steering::USUAL;
         let gain = |name, help| Key { range: Some((0.1, 10.0)), ..Key::of(name, "rad/s", help) };
         Ok(Steering {
-            rotate: self.value(
-                gain("rotate_gain", "for each radian, of rotate, turn and path"),
-                rotate,
-                usual.rotate,
-            )?,
-            align: self.value(gain("align_gain", "for each metre, of align"), align, usual.align)?,
-            avoid: self.value(gain("avoid_gain", "for each radian, of goAvoid"), avoid, usual.avoid)?,
+            rotate: self.value(gain("rotate_gain", "for each radian, of rotate, turn and path"), usual.rotate)?,
+            align: self.value(gain("align_gain", "for each metre, of align"), usual.align)?,
+            avoid: self.value(gain("avoid_gain", "for each radian, of goAvoid"), usual.avoid)?,
         })
     }
 

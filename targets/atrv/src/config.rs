@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use mdle_serial::{Key, Setting, one_of, within};
+use mdle_serial::{Key, Setting, one_of, quoted, within};
 
 use crate::command::Escape;
 
@@ -81,6 +81,10 @@ pub enum Bumpers {
 impl Setting for Bumpers {
     type Written = String;
 
+    fn expected(_: &Key) -> String {
+        quoted(&["addresses", "bits"])
+    }
+
     fn of(key: &Key, written: String) -> Result<Self, String> {
         one_of(key, &written, &[("addresses", Self::Addresses), ("bits", Self::Bits)])
     }
@@ -88,6 +92,10 @@ impl Setting for Bumpers {
 
 impl Setting for Escape {
     type Written = String;
+
+    fn expected(_: &Key) -> String {
+        quoted(&["avoid", "mark"])
+    }
 
     fn of(key: &Key, written: String) -> Result<Self, String> {
         one_of(key, &written, &[("avoid", Self::Avoid), ("mark", Self::Mark)])

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use mdle_serial::{Key, Setting, one_of};
+use mdle_serial::{Key, Setting, one_of, quoted, shortened};
 use serde::Deserialize;
 
 /// Distribution of ROS 2, which determines the layout of messages.
@@ -46,6 +46,10 @@ macro_rules! words {
         $(impl Setting for $type {
             type Written = String;
 
+            fn expected(_: &Key) -> String {
+                quoted(&[$($word),*])
+            }
+
             fn of(key: &Key, written: String) -> Result<Self, String> {
                 one_of(key, &written, &[$(($word, Self::$variant)),*])
             }
@@ -80,13 +84,18 @@ impl fmt::Debug for WrittenStamped {
 impl Setting for Stamped {
     type Written = WrittenStamped;
 
-    fn of(_: &Key, written: WrittenStamped) -> Result<Self, String> {
+    fn expected(_: &Key) -> String {
+        "true or false or \"auto\"".to_owned()
+    }
+
+    fn of(key: &Key, written: WrittenStamped) -> Result<Self, String> {
         match written {
             WrittenStamped::Flag(true) => Ok(Self::Yes),
             WrittenStamped::Flag(false) => Ok(Self::No),
             WrittenStamped::Word(word) if word == "auto" => Ok(Self::Auto),
             WrittenStamped::Word(word) => {
-                Err(format!("`stamped` is {word:?}, and has to be true or false or \"auto\""))
+                let word = shortened(&format!("{word:?}"));
+                Err(format!("`stamped` is {word}, and has to be {}", Self::expected(key)))
             }
         }
     }
@@ -126,6 +135,11 @@ const MOST: usize = 64;
 
 impl Setting for RangeSensors {
     type Written = Vec<RangeSensor>;
+
+    fn expected(_: &Key) -> String {
+        "a list of sensors { topic = \"…\", x = 0.1, y = 0.0, yaw = 0.0 }, in m and rad and without other keys"
+            .to_owned()
+    }
 
     fn of(_: &Key, written: Vec<RangeSensor>) -> Result<Self, String> {
         if written.len() > MOST {

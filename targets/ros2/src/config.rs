@@ -6,7 +6,6 @@ use std::path::Path;
 use mdle_runtime::Meters;
 use mdle_runtime::Shape;
 use mdle_serial::{Key, Settings, Steering};
-use serde::Deserialize;
 
 use crate::choices::{BumperSource, Distribution, RangeSensors, Stamped};
 use crate::names::absolute;
@@ -28,18 +27,8 @@ macro_rules! configuration {
             pub steering: Steering,
         }
 
-        /// Contents of a configuration file; a missing key keeps its default value.
-        #[derive(Default, Deserialize)]
-        #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-        struct File {
-            $($key: Option<<$type as mdle_serial::Setting>::Written>,)*
-            rotate_gain: Option<f64>,
-            align_gain: Option<f64>,
-            avoid_gain: Option<f64>,
-        }
-
-        /// Returns the values of `file`, and the default of each key that is missing in `file`.
-        fn values(file: File, settings: &mut Settings) -> Result<Config, String> {
+        /// Returns the values of `settings`, and the default of each missing key.
+        fn values(settings: &mut Settings) -> Result<Config, String> {
             Ok(Config {
                 $($key: settings.value(
                     Key {
@@ -49,10 +38,9 @@ macro_rules! configuration {
                         is_verified: true,
                         range: configuration!(@range $($least, $most)?),
                     },
-                    file.$key,
                     $default,
                 )?,)*
-                steering: settings.steering([file.rotate_gain, file.align_gain, file.avoid_gain])?,
+                steering: settings.steering()?,
             })
         }
     };
@@ -167,11 +155,12 @@ impl Configured {
     /// Fails if the file cannot be read, is not TOML, or has an unknown key or an invalid value. The sentence gives the
     /// place and reason.
     pub fn read(file: Option<&Path>) -> Result<Self, String> {
-        let (file, mut settings) = Settings::read::<File>(file)?;
-        if file.domain.is_none() {
+        let mut settings = Settings::read(file)?;
+        if !settings.has("domain") {
             given_domain()?;
         }
-        let config = values(file, &mut settings)?;
+        let config = values(&mut settings)?;
+        settings.check()?;
         config.check().map_err(|why| settings.blamed(&why))?;
         Ok(Self { config, settings })
     }

@@ -21,6 +21,8 @@ pub enum Fault {
     NoNumber,
     /// The odometry has no valid pose.
     NoPose,
+    /// The odometry has a speed that is not a number.
+    NoSpeed,
     /// Odometry went back in time by this number of seconds.
     Backwards(f64),
     /// Odometry jumped farther than the robot can have moved.
@@ -68,9 +70,11 @@ impl fmt::Display for Fault {
             ),
             Self::Ended => f.write_str("the run was asked to end"),
             Self::NoNumber => f.write_str("a law has asked for a speed that is no number"),
-            Self::NoPose => {
-                f.write_str("the odometry is no pose: a number of it is none, or its orientation has no length")
-            }
+            Self::NoPose => f.write_str(
+                "the odometry has no pose: its position is no number, or the length of its orientation, a quaternion, \
+                 is far from 1",
+            ),
+            Self::NoSpeed => f.write_str("the odometry has a speed or a turn rate that is no number"),
             Self::Backwards(seconds) => write!(
                 f,
                 "the odometry has gone back in time by {seconds:.1} s, as after a restart of the robot; start the plan \

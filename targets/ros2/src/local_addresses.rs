@@ -40,6 +40,7 @@ pub(crate) fn check(address: Ipv4Addr) -> Result<(), String> {
 fn refusal(network: &str, why: &str, routes: &Routes) -> String {
     let own: Vec<_> = routes.own.iter().map(Ipv4Addr::to_string).collect();
     let has = if own.is_empty() { "none of IPv4".to_owned() } else { own.join(", ") };
+    let network = mdle_serial::shortened(network);
     format!("`network` is `{network}`, {why}; this computer has {has}")
 }
 

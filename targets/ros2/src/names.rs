@@ -13,6 +13,7 @@ pub fn absolute(namespace: &str, name: &str) -> Result<String, String> {
     if whole.split('/').skip(1).all(is_word) {
         Ok(whole)
     } else {
+        let name = mdle_serial::shortened(name);
         Err(format!("`{name}` is no name of a topic: words of letters, digits and `_` between slashes"))
     }
 }

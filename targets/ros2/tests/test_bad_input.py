@@ -136,7 +136,7 @@ def test_odometry_that_is_no_number_is_a_fault():
     with Robot(domain) as robot, running("ride", configuration(domain)) as run:
         drives(robot)
         robot.changed["odom"] = none
-        ends_with(3, "the odometry is no pose", run, robot)
+        ends_with(3, "the odometry has no pose", run, robot)
 
 
 @pytest.mark.parametrize("rays", [1, 40_000])
@@ -298,8 +298,8 @@ def test_another_type_of_command_is_named():
 
 
 @pytest.mark.parametrize("values, sentence", [
-    (dict(domain=233), "`domain` is 233, and has to be from 0 to 232"),
-    (dict(topic="odom"), "unknown field `topic`"),
+    (dict(domain=233), "`domain` is 233, and has to be a whole number from 0 to 232"),
+    (dict(topic="odom"), "there is no key `topic`"),
     (dict(odom="2nd odom"), "`2nd odom` is no name of a topic"),
     (dict(distribution="foxy"), '`distribution` is "foxy", and has to be "humble" or "jazzy" or "kilted"'),
     (dict(network="robot.local"), "`network` is `robot.local`, and has to be an address"),

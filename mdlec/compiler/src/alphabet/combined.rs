@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use mdle_quantity::nearest;
+
 use super::synonyms;
 use super::{AlphabetFile, Capability, Declaration, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic};
@@ -154,23 +156,6 @@ impl Alphabet {
 /// Returns `true` if `capabilities` contain the needed one, in at least the needed number.
 fn is_among(needed: &Capability, capabilities: &[Capability]) -> bool {
     capabilities.iter().any(|own| own.name == needed.name && own.size >= needed.size)
-}
-
-/// Returns the name in `names` that is most similar to `name`, if it is similar enough to be meant.
-#[must_use]
-pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
-    let lower = name.to_lowercase();
-    let distance = |other: &str| strsim::damerau_levenshtein(&lower, &other.to_lowercase());
-    let length = name.chars().count();
-    let allowed = (length / 3).max(1).min(length.saturating_sub(1));
-    names.map(|other| (distance(other), other)).filter(|(found, _)| *found <= allowed).min().map(|(_, other)| other)
-}
-
-/// Returns the end of a sentence about an unknown name: the similar name in `known`, or an empty text.
-#[must_use]
-pub fn did_you_mean(name: &str, known: &[&str]) -> String {
-    let near = nearest(name, known.iter().copied());
-    near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default()
 }
 
 /// Returns `true` if a target's own declaration replaces a shared one: both have the same name and kinds of arguments.

@@ -11,8 +11,9 @@ mod synonyms;
 mod tests;
 mod token;
 
-pub use combined::{Alphabet, combine, did_you_mean, nearest};
+pub use combined::{Alphabet, combine};
 pub use decimal::Decimal;
+pub use mdle_quantity::{did_you_mean, nearest};
 pub use quantity::{Kind, Unit, family_to_si, has_direction};
 pub use read::read;
 

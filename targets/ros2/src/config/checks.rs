@@ -1,5 +1,7 @@
 //! Checks of values of a configuration that are valid each by itself but not together.
 
+use mdle_serial::shortened;
+
 use super::{Config, has_topic};
 use crate::choices::BumperSource;
 use crate::local_addresses;
@@ -36,7 +38,7 @@ impl Config {
             return Err(format!(
                 "`namespace` is `{}`, and has to be words of letters, digits and `_` between slashes, such as \
                  `/robot1`, or empty",
-                self.namespace
+                shortened(&self.namespace)
             ));
         }
         let mut named: Vec<(&str, String)> = Vec::new();

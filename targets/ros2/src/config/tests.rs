@@ -76,16 +76,32 @@ fn the_default_domain_is_printed_as_a_comment() {
 fn what_makes_no_sense_is_refused() {
     for (text, sentence) in [
         ("stamped = \"maybe\"", "`stamped` is \"maybe\", and has to be true or false or \"auto\""),
-        ("domain = 233", "`domain` is 233, and has to be from 0 to 232"),
+        ("domain = 233", "`domain` is 233, and has to be a whole number from 0 to 232"),
         ("bumper-type = \"bool\"\nbumper = \"\"", "`bumper` is empty: write the topic that `bumper-type` needs"),
         ("odom = \"\"", "`odom` is empty, and no plan can drive without it: write the topic, as in `odom = \"odom\"`"),
         ("bumper-type = \"button\"", "has to be \"none\" or \"bool\" or \"hazard\" or \"scan\""),
         ("ranges = [{ topic = \"a\", x = 1e9 }]", "the place of the range sensor `a` is more than 10 m away"),
-        ("ranges = [{ topic = \"a\", z = 1 }]", "unknown field `z`"),
+        (
+            "ranges = [{ topic = \"a\", z = 1 }]",
+            "`ranges` is [{ topic = \"a\", z = 1 }], and has to be a list of sensors { topic = ",
+        ),
         ("namespace = \"a b\"", "`namespace` is `a b`, and has to be words of letters, digits and `_` between slashes"),
         ("half-length = 0.5", "`half-length` is 0.5 m, and `body-radius` is 0.18 m: it is the radius of the smallest"),
         ("body-radius = 0.3\nhalf-width = 0.4", "`half-width` is 0.4 m, and `body-radius` is 0.3 m"),
-        ("domain = -1", "domain"),
+        ("domain = -1", "`domain` is -1, and has to be a whole number from 0 to 232"),
+        ("domain = 7.0", "`domain` is 7.0, and has to be a whole number"),
+        ("fastest = \"quick\"", "`fastest` is \"quick\", and has to be a number from 0.01 to 2 m/s"),
+        ("fastest = nan", "`fastest` is NaN, and has to be a number from 0.01 to 2 m/s"),
+        ("jump = inf", "`jump` is inf, and has to be a number from 0.01 to 100 m"),
+        ("odom = 7", "`odom` is 7, and has to be a text in quotes"),
+        ("use-sim-time = \"yes\"", "`use-sim-time` is \"yes\", and has to be true or false"),
+        ("stamped = 1", "`stamped` is 1, and has to be true or false or \"auto\""),
+        ("bumper-type = \"hazards\"", "\"hazard\" or \"scan\"; did you mean `hazard`?"),
+        (
+            "cmd_vel = \"a\"",
+            "there is no key `cmd_vel`; did you mean `cmd-vel`?\nhelp: the keys are distribution, domain",
+        ),
+        ("odom = ", "line 1: "),
         ("state = \"cmd_vel\"", "`cmd-vel` and `state` are the same topic, `/cmd_vel`; each needs a topic of its own"),
         ("odom = \"scan\"", "`odom` and `scan` are the same topic, `/scan`"),
         ("namespace = \"a\"\nstate = \"/a/odom\"", "`odom` and `state` are the same topic, `/a/odom`"),
@@ -94,5 +110,31 @@ fn what_makes_no_sense_is_refused() {
     ] {
         let refused = read("refused", text).unwrap_err();
         assert!(refused.contains(sentence), "{text}: {refused}");
+    }
+}
+
+#[test]
+fn messages_about_numbers_are_short() {
+    let digits = "9".repeat(300);
+    for text in [
+        format!("fastest = {digits}.0"),
+        format!("fastest = -{digits}.0"),
+        format!("domain = {digits}"),
+        "fastest = 1e999".to_owned(),
+        "fastest = -1e999".to_owned(),
+        "fastest = inf".to_owned(),
+        "domain = 0xffffffffffffffffffff".to_owned(),
+        "fastest = 0x1p3".to_owned(),
+        "ranges = [{ topic = \"a\", x = inf }]".to_owned(),
+        format!("ranges = [{{ topic = \"a\", yaw = {digits}.0 }}]"),
+        format!("{digits} = 7"),
+        format!("namespace = \"{digits}\""),
+        format!("network = \"{digits}\""),
+        format!("odom = \"{digits}\""),
+        format!("stamped = \"{digits}\""),
+    ] {
+        let refused = read("numbers", &text).unwrap_err();
+        let longest = refused.split(['`', ' ']).map(str::len).max();
+        assert!(longest < Some(120), "{refused}");
     }
 }

@@ -1,0 +1,96 @@
+//! Values and lines of a configuration file in messages: plain words, and short whatever the file contains.
+
+use toml::Value;
+
+/// Maximum number of letters of a text in a message.
+const LETTERS: usize = 60;
+/// Numbers of this size, or closer to zero than its inverse, are written with an exponent.
+const LARGE: f64 = 1e15;
+
+/// Returns `text`, cut off after a number of letters that a message can have.
+#[must_use]
+pub fn shortened(text: &str) -> String {
+    match text.char_indices().nth(LETTERS) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// Returns a number as a message writes it.
+pub(crate) fn number(value: f64) -> String {
+    let size = value.abs();
+    let is_plain = !value.is_finite() || size == 0.0 || (LARGE.recip()..=LARGE).contains(&size);
+    if is_plain { value.to_string() } else { format!("{value:e}") }
+}
+
+/// Returns a value of a file as a message writes it.
+pub(crate) fn shown(value: &Value) -> String {
+    match value {
+        Value::String(text) => shortened(&format!("{text:?}")),
+        Value::Integer(value) => value.to_string(),
+        // A float is no whole number, whatever its value.
+        Value::Float(value) if value.fract() == 0.0 && value.abs() <= LARGE => format!("{value:.1}"),
+        Value::Float(value) => number(*value),
+        Value::Boolean(value) => value.to_string(),
+        Value::Datetime(_) => "a date or time".to_owned(),
+        Value::Array(values) => {
+            let values: Vec<_> = values.iter().map(shown).collect();
+            shortened(&format!("[{}]", values.join(", ")))
+        }
+        Value::Table(values) => {
+            let values: Vec<_> = values.iter().map(|(key, value)| format!("{key} = {}", shown(value))).collect();
+            shortened(&format!("{{ {} }}", values.join(", ")))
+        }
+    }
+}
+
+/// Returns the message about `text` that is not TOML: the line, what is wrong with it, and its beginning.
+pub(crate) fn syntax_error(text: &str, error: &toml::de::Error) -> String {
+    let reason = match error.message() {
+        "integer number overflowed" | "floating-point number overflowed" => "the number is too large",
+        "" => "this is not TOML",
+        reason => reason,
+    };
+    let reason = reason.replace('\n', "; ");
+    let Some(before) = error.span().and_then(|span| text.get(..span.start)) else { return reason };
+    let (number, begin) = (before.matches('\n').count() + 1, before.rfind('\n').map_or(0, |end| end + 1));
+    let line = text.get(begin..).and_then(|rest| rest.lines().next()).unwrap_or_default();
+    format!("line {number}: {reason}: `{}`", shortened(line.trim()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_stay_short() {
+        let long = "9".repeat(300);
+        for text in
+            [format!("speed = {long}"), format!("speed = {long}.0"), format!("a = \"{long}"), format!("{long} {long}")]
+        {
+            let error = toml::from_str::<toml::Table>(&format!("\n{text}"));
+            let shown = match error {
+                Ok(table) => shown(&table["speed"]),
+                Err(error) => syntax_error(&format!("\n{text}"), &error),
+            };
+            assert!(shown.len() < 150 && (shown == "1e300" || shown.starts_with("line 2: ")), "{shown}");
+        }
+        let integer = format!("speed = {long}");
+        let error = toml::from_str::<toml::Table>(&integer).unwrap_err();
+        assert!(syntax_error(&integer, &error).starts_with("line 1: the number is too large: `speed = 999"), "{error}");
+    }
+
+    #[test]
+    fn numbers_are_plain_or_have_an_exponent() {
+        let numbers = [0.0, -0.5, 1e15, 1.5e300, -2e-300, f64::INFINITY, f64::NAN].map(number);
+        assert_eq!(numbers, ["0", "-0.5", "1000000000000000", "1.5e300", "-2e-300", "inf", "NaN"]);
+    }
+
+    #[test]
+    fn values_are_shown_as_in_the_file() {
+        let text = "a = [1, 2.5, true]\nb = { c = \"größe\" }\nd = 1979-05-27";
+        let table: toml::Table = toml::from_str(text).unwrap();
+        let all: Vec<_> = table.values().map(shown).collect();
+        assert_eq!(all, ["[1, 2.5, true]", "{ c = \"größe\" }", "a date or time"]);
+    }
+}
