@@ -10,6 +10,7 @@ mod crowds;
 mod driven;
 mod emulators;
 mod formation;
+mod hanging;
 mod lab_tour;
 mod late_plans;
 mod live_maps;

@@ -71,4 +71,10 @@ pub trait Output {
     fn oldest_published(&self) -> Nanos {
         Nanos::ZERO
     }
+
+    /// Returns the time from the last exchange that brought new measurements to the exchange of this output; zero if
+    /// this output has new measurements.
+    fn data_age(&self) -> Nanos {
+        Nanos::ZERO
+    }
 }

@@ -13,6 +13,9 @@ pub struct Sensed {
     /// Time of the exchange that brought this output, since the first exchange. Times of pings are on the same
     /// clock.
     pub at: Nanos,
+    /// Time from the last exchange that brought new measurements to this one; zero if this one brought new
+    /// measurements.
+    pub data_age: Nanos,
     /// Pose of the robot by its own odometry.
     pub odometry: Pose,
     /// Measured speed and turn rate.
@@ -65,6 +68,10 @@ impl Output for Sensed {
 
     fn oldest_published(&self) -> Nanos {
         self.published.oldest()
+    }
+
+    fn data_age(&self) -> Nanos {
+        self.data_age
     }
 }
 

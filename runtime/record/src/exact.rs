@@ -1,8 +1,8 @@
 //! An output as bytes and back, to the bit: the pings that are newer than the previous output, and all other numbers.
 
 use mdle_runtime::{
-    Compass, Meters, MetersPerSecond, Mount, Ping, Pings, Pose, Published, RadiansPerSecond, SONARS, Sensed, Supply,
-    Twist, Volts,
+    Compass, Meters, MetersPerSecond, Mount, Nanos, Ping, Pings, Pose, Published, RadiansPerSecond, SONARS, Sensed,
+    Supply, Twist, Volts,
 };
 
 use crate::Constants;
@@ -22,7 +22,11 @@ pub(crate) fn put(y: &Sensed, before: Option<&Sensed>, to: &mut Vec<u8>) {
     put_twist(y.velocity, to);
     put_u32(to, y.switches);
     put_f64(to, y.supply.battery.0);
-    to.push(u8::from(y.supply.is_low) | u8::from(y.supply.is_plugged) << 1);
+    let is_aged = y.data_age != Nanos::ZERO;
+    to.push(u8::from(y.supply.is_low) | u8::from(y.supply.is_plugged) << 1 | u8::from(is_aged) << 2);
+    if is_aged {
+        put_u64(to, y.data_age.0);
+    }
     to.push(match y.compass {
         compass if compass == computed(y, before) => COMPUTED,
         compass if compass == Compass::default() => UNUSED,
@@ -102,6 +106,7 @@ fn put_ping(ping: &Ping, y: &Sensed, mount: Mount, to: &mut Vec<u8>) {
 pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Constants) -> Option<Sensed> {
     let mut y = Sensed {
         at: from.nanos()?,
+        data_age: Nanos::ZERO,
         odometry: from.pose()?,
         velocity: take_twist(from)?,
         switches: from.u32()?,
@@ -115,6 +120,9 @@ pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Co
     let battery = Volts(from.f64()?);
     let flags = from.u8()?;
     y.supply = Supply { battery, is_low: flags & 1 != 0, is_plugged: flags & 2 != 0 };
+    if flags & 4 != 0 {
+        y.data_age = from.nanos()?;
+    }
     let compass = from.u8()?;
     let mask = from.u32()?;
     for (sonar, pings) in y.pings.iter_mut().enumerate() {

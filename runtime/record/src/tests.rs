@@ -60,6 +60,7 @@ fn output() -> Sensed {
         Shape { body_radius, half_length, half_width, wheel_base, sonars_apart, ring_radius, confirmation, steering };
     let mut y = Sensed {
         at: Nanos(9),
+        data_age: Nanos(7),
         odometry: Pose::ORIGIN,
         velocity: Twist::default(),
         switches: 1,
@@ -103,6 +104,7 @@ fn a_turn_is_read_as_it_was_written() {
     let (begun, constants) = Begin::take(&mut Bytes(&first)).unwrap();
     assert_eq!(begun, begin());
     let read = take(&mut Bytes(&turn), None, &constants).unwrap();
+    assert_eq!(read.y, output());
     assert_eq!((read.changes, read.overruled.unwrap().rule), (changes(), "speed".to_owned()));
     assert_eq!((read.plan, read.state, read.steps.len()), (2, 5, 1));
 }

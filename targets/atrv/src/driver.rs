@@ -268,6 +268,7 @@ impl Robot for Atrv {
         self.compass.take(self.hearing.pings(), self.hearing.pose(), &shape);
         Ok(Sensed {
             at,
+            data_age: self.hearing.age(at),
             odometry: self.hearing.pose(),
             velocity: self.hearing.velocity(),
             switches: self.hearing.switches(),

@@ -46,6 +46,8 @@ struct Known {
     velocity: Twist,
     /// Time of the last position report, by the controller's clock.
     time: Option<u32>,
+    /// Time of the exchange that brought the last position report.
+    positioned: Nanos,
     /// Bumpers in contact: bit 0 for the front bumper, bit 1 for the rear bumper.
     switches: u32,
     /// Time of the last report of each bumper.
@@ -68,6 +70,7 @@ impl Hearing {
             along: None,
             velocity: Twist::default(),
             time: None,
+            positioned: Nanos::ZERO,
             switches: 0,
             felt: [None; 2],
             is_braked: None,
@@ -198,6 +201,11 @@ impl Hearing {
         self.known.odometer.pose
     }
 
+    /// Returns the time from the exchange that brought the last position report to the exchange at `at`.
+    pub(crate) fn age(&self, at: Nanos) -> Nanos {
+        at.since(self.known.positioned)
+    }
+
     /// Returns the robot's velocity.
     pub(crate) fn velocity(&self) -> Twist {
         self.known.velocity
@@ -266,6 +274,7 @@ impl Known {
                 let (along, speed) = along.ok_or(Fault::NoAxis(Axis::Translation))?;
                 self.odometer.take(along, position, &self.config);
                 self.velocity = twist(speed, velocity, &self.config);
+                self.positioned = at;
                 return Ok(true);
             }
             Report::Sonars(echoes) => {

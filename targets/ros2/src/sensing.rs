@@ -42,6 +42,8 @@ pub struct Sensing {
     scanner: Scanner,
     seen: Vec<Seen>,
     odometer: Odometer,
+    /// Time of the exchange that brought the last odometry.
+    positioned: Nanos,
     pings: [Pings; SONARS],
     /// Time at which each direction was last known, for the age of its ping.
     known: [Duration; SONARS],
@@ -65,6 +67,7 @@ impl Sensing {
             scanner: Scanner::of(config),
             seen: inputs(config)?.into_iter().map(seen).collect(),
             odometer: Odometer::new(config),
+            positioned: Nanos::ZERO,
             pings: [Pings::default(); SONARS],
             known: [Duration::ZERO; SONARS],
             switches: 0,
@@ -88,7 +91,10 @@ impl Sensing {
         let taken = match source {
             Source::Odometry => match payload.read::<Odometry>() {
                 Err(why) => Err(why),
-                Ok(message) if self.odometer.take(&message, since.as_secs_f64())? => Ok(message.header.stamp.nanos()),
+                Ok(message) if self.odometer.take(&message, since.as_secs_f64())? => {
+                    self.positioned = at;
+                    Ok(message.header.stamp.nanos())
+                }
                 Ok(_) => Err("its time is not after that of the message before".to_owned()),
             },
             Source::Scan => payload.read().and_then(|scan: LaserScan| self.take_scan(&scan, now, at)),
@@ -258,6 +264,7 @@ impl Sensing {
         let (odometry, velocity) = self.odometer.last().ok_or(Fault::NoPose)?;
         Ok(Sensed {
             at,
+            data_age: at.since(self.positioned),
             odometry,
             velocity,
             switches: self.switches,

@@ -250,7 +250,7 @@ impl Robot for Scout {
         let state = self.command(Command::Velocities(right, left))?;
         let at = self.times.now();
         let odometry = self.odometer.pose(&state, at, self.config.fastest)?;
-        self.freshness.take(&state, at, odometry, &self.config)?;
+        let data_age = self.freshness.take(&state, at, odometry, &self.config)?;
         let metres = |wheels: [i16; 2]| wheels.map(|wheel| f64::from(wheel) * wheels::UNIT);
         if self.obedience.is_broken(at, metres([right, left]), metres([state.right, state.left])) {
             return Err(Fault::Disobeys(self.config.disobey));
@@ -269,6 +269,7 @@ impl Robot for Scout {
         self.compass.take(&pings, odometry, &shape);
         Ok(Sensed {
             at,
+            data_age,
             odometry,
             velocity: wheels::twist(state.right, state.left),
             switches: state.bumper,

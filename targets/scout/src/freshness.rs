@@ -32,15 +32,17 @@ pub(crate) struct Freshness {
 }
 
 impl Freshness {
-    /// Checks the state that arrived at `at` and reports the robot at `pose`.
+    /// Checks the state that arrived at `at` and reports the robot at `pose`. Returns the time for which the robot's
+    /// clock has not advanced; zero if the configuration lets it stand for ever.
     ///
     /// # Errors
     /// Fails if the clock has not advanced, or if the sonars' ranges have not changed, for longer than the
     /// configuration allows.
-    pub(crate) fn take(&mut self, state: &State, at: Nanos, pose: Pose, config: &Config) -> Result<(), Fault> {
+    pub(crate) fn take(&mut self, state: &State, at: Nanos, pose: Pose, config: &Config) -> Result<Nanos, Fault> {
         let (_, since) =
             *self.clock.insert(self.clock.filter(|(clock, _)| *clock == state.clock).unwrap_or((state.clock, at)));
-        if config.stale > 0 && at.since(since) >= Nanos(config.stale.saturating_mul(1_000_000)) {
+        let age = if config.stale > 0 { at.since(since) } else { Nanos::ZERO };
+        if config.stale > 0 && age >= Nanos(config.stale.saturating_mul(1_000_000)) {
             return Err(Fault::Hung(config.stale));
         }
         let heard = config.sonars.iter().any(|sonar| hears(state, *sonar));
@@ -54,7 +56,7 @@ impl Freshness {
             self.way += libm::hypot(pose.x.0 - was.x.0, pose.y.0 - was.y.0);
         }
         let is_old = self.way >= config.frozen || self.turn >= TURN;
-        if config.frozen > 0.0 && is_old { Err(Fault::Frozen) } else { Ok(()) }
+        if config.frozen > 0.0 && is_old { Err(Fault::Frozen) } else { Ok(age) }
     }
 }
 

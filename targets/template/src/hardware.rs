@@ -113,6 +113,7 @@ impl Robot for Hardware {
             pings: [Pings::default(); SONARS],
             compass: Compass::default(),
             at: Nanos::ZERO,
+            data_age: Nanos::ZERO,
             supply: Supply::default(),
             shape: SHAPE,
             paths: PathStore::EMPTY,

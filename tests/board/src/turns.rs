@@ -26,6 +26,7 @@ pub trait Robot {
 pub fn at_rest(shape: Shape) -> Sensed {
     Sensed {
         at: Nanos::ZERO,
+        data_age: Nanos::ZERO,
         odometry: Pose::ORIGIN,
         velocity: Twist::default(),
         switches: 0,

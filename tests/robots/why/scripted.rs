@@ -125,6 +125,7 @@ fn first() -> Sensed {
     };
     Sensed {
         at: Nanos(0),
+        data_age: Nanos(0),
         odometry: Pose::ORIGIN,
         velocity: Twist::default(),
         switches: 0,

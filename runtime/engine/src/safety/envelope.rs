@@ -128,7 +128,8 @@ impl Envelope {
     {
         let Rules { contact, stale, stale_module, overrun, guards, .. } = &self.rules;
         let finite = (!(asked.v.0.is_finite() && asked.omega.0.is_finite())).then_some((Then::End, RuleId::Finite));
-        let stale = stale.filter(|(age, _)| now.since(y.now()) > *age).map(|(_, then)| (then, RuleId::Stale));
+        let data_age = Nanos(now.since(y.now()).0.saturating_add(y.data_age().0));
+        let stale = stale.filter(|(age, _)| data_age > *age).map(|(_, then)| (then, RuleId::Stale));
         let module = stale_module.filter(|(age, _)| y.oldest_published() > *age);
         let module = module.map(|(_, then)| (then, RuleId::StaleModule));
         let overrun = overrun.filter(|(turns, _)| self.late >= *turns).map(|(_, then)| (then, RuleId::Overrun));

@@ -16,7 +16,7 @@ pub struct Rules {
     pub fences: Vec<Fence>,
     /// Consequence of contact of a bumper; `None` without this rule.
     pub contact: Option<Then>,
-    /// Age from which an output is stale, and the consequence.
+    /// Age of the measurements in an output from which it is stale, and the consequence.
     pub stale: Option<(Nanos, Then)>,
     /// Age from which the value of a module that the plan or a guard reads is stale, and the consequence.
     pub stale_module: Option<(Nanos, Then)>,

@@ -75,13 +75,16 @@ fn a_silent_topic_is_stale_after_its_limit() {
     let mut robot = Robot::new(|config| config.stale_odom = 500);
     robot.odometry(0.0).unwrap();
     robot.scan(2.0).unwrap();
+    assert_eq!(robot.sensed().data_age, Nanos::ZERO);
     robot.now = 500;
-    assert_eq!(robot.check(), Ok(()));
+    // A scan alone does not tell where the robot is.
+    robot.scan(2.0).unwrap();
+    assert_eq!((robot.check(), robot.sensed().data_age), (Ok(()), Nanos(500_000_000)));
     robot.now = 501;
     let stale = Fault::Stale { topic: "/odom".to_owned(), age: 501, limit: 500, why: String::new() };
     assert_eq!(robot.check(), Err(stale));
     robot.odometry(0.0).unwrap();
-    assert_eq!(robot.check(), Ok(()));
+    assert_eq!((robot.check(), robot.sensed().data_age), (Ok(()), Nanos::ZERO));
 }
 
 #[test]

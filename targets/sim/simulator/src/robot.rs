@@ -297,6 +297,7 @@ impl Simulated {
         self.compass.take(&self.ring.pings, self.body.odometry(), &self.shape);
         Sensed {
             at: now,
+            data_age: Nanos::ZERO,
             odometry: self.body.odometry(),
             velocity: self.body.velocity(),
             switches: self.body.pressed(self.switches, &self.walls),
