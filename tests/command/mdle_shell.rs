@@ -154,6 +154,51 @@ fn a_file_goes_on_after_the_run() {
     assert_eq!(left.out, "31 turns, 3s, and the plan is over\n31\n");
 }
 
+/// `get` answers by the state in which a run has ended, and what waits for a turn names the reason.
+#[test]
+fn a_run_that_ends_otherwise_than_by_its_plan_says_why() {
+    let folder = with_plan("shell_otherwise");
+    fs::write(folder.join("rules.toml"), "[guards.far]\nwhen = \"x > 20cm\"\nthen = \"end\"\n").unwrap();
+    let commands = "step\nget /usr/robot/x\nwait\nget /usr/robot/x\nget /clock/turns\nget /safety/rules/far/count\n";
+    insta::assert_snapshot!(dialogue(&folder, &["--safety", "rules.toml"], commands), @"
+    > step
+    1 turn, 0s
+    > get /usr/robot/x
+    0m
+    > wait
+    8 turns, 0.7s, and the run has ended with exit status 6: stopped by the safety rules: far
+    > get /usr/robot/x
+    0.242938m
+    > get /clock/turns
+    8
+    > get /safety/rules/far/count
+    1
+    ---
+    0.7 s  safety: far ends the plan
+    stopped by the safety rules: far
+    [6]
+    ");
+    insta::assert_snapshot!(dialogue(&folder, &["--turns", "7"], "step 9\nget /clock/turns\n"), @"
+    > step 9
+    7 turns, 0.6s, and the run has ended with exit status 4: stopped by --turns: the plan was not over after 7 turns
+    > get /clock/turns
+    7
+    ---
+    stopped by --turns: the plan was not over after 7 turns
+    [4]
+    ");
+    let mut child = started(&folder, &[]);
+    let mut input = child.stdin.take().unwrap();
+    input.write_all(b"pace 1\nwatch /clock/turns\nwait\n").unwrap();
+    let mut answers = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
+    assert!(answers.nth(3).is_some_and(|answer| answer.contains("/clock/turns ")));
+    kill_process(Pid::from_child(&child), Signal::INT).unwrap();
+    let last = answers.last().unwrap();
+    assert!(last.ends_with("s, and the run has ended with exit status 130: stopped by SIGINT"), "{last}");
+    drop(input);
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+}
+
 #[test]
 fn help_is_about_commands_and_names() {
     let commands = "help swap\nhelp step\nhelp /clock/pause\nhelp nothing\nhelp\n";

@@ -98,7 +98,9 @@ fn a_robot_that_is_lost_in_mid_swap_ends_the_session() {
     drop(port);
     input.write_all(b"step\nget /usr/mdle/main\n").unwrap();
     drop(input);
-    assert_eq!(answers.collect::<Vec<_>>(), ["> step", "> get /usr/mdle/main", "Go"]);
+    let ended = "7 turns, 0.6s, and the run has ended with exit status 3: a fault ended the plan, and the robot may not have \
+                 stopped: the Scout's line was cut: check the cable";
+    assert_eq!(answers.collect::<Vec<_>>(), ["> step", ended, "> get /usr/mdle/main", "Go"]);
     let output = child.wait_with_output().unwrap();
     let err = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(3), "{err}");

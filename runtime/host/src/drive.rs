@@ -68,6 +68,10 @@ pub(crate) trait Drive {
     fn after_plan(&mut self) -> AfterPlan;
     /// Calls the supervisor, if there is one, at the break after `turns` turns, the last of them at time `t`.
     fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &Report<'_>) -> Orders;
+    /// Tells the supervisor, if there is one, the last state of a run that ends before its plan, after `turns` turns.
+    fn at_end(&mut self, turns: u64, t: Nanos, report: &Report<'_>);
+    /// Tells the supervisor, if there is one, the reason for the end of a run, and the exit status.
+    fn ended(&mut self, why: &str, status: u8);
 
     /// Returns the robot's observer, if it has an observer.
     fn observer(&mut self) -> Option<&mut dyn Observer> {
@@ -209,5 +213,18 @@ where
         let Some((supervisor, pilot, input)) = helm.parts() else { return Orders::default() };
         let (settings, course) = (settings.map(|settings| settings(robot)), report.course());
         supervisor.at_break(&mut Break { turns, t, y, input, is_over, pilot, settings, course })
+    }
+
+    fn at_end(&mut self, turns: u64, t: Nanos, report: &Report<'_>) {
+        let Self { robot, helm, settings, output: Some(y), .. } = self else { return };
+        let Some((supervisor, pilot, input)) = helm.parts() else { return };
+        let (settings, course) = (settings.map(|settings| settings(robot)), report.course());
+        supervisor.at_end(&Break { turns, t, y, input, is_over: false, pilot, settings, course });
+    }
+
+    fn ended(&mut self, why: &str, status: u8) {
+        if let Some(supervisor) = self.helm.supervisor_mut() {
+            supervisor.ended(why, status);
+        }
     }
 }

@@ -167,6 +167,14 @@ impl RunEnd {
         }
     }
 
+    /// Returns the report of the end as one sentence, which is empty if [`RunEnd::tell`] reports nothing.
+    pub(crate) fn sentence(&self, is_stopped: bool) -> String {
+        let mut report = Vec::new();
+        self.tell(is_stopped, &mut report);
+        let report = String::from_utf8_lossy(&report);
+        report.trim_end().trim_start_matches("error: ").to_owned()
+    }
+
     /// Reports the end on standard error, and whether the robot was stopped. The end of a plan has already been
     /// reported on standard output.
     pub(crate) fn tell(&self, is_stopped: bool, err: &mut dyn Write) {

@@ -32,6 +32,14 @@ pub trait Supervisor<B: Pilot> {
         Orders::default()
     }
 
+    /// Receives the last state of a run that ends before its plan; called before the robot is stopped. After a panic it
+    /// is not called.
+    fn at_end(&mut self, _moment: &Break<'_, B>) {}
+
+    /// Receives the reason for the end of a run, as a sentence, and the exit status; called once the robot has been
+    /// stopped. The sentence is empty if the plan is over, or if the supervisor has requested the end.
+    fn ended(&mut self, _why: &str, _status: u8) {}
+
     /// Starts recording the changes that [`Supervisor::take_changes`] returns; called before the first turn of a
     /// recorded run.
     fn record(&mut self) {}

@@ -169,6 +169,9 @@ impl Turns for OnePlan<'_, '_, '_> {
     }
 
     fn ended(&mut self, ending: &RunEnd, t: Nanos) {
+        if *ending != RunEnd::Over {
+            self.drive.at_end(self.number.saturating_add(1), t, self.witnesses.report);
+        }
         if let Some(log) = &mut self.witnesses.log {
             let cause = cause(ending, self.witnesses.report);
             log.ended(self.number, t, &cause);

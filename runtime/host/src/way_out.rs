@@ -113,5 +113,8 @@ pub(crate) fn tell(
         say(err, format_args!("{message}"));
     }
     faults.iter().for_each(|fault| fault.tell(is_stopped, err));
-    ending.status(&faults)
+    let status = ending.status(&faults);
+    // A supervisor that panics must not change the status.
+    let _ = shielded(|| drive.ended(&ending.sentence(is_stopped), status));
+    status
 }

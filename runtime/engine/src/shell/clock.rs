@@ -24,6 +24,8 @@ pub(super) struct SessionClock {
     steps: Option<(u64, Reply)>,
     /// Requests that wait for a time or for the end of the plan, with `true` if the clock stops then.
     waits: Vec<(Nanos, bool, Reply)>,
+    /// Number of turns and time of the last turn, as answers show them.
+    now: String,
 }
 
 impl SessionClock {
@@ -33,7 +35,7 @@ impl SessionClock {
             Time::Stepped(pace) => Some(pace),
         };
         let is_paused = is_paused && pace.is_some();
-        Self { period, pace, ordered: None, is_paused, steps: None, waits: Vec::new() }
+        Self { period, pace, ordered: None, is_paused, steps: None, waits: Vec::new(), now: String::new() }
     }
 
     /// Replies to requests whose turn or time has come.
@@ -52,6 +54,20 @@ impl SessionClock {
                 self.waits.push((until, stands, reply));
             }
         }
+    }
+
+    /// Notes the last state of a run that ends before its plan.
+    pub(super) fn at_end<B: Pilot>(&mut self, moment: &Break<'_, B>) {
+        self.now = said(moment);
+    }
+
+    /// Replies to the requests that still wait when the run has ended, by the reason and the exit status.
+    pub(super) fn ended(&mut self, why: &str, status: u8) {
+        let steps = self.steps.take().map(|(_, reply)| reply);
+        let waits = std::mem::take(&mut self.waits).into_iter().map(|(_, _, reply)| reply);
+        let colon = if why.is_empty() { "" } else { ": " };
+        let sentence = format!("{}, and the run has ended with exit status {status}{colon}{why}", self.now);
+        steps.into_iter().chain(waits).for_each(|reply| reply.answer(Answer::Done(sentence.clone())));
     }
 
     fn step<B: Pilot>(&mut self, arguments: &[String], moment: &Break<'_, B>, reply: Reply) {

@@ -42,6 +42,8 @@ struct Parts<A: Alphabet> {
     safety: SafetyPart<A>,
     recorder: RecorderPart,
     link: LinkPart,
+    /// Number of turns that the recorder has received.
+    recorded: u64,
 }
 
 impl<A: Alphabet> Session<A> {
@@ -58,6 +60,7 @@ impl<A: Alphabet> Session<A> {
             safety: SafetyPart(guardian),
             recorder: RecorderPart::new(terms, A::NAME),
             link: LinkPart,
+            recorded: 0,
         };
         Self { desk, parts, request: terms.request.clone(), recorded: None }
     }
@@ -81,12 +84,26 @@ where
 
     fn at_break(&mut self, moment: &mut Break<'_, Engine<A>>) -> Orders {
         self.parts.recorder.made(moment);
+        self.parts.recorded = moment.turns;
         self.parts.clock.made(moment);
         self.serve(moment, None);
         while self.parts.clock.is_paused && !moment.is_over && !self.parts.engine.quits && !self.request.is_made() {
             self.serve(moment, Some(LOOK));
         }
         Orders { pace: self.parts.clock.ordered.take(), end: self.parts.engine.quits }
+    }
+
+    fn at_end(&mut self, moment: &Break<'_, Engine<A>>) {
+        let Self { desk, parts, .. } = self;
+        if moment.turns > parts.recorded {
+            parts.recorder.made(moment);
+        }
+        parts.clock.at_end(moment);
+        desk.close(&parts.all(), moment, moment.t);
+    }
+
+    fn ended(&mut self, why: &str, status: u8) {
+        self.parts.clock.ended(why, status);
     }
 
     fn record(&mut self) {
@@ -133,7 +150,7 @@ where
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
 {
     fn all<'b>(&mut self) -> [&mut dyn Served<Break<'b, Engine<A>>>; 8] {
-        let Self { robot, plans, modules, clock, engine, safety, recorder, link } = self;
+        let Self { robot, plans, modules, clock, engine, safety, recorder, link, .. } = self;
         [robot, plans, modules, clock, engine, safety, recorder, link]
     }
 

@@ -15,6 +15,9 @@ use super::{Answer, Change, Node, Operation, Tree, Value};
 /// Maximum number of changes that one break carries out.
 const EACH_BREAK: usize = 16;
 
+/// Maximum number of attempts to publish the last snapshot.
+const CLOSING: usize = 5;
+
 /// The channel by which a request for a change is answered. Dropping the reply means that the run has ended.
 #[derive(Debug)]
 pub struct Reply(Sender<Answer>);
@@ -105,7 +108,14 @@ impl Desk {
     /// Publishes the last snapshot of the run, which remains available.
     pub fn close<M: ?Sized>(&mut self, parts: &[&mut dyn Served<M>], moment: &M, t: Nanos) {
         self.shared.wanted.store(true, Ordering::SeqCst);
-        self.publish(parts, moment, t);
+        for _ in 0..CLOSING {
+            self.publish(parts, moment, t);
+            if !self.shared.wanted.load(Ordering::SeqCst) {
+                break;
+            }
+            // A front end holds the lock only while it copies a pointer.
+            std::thread::sleep(Duration::from_millis(1));
+        }
     }
 
     /// Returns the changes that breaks have carried out since the last call, as commands of the shell.
