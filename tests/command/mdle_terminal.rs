@@ -129,3 +129,16 @@ fn the_end_of_the_plan_does_not_wait_for_the_line() {
     let (status, shown) = terminal.end();
     assert_eq!(status.code(), Some(0), "{shown:?}");
 }
+
+#[test]
+fn bytes_that_are_no_text_are_refused() {
+    let mut terminal = AtTerminal::start(&folder("terminal_bytes"), TURNS);
+    let begun = terminal.wait_for(0, &["/ > "]);
+    terminal.keys.write_all(b"get \xFF").unwrap();
+    let refused = terminal.wait_for(begun, &["error: the line is not UTF-8 text", "/ > "]);
+    terminal.press("\rget /clock/period\r");
+    terminal.wait_for(refused, &["get /clock/period", "0.1s", "/ > "]);
+    terminal.press("quit\r");
+    let (status, shown) = terminal.end();
+    assert_eq!(status.code(), Some(0), "{shown}");
+}

@@ -13,6 +13,8 @@ use crate::tree::Hub;
 
 /// Maximum length of a line, in bytes.
 const LONGEST: u64 = 1 << 16;
+/// Sentence about a line with bytes that are no text.
+const NO_TEXT: &str = "the line is not UTF-8 text";
 
 /// Lines of commands.
 pub trait Lines {
@@ -80,7 +82,7 @@ impl<R: BufRead> Lines for Input<R> {
                 Err(_) => return Typed::End,
             };
             let Ok(line) = String::from_utf8(line) else {
-                return Typed::Unusable(self.number, "the line is not UTF-8 text".to_owned());
+                return Typed::Unusable(self.number, NO_TEXT.to_owned());
             };
             match line.strip_suffix('\\') {
                 Some(part) if (text.len() + part.len()) as u64 <= LONGEST => {
@@ -130,6 +132,10 @@ impl Lines for Terminal {
             Ok(line) => {
                 let _ = self.editor.add_history_entry(line.as_str());
                 Typed::Line(self.number, line)
+            }
+            // The bytes that were typed so far are lost, and those that follow begin the next line.
+            Err(ReadlineError::Io(error)) if error.kind() == io::ErrorKind::InvalidData => {
+                Typed::Unusable(self.number, NO_TEXT.to_owned())
             }
             Err(ReadlineError::Eof | ReadlineError::Interrupted) => Typed::End,
             Err(_) => Typed::End,
