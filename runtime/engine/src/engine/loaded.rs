@@ -19,6 +19,8 @@ pub(crate) struct Loaded<Y> {
     pub(crate) state: ModuleState,
     /// `true` while a person has stopped the module.
     pub(crate) is_held: bool,
+    /// Number of turns that ended without the module because it was late.
+    pub(crate) late_turns: u64,
 }
 
 /// Code of a loaded module, and the thread that runs it.
@@ -81,7 +83,7 @@ impl<Y> Loaded<Y> {
                 (Runs::InBackground(Visit { gate, due, ports: None }), ModuleState::Stopped)
             }
         };
-        Self { name, declared, first: 0, wires: Wires::new(), runs, state, is_held: false }
+        Self { name, declared, first: 0, wires: Wires::new(), runs, state, is_held: false, late_turns: 0 }
     }
 
     /// Returns the seat of a module that makes turns.

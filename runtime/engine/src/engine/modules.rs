@@ -110,6 +110,12 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         self.loaded.iter().map(|module| (&*module.name, module.state))
     }
 
+    /// Returns the number of turns that ended without a module because it was late; 0 if no module has this name.
+    #[must_use]
+    pub fn late_turns(&self, name: &str) -> u64 {
+        self.loaded.iter().find(|module| &*module.name == name).map_or(0, |module| module.late_turns)
+    }
+
     /// Loads a module, after those that are loaded; registered modules make their first turn after the next
     /// [`Modules::prepare`].
     ///

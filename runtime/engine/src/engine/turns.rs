@@ -128,14 +128,17 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
             Some(_) => arrivals.progress(&module.name),
             None => seat.progress(),
         };
-        let (name, state) = (&module.name, &mut module.state);
+        let Loaded { name, state, late_turns, .. } = module;
         match progress {
             Progress::Skipped if replayed.is_none() => arrivals.skipped.push(Arc::clone(name)),
             Progress::Late => {
                 if replayed.is_none() {
                     arrivals.late.push(Arc::clone(name));
                 }
-                events.extend(state.is_late(name, *turn));
+                *late_turns = late_turns.saturating_add(1);
+                // A module that is late again and again is reported once, and its turns are counted.
+                let is_new = |event: &Event| *late_turns == 1 || !matches!(event, Event::Late(_));
+                events.extend(state.is_late(name, *turn).filter(is_new));
             }
             Progress::Done | Progress::Queued | Progress::Running | Progress::Skipped => {}
         }

@@ -15,11 +15,12 @@ use crate::plans::EngineAlphabet;
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
 /// The methods and readings that every module has, in the order of their values.
-const OWN: [(&str, Node); 4] = [
+const OWN: [(&str, Node); 5] = [
     (
         ".state",
         Node::reading(Kind::Text, "state of the module: `active`, `stopped`, `late`, `given up`, `failed`, `ended`"),
     ),
+    (".late", Node::reading(Kind::Integer, "number of turns that ended without the module because it was late")),
     (".start", Node::method(Role::Admin, "lets the module make turns again")),
     (".stop", Node::method(Role::Admin, "stops the module until it is started")),
     (".unload", Node::method(Role::Admin, "unloads the module; its attributes vanish")),
@@ -80,7 +81,8 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for ModulesPart {
             let posts = modules.board().of(name);
             to.extend(posts.map(|post| post.reading.as_ref().map(|reading| shown(&post.about, &reading.value))));
             to.extend(modules.settings(name).map(|(about, reading)| Some(shown(about, &reading.value))));
-            to.extend([Some(Value::text(state_text(state))), None, None, None]);
+            to.extend([Some(Value::text(state_text(state))), Some(Value::count(modules.late_turns(name)))]);
+            to.extend([None, None, None]);
         }
         to.extend(modules.foreign().map(|post| Some(shown(&post.about, &post.reading.as_ref()?.value))));
         to.extend(moment.pilot.library().map(|_| None));

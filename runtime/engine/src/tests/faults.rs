@@ -221,6 +221,31 @@ fn a_late_module_publishes_when_it_is_done() {
     assert_eq!(published(&modules), Some((5.0, number)));
 }
 
+#[test]
+fn a_module_that_is_late_again_is_counted() {
+    struct Slow;
+    impl Module<f64> for Slow {
+        fn turn(&mut self, turn: &mut Turn<'_, f64>) -> Result<(), Fault> {
+            if turn.number % 4 == 1 {
+                std::thread::sleep(Duration::from_millis(60));
+            }
+            Ok(())
+        }
+    }
+    let mut modules = modules(workers(1), [Candidate::registered("slow", |_: &mut Declare| Slow).unwrap()]);
+    let mut late = Vec::new();
+    for number in 0..12 {
+        modules.turn(0.0, number, Nanos(number * PERIOD), Some(Instant::now() + Duration::from_millis(20)));
+        modules.settle();
+        modules.prepare();
+        let events = modules.events().iter().filter(|event| matches!(event, Event::Late(_)));
+        late.extend(events.map(|_| number));
+        std::thread::sleep(Duration::from_millis(60));
+    }
+    assert_eq!(late.len(), 1, "{late:?}");
+    assert!(modules.late_turns("slow") >= 3);
+}
+
 /// A background module that acts specially at its exchange of this number.
 struct Busy {
     out: Out<f64>,
