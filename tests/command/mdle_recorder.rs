@@ -53,3 +53,21 @@ fn only_an_admin_may_record() {
     let refused = dialogue(&folder, &["--role", "swap"], "call /recorder/start part.mcap\n");
     assert!(refused.contains("admin") && refused.ends_with("[1]\n") && !folder.join("part.mcap").exists(), "{refused}");
 }
+
+/// The recorder counts no turn that is not in the file. The last second may be in it, although it is not counted.
+#[test]
+fn turns_that_the_file_lacks_are_not_counted() {
+    let folder = folder("recorder_limit");
+    fs::write(folder.join("plan.mdle"), "{ Ahead (bumper)\n  (Atom (wait 60s) (go 0 0.1))\n}\n").unwrap();
+    fs::write(folder.join("session"), "call /recorder/start part.mcap\nstep 400\nget /recorder/turns\n").unwrap();
+    let mut shell = Command::new("sh");
+    shell.args(["-c", "ulimit -f 128; exec \"$@\"", "sh"]).arg(mdle());
+    shell.args(["shell", "plan.mdle", "--target", "sim", "--speed", "max", "--paused", "-c", "session"]);
+    let output = shell.current_dir(&folder).output().unwrap();
+    let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    let turns: usize = out.lines().last().unwrap().parse().unwrap();
+    assert!((1..400).contains(&turns), "{out}{err}");
+    let warning = format!("warning: the record part.mcap ends here, with {turns} turns, as it cannot be written: ");
+    assert!(err.contains(&warning), "{err}");
+    assert!((turns..=turns + 10).contains(&rows(&folder, "part.mcap").len()), "{turns}");
+}

@@ -351,14 +351,40 @@ fn a_log_of_best_effort_ends_without_the_run() {
         let errors = ["No space left on device (os error 28)", "Broken pipe (os error 32)"];
         for (output, error) in outputs.into_iter().zip(errors) {
             let message = String::from_utf8(output.stderr).unwrap();
-            let time =
-                message.strip_prefix("warning: from ").and_then(|rest| rest.split_once(" s on the run has no log, "));
+            let time = message.strip_prefix("warning: the log ends before ");
+            let time = time.and_then(|rest| rest.split_once(" s of the run, "));
             let (time, reason) = time.expect(&message);
             assert!((0.0..=60.0).contains(&time.parse::<f64>().unwrap()), "{message}");
             assert_eq!(reason, format!("as it cannot be written: {error}\n"));
             assert_eq!(output.status.code(), Some(0), "{ending}");
             assert!(String::from_utf8(output.stdout).unwrap().ends_with("plan over: wait 60s (rounds.mdle:1)\n"));
         }
+    }
+}
+
+/// The time that the warning names is not before that of any turn in the log.
+#[test]
+fn a_log_of_best_effort_ends_before_the_time_that_is_named() {
+    let folder = folder("effort_time");
+    fs::write(folder.join("rounds.mdle"), PLAN).unwrap();
+    let options = ["run", "rounds.mdle", "--target", "sim", "--speed", "max", "--log-best-effort", "--log"];
+    for log in ["run.mcap", "run.jsonl"] {
+        let mut shell = Command::new("sh");
+        shell.args(["-c", "ulimit -f 64; exec \"$@\"", "sh"]).arg(mdle()).args(options).arg(log);
+        let message = String::from_utf8(shell.current_dir(&folder).output().unwrap().stderr).unwrap();
+        let named = message.strip_prefix("warning: the log ends before ").and_then(|rest| rest.split_once(" s of"));
+        let named: f64 = named.expect(&message).0.parse().unwrap();
+        let last: f64 = if log.ends_with("mcap") {
+            let mut export = Command::new(mdle());
+            let output = export.args(["log", "export", "--csv", log]).current_dir(&folder).output().unwrap();
+            let rows = String::from_utf8(output.stdout).unwrap();
+            rows.lines().last().unwrap().split(',').nth(1).unwrap().parse().unwrap()
+        } else {
+            let lines = fs::read_to_string(folder.join(log)).unwrap();
+            let whole = lines.lines().rfind(|line| line.ends_with('}')).unwrap();
+            whole.split_once("\"t\":").unwrap().1.split_once(',').unwrap().0.parse().unwrap()
+        };
+        assert!(last < named && named <= 60.0, "{log}: {last} {message}");
     }
 }
 

@@ -123,7 +123,7 @@ impl RunLog {
                 self.has_ended = true;
                 let t = Clocked(self.t);
                 self.message =
-                    Some(format!("warning: from {t} on the run has no log, as it cannot be written: {error}"));
+                    Some(format!("warning: the log ends before {t} of the run, as it cannot be written: {error}"));
                 Ok(())
             }
             written => written,

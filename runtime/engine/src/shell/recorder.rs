@@ -58,8 +58,8 @@ struct Tape {
 #[derive(Debug, Default)]
 struct Progress {
     bytes: AtomicU64,
-    /// Reason why writing the record has failed; `None` if it has not.
-    fault: Mutex<Option<String>>,
+    /// Reason why writing the record has failed, and the number of turns in the file; `None` if it has not failed.
+    fault: Mutex<Option<(String, u64)>>,
 }
 
 /// An order for the thread that writes records.
@@ -157,9 +157,11 @@ impl RecorderPart {
                 Err(sentence) => Answer::Refused(sentence),
             });
         }
-        let fault = self.progress.fault.try_lock().ok()?.take()?;
-        self.tape = None;
-        Some(format!("warning: the record {} ends here, as it cannot be written: {fault}", self.file))
+        let (fault, turns) = self.progress.fault.try_lock().ok()?.take()?;
+        (self.tape, self.turns) = (None, turns);
+        let word = if turns == 1 { "turn" } else { "turns" };
+        let file = &self.file;
+        Some(format!("warning: the record {file} ends here, with {turns} {word}, as it cannot be written: {fault}"))
     }
 
     /// Begins to open a file.
@@ -227,8 +229,8 @@ fn write_all(orders: &Receiver<Order>, opened: &Sender<Result<(), String>>, prog
             }
         };
         if let Err(error) = written {
-            record = None;
-            *progress.fault.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
+            let turns = record.take().map_or(0, |record| record.turns());
+            *progress.fault.lock().unwrap_or_else(PoisonError::into_inner) = Some((error.to_string(), turns));
         }
     }
 }
