@@ -142,3 +142,19 @@ fn bytes_that_are_no_text_are_refused() {
     let (status, shown) = terminal.end();
     assert_eq!(status.code(), Some(0), "{shown}");
 }
+
+#[test]
+fn a_process_that_declares_nothing_yet_blocks_nobody() {
+    let mut terminal = AtTerminal::start(&folder("terminal_process"), TURNS);
+    let begun = terminal.wait_for(0, &["/ > "]);
+    terminal.press("call /lib/process slow sleep 4\r");
+    let later = terminal.wait_for(begun, &["the answer comes later, as a report", "/ > "]);
+    terminal.press("get /clock/period\r");
+    let answered = terminal.wait_for(later, &["get /clock/period", "0.1s", "/ > "]);
+    assert!(!terminal.shown().contains("its process has ended"), "{}", terminal.shown());
+    let text = "`call /lib/process slow sleep 4`: error: module `slow` cannot be loaded: its process has ended (exit status: 0)";
+    terminal.wait_for(answered, &[text]);
+    terminal.press("quit\r");
+    let (status, shown) = terminal.end();
+    assert_eq!(status.code(), Some(0), "{shown}");
+}

@@ -116,8 +116,10 @@ struct Meeting {
     /// Values that a break has returned to the module.
     returned: Option<Ports>,
     is_stopped: bool,
-    /// End of the module's thread, once it has ended.
+    /// End of the module's thread, once it has ended and until a break has taken it.
     ended: Option<ThreadEnd>,
+    /// `true` once the module's thread has ended.
+    has_ended: bool,
 }
 
 /// End of the thread of a background module.
@@ -134,7 +136,7 @@ pub(crate) enum ThreadEnd {
 impl Meeting {
     /// Returns `true` while the module neither waits for a break nor has ended.
     const fn is_awaited(&self) -> bool {
-        self.offered.is_none() && self.ended.is_none()
+        self.offered.is_none() && !self.has_ended
     }
 }
 
@@ -174,7 +176,9 @@ impl Gate {
 
     /// Records, on the module's thread, that the thread has ended.
     pub(crate) fn has_ended(&self, end: ThreadEnd) {
-        self.lock().ended = Some(end);
+        let mut meeting = self.lock();
+        (meeting.ended, meeting.has_ended) = (Some(end), true);
+        drop(meeting);
         self.changed.notify_all();
     }
 
@@ -225,7 +229,7 @@ impl Gate {
 
     /// Waits for at most this time until the module's thread has ended.
     pub(crate) fn wait_for_end(&self, patience: Duration) {
-        let lasts = |meeting: &mut Meeting| meeting.ended.is_none();
+        let lasts = |meeting: &mut Meeting| !meeting.has_ended;
         drop(self.changed.wait_timeout_while(self.lock(), patience, lasts));
     }
 }

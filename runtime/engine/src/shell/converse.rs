@@ -9,6 +9,9 @@ use super::command::{COMMANDS, Command, command};
 use super::{Lines, Typed};
 use crate::tree::{Access, Answer, Change, Hub, Kind, Node, Operation, Request, Role};
 
+/// Maximum wait of a person at a terminal for the answer of a module that is being made.
+const PATIENCE: Duration = Duration::from_secs(1);
+
 /// Settings of a session's conversation.
 #[derive(Debug, Clone)]
 pub struct Conversation {
@@ -96,7 +99,10 @@ impl Asker<'_> {
     /// Makes a request to the hub, and prints reports while it waits for the answer.
     fn ask(&mut self, path: &str, operation: Operation) -> Answer {
         let request = Request { path: path.to_owned(), operation, role: self.conversation.role };
-        self.hub.wait(request, &mut || self.report())
+        // A module that is being made may take long: a person at a terminal types on.
+        let is_made = path.starts_with("/lib/") && self.conversation.file.is_none();
+        let patience = if is_made { PATIENCE } else { Duration::MAX };
+        self.hub.wait(request, patience, &mut || self.report())
     }
 
     /// Prints the reports of watched attributes. At a terminal, another thread does this, also while a line is

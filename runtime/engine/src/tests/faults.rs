@@ -316,6 +316,31 @@ fn a_background_module_that_dies_is_reported() {
 }
 
 #[test]
+fn a_module_that_has_failed_delays_no_end() {
+    let fails = Candidate::background("fails", |declare: &mut Declare| {
+        declare.farewell(Duration::from_secs(20));
+        Fails
+    });
+    let mut modules = modules(Threads::Sequential, [fails.unwrap()]);
+    let begun = Instant::now();
+    while modules.names().all(|(_, state)| state == ModuleState::Active) {
+        turn(&mut modules, 0);
+    }
+    assert_eq!(modules.names().next(), Some(("fails", ModuleState::Failed)));
+    drop(modules);
+    assert!(begun.elapsed() < Duration::from_secs(10), "{:?}", begun.elapsed());
+}
+
+/// A background module that fails at once.
+struct Fails;
+
+impl Background for Fails {
+    fn run(self: Box<Self>, _: Exchange) -> Result<(), Fault> {
+        Err(Fault("the line is cut".to_owned()))
+    }
+}
+
+#[test]
 fn stepped_time_waits_for_a_background_module() {
     struct Asleep(Out<f64>);
     impl Background for Asleep {

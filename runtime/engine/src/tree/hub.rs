@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 use std::sync::atomic::Ordering;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, TrySendError, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::node::names;
 use super::proposal::proposal;
@@ -18,18 +18,23 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Maximum wait for a snapshot that is newer than the request.
 const PATIENCE: Duration = Duration::from_secs(2);
 
+/// Commands, each with the channel of its answer.
+type LateAnswers = Vec<(String, Receiver<Answer>)>;
+
 /// The hub, which front ends use. Its methods may wait.
 #[derive(Debug, Clone)]
 pub struct Hub {
     shared: Arc<Shared>,
     queue: SyncSender<Pending>,
     reports: Arc<Mutex<Receiver<String>>>,
+    /// Requests whose front end no longer waits, as commands, with their answers to come.
+    later: Arc<Mutex<LateAnswers>>,
 }
 
 impl Hub {
     /// Returns the hub for the data that it shares with a desk.
     pub(super) fn new(shared: Arc<Shared>, queue: SyncSender<Pending>, reports: Receiver<String>) -> Self {
-        Self { shared, queue, reports: Arc::new(Mutex::new(reports)) }
+        Self { shared, queue, reports: Arc::new(Mutex::new(reports)), later: Arc::default() }
     }
 
     /// Waits for the first break of the run; returns `false` if the run has ended before it.
@@ -47,23 +52,27 @@ impl Hub {
         self.shared.ended.load(Ordering::SeqCst)
     }
 
-    /// Returns the next report of a watched attribute: its time, path and value. Waits for it at most for this
-    /// long.
+    /// Returns the next answer to a request whose front end no longer waits, or the next report of a
+    /// watched attribute: its time, path and value. Waits for a report at most for this long.
     #[must_use]
     pub fn report(&self, wait: Duration) -> Option<String> {
+        if let Some(answer) = self.late_answer() {
+            return Some(answer);
+        }
         self.reports.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(wait).ok()
     }
 
     /// Answers a request as [`Hub::wait`] does.
     #[must_use]
     pub fn ask(&self, request: Request) -> Answer {
-        self.wait(request, &mut || ())
+        self.wait(request, Duration::MAX, &mut || ())
     }
 
-    /// Answers a request. A change waits until a break has carried it out; meanwhile, `meanwhile` is called at
-    /// intervals. After the run, only readings are answered.
+    /// Answers a request. A change waits until a break has carried it out, or at most for `patience`: then
+    /// [`Hub::report`] returns its answer. Meanwhile, `meanwhile` is called at intervals. After the run, only readings
+    /// are answered.
     #[must_use]
-    pub fn wait(&self, request: Request, meanwhile: &mut dyn FnMut()) -> Answer {
+    pub fn wait(&self, request: Request, patience: Duration, meanwhile: &mut dyn FnMut()) -> Answer {
         let Some(snapshot) = self.snapshot() else { return Answer::Ended };
         let path = request.path.trim_end_matches('/').to_owned();
         match request.operation {
@@ -85,7 +94,7 @@ impl Hub {
                 let Some(node) = snapshot.tree.get(&path) else { return nothing(&snapshot.tree, &path) };
                 match refusal(&path, node, change, &request) {
                     Some(refusal) => Answer::Refused(refusal),
-                    None => self.change(Request { path, ..request }, meanwhile),
+                    None => self.change(Request { path, ..request }, patience, meanwhile),
                 }
             }
             Operation::Watch(_) => match snapshot.tree.get(&path) {
@@ -93,9 +102,26 @@ impl Hub {
                 Some(node) if node.access == Access::Call => {
                     Answer::Refused(format!("`{path}` is a method: it has no value"))
                 }
-                Some(_) => self.change(Request { path, ..request }, meanwhile),
+                Some(_) => self.change(Request { path, ..request }, patience, meanwhile),
             },
         }
+    }
+
+    /// Removes an answer that has come after its front end no longer waited for it, and returns it with its command.
+    fn late_answer(&self) -> Option<String> {
+        let mut later = self.later.lock().unwrap_or_else(PoisonError::into_inner);
+        let (place, answer) = later.iter().enumerate().find_map(|(place, (_, answer))| match answer.try_recv() {
+            Ok(answer) => Some((place, answer)),
+            Err(TryRecvError::Disconnected) => Some((place, Answer::Ended)),
+            Err(TryRecvError::Empty) => None,
+        })?;
+        let (command, _) = later.remove(place);
+        Some(match answer {
+            Answer::Refused(sentence) => format!("`{command}`: error: {sentence}"),
+            Answer::Ended => format!("`{command}`: error: the run has ended"),
+            Answer::Value(text) | Answer::Done(text) if !text.is_empty() => format!("`{command}`: {text}"),
+            Answer::Entries(_) | Answer::Value(_) | Answer::Done(_) => format!("`{command}`: done"),
+        })
     }
 
     /// Returns the paths that begin with `begun`, each up to the next `/`.
@@ -116,12 +142,17 @@ impl Hub {
     }
 
     /// Queues a change, and waits for its answer.
-    fn change(&self, request: Request, meanwhile: &mut dyn FnMut()) -> Answer {
+    fn change(&self, request: Request, patience: Duration, meanwhile: &mut dyn FnMut()) -> Answer {
+        let (command, begun) = (request.to_string(), Instant::now());
         let (reply, answer) = channel();
         match self.queue.try_send(Pending { request, reply }) {
             Ok(()) => loop {
                 match answer.recv_timeout(LOOK) {
                     Ok(answer) => break answer,
+                    Err(RecvTimeoutError::Timeout) if begun.elapsed() >= patience => {
+                        self.later.lock().unwrap_or_else(PoisonError::into_inner).push((command, answer));
+                        break Answer::Done("the answer comes later, as a report".to_owned());
+                    }
                     Err(RecvTimeoutError::Timeout) => meanwhile(),
                     Err(RecvTimeoutError::Disconnected) => break Answer::Ended,
                 }
