@@ -26,7 +26,8 @@ pub(super) fn between([ax, ay]: Point, [bx, by]: Point) -> Point {
 }
 
 /// Returns the distance from `here` along `way`, a unit vector, to the first point that is no farther than `margin`
-/// from the edge; `None` if there is none, or if every step leads away from an edge that is as near already.
+/// from the edge; `None` if there is no such point. If `here` is within the margin, the distance is 0 for a way that
+/// leads towards the edge, and `None` for a way that leads away from it.
 pub(super) fn reach(here: Point, way: Point, edge: Edge, margin: f64) -> Option<f64> {
     let (from, to) = edge;
     let to_edge = between(here, nearest(here, edge));
