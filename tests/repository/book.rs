@@ -238,8 +238,10 @@ fn the_book_shows_the_template_of_a_module() {
         let shown = fences(&page).into_iter().find(|fence| fence.words == ["rust", file]).unwrap();
         assert_eq!(shown.text, fs::read_to_string(root().join("runtime/template/src").join(file)).unwrap(), "{file}");
     }
-    let shown = fences(&page).into_iter().find(|fence| fence.words == ["rust", "closing.rs"]).unwrap();
-    assert_eq!(shown.text, fs::read_to_string(root().join("tests/robots/closing.rs")).unwrap());
+    for file in ["closing.rs", "wall.rs"] {
+        let shown = fences(&page).into_iter().find(|fence| fence.words == ["rust", file]).unwrap();
+        assert_eq!(shown.text, fs::read_to_string(root().join("tests/robots").join(file)).unwrap(), "{file}");
+    }
 }
 
 #[test]

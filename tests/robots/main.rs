@@ -42,5 +42,7 @@ mod shared_modules;
 mod sound;
 mod steps;
 mod views;
+#[allow(unreachable_pub, reason = "the book shows the module as that of a library")]
+mod wall;
 mod ways_back;
 mod why;
