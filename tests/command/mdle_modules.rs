@@ -71,3 +71,32 @@ fn a_role_decides_what_may_be_done_with_modules() {
     let all = ["view", "tune", "swap"].map(|role| dialogue(&format!("modules_{role}"), &["--role", role], commands));
     insta::assert_snapshot!(all.join("\n"));
 }
+
+#[test]
+fn stop_and_start_say_what_they_do() {
+    let commands = "step\ncall /usr/heading/.stop\ncall /usr/heading/.stop\ncall /usr/heading/.start\n\
+                    call /usr/heading/.start\ncall /usr/sensors/.start\ncall /usr/sensors/.stop\n\
+                    call /lib/process robot true\ncall /lib/process mdle true\n";
+    insta::assert_snapshot!(dialogue("modules_hold", &[], commands), @"
+    > step
+    1 turn, 0s
+    > call /usr/heading/.stop
+    heading makes no turns from now on
+    > call /usr/heading/.stop
+    heading is stopped already
+    > call /usr/heading/.start
+    heading makes turns from now on
+    > call /usr/heading/.start
+    heading makes turns already
+    > call /usr/sensors/.start
+    sensors makes no turns before a plan, a rule or a module reads it
+    > call /usr/sensors/.stop
+    nothing reads sensors, so it makes no turns; from now on none even if something does
+    > call /lib/process robot true
+    > call /lib/process mdle true
+    ---
+    error: standard input:8: the name `robot` is reserved for `/usr/robot`: give the module another name
+    error: standard input:9: the name `mdle` is reserved for `/usr/mdle`: give the module another name
+    [1]
+    ");
+}

@@ -23,7 +23,7 @@ pub mod tree;
 
 pub use attribute::{Attribute, AttributeKind, AttributeName, In, Out, Reading, Value};
 pub use board::{Board, Post};
-pub use engine::{Arrivals, End, Engine, Event, ModuleState, Modules, Service};
+pub use engine::{Arrivals, End, Engine, Event, HoldEffect, ModuleState, Modules, Service};
 pub use fork::Threads;
 pub use library::Library;
 pub use module::{

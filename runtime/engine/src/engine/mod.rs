@@ -2,6 +2,7 @@
 
 mod event;
 mod foreign;
+mod hold;
 mod janitor;
 mod loaded;
 mod loading;
@@ -12,6 +13,7 @@ mod turns;
 mod unpublished;
 
 pub use event::{Arrivals, End, Event};
+pub use hold::HoldEffect;
 pub use loaded::ModuleState;
 pub use modules::{Modules, Service};
 pub use piloting::Engine;

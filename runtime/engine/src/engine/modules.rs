@@ -13,7 +13,7 @@ use super::unpublished::unpublished;
 use crate::attribute::{AttributeName, Reading, Value};
 use crate::board::Board;
 use crate::fork::{Fork, Threads};
-use crate::module::{About, Candidate, ROBOT, Refusal};
+use crate::module::{About, Candidate, PLAN, ROBOT, Refusal};
 
 /// Clock that decides when a background module is served.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -124,7 +124,11 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// expects.
     pub fn load(&mut self, candidate: Candidate<Y>) -> Result<(), Refusal> {
         let name = Arc::clone(&candidate.name);
-        if &*name == ROBOT || self.names().any(|(known, _)| known == &*name) || self.board.of(&name).next().is_some() {
+        let is_loaded = self.names().any(|(known, _)| known == &*name);
+        if &*name == ROBOT || &*name == PLAN && is_loaded {
+            return Err(Refusal::Reserved(name.to_string()));
+        }
+        if is_loaded || self.board.of(&name).next().is_some() {
             return Err(Refusal::NameTaken(name.to_string()));
         }
         self.board.add(&name, &candidate.declared);
@@ -161,19 +165,6 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         Ok(())
     }
 
-    /// Stops a module on a person's request, or lets it make turns again.
-    ///
-    /// # Errors
-    /// Fails if no module has this name.
-    pub fn hold(&mut self, name: &str, is_held: bool) -> Result<(), Refusal> {
-        let number = self.number(name)?;
-        if let Some(module) = self.loaded.get_mut(number) {
-            module.is_held = is_held;
-        }
-        self.has_changed = true;
-        Ok(())
-    }
-
     /// Changes a setting of a module; the module has it from its next turn or exchange on.
     ///
     /// # Errors
@@ -200,7 +191,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         module.flat_map(|module| module.declared.settings())
     }
 
-    fn number(&self, name: &str) -> Result<usize, Refusal> {
+    pub(super) fn number(&self, name: &str) -> Result<usize, Refusal> {
         let number = self.loaded.iter().position(|module| &*module.name == name);
         number.ok_or_else(|| Refusal::Unknown(name.to_owned()))
     }

@@ -14,7 +14,7 @@ use super::modules::{Modules, Service};
 use crate::fork::Threads;
 use crate::library::Library;
 use crate::link::StateLink;
-use crate::module::{Candidate, Declare, PLAN, Refusal};
+use crate::module::{Candidate, Declare, PLAN, ROBOT, Refusal};
 use crate::plans::{EngineAlphabet, NoTrial, Plans, When, reads};
 use crate::recorder::Recorder;
 use crate::replay::{History, Repeats};
@@ -227,6 +227,9 @@ impl<A: EngineAlphabet> Engine<A> {
     }
 
     fn begin_loading(&mut self, module: NewModule) -> Result<u32, String> {
+        if [PLAN, ROBOT].contains(&module.name()) {
+            return Err(Refusal::Reserved(module.name().to_owned()).to_string());
+        }
         if self.modules.names().any(|(loaded, _)| loaded == module.name()) {
             return Err(Refusal::NameTaken(module.name().to_owned()).to_string());
         }

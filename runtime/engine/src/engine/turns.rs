@@ -60,8 +60,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// copies of the attributes that it reads.
     pub fn prepare(&mut self) {
         if std::mem::take(&mut self.has_changed) {
-            let places = self.plan_reads.iter().filter_map(|read| self.board.place_of(read));
-            let relevant = relevant(&self.loaded, places);
+            let relevant = self.relevant();
             for (module, is_relevant) in self.loaded.iter_mut().zip(relevant) {
                 let is_wanted = is_relevant && !module.is_held;
                 self.events.extend(module.becomes(is_wanted));
@@ -88,6 +87,12 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         if self.turn.0.is_multiple_of(REORDERED) {
             self.reorder();
         }
+    }
+
+    /// Returns, for each module, `true` if it always makes turns, or if something reads it.
+    pub(super) fn relevant(&self) -> Vec<bool> {
+        let places = self.plan_reads.iter().filter_map(|read| self.board.place_of(read));
+        relevant(&self.loaded, places)
     }
 
     /// Sets the attributes that plans read. A module that only plans need makes turns only while plans need it.

@@ -59,8 +59,12 @@ pub enum Refusal {
     NameTaken(String),
     /// No module may have this name.
     BadName(String),
+    /// The name is reserved for a part of the engine.
+    Reserved(String),
     /// No module of this name is loaded.
     Unknown(String),
+    /// The module of this name makes no further turn.
+    Over(String),
     /// A module has no setting of this name: the names of the module and the setting.
     NoSetting(String, String),
     /// A setting has another kind than the value: the path of the setting, its kind, and the kind of the value.
@@ -172,6 +176,15 @@ impl fmt::Display for Refusal {
             Self::NameTaken(name) => write!(f, "a module `{name}` is loaded already"),
             Self::BadName(name) => {
                 write!(f, "`{name}` is no name of a module: ASCII letters, digits and `_`, and no digit first")
+            }
+            Self::Reserved(name) => {
+                write!(f, "the name `{name}` is reserved for `/usr/{name}`: give the module another name")
+            }
+            Self::Over(name) => {
+                write!(
+                    f,
+                    "module `{name}` makes no further turn: unload it with `call /usr/{name}/.unload`, and load it again"
+                )
             }
             Self::Unknown(name) => write!(f, "no module `{name}` is loaded"),
             Self::NoSetting(name, setting) => write!(f, "module `{name}` has no setting `{setting}`"),

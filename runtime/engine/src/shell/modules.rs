@@ -9,7 +9,7 @@ use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSeco
 
 use crate::attribute::{self, AttributeKind};
 use crate::board::Post;
-use crate::engine::{Engine, ModuleState};
+use crate::engine::{Engine, HoldEffect, ModuleState};
 use crate::module::{About, PLAN, Refusal};
 use crate::plans::EngineAlphabet;
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
@@ -112,7 +112,13 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for ModulesPart {
                 return reply.answer(Answer::Refused(format!("`{path}` takes no arguments")));
             }
             Change::Call(_) if own == ".unload" => modules.unload(name),
-            Change::Call(_) => modules.hold(name, own == ".stop"),
+            Change::Call(_) => {
+                let effect = modules.hold(name, own == ".stop");
+                return reply.answer(match effect {
+                    Ok(effect) => Answer::Done(held(name, own == ".stop", effect)),
+                    Err(refusal) => Answer::Refused(refusal.to_string()),
+                });
+            }
             Change::Set(text) => {
                 let about = modules.settings(name).map(|(about, _)| about).find(|about| &*about.name == own).cloned();
                 let Some(about) = about else {
@@ -135,6 +141,22 @@ fn load_process<A: EngineAlphabet>(engine: &mut Engine<A>, arguments: &[String])
         _ => Err(format!(
             "`/lib/{PROCESS}` takes the name of a module and a command line, as in `call /lib/{PROCESS} ears python3 ears.py`"
         )),
+    }
+}
+
+/// Returns the answer to a request to stop or to start the module `name`.
+fn held(name: &str, is_stop: bool, effect: HoldEffect) -> String {
+    match effect {
+        HoldEffect::None if is_stop => format!("{name} is stopped already"),
+        HoldEffect::None => format!("{name} makes turns already"),
+        HoldEffect::Stops => format!("{name} makes no turns from now on"),
+        HoldEffect::StaysStopped => {
+            format!("nothing reads {name}, so it makes no turns; from now on none even if something does")
+        }
+        HoldEffect::Starts => format!("{name} makes turns from now on"),
+        HoldEffect::WaitsForReaders => format!("{name} makes no turns before a plan, a rule or a module reads it"),
+        HoldEffect::StopsWhenDone => format!("{name} is late, and makes no turns once its turn is done"),
+        HoldEffect::StartsWhenDone => format!("{name} is late, and makes turns once its turn is done"),
     }
 }
 
