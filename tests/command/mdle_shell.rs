@@ -5,6 +5,7 @@ use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{folder, mdle};
@@ -197,6 +198,15 @@ fn a_run_that_ends_otherwise_than_by_its_plan_says_why() {
     assert!(last.ends_with("s, and the run has ended with exit status 130: stopped by SIGINT"), "{last}");
     drop(input);
     assert_eq!(child.wait().unwrap().code(), Some(130));
+}
+
+/// A desk that waits for a request looks at once: 300 readings took 6 s and more.
+#[test]
+fn a_reading_waits_for_no_turn_while_the_clock_stands() {
+    let (folder, begun) = (with_plan("shell_readings"), Instant::now());
+    let left = piped(&folder, &[], "get /clock/now\n".repeat(300).as_bytes());
+    assert_eq!((left.out, left.status), ("0s\n".repeat(300), Some(0)));
+    assert!(begun.elapsed() < Duration::from_secs(5), "{:?}", begun.elapsed());
 }
 
 #[test]

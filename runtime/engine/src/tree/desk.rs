@@ -85,8 +85,7 @@ impl Desk {
         let mut served = false;
         for _ in 0..EACH_BREAK {
             let Ok(pending) = self.requests.try_recv() else { break };
-            self.carry_out(pending, parts, moment);
-            served = true;
+            served |= self.carry_out(pending, parts, moment);
         }
         served
     }
@@ -94,10 +93,7 @@ impl Desk {
     /// Waits for a change, at most for this long, and carries it out; returns `true` if there was one.
     pub fn wait<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &mut M, time: Duration) -> bool {
         match self.requests.recv_timeout(time) {
-            Ok(pending) => {
-                self.carry_out(pending, parts, moment);
-                return true;
-            }
+            Ok(pending) => return self.carry_out(pending, parts, moment),
             Err(RecvTimeoutError::Timeout) => {}
             // Without front ends there is nothing to wait for.
             Err(RecvTimeoutError::Disconnected) => std::thread::sleep(time),
@@ -123,12 +119,14 @@ impl Desk {
         std::mem::take(&mut self.carried_out)
     }
 
+    /// Carries out a request; returns `true` if it was a change. A request to read only ends the wait for requests: the
+    /// front end reads the snapshot that follows.
     fn carry_out<M: ?Sized>(
         &mut self,
         Pending { request, reply }: Pending,
         parts: &mut [&mut dyn Served<M>],
         moment: &mut M,
-    ) {
+    ) -> bool {
         let path = request.path.as_str();
         let change = match &request.operation {
             Operation::Change(change) => change,
@@ -139,15 +137,16 @@ impl Desk {
                     Ok(()) => Reply(reply).answer(Answer::Done(String::new())),
                     Err(sentence) => Reply(reply).answer(Answer::Refused(sentence)),
                 }
-                return;
+                return true;
             }
-            Operation::List | Operation::Get => return,
+            Operation::List | Operation::Get => return false,
         };
         self.carried_out.push(request.to_string());
         match parts.iter_mut().find(|part| part.nodes(moment).iter().any(|(known, _)| known == path)) {
             Some(part) => part.change(path, change, moment, Reply(reply)),
             None => Reply(reply).answer(Answer::Refused(format!("`{path}` has gone"))),
         }
+        true
     }
 
     /// Publishes a snapshot if a front end wants one, and reports watched attributes; the last turn was at `t`.

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::node::names;
 use super::proposal::proposal;
 use super::shared::{NO_VALUE, Pending, Shared, Snapshot};
-use super::{Access, Answer, Change, Node, Operation, Request, Tree};
+use super::{Access, Answer, Change, Node, Operation, Request, Role, Tree};
 
 /// Maximum number of changes that wait for a break.
 pub const QUEUE: usize = 64;
@@ -170,6 +170,9 @@ impl Hub {
         let mut kept = self.lock();
         let before = kept.number;
         self.shared.wanted.store(true, Ordering::SeqCst);
+        // A desk that waits for a request while the clock stands looks at once.
+        let request = Request { path: String::new(), operation: Operation::Get, role: Role::View };
+        let _ = self.queue.try_send(Pending { request, reply: channel().0 });
         let is_old = |kept: &mut Arc<Snapshot>| kept.number == before && !self.shared.ended.load(Ordering::SeqCst);
         kept = self.shared.changed.wait_timeout_while(kept, PATIENCE, is_old).unwrap_or_else(PoisonError::into_inner).0;
         (kept.number > 0).then(|| Arc::clone(&kept))
