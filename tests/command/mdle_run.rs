@@ -210,7 +210,21 @@ fn safety_rules_stand_between_plan_and_robot() {
     let fast = "--target sim --speed max --world hall";
     let plain = report(&folder, &format!("run plan.mdle {fast}"));
     let unruled = report(&folder, &format!("run plan.mdle {fast} --safety none.toml"));
+    let warning = "warning: the safety file none.toml has no rules: only an input that is no number ends the plan\n";
+    let unruled = unruled.replace(warning, "");
     assert_eq!(unruled.split_once('\n').unwrap().1, plain.split_once('\n').unwrap().1);
+    write("apart.toml", "[[fence]]\ninside = [[1, -1], [3, -1], [3, 1], [1, 1]]\ndeceleration = \"0.5m/s2\"\n");
+    let apart = report(&folder, &format!("run plan.mdle {fast} --safety apart.toml"));
+    assert!(
+        apart.contains("warning: the robot starts outside `fence`, at x = 0.00 m, y = 0.00 m by odometry: "),
+        "{apart}"
+    );
+    write(
+        "narrow.toml",
+        "[[fence]]\ninside = [[-0.5, -1], [3, -1], [3, 1], [-0.5, 1]]\nmargin = \"60cm\"\ndeceleration = \"1m/s2\"\n",
+    );
+    let within = report(&folder, &format!("run plan.mdle {fast} --safety narrow.toml"));
+    assert!(within.contains("warning: the robot starts within the margin of `fence`, at x = 0.00 m"), "{within}");
     write("broken.toml", "\n[contact]\nthen = \"plans/broken.mdle\"\n");
     write("plans/broken.mdle", "{ Broken (wiat 1s) (Atom (null) stop) }\n");
     write("path.toml", "\n[contact]\nthen = \"plans/path.mdle\"\n");

@@ -13,6 +13,7 @@ mod plane;
 mod read;
 mod rules;
 mod section;
+mod start;
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests;

@@ -177,6 +177,9 @@ where
 
     fn messages(&mut self, say: &mut dyn FnMut(&str)) {
         self.helm.pilot_mut().messages(say);
+        if let Some(supervisor) = self.helm.supervisor_mut() {
+            supervisor.messages(say);
+        }
     }
 
     fn parts(&mut self) -> (Option<&mut dyn Observer>, Option<&dyn Position>) {

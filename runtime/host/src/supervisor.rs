@@ -26,6 +26,9 @@ pub trait Supervisor<B: Pilot> {
         None
     }
 
+    /// Calls `say` with each message for the operator since the last call; called after each turn.
+    fn messages(&mut self, _say: &mut dyn FnMut(&str)) {}
+
     /// Acts before the first turn and after each turn, before the input of the turn has been sent. A call that takes
     /// long delays a real robot; in stepped time it may take any time.
     fn at_break(&mut self, _moment: &mut Break<'_, B>) -> Orders {

@@ -79,6 +79,11 @@ impl SafetyFile {
         let compiled = Conditions::compile((&name, &self.text), &self.rules.guards, &mut sources, &target.alphabet);
         let conditions = compiled.map_err(|error| refused(error, &name, &sources))?;
         if self.recorded.is_none() {
+            if self.rules == Rules::default() {
+                failure::warning(&format!(
+                    "the safety file {name} has no rules: only an input that is no number ends the plan"
+                ));
+            }
             failure::print(&sources, conditions.warnings());
         }
         let (mut diversions, mut texts) = (Vec::new(), Vec::new());

@@ -79,7 +79,7 @@ impl Fence {
     }
 
     /// Returns the edges, from corner to corner.
-    fn edges(&self) -> impl Iterator<Item = Edge> {
+    pub(super) fn edges(&self) -> impl Iterator<Item = Edge> {
         self.corners.iter().copied().zip(self.corners.iter().copied().cycle().skip(1))
     }
 

@@ -14,13 +14,18 @@ use super::{Conditions, Envelope, Limits, Measure, Rules, Watched};
 pub struct Guardian<A: Alphabet> {
     envelope: Envelope,
     conditions: Watched<A>,
+    /// `true` once the start of the robot has been compared with the fences.
+    has_begun: bool,
+    /// Warnings that have not been reported yet.
+    warnings: Vec<String>,
 }
 
 impl<A: Alphabet> Guardian<A> {
     /// Returns the guardian of a run with this period; the conditions belong to the rules' guards.
     #[must_use]
     pub fn new(rules: Rules, conditions: &Conditions<A>, period: Duration) -> Self {
-        Self { envelope: Envelope::new(rules, period), conditions: conditions.watch() }
+        let (envelope, conditions) = (Envelope::new(rules, period), conditions.watch());
+        Self { envelope, conditions, has_begun: false, warnings: Vec::new() }
     }
 
     /// Returns the envelope.
@@ -36,6 +41,11 @@ impl<A: Alphabet> Guardian<A> {
 }
 
 impl<A: Alphabet> Guardian<A> {
+    /// Calls `say` with each warning since the last call.
+    pub(crate) fn warn(&mut self, say: &mut dyn FnMut(&str)) {
+        self.warnings.drain(..).for_each(|warning| say(&format!("warning: {warning}")));
+    }
+
     /// Returns the changes of the limits that differ from `recorded`, and updates `recorded`.
     pub(crate) fn changes_since(&self, recorded: &mut Limits) -> Vec<Change> {
         let mut limits = self.envelope.rules().limits;
@@ -58,6 +68,9 @@ where
 {
     /// Returns the input that is sent to the robot instead of `asked`.
     pub fn filtered(&mut self, asked: Twist, y: &A::Output, t: Nanos) -> Twist {
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.warnings = self.envelope.rules().held_at_start(&y.pose());
+        }
         let fired = self.conditions.fired(y, t);
         self.envelope.filter(asked, y, t, fired)
     }
@@ -75,6 +88,10 @@ where
 
     fn intervention(&self) -> Option<Intervention<'_>> {
         self.envelope.intervention()
+    }
+
+    fn messages(&mut self, say: &mut dyn FnMut(&str)) {
+        self.warn(say);
     }
 
     fn repeat(&mut self, change: &Change) {

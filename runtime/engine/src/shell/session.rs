@@ -82,6 +82,12 @@ where
         self.parts.safety.0.as_ref()?.envelope().intervention()
     }
 
+    fn messages(&mut self, say: &mut dyn FnMut(&str)) {
+        if let Some(guardian) = &mut self.parts.safety.0 {
+            guardian.warn(say);
+        }
+    }
+
     fn at_break(&mut self, moment: &mut Break<'_, Engine<A>>) -> Orders {
         self.parts.recorder.made(moment);
         self.parts.recorded = moment.turns;
