@@ -213,6 +213,9 @@ fn safety_rules_stand_between_plan_and_robot() {
     let warning = "warning: the safety file none.toml has no rules: only an input that is no number ends the plan\n";
     let unruled = unruled.replace(warning, "");
     assert_eq!(unruled.split_once('\n').unwrap().1, plain.split_once('\n').unwrap().1);
+    write("forward.toml", "[guards.near]\nwhen = \"x > 20cm\"\nthen = \"hold forward\"\n");
+    let forward = report(&folder, &format!("run plan.mdle {fast} --safety forward.toml"));
+    assert!(forward.contains("  safety: near holds the robot from driving forwards\n"), "{forward}");
     write("apart.toml", "[[fence]]\ninside = [[1, -1], [3, -1], [3, 1], [1, 1]]\ndeceleration = \"0.5m/s2\"\n");
     let apart = report(&folder, &format!("run plan.mdle {fast} --safety apart.toml"));
     assert!(

@@ -152,7 +152,7 @@ fn contact_holds_the_robot_as_the_rule_says() {
     ");
     insta::assert_snapshot!(story("hold forward"), @"
     0.0 s at 0.000 m: free
-    27.5 s at 16.295 m: Held contact
+    27.5 s at 16.295 m: HeldForward contact
     30.0 s at 16.295 m: free
     35.9 s at 15.145 m, sent -0.200 m/s
     ");

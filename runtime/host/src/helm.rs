@@ -92,7 +92,7 @@ where
     fn diversion(&self) -> Option<B::Plan> {
         match self.intervention()?.verdict {
             Verdict::Diverted(plan) => (self.supervised.as_ref()?.diversions)(plan),
-            Verdict::Limited | Verdict::Held | Verdict::Ended => None,
+            Verdict::Limited | Verdict::HeldForward | Verdict::Held | Verdict::Ended => None,
         }
     }
 

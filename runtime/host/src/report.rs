@@ -138,7 +138,7 @@ impl<'a> Report<'a> {
         let is_followed = self.holds.is_followed();
         self.last_verdict = intervention.map(|it| (it.verdict, it.rule.to_owned()));
         match intervention {
-            Some(held) if held.verdict == Verdict::Held => {
+            Some(held) if matches!(held.verdict, Verdict::HeldForward | Verdict::Held) => {
                 if let Some(repeats) = self.holds.begins(held.rule, t) {
                     self.line(t, &format!("safety: {held}{repeats}"));
                 }

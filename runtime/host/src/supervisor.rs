@@ -95,6 +95,8 @@ pub struct LimitedQuantity {
 pub enum Verdict {
     /// The robot is sent a weaker input of the same kind.
     Limited,
+    /// The robot is prevented from driving forwards; the plan continues.
+    HeldForward,
     /// The robot is prevented from what the plan requests; the plan continues.
     Held,
     /// The next turn is the first turn of another plan, with this number among [`Supervision::diversions`].
@@ -108,6 +110,7 @@ impl Verdict {
     pub(crate) fn word(self) -> &'static str {
         match self {
             Self::Limited => "limited",
+            Self::HeldForward => "held forward",
             Self::Held => "held",
             Self::Diverted(_) => "diverted",
             Self::Ended => "ended",
@@ -128,6 +131,7 @@ impl fmt::Display for Intervention<'_> {
                 }
             }
             (Verdict::Limited, None) => write!(f, "{rule} limits the input"),
+            (Verdict::HeldForward, _) => write!(f, "{rule} holds the robot from driving forwards"),
             (Verdict::Held, _) => write!(f, "{rule} holds the robot"),
             (Verdict::Diverted(_), _) => write!(f, "{rule} replaces the plan"),
             (Verdict::Ended, _) => write!(f, "{rule} ends the plan"),

@@ -99,7 +99,7 @@ impl Envelope {
             Some((Then::Hold, id)) => (Twist::default(), Some((Verdict::Held, id))),
             Some((Then::HoldForward, id)) if asked.v.0 > 0.0 => {
                 let (sent, _) = self.within_limits(Twist { v: MetersPerSecond(0.0), ..asked }, y);
-                (sent, Some((Verdict::Held, id)))
+                (sent, Some((Verdict::HeldForward, id)))
             }
             Some((Then::HoldForward, _)) | None => self.within_limits(asked, y),
         };
