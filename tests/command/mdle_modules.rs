@@ -61,7 +61,7 @@ fn a_module_that_never_returns_ends_the_program() {
     let commands = "step 3\nset /usr/heading/name for ever\nstep 2\nget /clock/turns\n";
     let dialogue = dialogue("modules_hang", &[], commands);
     let sentence =
-        "a fault stopped the robot: turn 3 has not ended after 10 s: code of the plan or of a module never returns";
+        "a fault stopped the robot: turn 3 has not ended after 10 s: code of the module `heading` never returns";
     assert!(dialogue.ends_with(&format!("---\nerror: {sentence}\n[3]\n")), "{dialogue}");
 }
 

@@ -242,7 +242,7 @@ fn a_fault_with_help_has_two_lines() {
     fs::write(folder.join("near.toml"), scenario).unwrap();
     let (out, err, status) = run(&folder, "run near.toml --log run.mcap");
     let sentence = "the plan reads /usr/ears/range, which no module has published within 2 s";
-    let report = format!("2.0 s  ada: error: {sentence}\nhelp: `sensors` publishes ");
+    let report = format!("2.0 s  ada: error: {sentence}\nhelp: no module `ears` is loaded: ");
     assert!(out.starts_with(&report) && status == 3, "{out}{err}");
     let record = fs::read(folder.join("run.ada.mcap")).unwrap();
     let end = format!("\"kind\":\"end\",\"text\":\"failed: {sentence}\"}}");

@@ -128,6 +128,7 @@ pub use target::Target;
 pub use time::{Pace, Time};
 pub use transitions::{Operand, Transitions};
 pub use trials::{Trials, trials};
+pub use turn_watch::at_work;
 pub use views::view_options;
 pub use watch::Watch;
 pub use whole_file::{Unfinished, WholeFile};

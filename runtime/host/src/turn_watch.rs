@@ -1,6 +1,7 @@
 //! Limits the time of a turn. A plan or a module whose code never returns blocks the thread that drives the robot, so
 //! another thread ends the program.
 
+use std::cell::RefCell;
 use std::io::{self, IsTerminal as _};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
@@ -39,6 +40,25 @@ pub(crate) struct WatchedRun {
     /// Number of the turn, from 1; 0 between two turns.
     turn: AtomicU64,
     time: Time,
+    work: Work,
+}
+
+/// The module whose code the thread of a run is running; `None` for other code.
+type Work = Arc<Mutex<Option<Arc<str>>>>;
+
+thread_local! {
+    /// Work of the turn that this thread is making.
+    static WORK: RefCell<Option<Work>> = const { RefCell::new(None) };
+}
+
+/// Notes the module whose code this thread runs from now on, or that it runs other code. The report of a turn that
+/// never ends names the module. Without effect on a thread that makes no turn.
+pub fn at_work(module: Option<&Arc<str>>) {
+    WORK.with_borrow(|work| {
+        if let Some(work) = work {
+            *work.lock().unwrap_or_else(PoisonError::into_inner) = module.map(Arc::clone);
+        }
+    });
 }
 
 /// A turn that did not end in time.
@@ -46,6 +66,8 @@ pub(crate) struct WatchedRun {
 struct Hung {
     /// Number of the turn, from 0.
     turn: u64,
+    /// Module whose code has not returned, if it is known.
+    module: Option<Arc<str>>,
     /// `true` if the robot's time is the wall clock, so that the robot may still move.
     is_real: bool,
 }
@@ -80,7 +102,7 @@ impl TurnWatch {
 
     /// Returns a run whose turns are watched until it is dropped.
     pub(crate) fn run(&self, time: Time) -> Arc<WatchedRun> {
-        let run = Arc::new(WatchedRun { turn: AtomicU64::new(0), time });
+        let run = Arc::new(WatchedRun { turn: AtomicU64::new(0), time, work: Work::default() });
         self.entries().push(Entry { run: Arc::downgrade(&run), last_turn: 0, looks: 0 });
         run
     }
@@ -94,7 +116,8 @@ impl TurnWatch {
             entry.looks = if turn == entry.last_turn && turn > 0 { entry.looks.saturating_add(1) } else { 0 };
             entry.last_turn = turn;
             if entry.looks >= LOOKS {
-                hung = Some(Hung { turn: turn.saturating_sub(1), is_real: run.time == Time::Wall });
+                let module = run.work.lock().unwrap_or_else(PoisonError::into_inner).clone();
+                hung = Some(Hung { turn: turn.saturating_sub(1), module, is_real: run.time == Time::Wall });
             }
             true
         });
@@ -114,9 +137,12 @@ impl WatchedRun {
         impl Drop for Turn<'_> {
             fn drop(&mut self) {
                 self.0.turn.store(0, Ordering::Release);
+                at_work(None);
+                WORK.set(None);
             }
         }
         self.turn.store(number.saturating_add(1), Ordering::Release);
+        WORK.set(Some(Arc::clone(&self.work)));
         let _turn = Turn(self);
         turn()
     }
@@ -125,16 +151,16 @@ impl WatchedRun {
 impl Hung {
     /// Returns the sentence about the turn for the operator.
     fn sentence(&self) -> String {
-        let Self { turn, is_real } = self;
+        let Self { turn, module, is_real } = self;
         let came = if *is_real {
             "a fault ended the plan, and the robot may not have stopped"
         } else {
             "a fault stopped the robot"
         };
         let seconds = LOOK.saturating_mul(LOOKS).as_secs();
-        format!(
-            "error: {came}: turn {turn} has not ended after {seconds} s: code of the plan or of a module never returns"
-        )
+        let code =
+            module.as_ref().map_or("the plan or of a module".to_owned(), |module| format!("the module `{module}`"));
+        format!("error: {came}: turn {turn} has not ended after {seconds} s: code of {code} never returns")
     }
 }
 
@@ -159,7 +185,12 @@ mod tests {
         }
         slow.make(41, || {
             (0..LOOKS).for_each(|_| assert_eq!(watch.look(), None));
-            assert_eq!(watch.look(), Some(Hung { turn: 41, is_real: true }));
+            assert_eq!(watch.look(), Some(Hung { turn: 41, module: None, is_real: true }));
+        });
+        slow.make(42, || {
+            at_work(Some(&"ears".into()));
+            let hung = (0..=LOOKS).find_map(|_| watch.look()).unwrap();
+            assert!(hung.sentence().ends_with("code of the module `ears` never returns"), "{hung:?}");
         });
         let panicked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| quick.make(8, || panic!("a bug"))));
         assert!(panicked.is_err() && looked(&watch, 2 * LOOKS).is_none(), "a panic ends the turn");

@@ -220,7 +220,11 @@ impl<'s> Site<'_, 's> {
 
     /// Returns in words the terminals that the grammar allows at the site.
     pub(super) fn expectation(&self) -> String {
+        let before = self.at.checked_sub(1).and_then(|before| self.kind(before));
         let mut left: Vec<&str> = self.expected.iter().map(|terminal| terminal.trim_matches('"')).collect();
+        if let Some(Tok::Less | Tok::LessOrEqual | Tok::Greater | Tok::GreaterOrEqual | Tok::Equal) = before {
+            return "a value or a signal".to_owned();
+        }
         let mut words: Vec<String> = Vec::new();
         for (sign, whole, parts) in WHOLES {
             if sign.iter().all(|sign| left.contains(sign)) {

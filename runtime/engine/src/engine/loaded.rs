@@ -73,7 +73,9 @@ impl<Y> Loaded<Y> {
     pub(crate) fn new(candidate: Candidate<Y>, now: Nanos, lives: bool) -> Self {
         let Candidate { name, declared, form } = candidate;
         let (runs, state) = match form {
-            Form::Registered(module, ports) => (Runs::InTurns(Seat::new(module, ports)), ModuleState::Stopped),
+            Form::Registered(module, ports) => {
+                (Runs::InTurns(Seat::new(Arc::clone(&name), module, ports)), ModuleState::Stopped)
+            }
             Form::Background(gate) => {
                 if lives {
                     gate.begin();

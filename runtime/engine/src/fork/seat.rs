@@ -5,12 +5,15 @@ use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
+use mdle_host::at_work;
 use mdle_runtime::Nanos;
 
 use crate::module::{Fault, Module, Ports, Turn, panicked};
 
 /// Place of a module among those that make turns.
 pub(crate) struct Seat<Y> {
+    /// Name of the module.
+    name: Arc<str>,
     progress: AtomicU8,
     /// Mean time of a turn, in nanoseconds.
     cost: AtomicU64,
@@ -57,10 +60,10 @@ const PROGRESS: [Progress; 5] =
     [Progress::Done, Progress::Queued, Progress::Running, Progress::Late, Progress::Skipped];
 
 impl<Y> Seat<Y> {
-    pub(crate) fn new(module: Box<dyn Module<Y>>, ports: Ports) -> Arc<Self> {
+    pub(crate) fn new(name: Arc<str>, module: Box<dyn Module<Y>>, ports: Ports) -> Arc<Self> {
         let occupant = Occupant { module, ports, task: Task::Start, fault: None };
         let (progress, cost) = (AtomicU8::new(Progress::Done as u8), AtomicU64::new(0));
-        Arc::new(Self { progress, cost, occupant: Mutex::new(occupant) })
+        Arc::new(Self { name, progress, cost, occupant: Mutex::new(occupant) })
     }
 
     /// Returns the progress of the last turn.
@@ -100,7 +103,9 @@ impl<Y> Seat<Y> {
         }
         let mut occupant = self.occupant.lock().unwrap_or_else(PoisonError::into_inner);
         let begun = Instant::now();
+        at_work(Some(&self.name));
         occupant.run(y, number, now);
+        at_work(None);
         drop(occupant);
         let cost = (self.cost().saturating_mul(7).saturating_add(begun.elapsed())) / 8;
         self.cost.store(u64::try_from(cost.as_nanos()).unwrap_or(u64::MAX), Ordering::Relaxed);

@@ -60,24 +60,27 @@ pub(super) fn in_vain(missing: &[&ModuleRead], board: &Board) -> String {
              background that needs longer declares its `latency`, and the plan waits 2 s longer than that"
         );
     }
-    let module = missing.iter().find(|read| board.place_of(read).is_none()).map_or("", |read| read.module);
-    let there_are = publishers(module, board);
+    let absent = missing.iter().find(|read| board.place_of(read).is_none());
+    let there_are = absent.map_or_else(String::new, |read| publishers(read, board));
     format!("the plan reads {paths}, which no module has published within {seconds} s{there_are}")
 }
 
-/// Returns the end of a sentence about a module or attribute that does not exist: a similar name, and the
-/// modules with their attributes.
-fn publishers(module: &str, board: &Board) -> String {
+/// Returns the end of a sentence about an attribute that does not exist: the attributes of its module; or, if no such
+/// module is loaded, a similar name, and the way to load one.
+fn publishers(read: &ModuleRead, board: &Board) -> String {
+    let ModuleRead { module, attribute, .. } = read;
+    let own: Vec<_> = board.of(module).map(|post| &*post.name.attribute).collect();
+    if !own.is_empty() {
+        return format!("{}\nhelp: `{module}` publishes {}", did_you_mean(attribute, &own), listed(&own));
+    }
     let mut modules: Vec<&str> = board.posts().iter().map(|post| &*post.name.module).collect();
     modules.dedup();
-    let near = if modules.contains(&module) { String::new() } else { did_you_mean(module, &modules) };
-    let lists = modules.iter().map(|module| {
-        let names: Vec<_> = board.of(module).map(|post| &*post.name.attribute).collect();
-        format!("`{module}` publishes {}", listed(&names))
-    });
-    let lists: Vec<_> = lists.collect();
-    let lists = if lists.is_empty() { "no module publishes anything".to_owned() } else { lists.join("; ") };
-    format!("{near}\nhelp: {lists}")
+    let others = modules.iter().filter(|name| board.post(name, attribute).is_some());
+    let others: Vec<_> = others.map(|name| format!("`{name}`")).collect();
+    let others =
+        if others.is_empty() { String::new() } else { format!("; `{attribute}` is published by {}", listed(&others)) };
+    let near = did_you_mean(module, &modules);
+    format!("{near}\nhelp: no module `{module}` is loaded: `mdle run PLAN --module {module}=COMMAND` loads one{others}")
 }
 
 /// Returns the numbers that a running plan reads at time `now`. A module may have vanished meanwhile.
@@ -113,7 +116,7 @@ pub(crate) fn check(reads: &[ModuleRead], board: &Board) -> Result<(), String> {
         None if board.place_of(read).is_some() => Ok(()),
         None => {
             let name = AttributeName::new(read.module, read.attribute);
-            let there_are = publishers(read.module, board);
+            let there_are = publishers(read, board);
             Err(format!("a safety rule reads {name}, which no module publishes{there_are}"))
         }
     };

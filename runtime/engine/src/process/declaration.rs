@@ -44,7 +44,8 @@ impl Declaration {
             None => Err(refused(format!("`{}` has to be `MODULE/ATTRIBUTE`, as in `sensors/x`", Printable(path)))),
         });
         let latency = object.get("latency").map_or(Some(Nanos::ZERO), |latency| latency.as_f64().and_then(nanos));
-        let latency = latency.ok_or_else(|| refused("`latency` has to be a number of seconds".to_owned()))?;
+        let latency =
+            latency.ok_or_else(|| refused("`latency` has to be a number of seconds from 0, as in `0.2`".to_owned()))?;
         Ok(Self { publishes, reads: reads.collect::<Result<_, _>>()?, latency })
     }
 

@@ -20,6 +20,16 @@ fn atoms() {
 }
 
 #[test]
+fn comparisons_without_an_end() {
+    for text in ["{ A (Atom (r 0 <) stop) }", "{ A (r 0 ==) B }"] {
+        let arena = Arena::new();
+        let (_, diagnostics) = parse(SourceId(0), text, &arena);
+        let messages: Vec<_> = diagnostics.iter().map(|diagnostic| diagnostic.message.as_str()).collect();
+        assert_eq!(messages, ["expected a value or a signal, found `)`"]);
+    }
+}
+
+#[test]
 fn printed_strings() {
     check(
         "mistakes_printed_strings",
