@@ -1,18 +1,18 @@
-//! The file of landmarks beside a graph: the direction of each landmark's axes on the floor, and its map
+//! The file of landmarks beside a graph: the direction of each landmark's axes on the floor, its place, and its map
 //! (docs/src/navigation.md).
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use mdle_host::Quantity;
-use mdle_runtime::Pose;
+use mdle_runtime::{Meters, Pose, Radians};
 use mdle_sim::Start;
 use serde::Deserialize;
 use toml::Spanned;
 
 use crate::evidence::{SavedMap, USUAL_POSE};
 use crate::failure::Failure;
-use crate::route::LandmarkMap;
+use crate::route::{LandmarkMap, LandmarkPlace};
 
 /// Maximum size of the file, in bytes.
 const LARGEST: u64 = 1_000_000;
@@ -31,6 +31,8 @@ struct Landmark {
     name: Spanned<String>,
     /// Direction of the landmark's first axis on the floor.
     axis: Spanned<String>,
+    /// Place on the floor of a robot that is at the landmark.
+    place: Option<Spanned<String>>,
     /// File of its map, relative to the folder of this file.
     map: Option<PathBuf>,
     /// Pose in the axes of the map of a robot that is at the landmark and heads along its first axis.
@@ -62,7 +64,7 @@ impl Landmarks {
             let place = error.span().map_or(0, |span| span.start);
             (line(place), error.message().to_owned())
         })?;
-        for (number, Landmark { name, axis, map, at }) in landmarks.landmark.iter().enumerate() {
+        for (number, Landmark { name, axis, place, map, at }) in landmarks.landmark.iter().enumerate() {
             let wrong = |place: &Spanned<String>, sentence| Err((line(place.span().start), sentence));
             if !known.contains(&name.get_ref().as_str()) {
                 let near = mdle_compiler::alphabet::did_you_mean(name.get_ref(), known);
@@ -75,6 +77,9 @@ impl Landmarks {
                 Ok(angle) if angle.abs() <= 360.0 => {}
                 Ok(_) => return wrong(axis, "an axis is turned by at most 360 degrees to either side".to_owned()),
                 Err(sentence) => return wrong(axis, sentence),
+            }
+            if let Some((place, Err(sentence))) = place.as_ref().map(|place| (place, point(place.get_ref()))) {
+                return wrong(place, sentence);
             }
             let Some(at) = at else { continue };
             if map.is_none() {
@@ -104,11 +109,29 @@ impl Landmarks {
         maps.collect()
     }
 
+    /// Returns the places of the landmarks that have one, for a route that begins at a landmark with this axis.
+    pub(super) fn places(&self, begins: f64) -> Vec<LandmarkPlace> {
+        let (sin, cos) = libm::sincos(Radians::from_degrees(begins).0);
+        let places = self.landmark.iter().filter_map(|landmark| {
+            let (x, y) = point(landmark.place.as_ref()?.get_ref()).ok()?;
+            let at = (Meters(x * cos + y * sin), Meters(y * cos - x * sin));
+            Some(LandmarkPlace { name: landmark.name.get_ref().clone(), at })
+        });
+        places.collect()
+    }
+
     /// Returns the direction of a landmark's first axis on the floor, in degrees; 0 if the file does not give it.
     pub(super) fn axis(&self, name: &str) -> f64 {
         let landmark = self.landmark.iter().find(|landmark| landmark.name.get_ref() == name);
         landmark.and_then(|landmark| Quantity::Angle.read(landmark.axis.get_ref(), "deg").ok()).unwrap_or_default()
     }
+}
+
+/// Reads a place on the floor, in metres.
+fn point(text: &str) -> Result<(f64, f64), String> {
+    let (x, y) = text.split_once(',').ok_or("expected x, y: two numbers in metres, as in `7.45, 0.4`")?;
+    let metres = |text: &str| Quantity::Length.read(text.trim(), "m");
+    Ok((metres(x)?, metres(y)?))
 }
 
 #[cfg(test)]
@@ -133,6 +156,21 @@ mod tests {
         let (line, sentence) = read("at = \"-0.75, 0, 0\"").unwrap_err();
         assert_eq!((line, sentence.as_str()), (4, "the landmark `a` has no `map` in which it could be"));
         assert_eq!(read(&format!("{map}at = \"-0.75, 0\"")).unwrap_err().0, 5);
+    }
+
+    #[test]
+    fn places_are_in_the_axes_of_the_first_landmark() {
+        let text = "[[landmark]]\nname = \"a\"\naxis = \"90deg\"\nplace = \"1m, 50cm\"\n\
+                    [[landmark]]\nname = \"b\"\naxis = \"0\"\n";
+        let landmarks = Landmarks::parse(text, &["a", "b"]).unwrap();
+        let places = landmarks.places(90.0);
+        let [LandmarkPlace { name, at: (x, y) }] = &places[..] else { panic!("{places:?}") };
+        assert_eq!(name, "a");
+        assert!((x.0 - 0.5).abs() < 1e-12 && (y.0 + 1.0).abs() < 1e-12, "{places:?}");
+        for wrong in ["1", "1, 0, 0", "1deg, 0"] {
+            let (line, _) = Landmarks::parse(&text.replace("1m, 50cm", wrong), &["a", "b"]).unwrap_err();
+            assert_eq!(line, 4, "{wrong}");
+        }
     }
 
     #[test]

@@ -56,6 +56,7 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
     };
     failure::print_line(&format!("route: {}", words(&route)))?;
     let maps = landmarks.maps(file.0, landmarks.axis(&arguments.from))?;
+    let places = landmarks.places(landmarks.axis(&arguments.from));
     let look = (!maps.is_empty()).then(|| Look::of(maps, &arguments.graph, &target)).transpose()?;
     if let Some(sentence) = look.as_ref().and_then(|look| lonely(&look.maps)) {
         failure::warning(&sentence);
@@ -72,7 +73,8 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
     let files = texts(looks.map_or(&first.input, |look| &look.input));
     let recorded = RecordedPlan { files, ..RecordedPlan::default() };
     let read = input.inputs(&target);
-    (linked.navigate)(&Route { legs, look }, &target, Call { recorded, read, ..call(&arguments, options) }, library)
+    let route = Route { legs, look, places };
+    (linked.navigate)(&route, &target, Call { recorded, read, ..call(&arguments, options) }, library)
 }
 
 /// Returns a warning if only one landmark has a map.

@@ -93,6 +93,11 @@ impl Heard {
         &self.expected
     }
 
+    /// Returns the pose of the robot by odometry.
+    pub(super) fn here(&self) -> Pose {
+        self.here
+    }
+
     /// Takes the output of a turn.
     pub(super) fn take(&mut self, y: &Sensed) {
         self.here = y.odometry;

@@ -1,9 +1,10 @@
-//! Routes between landmarks: the graph of plans, the legs of a route, the look around at a landmark, and the pilot that
-//! drives them.
+//! Routes between landmarks: the graph of plans, the legs of a route, the look around at a landmark, the reckoning by
+//! odometry, and the pilot that drives them.
 
 mod graph;
 mod look;
 mod navigator;
+mod reckoning;
 
 use std::path::{Path, PathBuf};
 
@@ -17,12 +18,15 @@ use crate::failure::{self, Failure};
 pub(crate) use graph::{Edge, LandmarkGraph};
 pub(crate) use look::{LandmarkMap, Look};
 pub(crate) use navigator::drive;
+pub(crate) use reckoning::LandmarkPlace;
 
 /// A route that has been checked.
 pub(crate) struct Route {
     pub(crate) legs: Vec<Leg>,
     /// The look around at landmarks that have maps; `None` if none has one.
     pub(crate) look: Option<Look>,
+    /// The places of the landmarks for which they are known.
+    pub(crate) places: Vec<LandmarkPlace>,
 }
 
 /// A leg of a route: the plan of an edge in the frame of the landmark where it begins, compiled.

@@ -10,9 +10,10 @@ use mdle_engine::{Engine, EngineAlphabet, Library, StoredPlan};
 use mdle_files::Target;
 use mdle_host::{AfterPlan, Call, Moment, Pilot, PilotFault, RunTerms, Transitions};
 use mdle_record::Change;
-use mdle_runtime::{Cause, Machine, Nanos, Plan as _, Printable, Radians, Robot, Sensed, Turn, Twist};
+use mdle_runtime::{Cause, Machine, Nanos, Plan as _, Pose, Printable, Radians, Robot, Sensed, Turn, Twist};
 
 use super::look::{Heard, LOOK, LandmarkMap, Look, Stand};
+use super::reckoning::{LandmarkPlace, Reckoning};
 use super::{Edge, Leg, Route, leg_text};
 use crate::failure::Failure;
 use crate::plans::texts;
@@ -42,6 +43,7 @@ struct Navigator<'l, A: EngineAlphabet> {
     look: Option<&'l ReadyLook<'l, A>>,
     /// The echoes of the robot that looks around.
     heard: Option<Heard>,
+    reckoning: Reckoning<'l>,
     /// Angle by which odometry has turned the axes of the floor, as far as landmarks have shown.
     drift: Radians,
     /// Continuation of the run after the last turn, if a plan has ended in it.
@@ -67,8 +69,11 @@ where
     let look = route.look.as_ref().map(|look| ready_look::<A>(look, target)).transpose()?;
     let Some(leg) = legs.first() else { return Ok(ExitCode::SUCCESS) };
     let first = look.as_ref().filter(|look| look.knows(&leg.edge.from)).map_or(&leg.plan, |look| &look.plan);
-    let plan = || first.loaded.plan();
-    let pilot = |terms: &RunTerms| Ok(Navigator::new(Engine::new(plan(), library, terms)?, &legs, look.as_ref()));
+    let (plan, places) = (|| first.loaded.plan(), &*route.places);
+    let pilot = |terms: &RunTerms| {
+        let engine = Engine::new(plan(), library, terms)?;
+        Ok(Navigator::new(engine, &legs, look.as_ref(), places))
+    };
     Ok(mdle_host::run_piloted::<T, _>(&*first.name, call, &plan, pilot, None))
 }
 
@@ -111,12 +116,17 @@ impl<A: EngineAlphabet> ReadyLeg<A> {
 }
 
 impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
-    fn new(mut engine: Engine<A>, legs: &'l [ReadyLeg<A>], look: Option<&'l ReadyLook<'l, A>>) -> Self {
+    fn new(
+        mut engine: Engine<A>,
+        legs: &'l [ReadyLeg<A>],
+        look: Option<&'l ReadyLook<'l, A>>,
+        places: &'l [LandmarkPlace],
+    ) -> Self {
         // A leg that is over cannot go on.
         engine.plans_mut().set_trial(Nanos::ZERO);
-        let (legs, drift) = (legs.iter().collect(), Radians(0.0));
+        let (legs, reckoning, drift) = (legs.iter().collect(), Reckoning::new(places), Radians(0.0));
         let after = AfterPlan::Ends;
-        let mut navigator = Self { engine, legs, look, heard: None, drift, after, messages: Vec::new() };
+        let mut navigator = Self { engine, legs, look, heard: None, reckoning, drift, after, messages: Vec::new() };
         if let Some(leg) = navigator.legs.front().copied() {
             navigator.stands(&leg.edge.from, None);
         }
@@ -126,6 +136,7 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
     /// Says at which landmark the robot is, or begins to look around if the landmark has a map; returns its plan.
     fn stands(&mut self, landmark: &str, driven: Option<&Sensed>) -> Option<&'l StoredPlan<A>> {
         let Some(look) = self.look.filter(|look| look.knows(landmark)) else {
+            self.reckoning.is_at(landmark, driven.map_or(Pose::ORIGIN, |y| y.odometry));
             self.messages.push(format!("at {}", Printable(landmark)));
             return None;
         };
@@ -153,13 +164,17 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Ok(true)
     }
 
-    /// Notes that the plan of a leg is over; returns the plan of the look around, if there is one.
+    /// Notes that the plan of a leg is over; returns the plan of the look around, if there is one. Without one, no
+    /// other landmark may be nearer by odometry.
     fn arrives(&mut self, y: &Sensed, transitions: &Transitions) -> Result<Option<&'l StoredPlan<A>>, String> {
         let Some(leg) = self.legs.pop_front() else { return Ok(None) };
         let Edge { from, to, plan } = &leg.edge;
         if let Some(cause) = self.cut_short(plan, transitions) {
             let (from, to) = (Printable(from), Printable(to));
             return Err(format!("the way from {from} to {to} is not done: `{plan}` was ended by `{cause}`"));
+        }
+        if !self.look.is_some_and(|look| look.knows(to)) {
+            self.reckoning.check(to, y.odometry, self.drift)?;
         }
         Ok(self.stands(to, Some(y)))
     }
@@ -179,6 +194,7 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         let place = format!("{x:.2} m and {y:.2} m from its place, headings {turned:.1} degrees off");
         self.messages.push(format!("at {landmark}: {place}"));
         self.drift = drift;
+        self.reckoning.is_at(heard.expected(), heard.here());
         Ok(())
     }
 
