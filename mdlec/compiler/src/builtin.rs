@@ -1,4 +1,5 @@
-//! The alphabets that are part of mdlec: the shared one and those of its targets, as texts and read.
+//! Provides the alphabets that are part of mdlec, the shared alphabet and the alphabets of the targets, as texts and in
+//! parsed form.
 
 use crate::alphabet::{self as language, AlphabetFile, Capability};
 use crate::diagnostic::{Diagnostic, Sources, has_errors};
@@ -16,7 +17,8 @@ pub struct Alphabet {
     pub target: bool,
 }
 
-/// The alphabets that are part of mdlec: the shared ones first, then those of the targets in the order of their names.
+/// Returns the alphabets that are part of mdlec: first the shared alphabets, then the alphabets of the targets in the
+/// order of their names.
 #[must_use]
 pub fn alphabets() -> &'static [Alphabet] {
     ALPHABETS
@@ -24,17 +26,17 @@ pub fn alphabets() -> &'static [Alphabet] {
 
 include!(concat!(env!("OUT_DIR"), "/alphabets.rs"));
 
-/// An alphabet with the shared ones that it uses.
+/// An alphabet, combined with the shared alphabets that it uses, and the files that define it.
 #[derive(Debug)]
 pub struct ReadAlphabet {
     /// The alphabet.
     pub alphabet: language::Alphabet,
-    /// Names and texts of the files from which it was read: the shared ones first.
+    /// Names and texts of the files that define the alphabet, shared files first.
     pub files: Vec<(String, String)>,
 }
 
-/// Reads the shared alphabets and `own`, the name and text of a target's; without it, the alphabet is that of a robot
-/// with every capability.
+/// Reads the shared alphabets and `own`, the file name and the text of a target's alphabet. Without `own`, the alphabet
+/// is that of a robot with every capability.
 ///
 /// # Errors
 /// Fails if the alphabets have errors; returns the files and the diagnostics.
@@ -63,7 +65,8 @@ pub fn read(own: Option<(String, String)>) -> Result<ReadAlphabet, (Sources, Vec
     }
 }
 
-/// Robots that are part of mdlec, each with its capabilities.
+/// Returns the robots that are part of mdlec, each with its capabilities, including the capabilities that need an
+/// engine.
 fn robots() -> Vec<(String, Vec<Capability>)> {
     let targets = alphabets().iter().filter(|alphabet| alphabet.target);
     let head = |builtin: &Alphabet| {
@@ -74,7 +77,7 @@ fn robots() -> Vec<(String, Vec<Capability>)> {
     targets.filter_map(head).collect()
 }
 
-/// Alphabet files that are read one after the other.
+/// State while alphabet files are read one after the other.
 #[derive(Default)]
 struct Reading {
     sources: Sources,

@@ -1,4 +1,4 @@
-//! Diagnostics: code, message, place, and text to type instead; rendered with codespan-reporting.
+//! Diagnostics: messages with a code, places and advice, rendered with codespan-reporting.
 
 mod excerpt;
 mod explain;
@@ -19,8 +19,8 @@ pub use sources::Sources;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceId(pub u32);
 
-/// A stretch of a source, as byte offsets in all files concatenated. Syntax trees consist half of spans, so small spans
-/// make the parser fast.
+/// A range of a source's text, as byte offsets in all files concatenated. Half of a syntax tree consists of spans, so
+/// small spans make the parser fast.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span {
     /// Byte offset of the span's start.
@@ -30,21 +30,21 @@ pub struct Span {
 }
 
 impl Span {
-    /// Span between two byte offsets of a file.
+    /// Returns the span between two byte offsets of a file.
     #[must_use]
     pub fn new(source: SourceId, start: usize, end: usize) -> Self {
         let among_all = |byte| source.0.saturating_add(u32::try_from(byte).unwrap_or(u32::MAX));
         Self { start: among_all(start), end: among_all(end) }
     }
 
-    /// Byte range of the span within this file.
+    /// Returns the byte range of the span within this file.
     #[must_use]
     pub fn within(self, source: SourceId) -> Range<usize> {
         let in_file = |byte: u32| byte.saturating_sub(source.0) as usize;
         in_file(self.start)..in_file(self.end)
     }
 
-    /// Span from the start of this one to the end of `last`, in the same source.
+    /// Returns the span from the start of this span to the end of `last`, in the same source.
     #[must_use]
     pub fn to(self, last: Self) -> Self {
         Self { end: last.end.max(self.end), ..self }
@@ -71,7 +71,7 @@ macro_rules! codes {
             /// Every code.
             pub const ALL: &[Self] = &[$(Self::$name,)*];
 
-            /// The code as it is printed.
+            /// Returns the code as it is printed.
             #[must_use]
             pub fn name(self) -> &'static str {
                 match self { $(Self::$name => stringify!($name),)* }
@@ -143,7 +143,7 @@ codes! {
 }
 
 impl Code {
-    /// Severity of the code: an error stops the compiler.
+    /// Returns the severity of the code: an error stops the compiler.
     #[must_use]
     pub fn severity(self) -> Severity {
         if self.name().starts_with('W') { Severity::Warning } else { Severity::Error }
@@ -169,7 +169,7 @@ impl fmt::Display for Code {
 pub struct Label {
     /// Span of the place.
     pub span: Span,
-    /// Text at the place; may be empty.
+    /// Text shown beside the place; may be empty.
     pub text: String,
     /// `true` for the place of the defect, `false` for a place that explains the defect.
     pub primary: bool,
@@ -202,14 +202,14 @@ impl Diagnostic {
         self
     }
 
-    /// Place of the defect.
+    /// Returns the place of the defect; `None` if the diagnostic has no places.
     #[must_use]
     pub fn span(&self) -> Option<Span> {
         self.labels.first().map(|label| label.span)
     }
 }
 
-/// Returns `true` if one of these is an error.
+/// Returns `true` if at least one of the diagnostics is an error.
 #[must_use]
 pub fn has_errors(diagnostics: &[Diagnostic]) -> bool {
     diagnostics.iter().any(|diagnostic| diagnostic.code.severity() == Severity::Error)

@@ -28,19 +28,19 @@ use diagnostic::{Diagnostic, SourceId};
 /// A plan after each stage.
 #[derive(Debug, Clone)]
 pub struct Compiled {
-    /// Plan with everything resolved, perhaps degenerate.
+    /// Resolved plan; may be degenerate.
     pub plan: plan::Plan,
     /// Plan without repeated interrupts.
     pub nondegenerate: plan::Nondegenerate,
     /// Plan as a state machine.
     pub machine: fsm::Machine,
-    /// Part of a group that the plan is, if it is one.
+    /// Group and robot of the plan, if it was projected from the plan of a group.
     pub part: Option<projection::Part>,
 }
 
 impl Compiled {
-    /// Converts a script to the texts of the plan ([`trace::Script::in_words_of`]). For the plan of a robot of a group,
-    /// the script may have the words of the group.
+    /// Replaces the names in a script by quark texts of the plan ([`trace::Script::in_words_of`]). For the plan of one
+    /// robot of a group, the script may contain texts of the group's plan.
     ///
     /// # Errors
     /// Fails at the first name that is neither an interrupt of the plan nor a law of the plan that completes.
@@ -53,8 +53,8 @@ impl Compiled {
     }
 }
 
-/// Compiles a text to state machines: the plan `wanted`, or every plan that no other plan uses; [`rust::emit`] turns a
-/// machine into Rust. Returns no plan if there is an error.
+/// Compiles the plan `wanted` of a text to a state machine, or, without `wanted`, every plan that no other plan uses;
+/// [`rust::emit`] turns a machine into Rust. Returns no plan if there is an error.
 #[must_use]
 pub fn compile(
     source: SourceId,
@@ -77,11 +77,11 @@ pub fn compile_with(
     compile_within(source, text, alphabet, wanted, loader, |_| Ok(()))
 }
 
-/// A limit on the size of a plan, for a use of it: the error, if the plan is too large.
+/// Check of a plan's size for a certain use, such as a picture; returns an error if the plan is too large.
 pub type Limit = fn(&plan::Nondegenerate) -> Result<(), Diagnostic>;
 
-/// Compiles like [`compile_with`]. If there is one plan, and it exceeds the limit, it is not lowered: that takes far
-/// longer than all before it.
+/// Compiles like [`compile_with`]. If there is only one plan and it exceeds `limit`, it is not lowered, because
+/// lowering takes far longer than all stages before it.
 #[must_use]
 pub fn compile_within(
     source: SourceId,
@@ -94,8 +94,8 @@ pub fn compile_within(
     stages(source, text, alphabet, wanted, loader, (plan::Bounds::FILES, Some(limit)))
 }
 
-/// Compiles like [`compile_with`] the plans of somebody who is not trusted: a plan that exceeds the bounds is an error
-/// before it takes their memory.
+/// Compiles untrusted plans like [`compile_with`]. If a plan exceeds `bounds`, an error is reported before the plan
+/// uses up memory.
 #[must_use]
 pub fn compile_bounded(
     source: SourceId,
@@ -119,8 +119,8 @@ pub fn check_with(
     stages(source, text, alphabet, None, loader, (plan::Bounds::FILES, None)).1
 }
 
-/// Returns the names of the plans that [`compile_with`] compiles of a file. This takes far less time and memory,
-/// however often the plans use other plans.
+/// Returns the names of the plans in a file that [`compile_with`] would compile. This needs far less time and memory
+/// than compiling them, even if plans use other plans many times.
 #[must_use]
 pub fn roots(source: SourceId, text: &str, alphabet: &Alphabet, loader: &mut dyn syntax::Loader) -> Vec<String> {
     let arena = syntax::arena_for(text);
@@ -129,8 +129,7 @@ pub fn roots(source: SourceId, text: &str, alphabet: &Alphabet, loader: &mut dyn
     plan::roots(&files, alphabet)
 }
 
-/// Runs all stages within these bounds, one plan after the other, and keeps the compiled plans if there is a limit for
-/// them.
+/// Runs all stages within `bounds`, one plan after the other. The compiled plans are kept only if a limit is given.
 fn stages(
     source: SourceId,
     text: &str,
@@ -178,7 +177,8 @@ fn stages(
     (compiled, once_each(found))
 }
 
-/// Removes the texts to type from the diagnostics of a part of a group: they are words of its robot, not of the group.
+/// Removes advice with edits from the diagnostics of the plan of one robot of a group, because the replacements are
+/// texts of this plan and not of the group's plan.
 fn of_part(mut found: Vec<Diagnostic>, part: Option<&projection::Part>) -> Vec<Diagnostic> {
     if part.is_some() {
         found.iter_mut().for_each(|diagnostic| diagnostic.help.retain(|help| help.edit.is_none()));
@@ -186,7 +186,8 @@ fn of_part(mut found: Vec<Diagnostic>, part: Option<&projection::Part>) -> Vec<D
     found
 }
 
-/// Leaves out the repetitions among sorted diagnostics: what several plans copy is found in each of them.
+/// Removes repeated diagnostics from a sorted list: text that is copied to several plans causes a diagnostic in each
+/// plan.
 fn once_each(found: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let mut kept: Vec<Diagnostic> = Vec::with_capacity(found.len());
     for diagnostic in found {

@@ -5,7 +5,7 @@ use crate::diagnostic::{SourceId, Sources};
 use crate::syntax::Loader;
 use crate::{Compiled, builtin, compile, compile_with};
 
-/// Returns the alphabet of a built-in target, or of a robot with every capability; its places are in [`sources`].
+/// Returns the alphabet of a built-in target, or of a robot with every capability; its spans refer to [`sources`].
 pub(crate) fn alphabet(target: Option<&str>) -> Alphabet {
     let mut sources = Sources::default();
     let read = |(source, file): (SourceId, &builtin::Alphabet)| -> AlphabetFile {
@@ -36,7 +36,7 @@ pub(crate) fn sources() -> Sources {
     sources
 }
 
-/// Compiles a text without errors.
+/// Compiles a text that must have no errors.
 pub(crate) fn compiled(text: &str) -> Vec<Compiled> {
     let (compiled, messages) = diagnosed(text, None);
     assert!(!compiled.is_empty(), "{messages}");

@@ -1,4 +1,4 @@
-//! Checks of an alphabet beyond its grammar.
+//! Checks an alphabet for errors that its grammar does not exclude.
 
 use std::collections::BTreeSet;
 
@@ -40,8 +40,8 @@ pub(super) fn check(alphabet: &AlphabetFile) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns the reason why an interrupt cannot be `exclusive`: its uses must differ in arguments that are compared
-/// without rounding, and must fire equally in all scopes.
+/// Returns an error if the declaration cannot be `exclusive`. An exclusive interrupt needs at least one parameter, only
+/// parameters that are compared without rounding, and the same value in all scopes, so it cannot have memory.
 fn exclusive(declaration: &Declaration) -> Option<Diagnostic> {
     let name = &declaration.name;
     let because = |message: String| Some(at(declaration, message));

@@ -1,4 +1,4 @@
-//! The complete alphabet of a robot: its target's own file, combined with the shared alphabets that the file uses.
+//! Combines a target's own alphabet with the shared alphabets that it uses into the complete alphabet of a robot.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ use crate::diagnostic::{Code, Diagnostic};
 /// Alphabet of a robot, against which the robot's plans are checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Alphabet {
-    /// Name of the target.
+    /// Name of the target, or of the shared alphabet if there is no target.
     pub name: String,
     /// Rust crate that implements the target; empty if there is no target.
     pub crate_name: String,
@@ -65,7 +65,7 @@ pub fn combine(target: AlphabetFile, shared: &[AlphabetFile]) -> (Alphabet, Vec<
 }
 
 impl Alphabet {
-    /// Returns the alphabet of a robot with every capability: a shared file by itself.
+    /// Returns the alphabet that consists of one shared file, for a robot with every capability.
     #[must_use]
     pub fn shared(file: AlphabetFile) -> Self {
         Self {
@@ -102,7 +102,7 @@ impl Alphabet {
         self.declarations.iter().map(|declaration| declaration.name.as_str())
     }
 
-    /// Returns `true` if the robot has the capability in at least the needed number.
+    /// Returns `true` if the robot has the capability, with at least as many devices as `needed` demands.
     #[must_use]
     pub fn has(&self, needed: &Capability) -> bool {
         self.everything || is_among(needed, &self.capabilities) || self.has_engine && is_among(needed, &self.engine)
@@ -121,7 +121,8 @@ impl Alphabet {
         self.robots.iter().filter(|(_, own)| can(own)).map(|(name, _)| name.as_str()).collect()
     }
 
-    /// Returns the name that was probably meant by `name`, of this kind if a kind is given.
+    /// Returns the name of a quark or signal that the user probably meant by `name`: a similar name, or a name for
+    /// which `name` is a synonym. Only declarations of `kind` are considered if a kind is given.
     #[must_use]
     pub fn nearest(&self, name: &str, kind: Option<DeclarationKind>) -> Option<&str> {
         let names = || {
@@ -136,8 +137,8 @@ impl Alphabet {
         synonyms::meant(name).filter_map(move |meant| self.declarations_of(meant).find(|found| found.kind == kind))
     }
 
-    /// Returns a hash of the target's name, crate, period and capabilities, and of all declarations, which identifies
-    /// the alphabet for which a target was built.
+    /// Returns a hash that identifies the alphabet for which a target was built. It covers the target's name, crate,
+    /// period and capabilities, and all declarations.
     #[must_use]
     pub fn hash(&self) -> u64 {
         let text = format!("{} {} {:?} {:?}", self.name, self.crate_name, self.period, self.capabilities);
@@ -153,7 +154,7 @@ impl Alphabet {
     }
 }
 
-/// Returns `true` if `capabilities` contain the needed one, in at least the needed number.
+/// Returns `true` if `capabilities` contains the capability, with at least as many devices as `needed` demands.
 fn is_among(needed: &Capability, capabilities: &[Capability]) -> bool {
     capabilities.iter().any(|own| own.name == needed.name && own.size >= needed.size)
 }
@@ -164,8 +165,8 @@ fn replaces(own: &Declaration, shared: &Declaration) -> bool {
     own.name == shared.name && kinds(own) == kinds(shared)
 }
 
-/// Sorts overloads in the order of the shared alphabets, with a target's additions last: the first declaration of a
-/// name then stays first, whichever declarations a target replaces.
+/// Sorts declarations in the order of the shared alphabets, with a target's additions last, so that the first
+/// declaration of a name remains the first even if the target replaces declarations.
 fn in_order(mut declarations: Vec<Declaration>, shared: &[AlphabetFile]) -> Vec<Declaration> {
     let order: Vec<&Declaration> = shared.iter().flat_map(|file| &file.declarations).collect();
     let place = |found: &Declaration| order.iter().position(|shared| replaces(found, shared)).unwrap_or(order.len());

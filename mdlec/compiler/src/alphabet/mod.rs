@@ -50,7 +50,7 @@ pub struct TargetHead {
 pub struct Capability {
     /// Name of the capability.
     pub name: String,
-    /// Number of devices, for capabilities with a number.
+    /// Number of devices; `None` for a capability without a number.
     pub size: Option<u32>,
 }
 
@@ -108,7 +108,8 @@ pub struct Param {
     pub name: String,
     /// Type of the parameter.
     pub kind: Kind,
-    /// Unit of a bare number; the base unit of the kind if the alphabet declares no other unit.
+    /// Unit of a bare number; the base unit of the kind if the alphabet declares no other unit, and `None` if the kind
+    /// has no unit.
     pub unit: Option<Unit>,
     /// Default value as written, in the unit of a bare number.
     pub default: Option<String>,

@@ -7,7 +7,7 @@ pub enum Kind {
     Length,
     /// A speed in metres per second.
     Speed,
-    /// An angle in degrees or radians, which are never converted to each other exactly.
+    /// An angle in degrees or radians; a conversion between the two is never exact.
     Angle,
     /// A turn rate in radians or degrees per second.
     AngularRate,
@@ -96,8 +96,8 @@ impl Kind {
         }
     }
 
-    /// Returns `true` if two values of the kind are equal only if their texts are equal, without rounding or other
-    /// names.
+    /// Returns `true` if different texts always stand for different values of the kind: values are not rounded, and no
+    /// value has two names.
     #[must_use]
     pub fn is_discrete(self) -> bool {
         match self {
@@ -107,15 +107,16 @@ impl Kind {
         }
     }
 
-    /// Returns the unit in which values of the kind are compared and computed.
+    /// Returns the SI unit in which robots compute with values of the kind; `None` if the kind has no unit.
     #[must_use]
     pub fn base_unit(self) -> Option<Unit> {
         Unit::ALL.iter().copied().find(|unit| unit.kind == self && unit.is_base)
     }
 }
 
-/// Returns `true` if a law with this name and with arguments of these kinds may use a direction of its frame: the law
-/// takes an angle, or a file or a module that may contain angles.
+/// Returns `true` if a law with this name and with arguments of these kinds may use a direction of its frame: if it
+/// takes an angle, or a file or a module that may contain angles. The exception is `turn`, whose angle counts from the
+/// heading at which the atom began.
 pub fn has_direction(law: &str, mut kinds: impl Iterator<Item = Kind>) -> bool {
     // The angle of `turn` counts from the heading at which its atom began.
     law != "turn"
@@ -136,21 +137,21 @@ pub fn has_direction(law: &str, mut kinds: impl Iterator<Item = Kind>) -> bool {
         })
 }
 
-/// A unit that may touch a number.
+/// A unit that may directly follow a number, as in `20cm`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Unit {
     /// Name of the unit as it is written.
     pub name: &'static str,
     /// Kind of quantity that the unit measures.
     pub kind: Kind,
-    /// Integer part of the exact factor from this unit to the unit of the family; the whole factor is `factor` times
-    /// ten to the power `exponent`.
+    /// Integer in the exact factor that converts this unit to the unit of its family: the factor is `factor` times ten
+    /// to the power `exponent`.
     pub factor: u32,
     /// Power of ten in the exact factor.
     pub exponent: i32,
     /// Name of the family's unit, in which exact values are compared; degrees and radians belong to two families.
     pub family: &'static str,
-    /// `true` if the family's unit is the SI unit in which robots compute.
+    /// `true` if this unit is the SI unit in which robots compute.
     pub is_base: bool,
 }
 

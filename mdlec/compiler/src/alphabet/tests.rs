@@ -1,4 +1,4 @@
-//! Alphabets as they are read, and messages about faulty ones.
+//! Tests of reading alphabets, and of the messages about faulty alphabets.
 
 use super::{Alphabet, AlphabetFile, Capability, DeclarationKind, Origin, Unit, combine, read};
 use crate::diagnostic::{Code, SourceId, Sources};
@@ -18,7 +18,7 @@ fn sim() -> Alphabet {
     alphabet
 }
 
-/// Returns the text with its messages, and checks that each has this code.
+/// Returns the text with its messages, and checks that each message has the code E0601.
 fn defects(text: &str) -> String {
     let mut sources = Sources::default();
     let id = sources.add("alphabet.mdle", text);

@@ -1,4 +1,4 @@
-//! Lines of the files that a message shows; long lines are cut around the message's places.
+//! Extracts the lines that a message shows from their files; long lines are cut around the message's places.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -13,9 +13,9 @@ use super::{Diagnostic, Severity, SourceId, Sources, most_shown};
 
 /// Maximum length of a line that is shown whole, in bytes.
 const WHOLE: usize = 240;
-/// Number of bytes that are shown of a longer line on either side of each place's start and end.
+/// Number of bytes that are shown before and after the start and the end of each place, in a line that is cut.
 const AROUND: usize = 60;
-/// Replaces each stretch of a line that is not shown.
+/// Sign in the place of each part of a line that is not shown.
 const CUT: &str = "…";
 
 /// A diagnostic in the form of codespan-reporting, with the lines that it shows.
@@ -34,14 +34,14 @@ struct Lines {
     lines: Vec<ExcerptLine>,
 }
 
-/// A line of a file, as far as it is shown.
+/// A line of a file, or the shown parts of it.
 #[derive(Debug)]
 struct ExcerptLine {
     /// Number of the line in its file, from 0.
     index: usize,
     /// Byte range of the line in the excerpt.
     range: Range<usize>,
-    /// Stretches of the file that are kept, each with its offset in the excerpt.
+    /// Byte ranges of the file that are shown, each with its offset in the excerpt.
     kept: Vec<(Range<usize>, usize)>,
 }
 
@@ -63,10 +63,11 @@ impl Sources {
         term::emit_to_write_style(out, &term::Config::default(), &excerpt, &excerpt.report)
     }
 
-    /// Writes diagnostics to a terminal, and the number of those above the maximum, which are not shown.
+    /// Writes diagnostics to a terminal, at most as many as people are shown, and then the number of the remaining
+    /// diagnostics.
     ///
     /// # Errors
-    /// Fails if writing one of them fails; the others are written.
+    /// Fails if writing a diagnostic fails; the other diagnostics are written nevertheless.
     pub fn write_all(&self, diagnostics: &[Diagnostic], out: &mut impl WriteColor) -> Result<(), FilesError> {
         let most = most_shown(diagnostics);
         let written = diagnostics.iter().take(most).map(|diagnostic| self.write(diagnostic, out));
@@ -77,8 +78,8 @@ impl Sources {
         failed.map_or(Ok(()), Err)
     }
 
-    /// Writes a report that is not a diagnostic of a plan to a terminal with colours; its labels have byte ranges in
-    /// these files.
+    /// Writes a report that is not a diagnostic of a plan to a terminal with colours. The labels of the report have
+    /// byte ranges in these files.
     ///
     /// # Errors
     /// Fails if writing to the terminal fails.
@@ -98,7 +99,7 @@ impl Sources {
         term::emit_to_write_style(out, &term::Config::default(), &excerpt, &excerpt.report)
     }
 
-    /// Converts the diagnostic, with its places in the files as they are shown.
+    /// Converts a diagnostic to a report of codespan-reporting, with offsets in the files as they are shown.
     fn report(&self, diagnostic: &Diagnostic) -> report::Diagnostic<SourceId> {
         let severity = match diagnostic.code.severity() {
             Severity::Error => report::Severity::Error,
@@ -124,7 +125,7 @@ impl<'s> Excerpt<'s> {
         Self::of(sources, sources.report(diagnostic))
     }
 
-    /// Extracts the lines that `report` shows, whose places are those of the files as they are shown.
+    /// Extracts the lines that `report` shows. The offsets in its labels refer to the files as they are shown.
     fn of(sources: &'s Sources, mut report: report::Diagnostic<SourceId>) -> Result<Self, FilesError> {
         let mut places: BTreeMap<SourceId, BTreeMap<usize, Vec<usize>>> = BTreeMap::new();
         for label in &report.labels {
@@ -186,20 +187,20 @@ impl Lines {
         self.lines.push(ExcerptLine { index, range: start..self.text.len(), kept });
     }
 
-    /// Offset in the excerpt for an offset in the file.
+    /// Returns the offset in the excerpt for an offset in the file.
     fn place(&self, byte: usize) -> usize {
         let kept = self.lines.iter().flat_map(|line| &line.kept).rev().find(|(range, _)| range.start <= byte);
         kept.map_or(0, |(range, at)| at + byte.min(range.end).saturating_sub(range.start))
     }
 
-    /// Offset in the file for an offset in the excerpt.
+    /// Returns the offset in the file for an offset in the excerpt.
     fn origin(&self, place: usize) -> usize {
         let kept = self.lines.iter().flat_map(|line| &line.kept).rev().find(|(_, at)| *at <= place);
         kept.map_or(0, |(range, at)| range.end.min(range.start + (place - at)))
     }
 }
 
-/// Stretches of a line that are shown, in order and disjoint.
+/// Returns the byte ranges of a line that are shown, in order and disjoint.
 fn stretches(line: &str, places: impl Iterator<Item = usize>) -> Vec<Range<usize>> {
     if line.len() <= WHOLE {
         return std::iter::once(0..line.len()).collect();

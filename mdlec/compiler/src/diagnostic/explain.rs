@@ -1,4 +1,4 @@
-//! Texts of `mdlec explain`: for each code a paragraph and two examples, which a test compiles.
+//! Provides the texts of `mdlec explain`: for each code, a paragraph and two examples, which a test compiles.
 
 /// Explanation of a code: paragraphs, then a line that begins with `Wrong` and one with `Right`, each followed by an
 /// example indented by four spaces. Such a line may contain, in backticks, the command that the example is for; the
@@ -16,19 +16,19 @@ pub struct Example {
 }
 
 impl Explanation {
-    /// Text of the explanation as it is printed.
+    /// Returns the text of the explanation as it is printed.
     #[must_use]
     pub fn text(self) -> &'static str {
         self.0
     }
 
-    /// Example of the mistake.
+    /// Returns the example with the mistake; `None` if the explanation has no such example.
     #[must_use]
     pub fn wrong(self) -> Option<Example> {
         self.example("Wrong")
     }
 
-    /// Example without the mistake.
+    /// Returns the example without the mistake; `None` if the explanation has no such example.
     #[must_use]
     pub fn right(self) -> Option<Example> {
         self.example("Right")

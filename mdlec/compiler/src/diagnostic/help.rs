@@ -1,4 +1,4 @@
-//! Help: advice about a defect, and the edit that removes it.
+//! Adds help to diagnostics: advice about a defect, and the edit that removes it.
 
 use super::{Diagnostic, Span};
 

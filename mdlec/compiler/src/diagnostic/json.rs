@@ -1,10 +1,11 @@
-//! Diagnostics as JSON for editors and other programs, one object per line (docs/src/reference/interfaces.md, 2).
+//! Writes diagnostics as JSON for editors and other programs, one object per line (docs/src/reference/interfaces.md,
+//! 2).
 
 use serde::Serialize;
 
 use super::{Diagnostic, Label, Severity, Sources};
 
-/// A message; one without a code and a place is about the command, not the plan.
+/// A message. Without a code and without places, it is about the command and not about the plan.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Message<'a> {
     /// Code of the message; `null` if it has none.
@@ -34,7 +35,7 @@ pub struct Place<'a> {
     pub end_column: usize,
     /// `true` for the place of the defect, `false` for one that explains it.
     pub primary: bool,
-    /// Text at the place; may be empty.
+    /// Text shown beside the place; may be empty.
     pub text: &'a str,
 }
 
@@ -47,7 +48,7 @@ impl<'a> Message<'a> {
         Self { code: None, severity, message, spans: Vec::new(), help: parts.collect() }
     }
 
-    /// The message as one line of JSON, without the line break.
+    /// Returns the message as one line of JSON, without the line break.
     #[must_use]
     pub fn to_json(&self) -> String {
         // Only maps with keys that are not strings cannot be written, and there are none.

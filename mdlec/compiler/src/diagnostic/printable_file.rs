@@ -1,19 +1,20 @@
-//! Printable form of a file's text: characters that are not printable appear as numbers, and offsets can be converted.
+//! Makes the text of a file printable: characters that are not printable appear as numbers, and offsets can be
+//! converted.
 
 use codespan_reporting::files::SimpleFile;
 use mdle_runtime::{Printable, is_printable};
 
-/// A file whose text has characters that are not printable, with its printable form.
+/// Printable form of a file whose text contains characters that are not printable.
 #[derive(Debug)]
 pub(super) struct PrintableFile {
-    /// File with printable name and text.
+    /// File with the original name and the printable text.
     pub(super) file: SimpleFile<String, String>,
-    /// Offsets after each replaced character: in the text, and in the printable text.
+    /// For each replaced character, the offset after it in the text and in the printable text.
     replaced: Vec<(usize, usize)>,
 }
 
 impl PrintableFile {
-    /// Printable form of a text; `None` if the text is printable already.
+    /// Returns the printable form of a file; `None` if its text is already printable.
     pub(super) fn of(name: &str, text: &str) -> Option<Self> {
         let mut shown = String::new();
         let mut replaced = Vec::new();
@@ -36,13 +37,13 @@ impl PrintableFile {
         Some(Self { file: SimpleFile::new(name.to_owned(), shown), replaced })
     }
 
-    /// Offset in the printable text for an offset in the text.
+    /// Returns the offset in the printable text for an offset in the text.
     pub(super) fn place(&self, byte: usize) -> usize {
         let before = self.replaced.partition_point(|(text, _)| *text <= byte);
         before.checked_sub(1).map_or(byte, |last| self.replaced[last].1 + (byte - self.replaced[last].0))
     }
 
-    /// Offset in the text for an offset in the printable text.
+    /// Returns the offset in the text for an offset in the printable text.
     pub(super) fn origin(&self, place: usize) -> usize {
         let before = self.replaced.partition_point(|(_, shown)| *shown <= place);
         before.checked_sub(1).map_or(place, |last| self.replaced[last].0 + (place - self.replaced[last].1))

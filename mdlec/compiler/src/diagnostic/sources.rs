@@ -1,4 +1,4 @@
-//! The files that messages show: offsets of spans refer to all files concatenated.
+//! Stores the files that messages show. Offsets of spans refer to the concatenation of all files.
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -34,10 +34,10 @@ struct LineAndColumn {
 }
 
 impl Sources {
-    /// Maximum total bytes of all files, with one byte between two: offsets have 32 bits.
+    /// Maximum total size of all files in bytes, including one byte between two files; offsets have 32 bits.
     const ROOM: u32 = u32::MAX;
 
-    /// Adds a file for which there is [room](Self::refusal), with its name in messages and its text.
+    /// Adds a file, with its name in messages and its text. There must be [room](Self::refusal) for the file.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
         let (id, name, text) = (self.next(), name.into(), text.into());
         let shown = PrintableFile::of(&name, &text);
@@ -45,12 +45,13 @@ impl Sources {
         id
     }
 
-    /// Offset of the next file. One byte separates files, so that the end of a file is not in the next.
+    /// Returns the offset of the next file. One byte separates two files, so that the end of a file is not part of the
+    /// next file.
     fn next(&self) -> SourceId {
         SourceId(self.files.last().map_or(0, |(last, file)| Span::new(*last, 0, file.written.source().len() + 1).end))
     }
 
-    /// Reason why a file of `length` bytes cannot be added, if there is no room.
+    /// Returns the reason why a file of `length` bytes cannot be added; `None` if there is room for it.
     #[must_use]
     pub fn refusal(&self, name: &str, length: usize) -> Option<String> {
         let room = Self::ROOM - self.next().0;
@@ -65,23 +66,23 @@ impl Sources {
         })
     }
 
-    /// File that contains this offset.
+    /// Returns the file that contains this offset; `None` if there are no files.
     fn file(&self, byte: u32) -> Option<&(SourceId, File)> {
         let behind = self.files.partition_point(|(id, _)| id.0 <= byte);
         self.files.get(behind.checked_sub(1)?)
     }
 
-    /// File of a span, with its byte range there.
+    /// Returns the file of a span, and the byte range of the span in that file.
     #[must_use]
     pub fn range(&self, span: Span) -> (SourceId, Range<usize>) {
         let source = self.file(span.start).map_or(SourceId(0), |(id, _)| *id);
         (source, span.within(source))
     }
 
-    /// Line and column of a byte, in characters; both count from 1.
+    /// Returns the line and the column of a byte; both count from 1, and columns count characters.
     ///
-    /// The search starts from the last place if that is in the same line: a file may be one line with a mistake in
-    /// every word.
+    /// If the byte is in the same line as the place that was looked up last, the search starts from that place, because
+    /// a file may consist of one line with a mistake in every word.
     pub(super) fn line_and_column(&self, source: SourceId, byte: usize) -> (usize, usize) {
         let known = self.place_near(source, byte).or_else(|| {
             let at = self.written(source)?.location((), byte).ok()?;
@@ -91,7 +92,8 @@ impl Sources {
         known.map_or((1, 1), |known| (known.line, known.column))
     }
 
-    /// Place of a byte that is in the line of the last place.
+    /// Returns the place of a byte that is in the same line as the place that was looked up last; `None` if it is in
+    /// another line.
     fn place_near(&self, source: SourceId, byte: usize) -> Option<LineAndColumn> {
         let last = self.last.get().filter(|last| last.source == source)?;
         let line = self.written(source)?.line_index((), byte).ok();
@@ -101,7 +103,8 @@ impl Sources {
         Some(LineAndColumn { source, byte, line, column })
     }
 
-    /// Returns the name of the file that contains a span, and the line in which the span begins, from 1.
+    /// Returns the name of the file that contains a span, and the number of the line in which the span begins, from 1;
+    /// 0 if the line is not known.
     #[must_use]
     pub fn line(&self, span: Span) -> (&str, usize) {
         let (source, range) = self.range(span);
@@ -116,13 +119,13 @@ impl Sources {
         self.text(source).get(range).unwrap_or("")
     }
 
-    /// Text of a file.
+    /// Returns the text of a file; empty if the file is not known.
     #[must_use]
     pub fn text(&self, source: SourceId) -> &str {
         self.written(source).map_or("", |file| file.source().as_str())
     }
 
-    /// Name of a file.
+    /// Returns the name of a file; empty if the file is not known.
     #[must_use]
     pub fn name(&self, source: SourceId) -> &str {
         self.written(source).map_or("", |file| file.name().as_str())
@@ -132,19 +135,20 @@ impl Sources {
         self.file(source.0).map(|(_, file)| &file.written)
     }
 
-    /// File as it is shown.
+    /// Returns the file as it is shown.
     pub(super) fn shown_file(&self, source: SourceId) -> Result<&SimpleFile<String, String>, FilesError> {
         let (_, file) = self.file(source.0).ok_or(FilesError::FileMissing)?;
         Ok(file.shown.as_ref().map_or(&file.written, |shown| &shown.file))
     }
 
-    /// Offset in the shown text for an offset in the file.
+    /// Returns the offset in the shown text for an offset in the file.
     pub(super) fn shown_place(&self, source: SourceId, byte: usize) -> usize {
         let shown = self.file(source.0).and_then(|(_, file)| file.shown.as_ref());
         shown.map_or(byte, |shown| shown.place(byte))
     }
 
-    /// Column of a byte in the file as it is shown, in characters from 1; `line` counts from 0.
+    /// Returns the column, in the file as written, of a byte in the file as it is shown; in characters from 1. `line`
+    /// counts from 0.
     pub(super) fn column(&self, source: SourceId, line: usize, byte: usize) -> Result<usize, FilesError> {
         let (_, file) = self.file(source.0).ok_or(FilesError::FileMissing)?;
         let byte = file.shown.as_ref().map_or(byte, |shown| shown.origin(byte));

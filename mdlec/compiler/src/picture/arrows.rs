@@ -1,4 +1,4 @@
-//! The arrows of a picture between placed boxes: the order of elements, and the exits of scopes.
+//! Computes the arrows between the boxes of a picture, which show the order of elements and the exits of scopes.
 
 use super::layout::{GAP, Placed, SIDE};
 use super::texts::until;
@@ -28,7 +28,7 @@ pub(super) struct Polyline {
 
 /// Width of the margin on either side of the plan's box, for the signs at its beginning and end.
 pub(super) const MARGIN: i64 = 44;
-/// Distance of the exit by a scope's own condition from the scope's upper edge.
+/// Distance from a scope's upper edge to the arrow of its exit by its own condition.
 pub(super) const EXIT: i64 = 16;
 
 /// Returns all arrows, in the order of their boxes.
@@ -118,13 +118,14 @@ fn gap_above(child: usize, placed: &Placed, all: &[Placed]) -> i64 {
     tops.min().unwrap_or(0) - GAP / 2
 }
 
-/// Returns the arrow for the next pass of a loop: below all its elements, back to the first.
+/// Returns the arrow for the next pass of a loop, which leads below all elements of the loop back to the first element.
 fn again(placed: &Placed, from: (i64, i64), to: (i64, i64)) -> Polyline {
     let (right, left, below) = (from.0 + SIDE / 2, to.0 - SIDE / 2, placed.y + placed.height - 16);
     line(Arrow::Again, placed.depth, &[from, (right, from.1), (right, below), (left, below), (left, to.1), to])
 }
 
-/// Returns the arrow of a scope's exit by its own condition, from its head to `to`; no arrow for other elements.
+/// Returns the arrow of a scope's exit by its own condition, from the scope's right edge by way of the vertical line at
+/// `over` to `to`; an empty list for an element without such an exit.
 fn exit(element: Element<'_>, placed: &Placed, to: (i64, i64), over: i64) -> Vec<Polyline> {
     if !element.is_scope() || !until(element).ends() {
         return Vec::new();
@@ -134,8 +135,8 @@ fn exit(element: Element<'_>, placed: &Placed, to: (i64, i64), over: i64) -> Vec
 }
 
 /// Returns the arrow of a scope's exit by its own condition, for a scope at the end of a row. If the scope can also end
-/// with its last element, the arrow ends in the gap below, where the other arrow continues; otherwise it continues to
-/// `to`.
+/// with its last element, the arrow stops in the gap below the row, where it meets the arrow of that end; otherwise it
+/// continues to `to`.
 fn exit_below(element: Element<'_>, placed: &Placed, to: (i64, i64), gap: i64) -> Vec<Polyline> {
     let right = placed.x + placed.width;
     if placed.flows {

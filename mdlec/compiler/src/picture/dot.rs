@@ -1,4 +1,4 @@
-//! A plan in Graphviz's language, with scopes and loops as clusters, atoms as nodes, and exits as edges.
+//! Writes a plan in Graphviz's language, with scopes and loops as clusters, atoms as nodes, and exits as edges.
 
 use mdle_runtime::{Printable, is_printable};
 
@@ -13,7 +13,7 @@ use crate::fsm::{Atom, Element, ElementKind, Machine, Visit};
 const LETTERS: usize = 30;
 /// Maximum number of lines of a label.
 const LINES: usize = 3;
-/// Maximum number of edges: each of several loops that end together has an edge.
+/// Maximum number of edges. If several loops end with an element, the element has an edge for each of them.
 const EDGES: usize = 10_000;
 
 /// Returns the plan in Graphviz's language.
@@ -88,7 +88,7 @@ impl Graph {
         self.line(self.depth + 1, &format!("label={}; {style}; tooltip={tooltip};", label(&title)));
     }
 
-    /// Writes the edges from an element that ends by its own condition to its destinations.
+    /// Writes the edges for the end of an element by its own condition, one edge for each destination.
     fn edges(&mut self, element: Element<'_>) {
         let until = until(element);
         if !until.ends() {

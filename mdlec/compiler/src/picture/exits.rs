@@ -9,7 +9,7 @@ use crate::fsm::{Element, ElementKind, Exit, Machine};
 pub(super) enum Destination<'m> {
     /// The next element; `last_pass` is `true` if only the last pass of a loop leads there.
     After { next: Element<'m>, last_pass: bool },
-    /// The beginning of the loop `repeated`, for its next pass.
+    /// The beginning of the loop `repeated`, for its next pass; `times` is `None` for a loop without end.
     Again { repeated: Element<'m>, times: Option<u64> },
     /// The end of the plan; `last_pass` is `true` if only the last pass of a loop leads there.
     Over { last_pass: bool },

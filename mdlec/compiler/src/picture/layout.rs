@@ -46,7 +46,7 @@ pub(super) struct Placed {
     /// Lines at the head of the box, from top to bottom.
     pub(super) lines: Vec<(Style, String)>,
     pub(super) children: Vec<usize>,
-    /// Children with which a row begins.
+    /// Numbers of the children that begin a row.
     pub(super) rows: Vec<usize>,
     /// Number of scopes and loops that enclose the box.
     pub(super) depth: usize,
@@ -56,8 +56,8 @@ pub(super) struct Placed {
     pub(super) flows: bool,
 }
 
-/// Returns the boxes of all elements, indexed by the element's number. There is no recursion: an element's number is
-/// greater than those of the elements that enclose it.
+/// Returns the boxes of all elements, indexed by the element's number. Recursion is not needed, because an element's
+/// number is greater than the numbers of the elements that enclose it.
 pub(super) fn places(machine: &Machine) -> Vec<Placed> {
     let mut all: Vec<Placed> = Vec::new();
     for (element, ends) in machine.elements().zip(ends(machine)) {
@@ -169,7 +169,8 @@ fn head(element: Element<'_>, content: i64) -> Vec<(Style, String)> {
     }
 }
 
-/// Returns the smallest width at which the children need no more rows than in the width `room`, so that rows are even.
+/// Returns the smallest width at which the children need no more rows than in the width `room`, so that the rows are
+/// about equally long.
 fn even(children: &[usize], all: &[Placed], room: i64) -> i64 {
     let needed = rows(children, all, room).len();
     let (mut low, mut high) = (0, room);

@@ -1,4 +1,4 @@
-//! Size of text in a picture: all characters have the same width, so that no font is needed.
+//! Estimates the size of text in a picture by a fixed width of characters, so that no font is needed.
 
 /// Width of ten characters, in pixels.
 const TEN_LETTERS: i64 = 73;

@@ -1,4 +1,4 @@
-//! A plan in the language of mermaid: a `stateDiagram-v2` with scopes and loops as composite states.
+//! Writes a plan in the language of mermaid, as a `stateDiagram-v2` with scopes and loops as composite states.
 //!
 //! In mermaid no transition leads from inside a composite state to the outside. The end of an element is therefore
 //! drawn in steps: the last element leads to the end of the enclosing element, and the enclosing element leads on.

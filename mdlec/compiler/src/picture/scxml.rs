@@ -1,12 +1,13 @@
-//! A plan as a machine in W3C SCXML that behaves like the plan.
+//! Writes a plan as a state machine in W3C SCXML that behaves like the plan.
 //!
-//! In SCXML the transitions of inner states take precedence, in MDLe those of outer scopes. So there are no nested
-//! states: each atom of the expanded plan is a state, and has the transitions of all its enclosing scopes in document
-//! order, the outermost first. Where SCXML would enter nested states, assignments reset their variables.
+//! In SCXML the transitions of inner states take precedence, and in MDLe the transitions of outer scopes. So there are
+//! no nested states: each atom of the expanded plan is a state, and has the transitions of all its enclosing scopes in
+//! document order, the outermost first. Where SCXML would enter nested states, assignments reset the variables of the
+//! scopes that restart.
 //!
 //! An event `turn` carries the content of a line of a script (`t`, `way`, `fired`, `completed`). Then transitions
-//! without an event are taken while there are any, at most [`TRANSITIONS_PER_TURN`]. The variable `law` is the law that
-//! is applied.
+//! without an event are taken as long as one is enabled, at most [`TRANSITIONS_PER_TURN`]. The variable `law` contains
+//! the law that is applied.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +20,7 @@ use crate::plan::{Condition, Mark, Nondegenerate, Plan, Quark, RecordId};
 
 /// Maximum length of the SCXML text, in bytes.
 const LONGEST: usize = 64 << 20;
-/// Value of `n`, the number of transitions in this turn, before the first turn.
+/// Value, before the first turn, of the variable `n`, which counts the transitions of a turn.
 const BEFORE: u32 = TRANSITIONS_PER_TURN + 1;
 
 /// Returns the plan as a state machine in SCXML.
@@ -181,8 +182,8 @@ impl<'p> Machine<'_, 'p> {
         self.line(2, "</transition>");
     }
 
-    /// Writes the transition of an interrupt under the condition `when`; `by_condition` is `false` if the law
-    /// completes.
+    /// Writes the transition of an interrupt under the condition `when`; `by_condition` is `false` if the cause is the
+    /// completion of the law.
     fn leave(&mut self, number: usize, when: &str, by_condition: bool) {
         let made = self.made;
         let transition = &made.transitions[number];
@@ -208,7 +209,7 @@ impl<'p> Machine<'_, 'p> {
         self.line(2, "</transition>");
     }
 
-    /// Writes the facts that `after` tests and that change when the interrupt of this transition ends elements.
+    /// Writes the assignments to the facts that `after` tests and that change because the transition ends elements.
     fn record(&mut self, transition: &Transition<'p>, number: usize, by_condition: bool) {
         let own = transition.marks.iter().map(|mark| (mark, by_condition));
         let ended: Vec<(&Mark, bool)> = own.chain(transition.ends_with.iter().map(|mark| (*mark, false))).collect();
@@ -302,7 +303,7 @@ fn fact(record: RecordId, number: u32) -> String {
     format!("fact{}_{number}", record.0)
 }
 
-/// Returns a quark's text as a string of ECMAScript; strings of JSON are valid in it.
+/// Returns a quark's text as a string of ECMAScript, in which strings of JSON are valid.
 fn text(quark: &Quark) -> String {
     // A string can always be written.
     let text = serde_json::to_string(&quark.text).unwrap_or_default();

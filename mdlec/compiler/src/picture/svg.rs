@@ -1,4 +1,5 @@
-//! A plan drawn as nested boxes: atoms in rows, exits as arcs. A browser can show the drawing without other tools.
+//! Draws a plan as nested boxes, with atoms in rows and exits as red lines. A browser can show the drawing without
+//! other tools.
 
 use std::fmt::Write;
 
@@ -15,7 +16,7 @@ use crate::fsm::{Element, ElementKind, Machine};
 const STYLE: &str = include_str!("style.css");
 /// Height above the plan's box for the title, in pixels.
 const TITLE: i64 = 46;
-/// Height below the plan's box with a line of the legend, in pixels.
+/// Height below the plan's box, including one line of the legend, in pixels.
 const FOOT: i64 = 40;
 /// Maximum number of lines of the legend that explains the signs.
 const MEANINGS: usize = 4;

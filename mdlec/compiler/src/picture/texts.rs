@@ -1,4 +1,4 @@
-//! Texts on atoms, scopes and loops in a picture.
+//! Writes the texts on atoms, scopes and loops in a picture.
 
 use crate::fsm::{Atom, Element, ElementKind};
 use crate::plan::{Condition, Interrupt, frame_text};

@@ -1,4 +1,4 @@
-//! Text for XML, escaped and without the characters that XML does not allow.
+//! Escapes text for XML; characters that XML does not allow are replaced by their numbers.
 
 use mdle_runtime::{Printable, is_printable};
 

@@ -1,9 +1,9 @@
-//! Writes angles in degrees where these represent the angle exactly.
+//! Writes angles in degrees where a number with at most six decimals represents the angle up to rounding errors.
 
 use mdle_runtime::Radians;
 
-/// Returns the angle in degrees, to a millionth, if this equals the angle except for the rounding of a sum;
-/// `None` otherwise.
+/// Returns the angle in degrees, rounded to a millionth, if this differs from the angle at most by the rounding errors
+/// of a sum; `None` otherwise.
 #[must_use]
 pub fn in_degrees(radians: f64) -> Option<f64> {
     let degrees = (radians.to_degrees() * 1e6).round() / 1e6;

@@ -85,7 +85,8 @@ pub(super) fn complaints(call: &Call, declaration: &Declaration, parameters: &Pa
     wrong + needed.saturating_sub(call.args.len()) + call.args.len().saturating_sub(params.len())
 }
 
-/// Writes a quark with its parameters and their units: `go v ω`.
+/// Writes a quark with its parameters and their units, such as `go <v in cm/s> <omega in rad/s>`; optional parameters
+/// are in square brackets.
 #[must_use]
 pub fn signature(declaration: &Declaration) -> String {
     let mut text = declaration.name.clone();
@@ -141,7 +142,8 @@ struct Fitting<'a> {
 }
 
 impl Fitting<'_> {
-    /// Converts an argument, or the argument given to the parameter that it names.
+    /// Converts an argument. If the argument is the name of a parameter, converts the argument that the parameter was
+    /// given.
     fn given(&self, arg: &Arg, param: &Param, parameters: &Parameters<'_>) -> Fitted {
         if let Arg::Name(name) = arg
             && parameters.is_untyped(name.node)
@@ -159,7 +161,7 @@ impl Fitting<'_> {
         }
     }
 
-    /// Converts an argument; `bare` is the unit of a number without one.
+    /// Converts an argument; `bare` is the unit of a number that is written without a unit.
     fn argument(&self, arg: &Arg, param: &Param, bare: Option<Unit>) -> Fitted {
         if let (Arg::Name(name), Kind::Sonar) = (arg, param.kind)
             && let Some(number) = examples::sonar(name)

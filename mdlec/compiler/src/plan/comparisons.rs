@@ -1,5 +1,5 @@
-//! Resolves comparisons of signals: the signals, their unit, and `t` and `way`, the time and the path driven since the
-//! scope was entered (docs/src/reference/semantics.md, 2.4).
+//! Resolves comparisons of signals, including `t` and `way`, the time and the path driven since the scope was entered
+//! (docs/src/reference/semantics.md, 2.4).
 
 use super::arguments::{Fitted, value};
 use super::parameters::{Names, Parameter};
@@ -198,8 +198,8 @@ enum EntrySignal {
     Way,
 }
 
-/// Returns the interval in which a comparison of `t` or `way` is true: its first count, and the exclusive count
-/// at its end.
+/// Returns the interval in which a comparison of `t` or `way` is true: its start and its exclusive end, in nanoseconds
+/// or nanometres. The end is `None` if the interval has no end.
 fn interval(comparison: &Comparison, counted: EntrySignal, span: Span) -> Resolved<(u64, Option<u64>)> {
     let nanos = |value: &Value| match value {
         Value::Quantity { exact, .. } => exact.to_nanos(),
@@ -254,7 +254,7 @@ fn is_signal(name: &str, quarks: &Quarks<'_>) -> bool {
     quarks.alphabet().declarations_of(name).any(|declaration| declaration.kind == DeclarationKind::Signal)
 }
 
-/// Reads `r_3` as the signal `r` with its number, if there is such a signal of one sonar.
+/// Reads `r_3` as the signal `r` with the number 3, if there is a signal `r` with a sonar as its only parameter.
 fn indexed<'s>(call: &Call<'s>, quarks: &Quarks<'_>) -> (&'s str, Option<Number<'s>>) {
     let base = call.name.trim_end_matches(|letter: char| letter.is_ascii_digit());
     let digits = &call.name[base.len()..];

@@ -1,4 +1,4 @@
-//! Conditions of a resolved plan (docs/src/reference/semantics.md, 2), and their value in a situation.
+//! Conditions of a resolved plan (docs/src/reference/semantics.md, 2), and their evaluation in a situation.
 
 use super::{QuarkId, RecordId};
 

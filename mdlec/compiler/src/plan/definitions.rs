@@ -1,5 +1,5 @@
-//! Collects the plans of a file by name: the references between them, the plan to run, and a check that no plan
-//! contains itself.
+//! Collects the plans of a file by name, determines the references between them and the plans to run, and checks that
+//! no plan contains itself.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,7 +22,7 @@ pub(super) struct Definitions<'a> {
     /// Plans that are too large, or refer to a plan that is too large. Only the first is reported, not the
     /// plans that contain it.
     too_large: BTreeSet<usize>,
-    /// Number of plans of the file itself, without those of used files.
+    /// Number of plans of the file itself, without the plans of used files.
     own: usize,
     /// `true` if a used file is missing that may contain more plans.
     pub(super) is_incomplete: bool,
@@ -34,7 +34,7 @@ pub(super) struct Definitions<'a> {
     bounds: Bounds,
 }
 
-/// The places in one plan that refer to one and the same other plan.
+/// References in one plan to one other plan.
 #[derive(Debug, Clone, Copy)]
 struct Uses {
     first: Span,
@@ -244,7 +244,7 @@ fn calls<'a>(plan: &tree::Plan<'a>, by_name: &BTreeMap<&str, usize>) -> Vec<(usi
     calls
 }
 
-/// Groups these places by the plan to which they refer.
+/// Groups calls by the plan to which they refer, which is given by its index.
 fn references(calls: &[(usize, &Call<'_>)]) -> BTreeMap<usize, Uses> {
     let mut references = BTreeMap::new();
     for (index, call) in calls {

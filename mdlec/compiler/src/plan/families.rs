@@ -1,5 +1,5 @@
-//! Families of interrupts whose values exclude each other: a signal has only one value, and an interrupt that
-//! its alphabet declares `exclusive` fires for at most one value of its arguments.
+//! Determines families of interrupts whose values exclude each other: a signal has only one value, and an interrupt
+//! that its alphabet declares `exclusive` fires for at most one value of its arguments.
 
 use super::{Compared, Comparison, Operator, Quark, QuarkId, Value};
 use crate::alphabet::{Kind, family_to_si};
@@ -7,7 +7,7 @@ use crate::alphabet::{Kind, family_to_si};
 /// A family of interrupt quarks that depend on the same quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Family<'q> {
-    /// Uses of an exclusive interrupt: its name, and the index of its declaration among those of this name.
+    /// Uses of an exclusive interrupt: its name, and the index of its declaration among the declarations of this name.
     Exclusive(&'q str, usize),
     /// Comparisons of this signal with a value.
     Signal(QuarkId),
@@ -22,7 +22,8 @@ pub(crate) fn family(quark: &Quark) -> Option<Family<'_>> {
     }
 }
 
-/// Returns the value with which a signal is compared, and the tolerance, both in SI units; `None` for an angle.
+/// Returns the value with which a signal is compared, and the tolerance, both in SI units; `None` for an angle, and for
+/// a comparison with another signal.
 fn threshold(comparison: &Comparison) -> Option<(f64, f64)> {
     let si = |value: &Value| match value {
         Value::Quantity { kind: Kind::Angle, .. } => None,

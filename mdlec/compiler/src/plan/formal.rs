@@ -25,7 +25,7 @@ impl Plan {
 
 struct Writer<'p> {
     plan: &'p Plan,
-    /// Names that no further plan may have.
+    /// Names that a further plan in the output cannot have.
     taken: BTreeSet<String>,
     /// Last number used in the names of plans that have the same base name.
     numbers: BTreeMap<String, usize>,
@@ -94,7 +94,7 @@ impl<'p> Writer<'p> {
         around(self.sequence(&scope.body), &format!("{here}("), &format!(", {})", interrupt(&scope.interrupt)))
     }
 
-    /// Returns a name similar to this one that no plan and no quark of the text has.
+    /// Returns a name that no quark and no plan in the output has: `name`, or `name` with a number.
     fn distinct(&mut self, name: &str) -> String {
         let number = self.numbers.entry(name.to_owned()).or_insert(1);
         let mut distinct = name.to_owned();

@@ -13,7 +13,8 @@ use crate::syntax::tree::Name;
 pub(super) struct Labels {
     record: RecordId,
     labels: BTreeMap<String, Label>,
-    /// Facts that `after` conditions read, by label and cause; each has its number and its place.
+    /// Facts that `after` conditions read, by label and cause. Each has its number and the place of the first condition
+    /// that reads it.
     asked: BTreeMap<(String, Option<String>), Asked>,
 }
 
@@ -33,7 +34,8 @@ pub(super) enum EndCauses {
     Operands(Vec<String>),
     /// The element ends with its last element, since it has no interrupt of its own.
     WithItsLast,
-    /// The causes are unknown, since the element uses a plan by name that is not copied yet.
+    /// The causes are unknown, because the element uses a plan by name that is not copied yet, or because two elements
+    /// have the label.
     Unknown,
 }
 
@@ -81,7 +83,7 @@ impl Labels {
         Mark { record: self.record, label: label.to_owned(), facts: Vec::new() }
     }
 
-    /// Returns the number of the fact that an `after` condition reads. A new fact gets the next number.
+    /// Returns the record and the number of the fact that an `after` condition reads. A new fact gets the next number.
     pub(super) fn asked(&mut self, label: Name<'_>, cause: Option<(String, Span)>) -> (RecordId, u32) {
         let (words, span) = cause.unzip();
         let number = u32::try_from(self.asked.len()).unwrap_or(u32::MAX);
@@ -90,8 +92,8 @@ impl Labels {
         (self.record, asked.number)
     }
 
-    /// Ends the use whose outermost scope is `scope`: marks receive the facts that `after` reads; if `after`
-    /// reads no label of this use, the marks are removed.
+    /// Completes the use of a definition, whose outermost scope is `scope`: adds to the marks the facts that `after`
+    /// reads, or removes the marks if `after` reads no label of this use.
     pub(super) fn finish(self, scope: &mut Scope, found: &mut Vec<Diagnostic>) {
         let mut facts: BTreeMap<&str, Vec<Fact>> = BTreeMap::new();
         for ((label, cause), asked) in &self.asked {
@@ -162,7 +164,7 @@ impl Labels {
     }
 }
 
-/// Appends to a report where a label belongs, if the label is the name of a behavior in this use.
+/// Adds help about the right place of a label to a report, if the label is the name of a behavior in this use.
 fn for_behavior(found: Diagnostic, label: &str, scope: &Scope) -> Diagnostic {
     let is_behavior = |node: &Node| matches!(node, Node::Scope(inner) if inner.name == label);
     if found.code != Code::E0201 || !scope.body.iter().any(is_behavior) {

@@ -1,6 +1,7 @@
 //! Resolved plans: names, arguments, units and plans by name (paper, Definition 2).
 //!
-//! No later stage looks up a string: a quark is an id; an argument has its exact decimal, its unit and its SI value.
+//! Later stages refer to a quark by its id, and not by its text. An argument has its exact decimal value and its unit
+//! family.
 
 mod angle;
 mod arguments;
@@ -98,7 +99,7 @@ pub struct Quark {
 pub struct Comparison {
     /// Signal on the left-hand side.
     pub signal: QuarkId,
-    /// Unit of the signal, in which texts have its values.
+    /// Unit of the signal, in which texts show values.
     pub unit: Unit,
     /// Operator of the comparison.
     pub operator: Operator,
@@ -117,7 +118,7 @@ pub enum Compared {
     Value(Value),
 }
 
-/// The value of an argument; two equal values are equal to the last digit.
+/// The value of an argument. Values are compared exactly, to the last digit.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Value {
     /// A number with a kind.
@@ -142,8 +143,8 @@ pub enum Value {
 }
 
 impl Value {
-    /// Returns the value of a quantity in SI units, in which signals are compared; 0 for a value that is not a
-    /// quantity.
+    /// Returns the value of a quantity in SI units, in which signals are compared; `f64::MAX` for `inf`, and 0 for any
+    /// other value.
     #[must_use]
     pub fn in_si(&self) -> f64 {
         match self {
@@ -165,7 +166,8 @@ pub struct Scope {
     pub body: Vec<Node>,
     /// `true` if the scope's frame is the robot's heading at the moment of entry: `FRAME here`.
     pub here: bool,
-    /// Record of the labelled elements that ended last, for the outermost scope of a plan that uses `after`.
+    /// Record of the labelled elements that ended last, for the outermost scope of a plan that uses `after`; `None` for
+    /// any other scope.
     pub record: Option<Record>,
     /// Labels of the elements that end with the scope.
     pub marks: Vec<Mark>,

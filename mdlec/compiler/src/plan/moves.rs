@@ -1,5 +1,4 @@
-//! Movements in the words of other languages, and the laws of the paper or of this project that correspond to
-//! them.
+//! Proposes laws of the paper or of this project for movements that are written in the words of other languages.
 
 use crate::alphabet::{Kind, Unit};
 use crate::syntax::tree::{Arg, Call, Number};

@@ -20,14 +20,15 @@ impl Nondegenerate {
         &self.0
     }
 
-    /// Rewrites the outermost scope. The rewrite must repeat no interrupt, as expansion does.
+    /// Rewrites the outermost scope. Like the expansion of loops, the rewrite must not repeat an interrupt inside its
+    /// scope.
     #[must_use]
     pub(crate) fn map(&self, rewrite: impl FnOnce(&Scope) -> Scope) -> Self {
         Self(Plan { root: rewrite(&self.0.root), quarks: self.0.quarks.clone() })
     }
 }
 
-/// Replaces every repeated interrupt by the null interrupt, with one warning each.
+/// Replaces every repeated interrupt by the null interrupt, and returns a warning for each place in the text.
 #[must_use]
 pub fn remove_degeneracy(mut plan: Plan) -> (Nondegenerate, Vec<Diagnostic>) {
     let mut removal = Removal {
@@ -76,8 +77,8 @@ impl Removal<'_> {
         }
     }
 
-    /// Replaces the interrupt by null if it is repeated; otherwise returns its function, if the function can be
-    /// repeated.
+    /// Replaces the interrupt by null if it is repeated, and then returns `None`. Otherwise returns its function;
+    /// `None` if the function cannot be repeated.
     fn interrupt(&mut self, interrupt: &mut Interrupt, law: Option<QuarkId>) -> Option<Function> {
         let function = self.functions.function(&interrupt.condition)?;
         let Some((scope, outer)) = self.around.get(&function).cloned() else { return Some(function) };

@@ -35,8 +35,8 @@ pub(super) struct Parameter<'s> {
 }
 
 impl Parameter<'_> {
-    /// Returns the unit of a number without one: the paper's unit for this kind, which the quarks of
-    /// `mdle-atoms` use too.
+    /// Returns the unit of a number that is written without a unit: the paper's unit for this kind, which the quarks of
+    /// `mdle-atoms` use too; `None` if the kind has no unit.
     pub(super) fn unit(&self) -> Option<Unit> {
         if self.kind == Kind::Speed {
             return Unit::from_name("cm/s");
@@ -163,7 +163,7 @@ fn unknown_type(name: Name<'_>, by_use: Option<Kind>) -> Diagnostic {
     }
 }
 
-/// Reports a plan with parameters that is used in a place without arguments.
+/// Reports a plan with parameters that gets no arguments; `why` is the reason.
 pub(super) fn missing(plan: &tree::Plan<'_>, why: &str) -> Diagnostic {
     let name = plan.name.node;
     let first = plan.params.first().map_or(plan.name.span, |param| param.name.span);
@@ -174,7 +174,7 @@ pub(super) fn missing(plan: &tree::Plan<'_>, why: &str) -> Diagnostic {
         .help(format!("write a plan that uses it by name: `{{ Main {name}({}) }}`", params.join(", ")))
 }
 
-/// Reports a name in the place of a loop count that is not a count parameter.
+/// Reports a loop count `name` that is not a parameter of the type `count`.
 pub(super) fn no_count(name: Name<'_>, parameters: &Parameters<'_>) -> Diagnostic {
     if let Some(parameter) = parameters.get(name.node) {
         return parameter.mismatch(Kind::Count, name.span).help(format!("declare it as `{}: count`", name.node));

@@ -1,4 +1,4 @@
-//! The arguments with which a plan uses another plan by name (docs/src/reference/language.md, 3.4).
+//! Checks the arguments with which a plan uses another plan by name (docs/src/reference/language.md, 3.4).
 
 use super::arguments::{example, fit};
 use super::parameters::Parameters;

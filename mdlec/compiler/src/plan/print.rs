@@ -13,8 +13,8 @@ impl fmt::Display for Plan {
 }
 
 impl Plan {
-    /// Returns the text with the number of each atom after it. For a plan with expanded loops, these are the
-    /// states of its machine.
+    /// Returns the text of the plan with the number of each atom after the atom. If the loops of the plan are expanded,
+    /// the numbers are those of the machine's states.
     #[must_use]
     pub fn numbered(&self) -> String {
         self.printed(true)

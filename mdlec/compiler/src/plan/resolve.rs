@@ -1,4 +1,4 @@
-//! Resolves a tree to plans: every name, argument, unit and plan by name; each use of a plan becomes a copy.
+//! Resolves a tree to plans: resolves names, arguments and units, and copies each plan that is used by name.
 
 mod misread;
 
@@ -126,7 +126,7 @@ struct Resolver<'r, 'a> {
     labels: Labels,
     /// Number of definitions begun so far.
     begun: u32,
-    /// Span of the element after the one that is being resolved.
+    /// Span of the element that follows the element being resolved, if there is one.
     next: Option<Span>,
     found: Vec<Diagnostic>,
 }

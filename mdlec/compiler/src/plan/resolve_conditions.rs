@@ -1,5 +1,5 @@
-//! Conditions: quarks joined by AND, OR and NOT, and their text (docs/src/reference/semantics.md, 2.1;
-//! docs/src/reference/language.md, 7).
+//! Resolves conditions, that is, quarks joined by AND, OR and NOT, and writes their text
+//! (docs/src/reference/semantics.md, 2.1; docs/src/reference/language.md, 7).
 
 use std::num::NonZeroU32;
 
@@ -200,7 +200,7 @@ impl Resolving<'_, '_, '_> {
     }
 }
 
-/// Reports `after ahead by wait 5`: a cause follows its label directly.
+/// Reports `after ahead by wait 5`, where a word is between a label and its cause.
 fn by_word(cause: &tree::Condition, is_unknown: impl Fn(&Call) -> bool) -> Option<Diagnostic> {
     let ConditionNode::Call(call) = cause.node else { return None };
     let [Arg::Name(name), args @ ..] = call.args else { return None };

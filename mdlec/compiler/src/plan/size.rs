@@ -18,12 +18,13 @@ pub struct Bounds {
     pub operands: u64,
     /// Maximum length, in bytes, of a plan's text as `--emit plan` prints it.
     pub text: u64,
-    /// `true` if a plan may always be as large as its files are written.
+    /// `true` if a plan that is not larger than its files as written is always accepted.
     pub is_written_free: bool,
 }
 
 impl Bounds {
-    /// The bounds for files of the user. At these, `check` takes half a second and `analyze` a second.
+    /// The bounds for the user's own files. For a plan of this size, `check` takes half a second and `analyze` a
+    /// second.
     pub const FILES: Self = Self { brackets: 1 << 18, operands: 1 << 19, text: 1 << 26, is_written_free: true };
 }
 
@@ -53,7 +54,7 @@ pub(super) struct Excess {
 }
 
 impl Excess {
-    /// Returns the count of a size to which this limit applies.
+    /// Returns the number in `size` to which this limit applies.
     pub(super) fn count(&self, size: &Size) -> u64 {
         (self.of)(size)
     }

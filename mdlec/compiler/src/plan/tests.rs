@@ -1,4 +1,4 @@
-//! Names, arguments, plans by name and degeneracy: resolved plans and messages.
+//! Tests of names, arguments, plans by name and degeneracy, by resolved plans and messages.
 
 mod degeneracy;
 mod files;

@@ -1,4 +1,4 @@
-//! Infers the types of parameters that are written without types, and reports each such list once.
+//! Infers the types of parameters that are written without types, and reports each list of such parameters once.
 
 use std::collections::BTreeSet;
 
@@ -121,7 +121,8 @@ struct Uses<'a, 's> {
 }
 
 impl Uses<'_, '_> {
-    /// Returns the kind of the first parameter to which a name is given.
+    /// Returns the kind that a name must have: a count if it is a loop count, and otherwise the kind of the first
+    /// parameter that gets the name as its argument; `None` if the name is not used in these ways.
     fn kind_of(&self, name: &str) -> Option<Kind> {
         let is_name = |arg: &Arg<'_>| matches!(arg, Arg::Name(given) if given.node == name);
         if counts(self.elements, name) {
@@ -153,7 +154,7 @@ fn counts(elements: &[Element<'_>], name: &str) -> bool {
     })
 }
 
-/// Returns the first result of `visit` for a call in these elements.
+/// Calls `visit` with each call in these elements until a result is not `None`, and returns this result.
 fn calls<'s, T>(elements: &[Element<'s>], visit: &mut impl FnMut(&Call<'s>) -> Option<T>) -> Option<T> {
     elements.iter().find_map(|element| match element.primary {
         Primary::Atom(atom) => visit(atom.control).or_else(|| calls_of(&atom.condition, visit)),
@@ -169,7 +170,7 @@ fn calls<'s, T>(elements: &[Element<'s>], visit: &mut impl FnMut(&Call<'s>) -> O
     })
 }
 
-/// Returns the first result of `visit` for a call in a condition.
+/// Calls `visit` with each call in a condition until a result is not `None`, and returns this result.
 fn calls_of<'s, T>(condition: &Condition<'s>, visit: &mut impl FnMut(&Call<'s>) -> Option<T>) -> Option<T> {
     match condition.node {
         ConditionNode::Or(operands) | ConditionNode::And(operands) => {

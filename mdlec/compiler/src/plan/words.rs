@@ -1,4 +1,4 @@
-//! Interrupts and laws of a plan, by their names in scripts.
+//! Finds interrupts and laws of a plan by their names in scripts.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -43,6 +43,9 @@ impl<'p> Words<'p> {
     }
 
     /// Returns the text of the interrupt that a script names as `written`.
+    ///
+    /// # Errors
+    /// Returns a message if the plan has no such interrupt, or if a script must not name it.
     pub(crate) fn interrupt(&self, written: String) -> Result<String, String> {
         if self.interrupts.contains(written.as_str()) {
             return Ok(written);
@@ -57,6 +60,9 @@ impl<'p> Words<'p> {
     }
 
     /// Returns the text of the law that a script names as `written`.
+    ///
+    /// # Errors
+    /// Returns a message if the plan has no such law.
     pub(crate) fn law(&self, written: String) -> Result<String, String> {
         if self.laws.contains(written.as_str()) {
             return Ok(written);
@@ -102,8 +108,8 @@ fn known(written: &str, text: String, texts: &BTreeSet<&str>, [one, many]: [&str
 }
 
 impl Condition {
-    /// Returns the quark that fires by the time or by the path driven, with the reason why scripts omit it;
-    /// `None` if the condition is not such a quark.
+    /// Returns the quark that fires by the time or by the path driven, with the reason why scripts must omit it; `None`
+    /// if the condition is not such a quark.
     fn counted(&self) -> Option<(QuarkId, &'static str)> {
         match self {
             Self::Wait { quark, .. } | Self::Elapsed { quark, .. } => {

@@ -1,12 +1,12 @@
-//! Messages about arithmetic, which MDLe does not have. The messages contain the result, and convert values in units
-//! that MDLe does not have.
+//! Writes messages about arithmetic, which MDLe does not have. The messages contain the result, and convert values in
+//! units that MDLe does not have.
 
 use super::number::split;
 use super::source::{Place, Source};
 use crate::alphabet::Unit;
 use crate::diagnostic::{Code, Diagnostic};
 
-/// Units that MDLe does not have, as their names, their size in a unit of MDLe, and that unit.
+/// Units that MDLe does not have: the names of each unit, its size in a unit of MDLe, and the name of the MDLe unit.
 const FOREIGN: &[(&[&str], f64, &str)] = &[
     (&["km/h", "kmh", "kph", "kmph"], 1.0 / 3.6, "m/s"),
     (&["mph", "mi/h"], 0.447_04, "m/s"),

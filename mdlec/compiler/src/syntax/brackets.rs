@@ -111,7 +111,7 @@ struct Open {
     place: Option<Place>,
     /// Index of the bracket in the text's tokens, or of the token before which it was inserted.
     raw: usize,
-    /// Index of the message about a `)` in the place of the bracket's `}`.
+    /// Index of the message about a `)` in the place of the bracket's `}`; `None` if there is no such message.
     stray: Option<usize>,
 }
 
@@ -183,7 +183,7 @@ impl<'s> Pass<'_, 's> {
         self.balanced.tokens.push(token);
     }
 
-    /// Begins a line of regions if the text up to the byte offset `start` contains a line end.
+    /// Starts a new line in the regions if the text up to the byte offset `start` contains a line end.
     fn reach(&mut self, start: usize) {
         if self.source.slice(Place::new(self.reached, start)).contains('\n') {
             self.balanced.regions.begin_line();
@@ -201,7 +201,7 @@ impl<'s> Pass<'_, 's> {
         self.balanced.diagnostics.push(diagnostic);
     }
 
-    /// Returns `true` if the innermost bracket is that of an atom that already has its condition and its law.
+    /// Returns `true` if the innermost open bracket belongs to an atom that already has its condition and its law.
     fn in_complete_atom(&self) -> bool {
         if self.open.last().is_none_or(|open| open.kind != BracketKind::Atom) {
             return false;
@@ -271,7 +271,7 @@ impl<'s> Pass<'_, 's> {
         self.close(Token { kind, place: Place::new(end, end) })
     }
 
-    /// Closes all open brackets but the first `depth`, which are parentheses, and reports them with one message.
+    /// Closes all open brackets after the first `depth`, which must be parentheses, and reports them with one message.
     fn force_down_to(&mut self, depth: usize, missing_at: Place, before: &str) {
         let mut unclosed = Vec::new();
         let mut atom = false;
@@ -307,7 +307,7 @@ impl<'s> Pass<'_, 's> {
         }
     }
 
-    /// Inserts the missing parenthesis before an `Atom`.
+    /// Inserts the missing parenthesis before an `Atom`; returns `false` if brackets would be nested too deep.
     fn lone_atom(&mut self, index: usize, token: Token<'s>) -> bool {
         let place = Place::new(token.place.start, token.place.start);
         if !self.open(BracketKind::Atom, index, Token { kind: Tok::LParen, place }) {

@@ -66,7 +66,8 @@ fn place_of(recovery: Recovery<'_>, end: usize) -> (usize, Vec<String>) {
     }
 }
 
-/// Returns the innermost open bracket before each token and at the end of the text.
+/// Returns, for each token and for the end of the text, the index of the innermost open bracket before it; `None` if no
+/// bracket is open.
 fn openers(tokens: &[Token<'_>]) -> Vec<Option<usize>> {
     let mut open = Vec::new();
     let mut openers = Vec::with_capacity(tokens.len() + 1);

@@ -205,8 +205,8 @@ impl<'s> Rewriting<'_, 's> {
         is_like_atom(name) && !self.plans.contains(name) && is_open(self.before(at, 1)) && is_open(self.kind(at + 1))
     }
 
-    /// Reports a name that is a keyword of another language and not a plan of the file; returns the index of the
-    /// original token at which to continue.
+    /// Reports a name that is a keyword of another language and not a plan of the file. Returns the index of the
+    /// original token at which to continue; `None` if the name was not reported.
     fn word(&mut self, at: usize, name: &'s str) -> Option<usize> {
         let place = self.place(at, at);
         if self.is_atom(at, name) {
@@ -300,7 +300,9 @@ impl<'s> Rewriting<'_, 's> {
         self.ends.get(&at).copied()
     }
 
-    /// Reports an atom in square brackets, such as `[Atom (bumper) stop]`; the closing bracket is reported later.
+    /// Reports an atom in square brackets, such as `[Atom (bumper) stop]`, and replaces the opening bracket; the
+    /// closing bracket is replaced when it is reached. Returns the index of the original token at which to continue;
+    /// `None` if there is no such atom.
     fn atom_in_brackets(&mut self, at: usize) -> Option<usize> {
         let next = self.kind(at + 1)?;
         let is_atom = next == Tok::Atom || matches!(next, Tok::Name(name) if is_like_atom(name));
@@ -322,7 +324,8 @@ impl<'s> Rewriting<'_, 's> {
         Some(at + 1)
     }
 
-    /// Reports an import of another language, such as `import "corridors.mdle"`.
+    /// Reports an import of another language, such as `import "corridors.mdle"`. Returns the index of the original
+    /// token at which to continue; `None` if there is no import.
     fn import(&mut self, at: usize) -> Option<usize> {
         let place = self.place(at, at);
         if !matches!(self.kind(at + 1), Some(Tok::Str(_))) {
@@ -338,7 +341,8 @@ impl<'s> Rewriting<'_, 's> {
         Some(at + 1)
     }
 
-    /// Reports a file name without quotes, such as `use corridors.mdle`.
+    /// Reports a file name without quotes, such as `use corridors.mdle`. Returns the index of the original token at
+    /// which to continue; `None` if there is no such name.
     fn used(&mut self, at: usize) -> Option<usize> {
         if matches!(self.kind(at + 1), Some(Tok::Str(_))) || !self.open.is_empty() {
             return None;

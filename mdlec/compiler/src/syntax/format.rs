@@ -42,7 +42,7 @@ pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
     Ok(layout.lines.text())
 }
 
-/// Writer of the pieces in lines, in their order.
+/// State of the formatter: the pieces to write, in order, and the lines written so far.
 struct Layout<'s> {
     id: SourceId,
     pieces: Pieces<'s>,

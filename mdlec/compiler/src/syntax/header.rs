@@ -1,5 +1,5 @@
 //! Determines the meaning of a parenthesis after a plan's own name (docs/src/reference/language.md, 3.1): parameters,
-//! the condition, or the first element. The grammar could not know this before the end of the parenthesis.
+//! the condition, or the first element. The grammar could decide this only at the end of the parenthesis.
 
 use std::collections::BTreeSet;
 
@@ -44,8 +44,8 @@ pub(super) fn end<'s>(tokens: &[Token<'s>], brace: usize, plans: &mut Option<BTr
     Some(groups.next_back().map_or(name, |(at, _)| end_of_group(tokens, at)))
 }
 
-/// Index of the name of the plan whose opening brace is at `brace`: the next token, or in the plan of a group the token
-/// after its robots; `None` for the brace of a loop, or without a name.
+/// Returns the index of the name of the plan whose opening brace is at `brace`. The name is the next token, or in the
+/// plan of a group the token after the robots. Returns `None` for the brace of a loop, and for a plan without a name.
 fn name_of(tokens: &[Token<'_>], brace: usize) -> Option<usize> {
     let mut name = brace + 1;
     if is(tokens, name, Tok::Group) {
@@ -117,7 +117,7 @@ pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s
     }
 }
 
-/// Returns `true` if a name is that of a parameter type.
+/// Returns `true` if a name is the name of a parameter type.
 fn is_type(name: &str) -> bool {
     name == "bits" || Kind::NAMES.contains(&name)
 }

@@ -24,7 +24,7 @@ struct Open {
 }
 
 /// Returns the tokens before which a brace must be closed. Such a token begins a line that is not indented deeper than
-/// the line of the brace, while the lines between are.
+/// the line of the brace, while a line between the two is.
 pub(super) fn ends(source: Source<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, End> {
     let mut ends = BTreeMap::new();
     let mut open: Vec<Open> = Vec::new();

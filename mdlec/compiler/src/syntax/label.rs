@@ -1,5 +1,5 @@
-//! Labels of plans, such as `Γ_from^to` (docs/src/reference/language.md, 2): their length in the text, and their words
-//! without typesetting.
+//! Reads labels of plans, such as `Γ_from^to` (docs/src/reference/language.md, 2): determines their length in the text,
+//! and their words without typesetting.
 
 use std::borrow::Cow;
 
@@ -31,8 +31,8 @@ pub(super) fn label_length(text: &str) -> Option<usize> {
     Some(behind.and_then(name_length).map_or(to, |name| to + 1 + name))
 }
 
-/// Returns the length in bytes of the name at the start of `text`: a word, or words in braces that may be those of
-/// `\text`.
+/// Returns the length in bytes of the name at the start of `text`: a word, or words in braces, which may be the braces
+/// of `\text`.
 fn name_length(text: &str) -> Option<usize> {
     let mut parts = Part::lexer(text);
     match parts.next()?.ok()? {

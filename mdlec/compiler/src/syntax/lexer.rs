@@ -74,14 +74,15 @@ struct Reader<'s> {
     run: Option<Place>,
     /// End of a file name that was read although it is not in double quotes.
     skipped: usize,
-    /// The dots of signals, once the head of a group was read.
+    /// State of the dots in signals; `None` before the head of a group has been read.
     dots: Option<Dots>,
 }
 
 /// State of the dots in `robot1.x`.
 #[derive(Default)]
 struct Dots {
-    /// Number of open parentheses: a signal is in a condition.
+    /// Number of open parentheses. Outside of parentheses a dot cannot belong to a signal, because signals are in
+    /// conditions.
     depth: usize,
     /// The dot after the last token, if a word touches both sides of it.
     last: Option<Place>,
@@ -146,7 +147,7 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// Counts the parentheses of the plans after the head of a group.
+    /// Counts the open parentheses in the plans after the head of a group.
     fn count(&mut self, kind: Tok<'s>) {
         let Some(dots) = &mut self.dots else { return };
         #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are no parentheses")]
@@ -178,7 +179,7 @@ impl<'s> Reader<'s> {
         self.touches = end;
     }
 
-    /// Returns `true`, and marks the keyword, after `{ Group`.
+    /// Returns `true` if the last tokens are `{ Group`, and then marks `Group` as a keyword.
     fn begins_group(&mut self) -> bool {
         let [.., Token { kind: Tok::LBrace, .. }, word @ Token { kind: Tok::Name("Group"), .. }] =
             self.lexed.tokens.as_mut_slice()
@@ -202,7 +203,8 @@ impl<'s> Reader<'s> {
         matches!(self.lexed.tokens.last(), Some(Token { kind: Tok::Name(_), .. }))
     }
 
-    /// Returns `true` after the law of a formation, all of whose words are arguments: `formation line 1m goAvoid`.
+    /// Returns `true` if the last token is the law of a formation, as in `formation line 1m goAvoid`; the law and its
+    /// arguments are arguments of the formation.
     fn after_law_of_formation(&self) -> bool {
         let is_word = |token: &&Token<'_>| !matches!(token.kind, Tok::LParen | Tok::TouchParen | Tok::Comma);
         let mut words = self.lexed.tokens.iter().rev().filter(is_word).map(|token| token.kind);

@@ -1,5 +1,5 @@
-//! Messages about text that is not a token: unexpected characters, malformed numbers, and unterminated comments and
-//! strings.
+//! Writes messages about text that is not a token: unexpected characters, malformed numbers, and unterminated comments
+//! and strings.
 
 use super::arithmetic::{arithmetic, computed, foreign_unit, sum_of_units, word};
 use super::number::split;

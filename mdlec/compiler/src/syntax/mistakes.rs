@@ -1,4 +1,4 @@
-//! Messages about common mistakes, each with a text to type instead.
+//! Writes messages about common mistakes, each with a text to type instead.
 
 mod atoms;
 mod calls;
@@ -213,7 +213,7 @@ fn comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
     comma_in_atom(site)
 }
 
-/// Reports a comma in the condition of an atom, after it, or in the parentheses of its law.
+/// Reports a comma in an atom: inside its condition, after its condition, or in the parentheses of its law.
 fn comma_in_atom(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (opener, span) = (site.opener()?, site.span(site.at, site.at));
     let before = opener.checked_sub(1)?;

@@ -111,7 +111,7 @@ impl<'t, 's> Nodes<'t, 's> {
         self.put(Head { name: Some(name), group: None, params, condition })
     }
 
-    /// Head of the plan of a group, whose robots wait from `first` on.
+    /// Returns the head of a group's plan; the group's robots are the waiting arguments from `first` on.
     pub(super) fn group_head(
         &mut self,
         first: Option<First>,
@@ -127,8 +127,8 @@ impl<'t, 's> Nodes<'t, 's> {
         self.waiting.params.push(Param { name, type_name });
     }
 
-    /// Returns the name before a brace, as in `A { … }`. Its place has been reported, but other plans may refer to the
-    /// name.
+    /// Returns the name before a brace, as in `A { … }`. The name has been reported as misplaced, but other plans may
+    /// refer to it.
     fn name_before(&self, brace: Location) -> Option<Name<'s>> {
         let before = self.tokens.get((brace.token as usize).checked_sub(1)?)?;
         let Tok::Name(name) = before.kind else { return None };

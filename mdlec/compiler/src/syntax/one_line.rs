@@ -5,8 +5,8 @@ use super::source::Source;
 use crate::diagnostic::SourceId;
 
 /// Returns the tokens of `text` on one line, without comments, typesetting and enclosing parentheses; one space
-/// separates tokens that are separated in `text`. Also returns, for each offset in `ends`, which is the end of a token,
-/// the offset in that line.
+/// separates tokens that are separated in `text`. `ends` contains offsets in `text` at which tokens end; also returns
+/// the corresponding offsets in the line.
 #[must_use]
 pub fn one_line<const N: usize>(text: &str, ends: [Option<usize>; N]) -> (String, [Option<usize>; N]) {
     let tokens = lex(Source { id: SourceId(0), text }).tokens;

@@ -1,5 +1,5 @@
-//! Strings as printed in the paper (docs/src/reference/language.md, 3.2): commas between elements, and a plan without
-//! braces before `σ_null`.
+//! Reads strings as printed in the paper (docs/src/reference/language.md, 3.2), with commas between elements, and with
+//! plans without braces before `σ_null`.
 
 use std::borrow::Cow;
 
@@ -152,7 +152,7 @@ fn is_string(tokens: &[Token<'_>], first: usize, end: usize) -> bool {
 }
 
 /// Returns `true` if an element ends with the last of two tokens. An angle of `FRAME` and a count of `ExecPlan` do not
-/// end an element, and outside all plans a plan does not.
+/// end an element, and neither does the brace of a plan outside all plans.
 fn ends_element([before, last]: [Option<Tok<'_>>; 2], is_outside: bool) -> bool {
     let is_word = matches!(before, Some(Tok::Frame | Tok::ExecPlan));
     match last {

@@ -42,7 +42,7 @@ pub fn operands(text: &str) -> Option<Vec<&str>> {
 }
 
 /// Returns `true` if a text between `before` and `behind` is a plan with one element that `is_good` accepts, both on
-/// one line and with a line break after the text: no comment or bracket in the text extends beyond it.
+/// one line and with a line break after the text. Then no comment or bracket in the text extends beyond its end.
 fn is_alone(text: &str, before: &str, behind: &str, mut is_good: impl FnMut(&Element<'_>) -> bool) -> bool {
     text.chars().all(mdle_runtime::is_printable)
         && ["", "\n"].iter().all(|end| {

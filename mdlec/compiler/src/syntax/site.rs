@@ -49,7 +49,7 @@ impl<'s> Site<'_, 's> {
         self.openers.get(closer).copied().flatten().and_then(|at| self.kind(at))
     }
 
-    /// Returns the innermost open bracket before the unexpected token.
+    /// Returns the index of the innermost open bracket before the unexpected token; `None` if no bracket is open.
     pub(super) fn opener(&self) -> Option<usize> {
         self.openers.get(self.at).copied().flatten()
     }
@@ -80,8 +80,8 @@ impl<'s> Site<'_, 's> {
         self.kind(paren - 1) == Some(Tok::LBrace) && is_condition && !is_loop
     }
 
-    /// Returns the token whose region contains the defect: for a plan without a name the brace, not the token at which
-    /// the name is missing.
+    /// Returns the index of the token whose region contains the defect. For a plan without a name, this is the brace
+    /// and not the token at which the name is missing.
     pub(super) fn decisive(&self) -> usize {
         if self.is_plan_without_name() { self.at - 1 } else { self.at }
     }

@@ -1,4 +1,4 @@
-//! Snapshots of the parser: each source beside its outline and messages.
+//! Tests of the parser with snapshots: each source beside its outline and messages.
 
 mod format;
 mod forms;

@@ -59,7 +59,7 @@ pub(super) enum Tok<'s> {
     /// The dot between a robot and its signal; never reaches the parser.
     #[token(".")]
     Dot,
-    /// A name or a command that goes on as a label; see [`super::label::label_length`].
+    /// A name or a command that continues as a label; see [`super::label::label_length`].
     Label(&'s str),
     #[regex(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?", number)]
     Number(&'s str),

@@ -176,7 +176,7 @@ pub enum ConditionNode<'s> {
     And(&'s &'s [Condition<'s>]),
     /// A negation, which fires if the operand does not hold.
     Not(&'s Condition<'s>),
-    /// RISING, which fires if the operand holds and has been false at some time since the scope was entered.
+    /// RISING, which fires if the operand holds and did not hold in an earlier turn of the scope.
     Rising(&'s Condition<'s>),
     /// An interrupt quark.
     Call(&'s Call<'s>),
@@ -206,7 +206,7 @@ pub struct Compared<'s> {
 pub struct After<'s> {
     /// Label of the element that must have ended last.
     pub label: Name<'s>,
-    /// Operand that must have caused the end of that element.
+    /// Operand that must have caused the end of that element; `None` if any cause counts.
     pub cause: Option<Condition<'s>>,
 }
 
@@ -255,7 +255,7 @@ impl Comparison {
 pub struct Call<'s> {
     /// Name of the quark, signal or plan.
     pub name: &'s str,
-    /// Arguments without the parentheses around several of them, which have no meaning.
+    /// Arguments, without parentheses around several arguments, which have no meaning.
     pub args: &'s [Arg<'s>],
     /// Span from the name to the last argument or the closing parenthesis.
     pub span: Span,

@@ -1,4 +1,4 @@
-//! Numbers as arguments: their units, their ranges, and the messages about both.
+//! Converts numbers in arguments: checks their units and ranges, and reports errors in both.
 
 use super::ranges::{limit, meant_in_range};
 use super::{Fitted, Fitting, Value};
@@ -68,7 +68,7 @@ impl Fitting<'_> {
         Ok((value, text))
     }
 
-    /// Returns `value` if it is finite and in the parameter's range, which is in the parameter's own unit.
+    /// Returns `value`, which is in the parameter's unit, if it is finite and in the parameter's range.
     fn in_range(&self, number: &Number, param: &Param, value: f64) -> Result<f64, Box<Diagnostic>> {
         let unit = param.unit.map(|unit| format!(" {}", unit.name)).unwrap_or_default();
         if !value.is_finite() {

@@ -1,4 +1,4 @@
-//! Messages about numbers out of range: the text of limits, and the number that was probably meant.
+//! Writes messages about numbers out of range: the text of limits, and the number that was probably meant.
 
 use crate::alphabet::{Param, Unit};
 use crate::diagnostic::Diagnostic;

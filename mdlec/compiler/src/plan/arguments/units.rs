@@ -1,4 +1,4 @@
-//! Units that are separated from their numbers, and were read as arguments of their own.
+//! Reports units that are separated from their numbers, so that they were read as separate arguments.
 
 use super::Arguments;
 use crate::alphabet::Unit;
@@ -6,8 +6,8 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::nearest_unit;
 use crate::syntax::tree::{Arg, Call, Number};
 
-/// Reports the units of `call` that are separated from their numbers, or the faults that remain once they are
-/// joined.
+/// Reports the units of `call` that are separated from their numbers, and the faults that the call still has when they
+/// are joined; `None` if no unit is separated.
 pub(super) fn apart(
     call: &Call,
     fitted: impl Fn(&Call) -> Result<Arguments, Vec<Diagnostic>>,

@@ -1,4 +1,4 @@
-//! Message about a call with too many or too few arguments.
+//! Writes the message about a call with too many or too few arguments.
 
 use super::examples::{bits_apart, example};
 use super::{signature, written};

@@ -1,5 +1,5 @@
-//! W0201 and W0202: atoms that never end, and elements that are unreachable because an earlier element never
-//! ends.
+//! Warns of atoms that never end, and of elements that are unreachable because an earlier element never ends (W0201 and
+//! W0202).
 
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Atom, Condition, Interrupt, Node, Plan};

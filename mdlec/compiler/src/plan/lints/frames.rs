@@ -1,4 +1,4 @@
-//! W0207: a `FRAME here` that contains no law which turns to a heading or drives at a bearing.
+//! Warns of a `FRAME here` that contains no law which turns to a heading or drives at a bearing (W0207).
 
 use crate::alphabet::has_direction;
 use crate::diagnostic::{Code, Diagnostic};

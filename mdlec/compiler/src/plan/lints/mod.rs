@@ -1,4 +1,4 @@
-//! Lints (docs/src/reference/language.md, 5: W02xx to W04xx): valid plans that are probably not what was meant.
+//! Warns of valid plans that are probably not what was meant (docs/src/reference/language.md, 5: W02xx to W04xx).
 //!
 //! A lint reports only code that is certainly useless, and never code that may be intended.
 

@@ -1,5 +1,5 @@
-//! W0401: numbers without a unit that were probably meant in another unit, such as a speed of `0.5`, which
-//! means 0.5 cm/s.
+//! Warns of numbers without a unit that were probably meant in another unit, such as a speed of `0.5`, which means 0.5
+//! cm/s (W0401).
 
 use std::collections::BTreeMap;
 
@@ -135,7 +135,8 @@ impl Numbers<'_> {
         }
     }
 
-    /// Checks an argument. A length in an argument is driven, so its limit is lower than that of a position.
+    /// Checks an argument. A length in an argument is a distance to drive, so its limit is lower than the limit of a
+    /// position.
     fn argument(&mut self, number: &Number, kind: Kind, unit: &str, what: &str) {
         let size = number.digits().parse::<f64>().map_or(0.0, f64::abs);
         if kind == Kind::Length && unit == "m" && number.unit().is_none() && (UNUSUAL..=FAR).contains(&size) {
@@ -184,7 +185,8 @@ fn beyond_half_a_turn(number: &Number, value: f64) -> Option<Diagnostic> {
     Some(found.fix("the same heading is {}", number.span, format!("{same}deg")))
 }
 
-/// Returns the unit that was probably meant, and the reason why a value of this kind is doubtful in its unit.
+/// Returns the unit that was probably meant, and the reason why a value of this kind is doubtful in `unit`; `None` if
+/// the value is plausible.
 fn doubt(kind: Kind, unit: &str, value: f64) -> Option<(&'static str, &'static str)> {
     let size = value.abs();
     let is = |name: &str| Unit::from_name(name).is_some_and(|found| found.kind == kind) && unit == name;

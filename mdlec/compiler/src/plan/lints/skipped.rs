@@ -1,4 +1,4 @@
-//! W0301: loops that can be skipped in one turn, since no pass takes time while some conditions hold.
+//! Warns of loops that can be skipped in one turn, because no pass takes time while some conditions hold (W0301).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,7 +26,8 @@ struct Skipped<'p, 'f> {
 }
 
 impl Skipped<'_, '_> {
-    /// Checks the body of a scope, given that no operand of its interrupt has fired.
+    /// Checks the body of a scope, given that no operand of the scope's interrupt has fired. Returns `true` if the body
+    /// contains a reported loop.
     fn inside(&mut self, scope: &Scope) -> bool {
         let known = self.known.clone();
         for operand in scope.interrupt.condition.operands() {
@@ -164,8 +165,8 @@ impl<F: Fn(QuarkId) -> bool> Situation for AtOnce<F> {
     }
 }
 
-/// Returns the condition under which a sequence takes no time; `None` if there is none. Checks at most `left`
-/// elements. A law may complete at once, but is assumed to take time.
+/// Returns the condition under which a sequence takes no time; `None` if there is no such condition. Checks at most
+/// `left` elements. A law may complete at once, but is assumed to take time.
 fn all(body: &[Node], left: &mut usize) -> Option<Condition> {
     let mut conditions = Vec::new();
     for node in body {
@@ -182,7 +183,7 @@ fn all(body: &[Node], left: &mut usize) -> Option<Condition> {
     Some(Condition::And(conditions))
 }
 
-/// Returns the condition of the interrupt, if it can be true at once.
+/// Returns the condition of the interrupt, if it can be true when its scope is entered.
 fn own(interrupt: &Interrupt) -> Option<Condition> {
     let condition = &interrupt.condition;
     let never = matches!(

@@ -1,4 +1,4 @@
-//! Messages of each lint, and plans that no lint reports.
+//! Tests of the messages of each lint, and of plans that no lint reports.
 
 use crate::samples::judged;
 

@@ -1,5 +1,5 @@
-//! W0209: an atom that waits for another robot without a time limit, so that it waits for ever if that robot is
-//! off.
+//! Warns of an atom that waits for another robot without a time limit, so that it waits forever if that robot is off
+//! (W0209).
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
@@ -34,8 +34,8 @@ impl<'p> Unanswered<'p, '_> {
         }
     }
 
-    /// Returns the first quark by which a condition waits for another robot. A quark under NOT does not count,
-    /// since it ends without that robot.
+    /// Returns the first quark by which a condition waits for another robot; `None` if the condition waits for no
+    /// robot. A quark under NOT does not count, since it ends without that robot.
     fn waits(&self, condition: &Condition) -> Option<String> {
         match condition {
             Condition::Quark(id) => {

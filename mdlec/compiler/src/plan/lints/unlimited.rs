@@ -1,5 +1,5 @@
-//! W0208: a `goAvoid` to a point that only arrival or contact ends; it never ends if no path leads to the
-//! point.
+//! Warns of a `goAvoid` to a point that only arrival or contact ends, because it never ends if no path leads to the
+//! point (W0208).
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Atom, Condition, Interrupt, Node, Plan};

@@ -1,4 +1,4 @@
-//! Formal notation resolves to the plan that it was printed from, whatever labels `after` reads.
+//! Tests that formal notation resolves to the plan from which it was printed, whatever labels `after` reads.
 
 use crate::samples::{compiled, judged};
 

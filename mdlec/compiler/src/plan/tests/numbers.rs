@@ -1,4 +1,4 @@
-//! Tests that numbers of arguments are compared as written.
+//! Tests that numbers in arguments are compared as written.
 
 use crate::compile;
 use crate::diagnostic::SourceId;

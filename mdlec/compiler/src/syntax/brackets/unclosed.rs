@@ -1,4 +1,4 @@
-//! Brackets that are never closed.
+//! Closes brackets that have no closing bracket in the text, and reports them.
 
 use super::{BracketKind, Open, Pass};
 use crate::diagnostic::{Code, Diagnostic};

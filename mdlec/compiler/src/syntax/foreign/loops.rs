@@ -1,4 +1,4 @@
-//! Loops in the syntax of other languages, such as `repeat 3 { … }`, `forever { … }`, `for i in range(3): …`.
+//! Replaces loops in the syntax of other languages, such as `repeat 3 { … }`, `forever { … }`, `for i in range(3): …`.
 
 use super::{Rewriting, advice, is_like_loop};
 use crate::diagnostic::{Code, Diagnostic};

@@ -1,5 +1,5 @@
-//! Formatted lines, each with its trailing comment. Trailing comments of neighbouring lines with the same indentation
-//! are aligned.
+//! Collects formatted lines, each with its trailing comment. Trailing comments of neighbouring lines with the same
+//! indentation are aligned.
 
 /// Number of columns between the longest of neighbouring lines and its comment.
 const GAP: usize = 4;

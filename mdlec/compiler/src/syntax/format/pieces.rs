@@ -149,7 +149,7 @@ fn plain_label(written: &str) -> Cow<'_, str> {
     if is_label(&plain) { plain } else { Cow::Borrowed(written) }
 }
 
-/// Returns `true` if there is no space between two tokens.
+/// Returns `true` if two tokens are printed without a space between them.
 fn touch(before: Tok<'_>, token: Tok<'_>) -> bool {
     let opens = matches!(
         before,

@@ -1,4 +1,4 @@
-//! Mistakes in atoms: a condition or a law that is missing or misplaced.
+//! Reports mistakes in atoms: a condition or a law that is missing or misplaced.
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;
@@ -50,18 +50,18 @@ pub(super) fn atom_condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
 /// Laws that complete by themselves, and laws that never do.
 const LAWS: [&[&str]; 2] = [&["advance", "align", "Follow", "goAvoid", "path", "rotate", "turn"], &["go", "stop"]];
 
-/// Returns `true` if a name is that of a law in the paper or in `mdle-atoms`; the parser knows no alphabet.
+/// Returns `true` if a name is the name of a law in the paper or in `mdle-atoms`; the parser has no alphabet.
 fn is_law(name: &str) -> bool {
     LAWS.iter().any(|laws| laws.contains(&name))
 }
 
-/// Returns an example condition for a call of such a law.
+/// Returns an example of a condition for an atom with this call as its law.
 fn condition_for(call: &str) -> &'static str {
     let name = call.split(|letter: char| !letter.is_alphanumeric()).next().unwrap_or("");
     if LAWS[0].contains(&name) { "null" } else { "wait 10" }
 }
 
-/// Returns the index of an atom's only parentheses and the call in them, if it is the call of a law.
+/// Returns the index of an atom's only parentheses, and the call in them, if the call is a law.
 fn law_in_group<'s>(site: &Site<'_, 's>, group: usize) -> Option<(usize, &'s str)> {
     let end = site.at.checked_sub(1).filter(|end| *end > group + 1 && site.end_of_group(group) == *end)?;
     let is_only = site.kind(group) == Some(Tok::LParen) && site.name_at(group + 1).is_some_and(is_law);

@@ -1,4 +1,4 @@
-//! Mistakes with calls: laws, interrupts and plans that are unexpected or malformed.
+//! Reports mistakes with calls: laws, interrupts and plans that are unexpected or malformed.
 
 use super::atoms::end_of_call;
 use super::spelling;

@@ -1,4 +1,4 @@
-//! Mistakes in conditions: operators without an operand, and text that is not a condition.
+//! Reports mistakes in conditions: operators without an operand, and text that is not a condition.
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;

@@ -1,4 +1,4 @@
-//! Mistakes between plans: elements outside of a plan, names before their plans, and `use` of files.
+//! Reports mistakes between plans: elements outside of a plan, names before their plans, and mistakes with `use`.
 
 use super::plan_names::{name_before_plan, not_a_label};
 use crate::diagnostic::Diagnostic;

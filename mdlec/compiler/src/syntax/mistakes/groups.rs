@@ -1,4 +1,4 @@
-//! Mistakes in the head of a group: its robots and its name.
+//! Reports mistakes in the head of a group, which contains its robots and its name.
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;

@@ -1,4 +1,4 @@
-//! The canonical layout: examples, and proof that it keeps the tree and every comment.
+//! Tests of the canonical layout: examples, and checks that it keeps the tree and every comment.
 
 use proptest::prelude::*;
 
@@ -68,7 +68,7 @@ fn formatted(text: &str) -> String {
     format(SourceId(7), text).unwrap_or_else(|found| panic!("{text}\n{found:#?}"))
 }
 
-/// Tree of a text without errors, without the places.
+/// Returns the outline of a text without errors, which contains no places.
 fn tree(text: &str) -> String {
     let arena = Arena::new();
     let (file, found) = parse(SourceId(0), text, &arena);
@@ -76,7 +76,8 @@ fn tree(text: &str) -> String {
     outline(&file)
 }
 
-/// Comments of a text whose strings contain none, without spaces at the ends of their lines.
+/// Returns the comments of a text, without spaces at the ends of their lines. Strings in the text must contain no
+/// comments.
 fn comments(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut rest = text;

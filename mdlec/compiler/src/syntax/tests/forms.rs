@@ -1,4 +1,4 @@
-//! Every form of the language, with its tree.
+//! Tests of every form of the language, by its tree.
 
 use super::check;
 

@@ -1,4 +1,4 @@
-//! Messages about defects: one for each, with a text to type.
+//! Tests of the messages about defects: one message for each defect, with a text to type.
 
 use super::{Arena, check, one, parse};
 use crate::diagnostic::{Code, SourceId};

@@ -1,4 +1,4 @@
-//! Properties that hold for every text.
+//! Tests of properties that hold for every text.
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -85,7 +85,7 @@ fn soup() -> impl Strategy<Value = String> {
     })
 }
 
-/// Configuration of each test; prints the seed, which appears where a test fails.
+/// Returns the configuration of each test, and prints the seed, which the output of a failed test shows.
 pub(super) fn config() -> ProptestConfig {
     let default = ProptestConfig::default();
     let rng_seed = match default.rng_seed {
