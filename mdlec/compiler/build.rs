@@ -1,4 +1,4 @@
-//! Makes the parser from its grammar, and a table of the alphabets that are part of mdlec.
+//! Generates the parser from its grammar, and a table of the alphabets that are part of mdlec.
 
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 
@@ -19,7 +19,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     alphabets()
 }
 
-/// Writes `$OUT_DIR/alphabets.rs` for `src/builtin.rs`: the shared alphabets first, then those of the targets.
+/// Writes `$OUT_DIR/alphabets.rs`, which `src/builtin.rs` includes: the shared alphabet first, then the alphabets of
+/// the targets.
 fn alphabets() -> Result<(), Box<dyn Error>> {
     let root = targets::checkout("../..")?;
     println!("cargo::rerun-if-changed={}", root.join("targets").display());

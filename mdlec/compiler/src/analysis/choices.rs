@@ -8,7 +8,7 @@ use super::variables::Variable;
 use crate::fsm::Machine;
 use crate::plan::{After, Condition};
 
-/// Moment at which a condition is read.
+/// Turn in which a condition is read, relative to the condition's scope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum When {
     /// The turn in which the condition's scope is entered.
@@ -63,8 +63,7 @@ impl Choices {
         self.columns.iter()
     }
 
-    /// Returns the table of choices in which a condition has fired. A variable that is not among the variables is
-    /// false.
+    /// Returns the table of choices in which a condition has fired. A variable that was not enumerated counts as false.
     pub(super) fn fired(&self, read: Read<'_>, machine: &Machine) -> Table {
         let Read { condition, bracket, when } = read;
         let column = |variable| self.columns.get(&variable).cloned().unwrap_or_else(|| self.constant(false));
@@ -150,7 +149,7 @@ pub(super) fn variables(read: Read<'_>, machine: &Machine, found: &mut BTreeSet<
     found.len() <= MOST
 }
 
-/// Returns the variable of the fact that `after` tests: the fact itself, or the fact as it was before an element ended.
+/// Returns the variable of the fact that `after` tests: of its current value, or of its value before an element ended.
 fn fact(after: &After, when: When) -> Variable {
     match when {
         When::Entered | When::Later => Variable::Fact(after.record, after.fact),

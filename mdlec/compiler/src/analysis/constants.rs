@@ -1,5 +1,5 @@
-//! W0203: conditions that are never true, or that are true whenever they are first read, independent of the enclosing
-//! scopes.
+//! Finds conditions that are never true, or that are true whenever they are first read, regardless of the enclosing
+//! scopes (W0203).
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::Machine;
 use crate::plan::{Condition, Interrupt, condition_text};
 
-/// Evaluates conditions without their enclosing scopes; every signal counts as a number.
+/// Evaluation of conditions without regard to enclosing scopes, on the assumption that every signal is a number.
 pub(super) struct Constants<'l> {
     alone: KnownFacts<'l>,
 }
@@ -18,7 +18,7 @@ pub(super) struct Constants<'l> {
 struct Pair {
     one: String,
     other: String,
-    /// `true` if the condition would have two values with the other operator.
+    /// `true` if the condition could have both values with the other operator: OR instead of AND, or AND instead of OR.
     may_be_joined_otherwise: bool,
 }
 
@@ -27,13 +27,13 @@ impl<'l> Constants<'l> {
         Self { alone: KnownFacts::of_numbers(machine) }
     }
 
-    /// Returns `true` if an interrupt may not have fired when the scope of this bracket is entered.
+    /// Returns `true` if it is possible that an interrupt has not fired when the scope of this bracket is entered.
     pub(super) fn stays(&self, bracket: u32, condition: &'l Condition) -> bool {
         self.alone.stays(bracket, condition, When::Entered)
     }
 
-    /// Returns a warning about an interrupt with only one value. There is no warning about `null` and `wait inf`, which
-    /// never fire on purpose.
+    /// Returns a warning about an interrupt that has fired whenever its scope is entered, or that has an operand that
+    /// is never true. There is no warning about `null` and `wait inf`, which never fire on purpose.
     pub(super) fn lint(&self, bracket: u32, interrupt: &'l Interrupt) -> Option<Diagnostic> {
         let condition = &interrupt.condition;
         let remembers =
@@ -98,7 +98,8 @@ impl<'l> Constants<'l> {
         }
     }
 
-    /// Returns the kind of a bracket's scope in words, and the effect of an interrupt that has fired at once.
+    /// Returns the kind of a bracket's scope in words, and the effect of an interrupt that has fired when the scope is
+    /// entered.
     fn what(&self, bracket: u32) -> (&'static str, &'static str) {
         match bracket {
             0 => ("plan", "is over before it begins"),
@@ -107,8 +108,8 @@ impl<'l> Constants<'l> {
         }
     }
 
-    /// Returns the text of the condition, in which operands that are true at once are negated; `None` if there is no
-    /// such operand, or if one of them is always true.
+    /// Returns the text of the condition with each operand negated that is true when the scope is entered; `None` if
+    /// there is no such operand, or if such an operand is always true.
     fn opposite(&self, bracket: u32, condition: &'l Condition) -> Option<String> {
         // Where each operand may be false at once, only what joins them is at fault.
         if condition.operands().iter().all(|operand| self.stays(bracket, operand)) {
@@ -158,8 +159,9 @@ impl<'l> Constants<'l> {
         self.alone.is_possible(&wanted.collect::<Vec<_>>(), &BTreeMap::new())
     }
 
-    /// Returns the text of an operand of the interrupt's OR as it is in the plan, if the plan's text has the same
-    /// number of operands: `wait inf`, for example, is `null` in the condition.
+    /// Returns the text of an operand of the interrupt's OR as written in the plan; in the condition, `wait inf`, for
+    /// example, has become `null`. If the written text has another number of operands, returns the text of the operand
+    /// in the condition.
     fn written(&self, operand: &Condition, interrupt: &Interrupt) -> String {
         let operands = interrupt.condition.operands();
         let texts = operands_of(&interrupt.text);
@@ -191,12 +193,12 @@ fn operands_of(text: &str) -> Vec<&str> {
     found
 }
 
-/// Returns `true` if a condition obviously has two values.
+/// Returns `true` if a condition can obviously have both values.
 fn is_open(condition: &Condition) -> bool {
     matches!(condition, Condition::Quark(_) | Condition::Wait { nanos: 1.., .. } | Condition::After(_))
 }
 
-/// Proposes a replacement for an operand that is never true.
+/// Adds to a warning the advice to replace or to remove an operand that is never true.
 fn never_true(lint: Diagnostic, operands: &[Condition], text: &str, span: Span) -> Diagnostic {
     match operands {
         [_] => lint.fix("if it is never to fire, write {}", span, "(null)"),
@@ -204,7 +206,7 @@ fn never_true(lint: Diagnostic, operands: &[Condition], text: &str, span: Span) 
     }
 }
 
-/// Returns the text of the negation of a condition, whose own text is `text`.
+/// Returns the text of the negation of `condition`; `text` is the text of the condition.
 fn opposite(condition: &Condition, text: &str) -> String {
     #[allow(clippy::wildcard_enum_match_arm, reason = "all other conditions are negated as a whole")]
     match condition {

@@ -1,4 +1,5 @@
-//! Upper bound of a plan's duration by its timers, independent of the robot's sensors and of the completion of laws.
+//! Computes an upper bound of a plan's duration from its timers, regardless of the robot's sensors and of the
+//! completion of laws.
 //!
 //! A timer is read once per turn, so each timer can end later by up to the time between two turns.
 
@@ -33,7 +34,7 @@ impl Longest {
         }
     }
 
-    /// Returns the duration of `times` passes of the loop of this bracket; 0 means an endless loop.
+    /// Returns the duration of the loop with this bracket if it has `times` passes; 0 means an endless loop.
     fn times(self, times: u64, bracket: u32) -> Self {
         match self {
             Self::Bounded { .. } if times == 0 => Self::Unbounded(bracket),
@@ -81,8 +82,8 @@ pub(super) fn longest(machine: &Machine, found: &[BracketFacts], most: Most) -> 
     Longest::NONE
 }
 
-/// Returns `longest` with additional turns for searches that are cut at the end of a turn: each such turn makes the
-/// maximum number of transitions, and each transition leads to another state.
+/// Returns `longest` with the additional turns of a search for the next atom that exceeds the limit of a turn: each
+/// such turn makes the maximum number of transitions, and each transition leads to another state.
 fn searched(longest: Longest, machine: &Machine, most: Most) -> Longest {
     match longest {
         Longest::Bounded { nanos, turns } if most.is_cut => {
@@ -94,7 +95,7 @@ fn searched(longest: Longest, machine: &Machine, most: Most) -> Longest {
 }
 
 /// Returns the time in nanoseconds after which a condition has certainly fired (`fired` is `true`), or certainly has
-/// not (`fired` is `false`).
+/// not (`fired` is `false`); `None` if no such time is known.
 fn certain(condition: &Condition, fired: bool) -> Option<u64> {
     let any = |operands: &[Condition]| operands.iter().filter_map(|operand| certain(operand, fired)).min();
     let all = |operands: &[Condition]| {

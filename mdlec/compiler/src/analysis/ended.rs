@@ -11,7 +11,7 @@ use super::walk::{BracketFacts, Outcome, PlanFacts, Reach, walk};
 use crate::fsm::{Element, ElementKind, Machine};
 use crate::plan::RecordId;
 
-/// Walks over a machine until the facts of its records are complete. `one_turn` is passed to [`walk`].
+/// Walks over a machine repeatedly until a walk finds no new fact of its records. `one_turn` is passed to [`walk`].
 pub(super) fn walk_with_records(machine: &Machine, one_turn: bool) -> PlanFacts {
     /// Maximum number of walks: each walk but the last finds elements that can end only because of facts from the
     /// previous walk.

@@ -1,5 +1,5 @@
-//! Determines the operands that can end a scope, and the scopes that are always skipped, from the knowledge at their
-//! place.
+//! Determines the operands that can end a scope, and the scopes that are always skipped, from the facts that are known
+//! where the scope is entered.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,8 @@ use super::walk::{BracketFacts, Outcome, Reach, Skip, Walk};
 use crate::plan::Condition;
 
 impl<'l> Walk<'l> {
-    /// Determines the operands that can end a reached scope; returns the earliest time at which the scope can end.
+    /// Determines the operands that can end a scope; returns the earliest time at which the scope can end, or `None` if
+    /// it is never reached or never ends by itself.
     pub(super) fn judge(&mut self, number: u32, found: &mut BracketFacts) -> Option<u64> {
         let clock = self.clock?;
         let condition = self.element(number).condition();
@@ -54,7 +55,9 @@ impl<'l> Walk<'l> {
     /// Returns the earliest time in nanoseconds after which an operand can end its scope; `None` if it cannot end the
     /// scope.
     fn earliest(&self, operand: &'l Condition, number: u32) -> Option<u64> {
-        /// Maximum number of timers for which all positions of the present among their ends are tried.
+        /// Maximum number of timers in an operand that are examined: the operand is checked for each number of timers
+        /// that have already ended. An operand with more timers counts as possible at any time if it is possible at
+        /// all.
         const TIMERS: usize = 8;
         let asked = [Question { any: vec![self.read(operand, number, When::Later)], fired: true }];
         let mut variables = BTreeSet::new();

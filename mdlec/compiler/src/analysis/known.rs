@@ -1,5 +1,5 @@
-//! Knowledge at the place where a condition is read: no interrupt of an enclosing scope has fired, because these
-//! interrupts are read first (docs/src/reference/semantics.md, 5.2).
+//! Facts that are known at the place where a condition is read: no interrupt of an enclosing scope has fired, because
+//! these interrupts are read first (docs/src/reference/semantics.md, 5.2).
 //!
 //! "Impossible" holds for every run; "possible" may also mean that the question was too large to decide.
 
@@ -17,28 +17,27 @@ use crate::plan::{Condition, QuarkId};
 /// Maximum number of conditions of enclosing scopes that are considered for each variable of a question.
 const CLAUSES: usize = 8;
 
-/// A question about conditions: if `fired` is `true`, can at least one condition have fired; if `false`, can all
-/// conditions not have fired?
+/// A question about conditions: is it possible that at least one of the conditions has fired (if `fired` is `true`), or
+/// that no condition has fired (if `fired` is `false`)?
 #[derive(Debug, Clone)]
 pub(super) struct Question<'l> {
     pub(super) any: Vec<Read<'l>>,
     pub(super) fired: bool,
 }
 
-/// Knowledge at a place of a plan.
+/// Facts that are known at a place of a plan.
 #[derive(Debug)]
 pub(super) struct KnownFacts<'l> {
     pub(super) machine: &'l Machine,
     /// Earliest entry of the scope of each bracket, in nanoseconds since the plan began.
     pub(super) entered: Vec<u64>,
-    /// Variables that can have only one value, because otherwise an enclosing scope would have ended; with the scope's
-    /// bracket.
+    /// Variables that can have only one value, because otherwise an enclosing scope would have ended; each with the
+    /// value and the scope's bracket.
     units: BTreeMap<Variable, (bool, u32)>,
-    /// Ends of the timers of enclosing scopes, on the clock of `entered`, with the scopes' brackets; the last timer in
-    /// the list ends first.
+    /// Times at which timers of enclosing scopes end if each scope is entered at its time in `entered`, each with the
+    /// scope's bracket; in descending order.
     deadlines: Vec<(u64, u32)>,
-    /// Lengths of the path driven at which enclosing scopes end, in nanometres, with the scopes' brackets; in
-    /// descending order.
+    /// Path lengths at which enclosing scopes end, in nanometres, each with the scope's bracket; in descending order.
     distances: Vec<(u64, u32)>,
     /// Other conditions of enclosing scopes that have not fired, by the variables in them.
     clauses: BTreeMap<Variable, Vec<Read<'l>>>,
@@ -48,7 +47,7 @@ pub(super) struct KnownFacts<'l> {
     readings: Readings,
 }
 
-/// Knowledge that a scope adds for the elements inside it.
+/// Facts that become known inside a scope, because the scope has not ended.
 #[derive(Debug, Default)]
 pub(super) struct Assumptions {
     units: Vec<Variable>,
@@ -72,28 +71,31 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Returns the knowledge about a place without enclosing scopes: every signal is a number.
+    /// Returns the facts at a place without enclosing scopes, on the assumption that every signal is a number.
     pub(super) fn of_numbers(machine: &'l Machine) -> Self {
         Self { readings: Readings::Numbers, ..Self::new(machine, &PossibleFacts::Any) }
     }
 
-    /// Returns the end of the first timer of an enclosing scope to end, with the scope's bracket.
+    /// Returns the earliest time at which a timer of an enclosing scope ends, with the bracket of that scope; `None` if
+    /// there is no such timer.
     pub(super) fn deadline(&self) -> Option<(u64, u32)> {
         self.deadlines.last().copied()
     }
 
-    /// Returns the bracket of the enclosing scope because of which a variable has only one value.
+    /// Returns the bracket of the enclosing scope that leaves a variable only one value; `None` if there is no such
+    /// scope.
     pub(super) fn unit(&self, variable: Variable) -> Option<u32> {
         self.units.get(&variable).map(|(_, bracket)| *bracket)
     }
 
-    /// Returns the shortest path, in nanometres, whose length ends the scope of `bracket` or an enclosing scope, with
-    /// the bracket of that scope.
+    /// Returns the shortest path length, in nanometres, at which the scope of `bracket` or an enclosing scope ends,
+    /// with the bracket of that scope; `None` if there is no such length.
     pub(super) fn distance(&self, bracket: u32) -> Option<(u64, u32)> {
         self.distances.iter().rev().find(|(_, outer)| *outer <= bracket).copied()
     }
 
-    /// Returns the bracket of an enclosing scope whose condition depends on these variables.
+    /// Returns the bracket of an enclosing scope whose condition restricts the values of these variables; `None` if
+    /// there is no such scope.
     pub(super) fn around(&self, variables: &BTreeSet<Variable>) -> Option<u32> {
         let unit = variables.iter().find_map(|variable| self.unit(*variable));
         let relative = || self.relatives(variables).iter().find_map(|variable| self.unit(*variable));
@@ -108,7 +110,7 @@ impl<'l> KnownFacts<'l> {
         unit.or_else(clause).or_else(relative).or_else(distance)
     }
 
-    /// Records that the interrupt of this bracket has not fired.
+    /// Adds the facts that follow if the interrupt of this bracket has not fired; returns what `close` has to remove.
     pub(super) fn open(&mut self, bracket: u32, condition: &'l Condition) -> Assumptions {
         let mut added = Assumptions::default();
         for condition in flat(condition) {
@@ -148,7 +150,7 @@ impl<'l> KnownFacts<'l> {
         added
     }
 
-    /// Removes the knowledge that a scope added.
+    /// Removes the facts that a scope added.
     pub(super) fn close(&mut self, added: Assumptions) {
         for variable in added.units {
             self.units.remove(&variable);
@@ -165,7 +167,7 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Records that the scope of this bracket ends after a path of `nanometers`.
+    /// Records that the scope of this bracket ends after a path of this length.
     fn add_distance(&mut self, nanometers: u64, bracket: u32, added: &mut Assumptions) {
         match self.distances.last_mut() {
             Some((shortest, _)) if *shortest <= nanometers => {}
@@ -188,7 +190,7 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Returns other quarks of the same families whose values are known.
+    /// Returns quarks whose values are known, from the families of the quarks in `variables`.
     fn relatives(&self, variables: &BTreeSet<Variable>) -> Vec<Variable> {
         let mut found = Vec::new();
         for variable in variables {
@@ -213,7 +215,8 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Returns the only variable of a condition, with the value at which the condition has not fired.
+    /// Returns the only variable of a condition, with the value at which the condition has not fired; `None` for a
+    /// condition other than a single quark, `wait` or `after` and their negations.
     fn unit_of(&self, read: Read<'l>) -> Option<(Variable, bool)> {
         let leaf = |condition: &'l Condition| {
             let mut variables = BTreeSet::new();
@@ -232,7 +235,7 @@ impl<'l> KnownFacts<'l> {
         choices::variables(read, self.machine, found)
     }
 
-    /// Returns the value of a variable at this place, if only one value is possible.
+    /// Returns the value of a variable at this place; `None` if both values may be possible.
     fn known(&self, variable: Variable) -> Option<bool> {
         if let Variable::Way(bracket, nanometers) = variable {
             // The path since an outer entry is as long at least.
@@ -257,8 +260,8 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Returns `true` if all answers in `wanted` are possible in the same turn; `fixed` contains the values of some
-    /// variables.
+    /// Returns `true` if the answer to all questions in `wanted` can be yes in the same turn; `fixed` contains
+    /// variables with the values that they are assumed to have.
     pub(super) fn is_possible(&self, wanted: &[Question<'l>], fixed: &BTreeMap<Variable, bool>) -> bool {
         let mut variables = BTreeSet::new();
         let reads = wanted.iter().flat_map(|wanted| &wanted.any);

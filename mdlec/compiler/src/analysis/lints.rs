@@ -1,5 +1,5 @@
-//! W0202 to W0206, W0302 and W0303: conditions with one value, operands that never end their scope, and elements that
-//! are always skipped or never reached.
+//! Warns of conditions whose value is always the same, of operands that never end their scope, and of elements that are
+//! always skipped or never reached (W0202 to W0206, W0302 and W0303).
 //!
 //! A warning about a plan that is used more than once is reported only if it holds in every use.
 
@@ -124,7 +124,8 @@ impl<'l> Lints<'l> {
         Some(lint.fix("wait here until it becomes true again: {}", span, format!("(RISING ({text}))")))
     }
 
-    /// Returns the warning about an element after an element that never ends before the scope that encloses both.
+    /// Returns the warning about an element that is never reached, because the element before it never ends before an
+    /// enclosing scope ends.
     fn cut_off(&self, interrupt: &Interrupt, before: u32) -> Diagnostic {
         let lint = Diagnostic::new(Code::W0202, "this is never reached", interrupt.span, "never runs");
         let before = self.machine.element(before).interrupt().map(|before| before.span);
@@ -170,7 +171,8 @@ fn repeated(element: Element<'_>, interrupt: &Interrupt, before: &Interrupt) -> 
     lint.fix("or wait here until it becomes true again: {}", span, rising)
 }
 
-/// Returns the text of a scope's condition after `word`, a word that takes one operand.
+/// Returns the text of a scope's condition with the operator `word` (NOT or RISING) before it, in parentheses where
+/// needed.
 fn negated(word: &str, interrupt: &Interrupt) -> String {
     let text = &interrupt.text;
     if matches!(interrupt.condition, Condition::Quark(_)) {

@@ -1,5 +1,5 @@
-//! Static analysis: finds facts about every run of a plan without running it. These are the atoms that run, the
-//! operands that can end them, durations, and the size of the machine.
+//! Static analysis: finds facts about every run of a plan without running it: the atoms that run, the operands that can
+//! end them, durations, and the size of the machine.
 //!
 //! "Never" holds for every run; "possible" may also mean that the question was too large to decide.
 
@@ -39,7 +39,7 @@ pub struct Analysis {
     pub plan: String,
     /// Number of states of the plan's machine, including the termination state.
     pub states: u64,
-    /// Number of atoms as written, with the atoms of plans that are used by name.
+    /// Number of atoms as written, including the atoms of plans that are used by name.
     pub atom_count: usize,
     /// Number of interrupts as written that can fire, without `null` and removed interrupts.
     pub interrupts: usize,
@@ -49,8 +49,8 @@ pub struct Analysis {
     pub loop_depth: usize,
     /// Maximum number of transitions in one turn.
     pub transitions: u64,
-    /// Number of turns from the turn in which an interrupt fires to the turn that begins by sending the next atom's
-    /// input; `None` if the search for the next atom may continue forever.
+    /// Maximum number of turns from the turn in which an interrupt fires to the turn that begins by sending the next
+    /// atom's input; `None` if the search for the next atom may continue forever.
     pub reaction_turns: Option<u64>,
     /// Minimum time until the plan ends, in seconds; `None` if it never ends.
     pub shortest: Option<f64>,
@@ -69,7 +69,8 @@ pub struct Analysis {
 pub struct Duration {
     /// Duration in seconds; `None` if there is no bound.
     pub seconds: Option<f64>,
-    /// Number of turn periods to add to `seconds`: each timer is read once per turn, so it may end up to a period late.
+    /// Number of turn periods to add to `seconds`, because each timer is read once per turn and may end up to a period
+    /// late; `None` if there is no bound.
     pub turns: Option<u64>,
     /// Reason why there is no bound; `None` if there is a bound.
     pub because: Option<String>,
@@ -80,11 +81,11 @@ pub struct Duration {
 pub struct ScopeAnswer {
     /// Number of the scope; 1 is the plan.
     pub scope: usize,
-    /// Number of the enclosing scope.
+    /// Number of the enclosing scope; `None` for the plan.
     pub within: Option<usize>,
     /// Name of the scope; empty for a scope in formal notation.
     pub name: String,
-    /// First and last atom of the scope.
+    /// Numbers of the first and the last atom of the scope.
     pub atoms: [usize; 2],
     /// Reachability of the scope's atoms.
     pub reach: Reach,
@@ -154,8 +155,9 @@ pub fn body_ends(machine: &Machine, scope: Element<'_>) -> bool {
     walked.found.get(scope.index()).is_some_and(|found| found.body_ends)
 }
 
-/// Returns the maximum number of turns from the firing of an interrupt to the input of the next atom. This input is
-/// sent at the beginning of the next turn; a search that is cut continues in that turn.
+/// Returns the maximum number of turns from the firing of an interrupt to the input of the next atom; `None` if the
+/// search for the next atom may continue forever. The input is sent at the beginning of the next turn. A search that
+/// reaches the limit of a turn continues in the next turn.
 fn reaction(machine: &Machine, most: transitions::Most) -> Option<u64> {
     let endless = || machine.elements().any(|element| matches!(element.kind(), ElementKind::Loop { times: None }));
     match most.is_cut {
@@ -238,8 +240,8 @@ impl Answers {
     }
 }
 
-/// Returns the texts of the operands by which an interrupt can fire, and of those by which it cannot fire, without
-/// `null`.
+/// Returns the texts of the operands by which an interrupt can fire, and the texts of the operands by which it cannot
+/// fire, without `null`.
 fn by(condition: &Condition, found: &BracketFacts, machine: &Machine) -> (Vec<String>, Vec<String>) {
     let (mut can, mut never) = (Vec::new(), Vec::new());
     for (operand, outcome) in condition.operands().iter().zip(&found.operands) {

@@ -1,4 +1,4 @@
-//! Output of an analysis, as text with the figures of the plan and tables of its scopes and atoms, or as JSON.
+//! Writes an analysis as text, with the figures of the plan and tables of its scopes and atoms, or as JSON.
 
 use std::fmt::Write;
 

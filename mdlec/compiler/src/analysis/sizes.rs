@@ -1,4 +1,4 @@
-//! Size of the emitted machine, in bytes: its state from turn to turn, and its tables.
+//! Computes the size of the emitted machine, in bytes: the state that it keeps between turns, and its tables.
 
 use std::collections::BTreeSet;
 
@@ -17,8 +17,8 @@ const PLACE: usize = 16;
 pub struct Bytes {
     /// Form of the emitted plan: `code` or `rows`.
     pub form: &'static str,
-    /// Size of the state from turn to turn, without the running law: the position in the plan, the times of entry, the
-    /// frame.
+    /// Size of the state that the machine keeps between turns, without the running law: position in the plan, times of
+    /// entry, frame.
     pub state: u64,
     /// Size of the memories of RISING and `after`.
     pub memories: u64,

@@ -1,4 +1,4 @@
-//! Truth tables with one bit for every choice of values of some variables, in words of 64 bits.
+//! Truth tables, with one bit for every combination of the values of some variables, in words of 64 bits.
 
 /// Maximum number of variables for which all choices are enumerated.
 pub(super) const VARIABLES: usize = 12;

@@ -1,4 +1,4 @@
-//! Analyses of small plans: each warning is tested with a plan that has it, and with a near miss.
+//! Tests of analyses of small plans: each warning is tested with a plan that has it, and with a near miss.
 
 mod texts;
 
@@ -11,7 +11,7 @@ use crate::diagnostic::{Code, SourceId};
 use crate::fsm::{LawMeaning, Machine, ScopeMeaning};
 use crate::samples::compiled;
 
-/// The lints of the first plan of a text, each with the place that it is about.
+/// Returns the lints of the first plan of a text, one per line, each with the texts of its secondary labels.
 fn lints(text: &str) -> String {
     let compiled = compiled(text).swap_remove(0);
     let found = super::lints(&compiled.machine);
@@ -34,7 +34,7 @@ fn atoms(text: &str) -> Vec<(Reach, String)> {
     analysis.atoms.into_iter().map(|atom| (atom.reach, atom.ended_by.join(", "))).collect()
 }
 
-/// Returns the minimum and the maximum duration in seconds, and the turns in addition to the latter.
+/// Returns the minimum and the maximum duration in seconds, and the number of turns to add to the maximum.
 fn durations(text: &str) -> (Option<f64>, Option<f64>, Option<u64>) {
     let analysis = analyze(&compiled(text)[0].machine);
     (analysis.shortest, analysis.longest.seconds, analysis.longest.turns)
@@ -200,7 +200,8 @@ fn transitions_of_a_turn_are_counted_for_one_output_at_a_time() {
     }
 }
 
-/// Ten thousand scopes, one in the other, each with the condition of the one scope of this plan, and one atom.
+/// Returns a machine with `depth + 1` nested scopes, each with the name and condition of the plan in `text`, and one
+/// atom.
 fn nested(text: &str, depth: u32) -> Machine {
     let mut draft = compiled(text).swap_remove(0).machine.draft();
     let meaning: ScopeMeaning = draft.scopes[0].clone().expect("a plan");

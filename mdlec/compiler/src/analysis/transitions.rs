@@ -1,8 +1,8 @@
-//! Maximum number of transitions in one turn (docs/src/reference/semantics.md, 5.5).
+//! Computes the maximum number of transitions in one turn (docs/src/reference/semantics.md, 5.5).
 //!
-//! A turn reads one output at one time. If there are few interrupt quarks, the transitions are therefore counted for
-//! each choice of the quarks' values. Otherwise each quark may have any value each time, and the count is an upper
-//! bound.
+//! All conditions of a turn read the same output at the same time. If there are few interrupt quarks, the transitions
+//! are therefore counted for each choice of the quarks' values. Otherwise each quark may have another value whenever it
+//! is read, and the count is an upper bound.
 
 use std::collections::BTreeSet;
 
@@ -99,7 +99,9 @@ impl Chains {
         }
     }
 
-    /// Returns the chains of a scope that encloses `self` and whose interrupt fires with these certainties.
+    /// Returns the chains of a scope around elements with the chains `self`. `at_once` is the certainty that the
+    /// scope's interrupt has fired in the turn of entry, and `later` the certainty in any turn; `asks_after` is `true`
+    /// if the interrupt contains `after`.
     fn within(self, at_once: Certainty, later: Certainty, asks_after: bool) -> Self {
         let one = |certainty: Certainty| certainty.can.then_some(1);
         if at_once.must {
@@ -153,7 +155,8 @@ struct Certainty {
     must: bool,
 }
 
-/// Returns the certainty that a condition has fired, in the turn in which its scope is entered, or in any turn.
+/// Returns the certainty that a condition has fired, in the turn in which its scope is entered if `entered` is `true`,
+/// and otherwise in any turn.
 fn certainty(condition: &Condition, quarks: &[QuarkId], choice: usize, entered: bool) -> Certainty {
     let known = |value| Certainty { can: value, must: value };
     let unknown = Certainty { can: true, must: false };

@@ -21,7 +21,7 @@ use crate::plan::{Condition, QuarkId};
 pub enum Reach {
     /// The atom's law may be applied.
     Runs,
-    /// The atom may become the current atom, but then an interrupt of an enclosing scope has always fired.
+    /// The atom may become the current atom, but then its own interrupt or that of an enclosing scope has always fired.
     Skipped,
     /// The atom never becomes the current atom.
     Never,
@@ -39,7 +39,8 @@ pub(super) struct BracketFacts {
     pub(super) body_ends: bool,
     /// Reason why the bracket is always skipped, if it is.
     pub(super) skipped: Option<Skip>,
-    /// The element before this one, if this one is never reached because of it, and the text alone does not show that.
+    /// Number of the previous element, if it is the reason why this element is never reached, and the text alone does
+    /// not show that; `None` otherwise.
     pub(super) cut_off_by: Option<u32>,
 }
 
@@ -48,21 +49,21 @@ pub(super) struct BracketFacts {
 pub(super) enum Skip {
     /// The element's interrupt has always fired when the element is entered.
     AtOnce,
-    /// The element's interrupt has fired whenever the previous element ends; this is a bracket that ends the previous
-    /// element.
+    /// The element's interrupt has fired whenever the previous element ends; the number is that of the outermost
+    /// bracket whose interrupt can end the previous element.
     Behind(u32),
     /// An enclosing element is skipped.
     Inside,
 }
 
-/// Answer to the question whether an interrupt can fire by one of its operands.
+/// Result of the analysis of one operand of an interrupt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Outcome {
     /// The interrupt can fire by the operand.
     Possible,
     /// The operand is never true.
     Never,
-    /// The operand is true only if the interrupt of this bracket has fired.
+    /// The operand is true only if the interrupt of this bracket, an enclosing scope, has fired as well.
     Beaten(u32),
     /// The operand's timer ends later than a timer of this bracket.
     Late(u32),
@@ -78,12 +79,13 @@ type Facts<'l> = Vec<Read<'l>>;
 /// A bracket that encloses the current place of the walk.
 struct Open {
     reach: Reach,
-    /// Earliest entry of the bracket.
+    /// Earliest entry of the bracket; `None` if it is never entered.
     clock: Option<u64>,
-    /// Earliest end of the bracket by its own condition.
+    /// Earliest end of the scope by its own condition or the completion of its law; `None` if it never ends in this
+    /// way, and for a loop.
     own: Option<u64>,
     added: Assumptions,
-    /// `true` if the element before the bracket ends, as far as the text alone shows.
+    /// `true` if, by the text alone, the element before the bracket can end.
     written: bool,
 }
 
@@ -129,11 +131,11 @@ pub(super) struct Walk<'l> {
     /// Earliest entry of the next element; `None` if it is never entered.
     pub(super) clock: Option<u64>,
     pub(super) facts: Facts<'l>,
-    /// `true` if the element before the next one ends, as far as the text alone shows.
+    /// `true` if, by the text alone, the element before the next one can end.
     written: bool,
     /// `true` if the next element is inside a skipped element.
     skipping: bool,
-    /// The element before the next one.
+    /// Number of the element before the next one in the same string; `None` if the next element is the first.
     before: Option<u32>,
     /// `true` if every search for the next atom ends within one turn.
     pub(super) one_turn: bool,
@@ -216,7 +218,7 @@ impl<'l> Walk<'l> {
     /// Returns conditions of which at least one has fired when an element has ended; an empty list if that is not
     /// known.
     fn exit(&self, element: Element<'l>) -> Facts<'l> {
-        /// Maximum number of scopes that may end together.
+        /// Maximum number of nested last elements that are examined, because they may end together with the element.
         const ENDING: usize = 8;
         let mut exits = Vec::new();
         for here in iter::successors(Some(element), |here| here.children().last()).take(ENDING) {
@@ -233,7 +235,7 @@ impl<'l> Walk<'l> {
         Vec::new()
     }
 
-    /// Leaves the innermost element; the next element is entered at its earliest end.
+    /// Leaves the innermost element; the next element can be entered at the earliest end of this element.
     fn leave(&mut self, element: Element<'l>) {
         let Some(open) = self.open.pop() else { return };
         let inside = self.clock.filter(|_| element.atom().is_none());
@@ -269,7 +271,8 @@ impl<'l> Walk<'l> {
     }
 }
 
-/// Returns the earliest end of a loop, from its entry and the earliest end of its first pass.
+/// Returns the earliest end of a loop, from its entry and the earliest end of its first pass; `None` if the loop is
+/// never entered or never ends.
 fn passes(from: Option<u64>, pass: Option<u64>, times: Option<u64>) -> Option<u64> {
     let (from, pass, times) = (from?, pass?, times?);
     Some(from.saturating_add(pass.saturating_sub(from).saturating_mul(times)))

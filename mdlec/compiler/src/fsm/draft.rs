@@ -21,9 +21,9 @@ pub struct Draft {
     pub scopes: Vec<Option<ScopeMeaning>>,
     /// The place of each bracket in the plan's text.
     pub spans: Vec<Span>,
-    /// The law of each atom, in its frame.
+    /// The law of each atom, with the angle of the atom's frame.
     pub laws: Vec<LawMeaning>,
-    /// The frame of each atom that is inside a `FRAME here`.
+    /// The frame of each atom; `None` for an atom that is not inside a `FRAME here`.
     pub frames: Vec<Option<Here>>,
     /// For each bracket, the labels of the elements that end with it; only brackets with such labels are
     /// listed.
@@ -37,7 +37,7 @@ pub struct Draft {
 }
 
 impl Draft {
-    /// Returns the tables as the run-time system takes them.
+    /// Returns the tables in the form that the run-time system uses.
     pub(super) fn tables(&self) -> Fsm<'_> {
         Fsm { brackets: &self.brackets, atoms: &self.atoms, termination: self.termination }
     }
@@ -84,11 +84,11 @@ pub struct Sizes {
     /// Maximum number of memories at a level of scopes: the memories of RISING in the scope's interrupt, and
     /// after them the facts of the scope's record. All are empty when the scope is entered.
     pub memories: usize,
-    /// Number of levels of scopes, down to the last level with a `wait`, a `way` or a `FRAME here`. The machine
-    /// does not record the entry of scopes at deeper levels.
+    /// Number of levels of scopes, down to the deepest level with a `wait`, a `way` or a `FRAME here`. The machine does
+    /// not record the entry of scopes at deeper levels.
     pub levels: usize,
-    /// `true` if the machine keeps odometer and heading at the entry of scopes and the progress of the law, and not the
-    /// time alone: where there is a `way`, a `FRAME here`, a `stuck` or a `rendezvous`.
+    /// `true` if the machine stores, in addition to the time, odometer and heading at the entry of scopes and the
+    /// progress of the law. A plan with `way`, `FRAME here`, `stuck` or `rendezvous` needs them.
     pub stamps: bool,
     /// Maximum number of loops that enclose an atom.
     pub slots: usize,

@@ -15,7 +15,7 @@ const TEXT: u64 = 1 << 26;
 ///
 /// # Errors
 /// Fails with E0501 for a plan that cannot be lowered; E0502 for a plan with more than 100,000 states, or with too many
-/// conditions in these states.
+/// conditions or too much text in these states.
 pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
     expands(plan)?;
     Ok(plan.map(expand_scope))
@@ -104,14 +104,14 @@ fn expand_sequence(body: &[Node]) -> Vec<Node> {
     expanded
 }
 
-/// A quantity of elements, and the amount that one element has.
+/// A quantity that is added up over all elements, and the function that returns the amount of a single element.
 struct Count {
     /// Name of the quantity, in the plural.
     unit: &'static str,
     of: fn(Part<'_>) -> u64,
 }
 
-/// The amount of a quantity in a plan, and the loop that multiplies it most.
+/// Total of a quantity in a plan, and the loop that contributes most to it.
 #[derive(Default)]
 struct Expanded {
     all: u64,

@@ -1,5 +1,5 @@
-//! The machine as an FSM file (docs/src/reference/interfaces.md, 5): its states, and its interrupts with their
-//! moves; finite loops are expanded.
+//! Writes a machine as an FSM file (docs/src/reference/interfaces.md, 5), which contains its states, and its interrupts
+//! with their moves; finite loops are expanded.
 
 use serde::Serialize;
 
@@ -26,14 +26,14 @@ pub struct FsmFile {
     pub laws: Vec<String>,
     /// The interrupts, in pre-order of the expanded plan, then the completion of laws.
     pub interrupts: Vec<InterruptEntry>,
-    /// Texts of the interrupts that never fire: null interrupts, and interrupts that were removed because an
-    /// outer scope repeats them.
+    /// Names of the interrupts that never fire: null interrupts, and interrupts that were removed because an outer
+    /// scope repeats them.
     pub never: Vec<String>,
     /// The scopes in pre-order, with their names and their first and last states.
     pub scopes: Vec<ScopeEntry>,
 }
 
-/// An interrupt with its transition matrix, given by the columns that the matrix moves.
+/// An interrupt with its transition matrix, which is given by its moves.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InterruptEntry {
     /// Name of the interrupt: `x1`, `x2`, …, or `completed`.

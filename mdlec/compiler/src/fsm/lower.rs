@@ -56,7 +56,7 @@ struct NodePlace {
     level: u16,
     slot: u16,
     state: u64,
-    /// Level of the innermost enclosing scope with `FRAME here`.
+    /// Level of the innermost enclosing scope with `FRAME here`; `None` if there is no such scope.
     here: Option<u16>,
 }
 
@@ -105,8 +105,8 @@ impl Lowering {
         1
     }
 
-    /// Returns the level of the innermost scope with `FRAME here` for the elements of a scope at `place`; that
-    /// scope may be the innermost itself.
+    /// Returns the level of the innermost scope with `FRAME here` that contains the elements of the scope at `place`;
+    /// `None` if there is none. `is_here` is `true` if the scope at `place` itself has `FRAME here`.
     fn here(&mut self, is_here: bool, place: NodePlace) -> Option<u16> {
         if !is_here {
             return place.here;
@@ -138,7 +138,7 @@ impl Lowering {
         pass.checked_mul(times).filter(|states| *states < STATES).ok_or_else(|| too_many(repeated.span))
     }
 
-    /// Opens a bracket whose first atom is the next atom; [`Lowering::close`] sets its last atom.
+    /// Opens a bracket that begins with the next atom, and returns its number; [`Lowering::close`] sets the last atom.
     fn bracket(&mut self, kind: Kind, parent: u32, meaning: Option<ScopeMeaning>, marks: &[Mark], span: Span) -> u32 {
         self.memories(meaning.as_ref().map_or(0, |meaning| meaning.interrupt.memories));
         if let (Kind::Scope { level }, Some(meaning)) = (kind, &meaning)
@@ -158,7 +158,7 @@ impl Lowering {
         number
     }
 
-    /// Reserves room for this number of memories at each level.
+    /// Ensures that each level has at least this number of memories.
     fn memories(&mut self, memories: u32) {
         self.draft.sizes.memories = self.draft.sizes.memories.max(memories as usize);
     }

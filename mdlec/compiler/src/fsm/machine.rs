@@ -18,19 +18,19 @@ impl Machine {
         Self(draft)
     }
 
-    /// Returns a machine with tables that were not validated, for tests of tables that no plan has.
+    /// Returns a machine with tables that were not validated, for tests with tables that no plan produces.
     #[cfg(test)]
     pub(crate) fn unvalidated(draft: Draft) -> Self {
         Self(draft)
     }
 
-    /// Returns a copy of the tables, for tests that falsify them.
+    /// Returns a copy of the tables, for tests that corrupt them.
     #[must_use]
     pub fn draft(&self) -> Draft {
         self.0.clone()
     }
 
-    /// Returns the tables as the run-time system takes them.
+    /// Returns the tables in the form that the run-time system uses.
     #[must_use]
     pub fn tables(&self) -> Fsm<'_> {
         self.0.tables()
@@ -83,8 +83,7 @@ impl Machine {
         self.0.termination
     }
 
-    /// Returns the maximum number of scopes that enclose each other, including the plan and an atom's own
-    /// scope.
+    /// Returns the maximum nesting depth of scopes, including the plan and an atom's own scope.
     #[must_use]
     pub fn depth(&self) -> usize {
         self.elements().filter_map(Element::level).max().map_or(0, |level| usize::from(level) + 1)

@@ -1,8 +1,8 @@
-//! The transition matrices of a plan (paper, Eqs. 2 to 4; docs/src/reference/semantics.md, 8.3), its finite loops
-//! written out.
+//! Computes the transition matrices of a plan whose finite loops are written out (paper, Eqs. 2 to 4;
+//! docs/src/reference/semantics.md, 8.3).
 //!
-//! Every column of a matrix is a standard basis vector (Observation 1). Interrupts are in pre-order: of the
-//! interrupts that list a column, the outermost has the lowest number.
+//! Every column of a matrix is a standard basis vector (Observation 1). Interrupts are in pre-order: of the interrupts
+//! that list a column, the outermost has the lowest number.
 
 use std::ops::{Mul, RangeInclusive};
 
@@ -17,13 +17,13 @@ pub struct Matrices<'p> {
     pub laws: Vec<QuarkId>,
     /// Angle, in radians, by which the frame of each of these laws is turned.
     pub frames: Vec<f64>,
-    /// The interrupts in pre-order, including those of atoms.
+    /// The interrupts in pre-order, including the interrupts of atoms.
     pub transitions: Vec<Transition<'p>>,
 }
 
 impl<'p> Matrices<'p> {
-    /// Returns, for each atom whose law may complete, the number of the atom's own interrupt in
-    /// [`transitions`](Self::transitions) and the matrix by which the atom ends; in order.
+    /// Returns, for each atom whose law may complete, in order, the number of the atom's own interrupt in
+    /// [`transitions`](Self::transitions) and the matrix by which the atom ends.
     pub fn completion(&self, plan: &Plan) -> impl Iterator<Item = (usize, Matrix)> {
         let mut own = vec![None; self.laws.len()];
         // An atom is inside every scope that encloses it, so it comes last of those that list its column.
@@ -50,11 +50,11 @@ pub struct Transition<'p> {
     pub here: bool,
     /// Transition matrix of the interrupt.
     pub matrix: Matrix,
-    /// Index of the first interrupt, in pre-order, whose scope restarts when this interrupt has fired. The
-    /// scopes of all later interrupts that list the new state restart too. Matrices do not express restarts;
-    /// the tree does.
+    /// Index of the first interrupt, in pre-order, whose scope restarts when this interrupt has fired. The scopes of
+    /// all later interrupts that list the new state restart too. Matrices do not express restarts, so these are
+    /// computed from the plan.
     pub afresh: usize,
-    /// Record that is kept with the interrupt's scope.
+    /// Record that is kept with the interrupt's scope; `None` if the scope has no record.
     pub record: Option<Record>,
     /// Labels of the interrupt's scope.
     pub marks: &'p [Mark],
@@ -79,7 +79,7 @@ pub struct UnitVector {
 }
 
 impl Matrix {
-    /// Returns the columns that the interrupt lists: those of the states in its scope.
+    /// Returns the columns that the interrupt lists, which are the columns of the states in its scope.
     pub fn columns(&self) -> RangeInclusive<usize> {
         self.first..=self.last
     }
@@ -129,7 +129,7 @@ struct Brackets<'p> {
 struct Bracket<'p> {
     kind: BracketKind<'p>,
     around: Option<usize>,
-    /// Labels of the elements that end together with the atom.
+    /// Labels of the elements that end together with the bracket.
     marks: &'p [Mark],
     /// First state of the bracket, from 0.
     first: usize,
@@ -137,7 +137,7 @@ struct Bracket<'p> {
     last: usize,
     /// Number of the bracket's first interrupt.
     begins: usize,
-    /// Number after that of the bracket's last interrupt.
+    /// Number of the first interrupt after the bracket's last interrupt.
     ends: usize,
 }
 

@@ -1,11 +1,10 @@
-//! Checks Observation 1 of the paper on a machine: every column of its transition matrices is a standard basis
-//! vector.
+//! Checks Observation 1 of the paper on a machine: every column of its transition matrices is a standard basis vector.
 //!
-//! The matrix of a single scope has such columns by construction: the columns of its atoms have their 1 in the
-//! same row. If an interrupt that several scopes have is counted once, its matrix is a sum over these scopes
-//! (Eq. 3), and a column that two of them list would have two ones and a minus one. Intervals of a machine are
-//! nested or disjoint, so no scope may have the same interrupt as an enclosing scope: the plan of the machine
-//! is non-degenerate.
+//! The matrix of a single scope has such columns by construction: the columns of its atoms have their 1 in the same
+//! row. If an interrupt of several scopes is counted once, its matrix is a sum over these scopes (Eq. 3), and a column
+//! that two of the scopes list would have two ones and a minus one. The intervals of scopes are nested or disjoint, so
+//! this happens only if a scope has the same interrupt as an enclosing scope. The check is therefore that the plan of
+//! the machine is non-degenerate.
 
 use std::collections::BTreeMap;
 

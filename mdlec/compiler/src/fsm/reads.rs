@@ -1,4 +1,4 @@
-//! Attributes of modules that a plan reads (docs/src/reference/semantics.md, 2.5).
+//! Finds the attributes of modules that a plan reads (docs/src/reference/semantics.md, 2.5).
 
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ pub struct AttributeRead<'m> {
     pub module: &'m str,
     /// Name of the attribute, as in the alphabet.
     pub attribute: &'m str,
-    /// SI unit of the attribute's values; `None` if the alphabet has no signal of this name.
+    /// SI unit of the attribute's values; `None` if the alphabet has no signal of a module with this name.
     pub unit: Option<&'static str>,
 }
 
@@ -45,7 +45,8 @@ fn reads_of<'m>(quark: &'m Quark, alphabet: &'m Alphabet) -> Vec<AttributeRead<'
     reads.collect()
 }
 
-/// Returns the SI unit of an attribute: the unit of the signal that has this name and reads a module.
+/// Returns the SI unit of an attribute, that is, of the signal that has this name and reads a module; `None` if there
+/// is no such signal.
 fn unit(attribute: &str, alphabet: &Alphabet) -> Option<&'static str> {
     let is_read = |declaration: &&Declaration| {
         let own = |param: &crate::alphabet::Param| param.kind == Kind::Module && param.with.is_empty();

@@ -1,4 +1,4 @@
-//! Other robots that a plan reads by the state link (docs/src/reference/semantics.md, 2.6).
+//! Finds the other robots whose states a plan reads through the state link (docs/src/reference/semantics.md, 2.6).
 
 use std::collections::BTreeSet;
 

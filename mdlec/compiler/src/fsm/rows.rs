@@ -1,5 +1,4 @@
-//! A machine as rows of tables, whose quarks are still ids: `rust` prints the rows, and `load` replaces the ids
-//! by quarks.
+//! A machine as table rows that contain ids of quarks: `rust` prints the rows, and `load` replaces the ids by quarks.
 
 use std::collections::{BTreeSet, VecDeque};
 
@@ -9,7 +8,7 @@ use super::{Atom, Element, Machine};
 use crate::alphabet::{Alphabet, Kind};
 use crate::plan::{Condition, Quark, QuarkId, Value};
 
-/// The meaning of the brackets and atoms of a plan, as table rows.
+/// The conditions, laws and labels of a plan, as table rows.
 #[derive(Debug)]
 pub struct Rows {
     /// Condition that ends each bracket, in the order of the brackets.

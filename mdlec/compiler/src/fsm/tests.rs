@@ -1,4 +1,4 @@
-//! The tables of a plan and the limit on its states, as derived by hand from the rules
+//! Tests of the tables of a plan, and of the limit on its states, with values that were derived by hand from the rules
 //! (docs/src/reference/semantics.md, 8.1).
 
 use mdle_runtime::fsm::{Atom, Bracket};

@@ -31,7 +31,7 @@ pub fn validate(plan: &Nondegenerate, draft: &Draft) -> Result<(), Diagnostic> {
     same(root.span, "its termination state", states + 1, u128::from(draft.termination))
 }
 
-/// Surroundings of a node of the plan.
+/// Position of a node in the plan.
 #[derive(Clone, Copy)]
 struct Around {
     /// Bracket of the enclosing node; for the plan, its own bracket.
@@ -44,7 +44,7 @@ struct Around {
     loops: u16,
     /// Number of states of the expanded plan before the node, in the first pass of every loop.
     states: u128,
-    /// Level of the innermost enclosing scope that is entered in a frame of its own.
+    /// Level of the innermost enclosing scope that is entered in a frame of its own; `None` if there is no such scope.
     here: Option<u16>,
 }
 
@@ -140,8 +140,8 @@ impl Walk<'_> {
         Ok(1)
     }
 
-    /// Returns the level of the innermost scope with `FRAME here` for the nodes of a scope. If the scope itself
-    /// is the innermost, also checks that the machine has room for its heading.
+    /// Returns the level of the innermost scope with `FRAME here` that contains the nodes of a scope; `None` if there
+    /// is none. If the scope itself has `FRAME here`, also checks that the machine can store the heading of this scope.
     fn here(&self, is_here: bool, around: Around, span: Span) -> Result<Option<u16>, Diagnostic> {
         let Sizes { stamps, levels, .. } = self.draft.sizes;
         match is_here {
@@ -180,7 +180,7 @@ impl Walk<'_> {
         same(span, "what follows it", Some(in_plan), in_machine.and_then(|in_machine| self.step(number, in_machine)))
     }
 
-    /// Returns the step that the machine takes when this bracket ends.
+    /// Returns the step that the machine takes when this bracket ends; `None` if the machine's tables are inconsistent.
     fn step(&self, number: u32, bracket: &Bracket) -> Option<Step> {
         if number == 0 {
             return (bracket.parent == 0 && bracket.last as usize + 1 == self.draft.atoms.len()).then_some(Step::Over);
@@ -234,8 +234,8 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Checks that a record is stored after the memories of its scope's interrupt, and that the machine has
-    /// room for the record.
+    /// Checks that a record is stored after the memories of its scope's interrupt, and that the machine has enough
+    /// memories for the record.
     fn record(&self, record: Record, scope: &Scope, around: Around) -> Result<(), Diagnostic> {
         let (first, facts) = (scope.interrupt.memories, record.facts);
         let in_plan = RecordPlace { level: around.scopes, first, facts };

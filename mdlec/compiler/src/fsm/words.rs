@@ -1,4 +1,4 @@
-//! The words of a plan as written, and their lines, for reports.
+//! Texts of a plan as written, and the lines in which they begin, for reports.
 
 use std::path::Path;
 
@@ -10,23 +10,23 @@ use crate::diagnostic::{Sources, Span};
 use crate::plan::{Compared, Condition, OperandPlace, Quark, QuarkId};
 use crate::syntax::one_line;
 
-/// The words of the brackets and of the operands of a plan.
+/// The texts of the brackets and operands of a plan.
 #[derive(Debug, Default)]
 pub struct PlanWords {
     /// Names of the files, in order of first appearance.
     pub files: Vec<String>,
-    /// The words of each element, in the order of elements.
+    /// The texts of each element, in the order of elements.
     pub elements: Vec<BracketText>,
     /// The operands of all brackets, in the order of the brackets.
     pub operands: Vec<OperandText>,
 }
 
-/// The words of a bracket; see [`BracketWords`].
+/// The texts of a bracket; see [`BracketWords`].
 #[derive(Debug)]
 pub struct BracketText {
     /// Line in which the atom or the scope begins; 0 for a loop.
     pub at: SourceLine,
-    /// Condition of the scope as written.
+    /// Condition of the scope as written; empty if it has no operands that can fire.
     pub condition: String,
     /// Position of the bracket's first operand among the operands of all brackets.
     pub first: u32,
@@ -34,7 +34,7 @@ pub struct BracketText {
     pub count: u32,
 }
 
-/// The words of an operand; see [`OperandWords`].
+/// The texts of an operand; see [`OperandWords`].
 #[derive(Debug)]
 pub struct OperandText {
     /// Condition text of the operand, as traces show it.
@@ -64,7 +64,7 @@ impl Words for PlanWords {
     }
 }
 
-/// Returns the words of a machine's plan.
+/// Returns the texts of a machine's plan.
 #[must_use]
 pub fn words(machine: &Machine, sources: &Sources, alphabet: &Alphabet) -> PlanWords {
     let mut writing = Writing { machine, sources, alphabet, words: PlanWords::default() };
@@ -80,7 +80,7 @@ struct Writing<'a> {
 }
 
 impl Writing<'_> {
-    /// Adds the words of a bracket and of its operands.
+    /// Adds the texts of a bracket and of its operands.
     fn bracket(&mut self, element: Element<'_>) {
         let machine = self.machine;
         let at = self.line(element.interrupt().map(|_| element.span()));

@@ -1,15 +1,15 @@
-//! The entries of scopes of a loaded plan: times only, unless the plan needs odometer and heading.
+//! Stores the entries of scopes of a loaded plan: only times, unless the plan also needs odometer and heading.
 
 use mdle_runtime::{Entries, Here, Nanometers, Nanos, Output, Radians, Stamp, Stamps};
 
 use crate::fsm::Machine;
 
-/// Storage for the entries of scopes.
+/// Storage for the entry of the current scope at each level.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entered {
-    /// Time of the entry of each level.
+    /// Time at which the scope of each level was entered.
     times: Box<[Nanos]>,
-    /// Odometer, heading and progress as well, for a plan with `way`, `FRAME here` or `stuck`.
+    /// Odometer and heading at each entry, and the progress of the law; `None` if the plan needs only times.
     stamps: Option<Box<LevelStamps>>,
 }
 
@@ -22,7 +22,8 @@ impl Entered {
         Self::new(sizes.levels, sizes.stamps.then_some(machine))
     }
 
-    /// Returns storage for everything about each level of a machine, including levels without timers.
+    /// Returns storage for all data of all levels of a machine, including levels without timers, for a plan that is
+    /// observed.
     pub(super) fn observed(machine: &Machine) -> Self {
         Self::new(machine.depth(), Some(machine))
     }

@@ -52,7 +52,7 @@ impl<A: Alphabet> LoadedPlan<A> {
         Self { rows, looked_at, observes, has_stamps: loaded.has_stamps() }
     }
 
-    /// Returns the plan, which no longer records the moments of its turns.
+    /// Returns the plan in unobserved form: the moments of its turns are no longer recorded.
     #[must_use]
     pub fn unobserved(self) -> Self {
         Self { looked_at: None, ..self }

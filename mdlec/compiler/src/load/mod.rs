@@ -1,4 +1,5 @@
-//! A plan at run time: its rows, with quarks that the robot's bound alphabet creates from their names.
+//! Loads a plan at run time, without rustc: the robot's bound alphabet creates the quarks of the table rows from their
+//! names.
 
 mod entries;
 mod loaded_plan;
@@ -25,18 +26,17 @@ pub use table::{Loaded, Shared};
 /// Reason why a plan cannot be loaded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LoadError {
-    /// The target is bound to another alphabet than the one for which the plan was compiled: the name of the
-    /// target.
+    /// The target, whose name is given, is bound to another alphabet than the one for which the plan was compiled.
     OtherAlphabet(String),
-    /// The target does not implement a quark that its alphabet declares: the text of the quark.
+    /// The target does not implement the quark with this text, although its alphabet declares the quark.
     Unbound(String),
-    /// The plans of this process have more than [`MOST_NAMES`] bytes of names in all.
+    /// With this plan, the names of all plans that this process has loaded would have more than [`MOST_NAMES`] bytes.
     TooManyNames,
-    /// The plan has more bytes of new names than its [`NameBudget`].
+    /// The new names in the plan have more bytes than are left in its [`NameBudget`].
     OverBudget,
-    /// The plan reads more than [`PUBLISHED`] attributes of modules: the number of attributes.
+    /// The plan reads this number of attributes of modules, which is more than [`PUBLISHED`].
     TooManyReads(usize),
-    /// The plan names more than [`PEERS`] other robots: the number of robots.
+    /// The plan names this number of other robots, which is more than [`PEERS`].
     TooManyRobots(usize),
 }
 
@@ -79,10 +79,10 @@ pub fn load<A: mdle_runtime::Alphabet>(
     load_within(machine, sources, alphabet, &NameBudget::new(usize::MAX))
 }
 
-/// Loads the plan of a machine as [`load`] does, and spends its new names from this budget.
+/// Loads the plan of a machine as [`load`] does; the new names of the plan are charged to `budget`.
 ///
 /// # Errors
-/// Fails as [`load`] does, and if the plan has more new names.
+/// Fails as [`load`] does, and if the new names exceed the budget.
 pub fn load_within<A: mdle_runtime::Alphabet>(
     machine: &Machine,
     sources: &Sources,
@@ -95,10 +95,10 @@ pub fn load_within<A: mdle_runtime::Alphabet>(
     assemble(fsm::rows(machine), fsm::words(machine, sources, alphabet), machine, (alphabet, budget))
 }
 
-/// Loads the plan of a machine that has these rows and words.
+/// Loads the plan of a machine from its rows and words, without checking that the robot's crate is bound to `alphabet`.
 ///
 /// # Errors
-/// Fails as [`load`] does.
+/// Fails if the robot's crate lacks a quark, or if the names, attributes or robots are too many, as [`load`] does.
 pub fn with_rows<A: mdle_runtime::Alphabet>(
     rows: Rows,
     words: PlanWords,

@@ -1,4 +1,4 @@
-//! The names in loaded plans, which are kept as long as the process runs.
+//! Stores the names in loaded plans as long as the process runs.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -18,8 +18,8 @@ pub const MOST_NAMES: usize = 1_000_000;
 /// The names of this process.
 static NAMES: Mutex<Names> = Mutex::new(Names { kept: BTreeSet::new(), bytes: 0 });
 
-/// Number of bytes of new names that the plans of one source may still bring: the plans of another robot use up none of
-/// the names that the operator's plans need.
+/// Number of bytes that new names in the plans from one source may still have. With a budget of its own, another
+/// robot's plans cannot use up the names that the operator's plans need.
 #[derive(Debug)]
 pub struct NameBudget(Cell<usize>);
 
@@ -89,7 +89,7 @@ impl Names {
         Ok(kept)
     }
 
-    /// Includes `more` bytes in the number of bytes kept; fails if there are too many, or the budget has fewer.
+    /// Adds `more` to the number of bytes kept; fails if the maximum or the budget would be exceeded.
     fn count(&mut self, more: usize, budget: &NameBudget) -> Result<(), LoadError> {
         let bytes = self.bytes.saturating_add(more);
         if bytes > MOST_NAMES {

@@ -1,4 +1,4 @@
-//! The quarks of a plan, created from their names.
+//! Creates the quarks of a plan from their names.
 
 use mdle_runtime::{
     Alphabet, Argument, Comparison, Condition, Meters, MetersPerSecond, Nanos, Operand, Operator, Radians,
@@ -51,7 +51,7 @@ impl Quarks<'_> {
         A::comparison(made).ok_or_else(|| LoadError::Unbound(quark.text.clone()))
     }
 
-    /// Returns the quark that `make` creates from the quark's name and arguments.
+    /// Returns the quark with this id, which `make` creates from its name and arguments.
     pub(super) fn by_name<Q>(self, id: QuarkId, make: fn(&str, &[Argument<'_>]) -> Option<Q>) -> Result<Q, LoadError> {
         let Quark { name, overload, args, text, .. } = self.machine.quark(id);
         let declaration = self.alphabet.declarations_of(name).nth(*overload);

@@ -1,4 +1,4 @@
-//! The tables of a loaded plan, which owns them.
+//! Tables that a loaded plan owns.
 
 use std::sync::Arc;
 
@@ -60,7 +60,8 @@ impl<A: Alphabet> Loaded<A> {
         Self { brackets, atoms, termination, owned, laws, conditions, names, entered, slots, memories, machine: None }
     }
 
-    /// Returns the plan, observed from now on. `machine` is the machine of this plan.
+    /// Returns the plan in observed form, in which it records the moments of its turns. `machine` is the machine of
+    /// this plan.
     #[must_use]
     pub fn looked_at(self, machine: Arc<Machine>) -> Self {
         Self { machine: Some(machine), ..self }

@@ -20,7 +20,7 @@ pub(super) struct Build<'b, 's> {
     pub(super) numbers: Vec<usize>,
     /// Number of atoms that have been projected.
     pub(super) done: usize,
-    /// Meetings of the first robot as they are written, with the interrupts that it reads.
+    /// Meetings as written in the group's plan, each with the interrupts that the first robot reads in its place.
     pub(super) meetings: BTreeMap<String, BTreeSet<String>>,
     /// For each label of an atom, the number of atoms before that atom.
     pub(super) labels: BTreeMap<&'s str, usize>,
@@ -60,7 +60,8 @@ impl<'s> Build<'_, 's> {
         self.arena.alloc(Call { name, args: self.arena.alloc_slice_copy(args), span })
     }
 
-    /// Returns the condition `past ROBOT NUMBER` at `span`. If the span is empty, reports of runs show this text.
+    /// Returns the condition `past ROBOT NUMBER` at `span`. For an empty span, reports of runs show the text of this
+    /// condition.
     pub(super) fn past(&self, robot: &Name<'s>, number: usize, span: Span) -> Condition<'s> {
         let number = Number::new(self.arena.alloc_str(&number.to_string()), span);
         let call = self.call("past", &[Arg::Name(Name { node: robot.node, span }), Arg::Number(number)], span);

@@ -1,13 +1,14 @@
-//! Projects the conditions of a group. The first robot reads the conditions of atoms and behaviors. In the condition of
-//! the whole group, an operand about one robot guards the plan of that robot, and the first robot detects by `past`
-//! that another robot has left its plan.
+//! Projects the conditions of a group. The first robot reads the conditions of atoms and behaviors. An operand about
+//! one robot in the group's own condition becomes a part of the condition of this robot's plan, and the first robot
+//! detects by `past` that another robot has left its plan.
 
 use super::build::{Build, begin};
 use super::owners::{ANY, LINK, MEETING, Owned, Owner, Place};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{After, Arg, Call, Compared, Condition, ConditionNode, Operand, Plan};
 
-/// Returns the guards of the robots' plans, in the order of the group.
+/// Returns, for each robot in the order of the group, the condition that guards the robot's plan: when it fires, only
+/// the final stop of the plan remains. Returns `None` for a robot without such a condition.
 pub(super) fn guards<'s>(plan: &Plan<'s>, build: &mut Build<'_, 's>) -> Vec<Option<Condition<'s>>> {
     let whole = plan.condition.filter(|condition| condition.node != ConditionNode::Null);
     let span = whole.map_or(plan.name.span, |condition| condition.span);
@@ -43,12 +44,13 @@ pub(super) fn of_behavior<'s>(condition: &Condition<'s>, build: &mut Build<'_, '
     build.read(condition, Place::Behavior, 0)
 }
 
-/// Returns `true` for a timer that ends the group: an infinite one never does.
+/// Returns `true` if the operand is a timer that ends the group: a `wait` with a finite time.
 fn is_timer(operand: &Condition<'_>) -> bool {
     matches!(operand.node, ConditionNode::Call(call) if call.name == "wait" && !matches!(call.args, [Arg::Infinity(_)]))
 }
 
-/// Returns `true` if there is an `any` within an odd number of NOTs; the condition itself is, if `is_negated`.
+/// Returns `true` if the condition contains an `any` within an odd number of NOTs. `is_negated` is `true` if an odd
+/// number of NOTs encloses the condition itself.
 fn negates_any(condition: &Condition<'_>, is_negated: bool) -> bool {
     match condition.node {
         ConditionNode::Or(operands) | ConditionNode::And(operands) => {
@@ -71,7 +73,8 @@ fn untimed(plan: &Plan<'_>, whole: Option<&Condition<'_>>) -> Diagnostic {
 }
 
 impl<'s> Build<'_, 's> {
-    /// Returns the robots whose plans an operand of the group's condition guards.
+    /// Returns the indices of the robots that read this operand of the group's condition. Reports an operand that no
+    /// robot can read.
     fn guarded(&mut self, operand: &Condition<'s>) -> Vec<usize> {
         let all = 0..self.robots.len();
         if negates_any(operand, false) {
@@ -101,7 +104,7 @@ impl<'s> Build<'_, 's> {
         }
     }
 
-    /// Adds the owners of the quarks of a condition.
+    /// Appends the owners of all quarks in a condition to `owners`.
     fn owners(&mut self, condition: &Condition<'s>, owners: &mut Vec<Owner>) {
         match condition.node {
             ConditionNode::Or(operands) | ConditionNode::And(operands) => {
@@ -115,8 +118,8 @@ impl<'s> Build<'_, 's> {
         }
     }
 
-    /// Returns the owner of a quark, without reporting errors. An invalid quark counts as one of the first robot, for
-    /// which it is reported later.
+    /// Returns the owner of a quark, without reporting errors. An invalid quark counts as a quark of the first robot;
+    /// the error is reported when the condition of that robot is projected.
     fn silently(&mut self, call: &Call<'s>) -> Option<Owner> {
         let first = self.found.len();
         let owned = self.owned(call, Place::Head);
@@ -147,7 +150,7 @@ impl<'s> Build<'_, 's> {
         Condition { node, span }
     }
 
-    /// Projects the cause after a label as in the condition of the atom with this label.
+    /// Projects the cause in `after LABEL CAUSE` in the same way as in the condition of the atom with this label.
     fn cause(&mut self, label: &str, cause: &Condition<'s>, place: Place, robot: usize) -> Condition<'s> {
         let labelled = self.labels.get(label).copied().unwrap_or(self.done);
         let done = std::mem::replace(&mut self.done, labelled);

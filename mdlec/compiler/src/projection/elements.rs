@@ -21,7 +21,7 @@ const LAST_STOP: &str = "2s";
 /// Elements of each robot, in the order of the group.
 type Parts<'s> = Vec<Vec<Element<'s>>>;
 
-/// Returns the plans of the robots, in the order of the group, and the meetings of the first one.
+/// Returns the plans of the robots, in the order of the group, and the meetings of the first robot.
 pub(super) fn plans<'s>(
     plan: &Plan<'s>,
     robots: &[Name<'s>],
@@ -42,8 +42,8 @@ pub(super) fn plans<'s>(
     (plans, build.meetings)
 }
 
-/// Adds, for each atom, the number of the atom after it, and its label. An atom whose law may complete counts as two: a
-/// waiting atom follows it.
+/// Appends the number of the next atom to `numbers` for each atom, and adds the labels of atoms to `labels`. An atom
+/// whose law may complete counts as two, because a waiting atom follows it.
 fn number<'s>(
     elements: &[Element<'s>],
     alphabet: &Alphabet,
@@ -75,7 +75,7 @@ fn uses_frame(alphabet: &Alphabet, name: &str) -> bool {
     alphabet.declarations_of(name).any(|known| has_direction(name, known.params.iter().map(|param| param.kind)))
 }
 
-/// Returns `true` if a law in these projected elements may use a direction of the frame around them.
+/// Returns `true` if a law in these projected elements may use a direction of the enclosing frame.
 fn use_frame(alphabet: &Alphabet, elements: &[Element<'_>]) -> bool {
     elements.iter().filter(|element| element.frame() != Some(&Frame::Here)).any(|element| match element.primary {
         Primary::Atom(atom) => uses_frame(alphabet, atom.control.name),
@@ -86,7 +86,8 @@ fn use_frame(alphabet: &Alphabet, elements: &[Element<'_>]) -> bool {
 }
 
 impl<'s> Build<'_, 's> {
-    /// Makes the plan of a robot: its elements under its guard, and then the last stop.
+    /// Makes the plan of a robot: a behavior that contains the robot's elements and has the condition `guard`, followed
+    /// by the final stop.
     fn plan(&self, plan: &Plan<'s>, robot: Name<'s>, guard: Option<Condition<'s>>, body: &[Element<'s>]) -> Plan<'s> {
         let span = plan.name.span;
         let body = self.list(body);
@@ -151,7 +152,7 @@ impl<'s> Build<'_, 's> {
         parts
     }
 
-    /// Returns `true` for the name of the plan of one of the robots.
+    /// Returns `true` if `name` is the name of the plan of a robot in the group.
     fn is_part(&self, name: &str) -> bool {
         self.robots.iter().any(|robot| part_name(self.group, robot.node) == name)
     }
@@ -160,8 +161,8 @@ impl<'s> Build<'_, 's> {
         self.found.push(Diagnostic::new(Code::E0208, message, span, "not in a group").help(help));
     }
 
-    /// Projects an atom: the first robot keeps its condition, every other robot runs it until the first robot has
-    /// reached its next atom.
+    /// Projects an atom. In the plan of the first robot the atom keeps its condition; in the plan of every other robot
+    /// it runs until the first robot has reached its next atom.
     fn group_atom(&mut self, atom: &Atom<'s>, element: &Element<'s>, parts: &mut Parts<'s>) {
         let condition = conditions::of_atom(&atom.condition, self);
         self.done += 1;
@@ -203,7 +204,8 @@ impl<'s> Build<'_, 's> {
         self.joined(inner, element, parts);
     }
 
-    /// Adds the elements of a string to those of each robot; they keep its frame where one of their laws uses it.
+    /// Appends the projected elements of a string to the elements of each robot. The first robot keeps the string's
+    /// label and frame; another robot keeps the frame if a law in its elements may use it.
     fn joined(&self, inner: Parts<'s>, element: &Element<'s>, parts: &mut Parts<'s>) {
         for (robot, (part, inner)) in parts.iter_mut().zip(inner).enumerate() {
             let label = element.label().filter(|_| robot == 0);

@@ -1,17 +1,18 @@
-//! Formations: `formation SHAPE SPACING (LAW)` becomes the law of the first robot, and a slot for each of the others.
+//! Projects formations: `formation SHAPE SPACING (LAW)` becomes the law of the first robot, and a `slot` for each other
+//! robot.
 
 use super::build::Build;
 use crate::alphabet::{Alphabet, Kind, Param, Unit, did_you_mean};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Arg, Call};
 
-/// Name of the word that begins a formation.
+/// Word that begins a formation.
 pub(super) const FORMATION: &str = "formation";
-/// The law of a first robot that leaves room for the others.
+/// Name of the law by which the first robot leaves room for the other robots.
 const LEAD: &str = "lead";
 /// Height of a triangle with sides of length 1.
 const HEIGHT: f64 = 0.866_025_403_784_438_6;
-/// Minimum distance of the robots, in metres.
+/// Minimum distance between robots, in metres.
 const LEAST: f64 = 0.01;
 const EXAMPLE: &str = "a formation is written `formation triangle 1m (goAvoid 0 7m 20)`";
 
@@ -34,8 +35,8 @@ enum Shape {
 const SHAPES: [(&str, Shape); 3] = [("line", Shape::Line), ("column", Shape::Column), ("triangle", Shape::Triangle)];
 
 impl Shape {
-    /// Returns the place of the `number`-th of the other robots, ahead of the first robot and to its left, for a
-    /// spacing of 1.
+    /// Returns the place of a robot relative to the first robot, as distances ahead and to the left, for a spacing of
+    /// 1. `number` counts the robots after the first, from 0.
     fn slot(self, number: u32) -> (f64, f64) {
         let (row, side) = (f64::from(number / 2 + 1), if number.is_multiple_of(2) { 1.0 } else { -1.0 });
         match self {
@@ -45,8 +46,8 @@ impl Shape {
         }
     }
 
-    /// Returns the room beside the first robot that `others` robots need, for a spacing of 1. A column swings out in
-    /// bends.
+    /// Returns the free width that `others` more robots need beside the first robot, for a spacing of 1. A column needs
+    /// some width because it swings out in bends.
     fn width(self, others: u32) -> f64 {
         match self {
             Self::Line => f64::from(others.div_ceil(2)),
@@ -87,7 +88,7 @@ pub(super) fn read<'s>(call: &Call<'s>, build: &mut Build<'_, 's>) -> Option<For
     Some(Formation { first, others: slots.collect() })
 }
 
-/// Returns `true` if these arguments of `goAvoid` fit those that `lead` takes after its width.
+/// Returns `true` if these arguments of `goAvoid` fit the parameters of `lead` that follow its width.
 fn fit(args: &[Arg<'_>], alphabet: &Alphabet) -> bool {
     let fits = |arg: &Arg<'_>, param: &Param| match arg {
         Arg::Number(number) => {
@@ -129,7 +130,7 @@ fn shape(call: &Call<'_>, others: u32) -> Result<Shape, Diagnostic> {
     Ok(*shape)
 }
 
-/// Returns the distance of the robots in metres, with its place.
+/// Returns the distance between the robots in metres, and the span of the argument.
 fn spacing(arg: &Arg<'_>) -> Result<(f64, Span), Diagnostic> {
     let span = arg.span();
     let wrong = |message: String, here: &str| Diagnostic::new(Code::E0306, message, span, here);

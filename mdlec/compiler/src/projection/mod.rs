@@ -1,7 +1,7 @@
 //! Projects the plan of a group of robots: makes one plan for each robot (docs/src/reference/semantics.md, 2.7; paper,
 //! sections II-C and III-G).
 //!
-//! A projected plan is a tree whose spans are those of the group's text, so later stages need not know of groups.
+//! A projected plan is a tree with spans of the group's text, so later stages do not depend on groups.
 
 mod build;
 mod conditions;
@@ -31,13 +31,14 @@ pub struct Part {
     pub robot: String,
     /// Name of the robot's own plan.
     pub plan: String,
-    /// Meetings of the first robot as they are written, such as `all rendezvous`, with the interrupts that it reads.
+    /// Meetings as written in the group's plan, such as `all rendezvous`, each with the interrupts that the first robot
+    /// reads in its place; empty for every other robot.
     pub meetings: BTreeMap<String, BTreeSet<String>>,
 }
 
 impl Part {
-    /// Returns the texts of the robot's own quarks that a text of the group names: that of `x > 7m` for `a.x > 7m`, and
-    /// all of a meeting.
+    /// Translates a text of the group's plan to texts of the robot's own plan: `a.x > 7m` becomes `x > 7m`, and a
+    /// meeting becomes all interrupts that the robot reads in its place.
     #[must_use]
     pub fn own_words(&self, text: &str) -> Vec<String> {
         let words: Vec<_> = text.split_whitespace().collect();
@@ -51,8 +52,8 @@ impl Part {
     }
 }
 
-/// Replaces the plan of each group by the plans of its robots; returns those plans' names, and the errors of the
-/// groups.
+/// Replaces the plan of each group by the plans of its robots. Returns a [`Part`] for each of the new plans, and the
+/// errors in groups.
 pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet) -> (Vec<Part>, Vec<Diagnostic>) {
     let mut found = robots::misplaced(files);
     if files.plans.iter().all(|plan| plan.group.is_none()) {
@@ -93,7 +94,7 @@ pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet)
     (parts, found)
 }
 
-/// Returns the name of the plan of a robot of the group with this name.
+/// Returns the name of the plan of `robot` in the group called `group`.
 #[must_use]
 pub fn part_name(group: &str, robot: &str) -> String {
     format!("{group}_{robot}")

@@ -13,7 +13,7 @@ pub(super) const ANY: &str = "any";
 pub(super) const LINK: &str =
     "the link carries where each robot and its plan are: for these there are `all rendezvous` and formations";
 
-/// Place of a condition, which decides what it may read.
+/// Place of a condition, which determines the quarks that the condition may contain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
     /// An operand of the group's own condition.
@@ -27,7 +27,7 @@ pub(super) enum Place {
 /// Robots to which a quark belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Owner {
-    /// A timer, which each robot has alike.
+    /// A timer, which is the same for every robot.
     Timer,
     /// One robot, by its index in the group.
     One(usize),
@@ -44,7 +44,7 @@ pub(super) struct Owned<'s> {
 }
 
 impl<'s> Build<'_, 's> {
-    /// Returns a quark without its robot; `None` if it was reported.
+    /// Separates a quark from the name of its robot; returns `None` for an invalid quark, which is then reported.
     pub(super) fn owned(&mut self, call: &Call<'s>, place: Place) -> Option<Owned<'s>> {
         match call.name {
             "wait" => Some(Owned { owner: Owner::Timer, call: *call }),
@@ -94,7 +94,7 @@ impl<'s> Build<'_, 's> {
         Some(Owned { owner: Owner::One(index), call: Call { name, span, ..*call } })
     }
 
-    /// Reports a quark of which nobody knows whose it is.
+    /// Reports a quark that does not name its robot.
     fn whose(&self, call: &Call<'s>, place: Place) -> Diagnostic {
         let (name, here) = (call.name, call.name_span());
         let report = Diagnostic::new(Code::E0209, format!("`{name}` of which robot?"), here, "no robot is named");
@@ -109,7 +109,7 @@ impl<'s> Build<'_, 's> {
         }
     }
 
-    /// Returns `true` if a robot would apply or read a quark that names this robot itself; reports it.
+    /// Returns `true` if a robot would apply or read a quark that names this robot itself, which is then reported.
     pub(super) fn names_itself(&mut self, call: &Call<'s>, robot: usize) -> bool {
         let Some(own) = self.robots.get(robot) else { return false };
         let names_robot = |index: usize| {

@@ -6,8 +6,8 @@ use crate::diagnostic::SourceId;
 use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Element, Frame, Number, Operand, Plan, Primary};
 use crate::syntax::{self, Loader, arena_for, parse_with};
 
-/// Returns the plans of the robots of a file's groups as MDLe text, or only the plan called `wanted`; empty if there is
-/// no such plan.
+/// Returns, as MDLe text, the plans of all robots in the groups of a file, or only the plan called `wanted`; empty if
+/// there is no such plan.
 #[must_use]
 pub fn projected(
     source: SourceId,

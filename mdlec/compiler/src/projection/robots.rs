@@ -9,8 +9,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::Files;
 use crate::syntax::tree::{Arg, Call, Element, Name, Plan, Primary};
 
-/// Returns the robots of a group, the first of which decides; `None` for fewer than two robots. Reports errors in the
-/// head of the group.
+/// Returns the robots of a group, the first of which decides; `None` if there are fewer than two or too many. Reports
+/// errors in the head of the group.
 pub(super) fn named<'s>(plan: &Plan<'s>, written: &[Arg<'s>], found: &mut Vec<Diagnostic>) -> Option<Vec<Name<'s>>> {
     let first = found.len();
     if let [param, ..] = plan.params {
@@ -71,7 +71,7 @@ pub(super) fn misplaced(files: &Files<'_>) -> Vec<Diagnostic> {
     found
 }
 
-/// Reports the plans of groups, and those of their robots, that other plans use by name.
+/// Reports uses by name of group plans, and of the plans of a group's robots, in other plans.
 pub(super) fn uses_of_groups(files: &Files<'_>) -> Vec<Diagnostic> {
     let (mut groups, mut parts) = (BTreeSet::new(), BTreeSet::new());
     for plan in &files.plans {
@@ -99,7 +99,8 @@ pub(super) fn uses_of_groups(files: &Files<'_>) -> Vec<Diagnostic> {
     found
 }
 
-/// Reports groups and plans of the same name. Later stages see only the plans of the robots, which have other names.
+/// Reports a group and a plan with the same name. Later stages see only the plans of the robots, which have other
+/// names.
 pub(super) fn equal_names(files: &Files<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (index, plan) in files.plans.iter().enumerate() {
@@ -123,7 +124,8 @@ pub(super) fn used(call: &Call<'_>) -> Diagnostic {
     report.help("a group has plans for several robots, and runs by itself")
 }
 
-/// Reports the use of the plan of a robot of a group: the other robots count its atoms from the plan's beginning.
+/// Reports a use of the plan of one robot of a group by name. The plan must run by itself, because the other robots
+/// count its atoms from the beginning.
 pub(super) fn part_used(call: &Call<'_>) -> Diagnostic {
     let message = format!("`{}` is the plan of a robot of a group, and cannot be part of a plan", call.name);
     let report = Diagnostic::new(Code::E0208, message, call.name_span(), "the plan of a robot of a group");

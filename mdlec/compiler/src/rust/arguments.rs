@@ -1,4 +1,4 @@
-//! Quarks and their arguments as Rust values, in SI units.
+//! Emits quarks and their arguments as Rust values, in SI units.
 
 use mdle_runtime::Radians;
 use proc_macro2::{Literal, TokenStream};
@@ -23,8 +23,8 @@ pub(super) fn type_of(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     quote!(runtime::Comparison<#signal, #with>)
 }
 
-/// Emits a comparison: `runtime::Comparison::new(…)`. `signal` emits the comparison's signals; `none` is the
-/// type in the place of the second signal in a comparison with a value.
+/// Emits a comparison: `runtime::Comparison::new(…)`. `signal` emits the comparison's signals; `none` is the type that
+/// a comparison with a value has instead of the second signal's type.
 pub(super) fn compared(
     comparison: &Comparison,
     none: &TokenStream,
@@ -70,7 +70,7 @@ pub(super) fn arguments(quark: &Quark) -> impl Iterator<Item = TokenStream> {
     quark.args.iter().map(argument)
 }
 
-/// An angle, in degrees where that gives the same value.
+/// Emits an angle, in degrees if a number of degrees with at most six decimals represents it up to rounding errors.
 pub(super) fn angle(radians: f64) -> TokenStream {
     if let Some(degrees) = exact_degrees(radians).map(number) {
         return quote!(runtime::Radians::from_degrees(#degrees));

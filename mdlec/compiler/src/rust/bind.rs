@@ -1,5 +1,5 @@
-//! `mdlec bind`: an alphabet as Rust code that checks a target's crate against the alphabet, signature by
-//! signature (paper, Definition 1).
+//! Writes an alphabet as Rust code that checks a target's crate against the alphabet, signature by signature, for
+//! `mdlec bind` (paper, Definition 1).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -1,4 +1,5 @@
-//! A plan as code: quarks as constants, interrupts as functions that ask the scopes around them first.
+//! Emits a plan as inline code: quarks as constants, and the interrupts of scopes as functions that first evaluate the
+//! enclosing scopes.
 
 use std::collections::BTreeSet;
 
@@ -47,7 +48,8 @@ pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<
 }
 
 impl Meaning<'_> {
-    /// Emits a constant for each quark that is not a `wait`: `const GO_20_0: robot::Go = robot::Go::new(…);`.
+    /// Emits a constant for each quark of a law or an interrupt: `const GO_20_0: robot::Go = robot::Go::new(…);`.
+    /// Excluded are `wait` and the quarks that [`Meaning::signals`] returns.
     pub(super) fn constants(&self) -> TokenStream {
         let signals = self.signals();
         let quarks = (0..).map(QuarkId).zip(self.machine.quarks()).zip(&self.constants);
@@ -64,8 +66,8 @@ impl Meaning<'_> {
         quote!(#(#constants)*)
     }
 
-    /// Returns the quarks that are not constants by themselves: signals, and comparisons of `t`, which the
-    /// machine evaluates.
+    /// Returns the quarks that need no constants of their own: signals, which are parts of comparisons, and comparisons
+    /// of `t` and `way`, which the machine evaluates.
     fn signals(&self) -> BTreeSet<QuarkId> {
         let mut signals = BTreeSet::new();
         let mut in_conditions = BTreeSet::new();

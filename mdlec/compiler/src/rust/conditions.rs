@@ -1,4 +1,5 @@
-//! Conditions as rows: the operands and operators of every interrupt, as values of the run-time system's type.
+//! Emits conditions as table rows: the operands and operators of every interrupt, as values of the run-time system's
+//! type.
 
 use mdle_runtime::{Condition, Nanos};
 use proc_macro2::{Literal, TokenStream};
@@ -26,7 +27,8 @@ pub(super) fn conditions(machine: &Machine) -> TokenStream {
     }
 }
 
-/// Emits a condition or an operand: `runtime::Condition::Or(0, 2)`, or `bumper()` by the function of its quark.
+/// Emits a condition or an operand: `runtime::Condition::Or(0, 2)`, or `bumper()` if `functions` contains a function
+/// for the quark.
 pub(super) fn row(
     condition: &Condition<QuarkId>,
     machine: &Machine,
@@ -83,7 +85,7 @@ pub(super) fn row(
     quote!(runtime::Condition::#variant)
 }
 
-/// An interrupt as one of its alphabet's.
+/// Emits an interrupt as a variant of its alphabet's enum `AnyInterrupt`.
 fn interrupt(id: QuarkId, quarks: &[Quark]) -> TokenStream {
     let quark = &quarks[id.0 as usize];
     let Some(comparison) = &quark.comparison else { return variant("AnyInterrupt", quark, quarks) };

@@ -1,4 +1,5 @@
-//! The law of the current atom as code: a variant for each atom, with the functions that make, ask and apply it.
+//! Emits the law of the current atom as inline code: an enum with a variant for each atom, and the functions that
+//! create, query and apply the law.
 
 use mdle_runtime::Printable;
 use proc_macro2::{Literal, TokenStream};
@@ -12,7 +13,7 @@ use crate::fsm::Atom;
 use crate::plan::frame_text;
 
 impl Meaning<'_> {
-    /// Emits `enum Running`: the law of the current atom with its state, and the function that makes it.
+    /// Emits `enum Running`: the law of the current atom with its state, and the function that creates the law.
     pub(super) fn running(&self) -> TokenStream {
         let variants = self.machine.atoms().map(|atom| {
             let kind = quark_type(&atom.law().name, atom.law().overload);
@@ -39,8 +40,9 @@ impl Meaning<'_> {
         }
     }
 
-    /// Emits `fn start`, which makes the law of the atom that is entered. A law may take kilobytes: each arm assigns
-    /// the one it makes, which puts it on the stack once, and on a microcontroller only while it is made.
+    /// Emits `fn start`, which creates the law of the atom that is entered. A law may take kilobytes, so each arm
+    /// assigns the law that it creates: the law is then on the stack only once, and on a microcontroller only while it
+    /// is created.
     fn start(&self) -> TokenStream {
         let arms = self.machine.atoms().map(|atom| {
             let number = Literal::usize_unsuffixed(atom.index());
@@ -62,8 +64,8 @@ impl Meaning<'_> {
         }
     }
 
-    /// Emits `fn enter`, which starts the law of the atom that is entered. Where the stack is large, the law is made
-    /// beside the plan and then moved: LLVM makes a table of small laws, where arms that write to the plan became
+    /// Emits `fn enter`, which starts the law of the atom that is entered. Where the stack is large, the law is created
+    /// outside the plan and then moved: LLVM turns small laws into a table, whereas arms that write to the plan became
     /// copies of the turn's loop, with twice the instructions.
     pub(super) fn enter() -> TokenStream {
         quote! {
@@ -80,7 +82,8 @@ impl Meaning<'_> {
         }
     }
 
-    /// Emits `fn stalled`, the report of the current atom's law about its progress, for a plan with `stuck`.
+    /// Emits `fn stalled`, by which the law of the current atom reports its progress; `None` for a plan without
+    /// `stuck`.
     pub(super) fn stalled(&self) -> Option<TokenStream> {
         let variants = self.machine.atoms().map(|atom| atom_variant(atom.index()));
         asks_for_progress(self.machine).then(|| {

@@ -1,5 +1,5 @@
-//! Formats Rust code, long lists in pieces, so that the part that is parsed and formatted at one time stays
-//! small, however long the plan is.
+//! Formats Rust code, with long lists in pieces, so that only a small part is parsed and formatted at a time, however
+//! long the plan is.
 
 use std::mem;
 
@@ -8,15 +8,15 @@ use quote::quote;
 
 /// Maximum number of elements of a list that are formatted at one time.
 const PIECE: usize = 256;
-/// Number of columns of a line, as prettyplease fills it.
+/// Maximum number of columns of a line, as in prettyplease.
 const WIDTH: usize = 89;
 /// Placeholder for elements that are formatted separately, followed by a number. It is longer than a line, so
 /// that it gets a line of its own, as the elements do.
 const STAND_IN: &str =
     "the_elements_of_a_long_list_which_are_laid_out_by_themselves_and_then_written_where_this_very_long_name_stands_";
 
-/// Returns the text of a file, with an empty line after each item of it and of its module. The elements of a long list
-/// are below each other; numbers fill lines.
+/// Returns the text of a file, with an empty line after each item of the file and of its module. A long list has one
+/// element per line, or as many numbers per line as fit.
 pub(super) fn file_text(file: TokenStream) -> String {
     let mut lists = Vec::new();
     let text = pretty(with_gaps(file, &mut lists));
@@ -35,7 +35,7 @@ pub(super) fn file_text(file: TokenStream) -> String {
     spaced
 }
 
-/// The tokens, with the elements of long lists taken out of them, in pieces.
+/// Replaces the elements of each long list in `tokens` by a placeholder, and appends the elements to `lists` in pieces.
 fn with_gaps(tokens: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStream {
     let tokens = tokens.into_iter().map(|token| match token {
         TokenTree::Group(group) => {
@@ -51,7 +51,8 @@ fn with_gaps(tokens: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStr
     tokens.collect()
 }
 
-/// Returns the content of a list's brackets, or a placeholder if the list is long.
+/// Returns the content of a list's brackets. If the list is long, moves the content to `lists`, and returns a
+/// placeholder.
 fn elements(inside: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStream {
     let mut pieces = Vec::new();
     let (mut piece, mut commas) = (Vec::new(), 0);
@@ -131,20 +132,22 @@ fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
     behind.take_while(|line| line.trim_start() != "];").for_each(|line| write_line(line, text));
 }
 
-/// Returns the elements as text if all are string literals; `None` otherwise. These are written unchanged, as
-/// parsing them would take the longest.
+/// Returns the elements as text if all are string literals; `None` otherwise. String literals are written unchanged,
+/// because parsing them would take the longest.
 fn strings(elements: &TokenStream) -> Option<Vec<String>> {
     let tokens = elements.clone().into_iter().filter(|token| !is_comma(token)).map(|token| token.to_string());
     tokens.map(|token| token.starts_with('"').then_some(token)).collect()
 }
 
-/// The elements, if all are calls and no longer than `width` with their commas. The tables of a machine are such lists.
+/// Returns the elements as text if all are calls that are no longer than `width` with their commas; `None` otherwise.
+/// The tables of a machine are such lists.
 fn calls(elements: &TokenStream, width: usize) -> Option<Vec<String>> {
     let calls = plain(elements.clone())?;
     calls.iter().all(|call| call.ends_with(')') && call.len() < width).then_some(calls)
 }
 
-/// The elements, if all are literals, paths, arrays of these, and calls of paths with these.
+/// Returns the elements as text if all are literals, paths, arrays of these, or calls of paths with such arguments;
+/// `None` otherwise.
 fn plain(elements: TokenStream) -> Option<Vec<String>> {
     let mut texts = Vec::new();
     let mut text = String::new();
@@ -183,7 +186,8 @@ fn write_line(line: &str, text: &mut String) {
     text.push('\n');
 }
 
-/// Tokens that are not Rust are an error of rustc's.
+/// Returns the formatted text of a file. If the tokens are not valid Rust, the text is a compile error for rustc to
+/// report.
 fn pretty(file: TokenStream) -> String {
     syn::parse2(file).map_or_else(|error| error.into_compile_error().to_string(), |file| prettyplease::unparse(&file))
 }

@@ -1,4 +1,4 @@
-//! The meaning of a plan, with the names of its constants and functions.
+//! Names the constants and functions of a plan that is emitted as inline code.
 
 use proc_macro2::Ident;
 
@@ -6,7 +6,7 @@ use super::names::Distinct;
 use crate::fsm::{Element, Machine};
 use crate::plan::Condition;
 
-/// The meaning of a plan, with the names of its constants and functions.
+/// A plan that is emitted as inline code, with the names of its constants and functions.
 pub(super) struct Meaning<'a> {
     pub(super) machine: &'a Machine,
     /// Name of the constant of each quark.

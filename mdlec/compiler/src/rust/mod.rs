@@ -1,8 +1,8 @@
-//! A plan's machine as a Rust file: each function in this module emits one construct of the file. See
+//! Emits a plan's machine as a Rust file; each function in this module emits one construct of the file. See
 //! docs/src/reference/generated_code.md, 4.
 //!
-//! The file is one Rust module: the meaning of atoms and scopes, as inline code or as table rows, and the
-//! machine's tables. Its size grows with the text of the plan, and does not depend on loop counts.
+//! The file is one Rust module. It contains the conditions and laws of scopes and atoms, as inline code or as table
+//! rows, and the machine's tables. Its size grows with the text of the plan, and does not depend on loop counts.
 
 mod arguments;
 mod bind;
@@ -48,8 +48,8 @@ pub struct Header<'a> {
 pub enum Shape {
     /// Inline code for each atom and scope, which has the fastest turn and is easy to read.
     Code,
-    /// Table rows, which rustc compiles almost at once and which a turn looks up. Used for long plans and for
-    /// plans with memories.
+    /// Table rows, which rustc compiles almost at once, but which need lookups in every turn. Used for long plans and
+    /// for plans with memories.
     Rows,
 }
 
@@ -69,8 +69,8 @@ impl Shape {
     }
 }
 
-/// Maximum number of scopes, loops, atoms and parts of conditions of an emitted plan: rustc takes minutes for
-/// more.
+/// Maximum number of scopes, loops, atoms and parts of conditions of an emitted plan: rustc takes minutes for a larger
+/// plan.
 const EMITTED: usize = 1 << 18;
 
 /// Checks that a plan is not too large to be emitted.
@@ -104,7 +104,7 @@ pub fn emit(machine: &Machine, header: Header<'_>, alphabet: &Alphabet) -> Strin
     emit_as(Shape::of(machine), machine, header, alphabet)
 }
 
-/// Writes the file in this shape.
+/// Writes the file in this shape. A plan with memories is always written as table rows.
 #[must_use]
 pub fn emit_as(shape: Shape, machine: &Machine, header: Header<'_>, alphabet: &Alphabet) -> String {
     let target = format_ident!("{}", alphabet.crate_name);

@@ -1,11 +1,11 @@
-//! Names in generated files: every identifier is chosen here.
+//! Chooses every identifier in generated files.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::Ident;
 use quote::format_ident;
 
-/// Types that a generated file uses in addition to those of the robot, which it writes with their module.
+/// Names of types that a generated file uses without a module path; the robot's types are written with a path.
 const TYPES: &[&str] = &[
     "At", "Atom", "Begin", "Bracket", "Cursor", "Debug", "Default", "FnMut", "Fsm", "Input", "Nanos", "None", "Option",
     "Output", "Plan", "Running", "Self", "Some",
@@ -61,22 +61,22 @@ pub(super) struct Distinct {
 }
 
 impl Distinct {
-    /// Returns the names in use for constants.
+    /// Returns the names that every plan's constants already use.
     pub(super) fn constants() -> Self {
         Self::beside(CONSTANTS)
     }
 
-    /// Returns the names in use for functions.
+    /// Returns the names that every plan's functions already use.
     pub(super) fn functions() -> Self {
         Self::beside(FUNCTIONS)
     }
 
-    /// Names of the functions that make an alphabet's quarks of their arguments, beside those that make rows.
+    /// Returns the names that a function for quarks cannot have: a keyword, and the functions that make rows.
     pub(super) fn quark_functions() -> Self {
         Self::beside(&["gen", "guard", "law", "follows", "degrees"])
     }
 
-    /// Returns the names in use for a function's parameters.
+    /// Returns an empty set of names, for the parameters of a function.
     pub(super) fn parameters() -> Self {
         Self::beside(&[])
     }
@@ -94,8 +94,8 @@ impl Distinct {
         self.distinct(&snake_case(&words).to_ascii_uppercase())
     }
 
-    /// Returns the name of the function that evaluates if a scope or an enclosing scope has ended, derived from
-    /// the scope's name.
+    /// Returns the name of the function that checks if a scope or an enclosing scope has ended, derived from the
+    /// scope's name.
     pub(super) fn scope_function(&mut self, scope: &str) -> Ident {
         let name = if scope.is_empty() { "unnamed".to_owned() } else { snake_case(scope) };
         let name = if syn::parse_str::<Ident>(&name).is_ok() { name } else { format!("{name}_scope") };
@@ -156,7 +156,7 @@ fn snake_case(name: &str) -> String {
     if snake.starts_with(|letter: char| letter.is_ascii_alphabetic()) { snake } else { format!("scope_{snake}") }
 }
 
-/// Returns the non-empty parts of `name` between underscores, joined by single joints.
+/// Returns the non-empty parts of `name` between underscores, joined by `joint`.
 fn words(name: &str, joint: char) -> String {
     let parts: Vec<_> = name.split('_').filter(|part| !part.is_empty()).collect();
     parts.join(&joint.to_string())

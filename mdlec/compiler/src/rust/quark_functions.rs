@@ -1,5 +1,5 @@
-//! Functions that make a plan's quarks, for its rows: rustc takes half as long for the call of a function as for the
-//! constructors of a quark and of the types around it.
+//! Emits functions that create the quarks in a plan's rows, because rustc takes half as long for the call of a function
+//! as for the constructors of a quark and of the types around it.
 
 use std::collections::BTreeSet;
 
@@ -55,7 +55,8 @@ impl<'a> QuarkFunctions<'a> {
         quote!(#(#functions)*)
     }
 
-    /// Emits the call that makes a quark: `go(runtime::MetersPerSecond(0.2), …)`; `None` for a comparison.
+    /// Emits the call that makes a quark: `go(runtime::MetersPerSecond(0.2), …)`; `None` for a comparison, and for a
+    /// quark without a function.
     pub(super) fn call(&self, quark: &Quark) -> Option<TokenStream> {
         if quark.comparison.is_some() {
             return None;

@@ -1,4 +1,5 @@
-//! A plan as table rows, which the runtime looks up, for plans that are too long for inline code.
+//! Emits a plan as table rows, in which the run-time system looks up conditions and laws, for plans that are too long
+//! for inline code or have memories.
 
 use mdle_runtime::{Fact, Follows, Guard, LawRow, MarkRow, Radians};
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -101,7 +102,8 @@ fn stalled(machine: &Machine) -> Option<TokenStream> {
     })
 }
 
-/// Emits the functions by which the machine informs a plan with memories; `None` for a plan without memories.
+/// Emits the functions by which the machine informs a plan with memories of each transition and of the end of a turn;
+/// `None` for a plan without memories.
 fn memory_updates(machine: &Machine) -> Option<TokenStream> {
     (machine.sizes().memories > 0).then(|| {
         quote! {
@@ -218,7 +220,8 @@ fn follower(Follows { atom, from, to }: Follows) -> TokenStream {
     quote!(follows(#atom, #from, #to))
 }
 
-/// Emits the angle by which a frame is turned: `degrees(90.0)` where that gives the same value.
+/// Emits the angle by which a frame is turned: `degrees(90.0)` if a number of degrees with at most six decimals
+/// represents it up to rounding errors, and otherwise radians.
 fn turn(Radians(radians): Radians) -> TokenStream {
     let Some(degrees) = exact_degrees(radians).map(number) else { return angle(radians) };
     quote!(degrees(#degrees))

@@ -1,4 +1,4 @@
-//! The ends of scopes as inline code: interrupts as expressions, and a function for each scope that first
+//! Emits the ends of scopes as inline code: interrupts as expressions, and a function for each scope that first
 //! evaluates the enclosing scope.
 
 use mdle_runtime::Printable;
@@ -33,8 +33,8 @@ impl Meaning<'_> {
         quote!(#(#functions)*)
     }
 
-    /// Returns the function of the nearest scope that encloses this element and has an interrupt; `None` if only the
-    /// plan does, whose own interrupt is evaluated first.
+    /// Returns the function of the nearest scope that encloses this element and has an interrupt; `None` if there is no
+    /// such scope except the plan, whose own interrupt is evaluated first.
     pub(super) fn around(&self, element: Element<'_>) -> Option<&Ident> {
         let mut enclosing = element.outwards().skip(1).filter(|enclosing| enclosing.parent().is_some());
         enclosing.find_map(|enclosing| self.function(enclosing))
@@ -47,7 +47,7 @@ impl Meaning<'_> {
         (*condition != Condition::Null).then(|| self.expression(condition, level(element)))
     }
 
-    /// Emits the expression that is true when a condition of a scope of this level has fired.
+    /// Emits the expression that is true when a condition has fired; `level` is the level of the condition's scope.
     fn expression(&self, condition: &Condition, level: u16) -> TokenStream {
         let operand = |operand: &Condition| {
             let inner = self.expression(operand, level);
@@ -120,8 +120,8 @@ pub(super) fn nanometers(length: u64) -> TokenStream {
     quote!(runtime::Nanometers(#length))
 }
 
-/// Operands with an operator between them, in groups where there are many: Rust's syntax nests operators to the left,
-/// and compilers follow it down.
+/// Emits operands joined by an operator, in groups in parentheses if there are many: Rust nests a chain of operators to
+/// the left, and compilers recurse into it.
 fn operator_chain(operands: Vec<TokenStream>, operator: &TokenStream) -> TokenStream {
     const GROUP: usize = 64;
     let join = |operands: &[TokenStream]| {

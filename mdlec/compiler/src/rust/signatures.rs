@@ -7,8 +7,9 @@ use quote::{format_ident, quote};
 use super::bound::Bound;
 use crate::alphabet::Kind;
 
-/// Emits the function that constructs a quark from its arguments, and that fails to compile if the quark's type
-/// does not match the alphabet: `const fn go(arguments: &[Argument<'_>]) -> Option<Go>`, after `visibility`.
+/// Emits the function that constructs a quark from its arguments: `const fn go(arguments: &[Argument<'_>]) ->
+/// Option<Go>`, preceded by `visibility`. The function fails to compile if the quark's type does not match the
+/// alphabet.
 pub(super) fn from_arguments(quark: &Bound<'_>, visibility: &TokenStream) -> TokenStream {
     let (kind, function, doc) = (&quark.kind, &quark.function, quark.doc());
     let parameters: Vec<_> = quark.parameters().collect();
@@ -32,7 +33,7 @@ pub(super) fn from_arguments(quark: &Bound<'_>, visibility: &TokenStream) -> Tok
     }
 }
 
-/// The type of an argument of this kind.
+/// Returns the type of an argument of this kind.
 pub(super) fn argument_type(kind: Kind) -> TokenStream {
     match kind {
         Kind::Length => quote!(runtime::Meters),
@@ -53,7 +54,7 @@ pub(super) fn argument_type(kind: Kind) -> TokenStream {
     }
 }
 
-/// The variant of `Argument` that a parameter of this kind takes.
+/// Returns the variant of `Argument` for a parameter of this kind.
 fn argument_variant(kind: Kind) -> Ident {
     let name = match kind {
         Kind::Length => "Length",

@@ -1,4 +1,4 @@
-//! The words of a plan as written, and their lines, as constants.
+//! Emits the texts of a plan as written, with their lines, as constants.
 
 use mdle_runtime::{SourceLine, ValueWords};
 use proc_macro2::{Literal, TokenStream};
@@ -36,7 +36,7 @@ pub(super) fn source(words: &PlanWords) -> TokenStream {
     }
 }
 
-/// Emits `[0, 7, 1, 2]`: file, line, and the first and the number of the operands or values.
+/// Emits `[0, 7, 1, 2]`: file, line, number of the first operand or value, and number of operands or values.
 fn row(SourceLine { file, line }: SourceLine, first: u32, count: u32) -> TokenStream {
     let numbers = [u32::from(file), line, first, count].map(Literal::u32_unsuffixed);
     quote!([#(#numbers),*])

@@ -1,4 +1,4 @@
-//! The constant tables of a generated file: the machine and the texts that traces and messages show.
+//! Emits the constant tables of a generated file: the machine, and the texts that traces and messages show.
 
 use mdle_runtime::{Follows, Here};
 use proc_macro2::{Literal, TokenStream};

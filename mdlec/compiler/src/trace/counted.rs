@@ -161,7 +161,8 @@ impl<'p> Scripted<'p> {
         own.outwards().filter_map(|element| Some((element.level()?, element.interrupt()?)))
     }
 
-    /// Returns the cause of the outermost scope that ends. The completion of the law comes last.
+    /// Returns the cause of the next transition: the outermost interrupt that has fired, or else the completion of the
+    /// law; `None` if neither has happened.
     fn ending(&self, cursor: &At<'_>, y: &Reports) -> Option<Cause> {
         let fired = |(level, interrupt): &(u16, &Interrupt)| {
             interrupt.condition.fired(&Read { scripted: self, cursor, level: *level, y })

@@ -24,7 +24,7 @@ pub struct MatrixProduct<'p> {
     listing: Vec<Vec<u32>>,
     /// For each interrupt, the moment at which its scope was entered.
     entered: Vec<Moment>,
-    /// Set memories of RISING, each by the number of its interrupt and by its own number.
+    /// Memories of RISING that are set, each given by the number of its interrupt and its number in that interrupt.
     risen: BTreeSet<(usize, u32)>,
     /// Facts that hold in the records of the elements that ended last.
     facts: BTreeSet<(RecordId, u32)>,
@@ -150,7 +150,7 @@ impl<'p> MatrixProduct<'p> {
         }
     }
 
-    /// Sets each memory of RISING whose operand is false, in the interrupts that list the state's column.
+    /// Sets the memory of each RISING whose operand is false, in the interrupts that list the state's column.
     fn settle(&mut self, y: &Reports) {
         let mut set = Vec::new();
         for number in self.listed() {

@@ -1,7 +1,8 @@
-//! Scripts: the reports of interrupts and laws, turn by turn, as JSON lines (docs/src/reference/interfaces.md, 3).
+//! Reads scripts: the reports of interrupts and laws, turn by turn, as JSON lines (docs/src/reference/interfaces.md,
+//! 3).
 //!
-//! Once a script is read, its times are in nanoseconds since the first turn and its path lengths in nanometres;
-//! neither ever decreases.
+//! Once a script is read, its times are in nanoseconds since the first turn and its path lengths in nanometres; neither
+//! ever decreases.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -115,7 +116,8 @@ impl Script {
     /// Reads a script: one object per line; empty lines are ignored.
     ///
     /// # Errors
-    /// Fails at the first line that is not such an object, or that has an earlier time than the previous line.
+    /// Fails at the first line that is not such an object, or whose time or path length is less than in the previous
+    /// line.
     pub fn read(text: &str) -> Result<Self, ScriptError> {
         let (mut turns, mut lines): (Vec<Reports>, Vec<usize>) = (Vec::new(), Vec::new());
         let mut start = None;
@@ -144,7 +146,7 @@ impl Script {
         Ok(Self { turns, lines })
     }
 
-    /// Returns the script with each interrupt replaced by those that `words` returns for it.
+    /// Returns the script with each interrupt replaced by the interrupts that `words` returns for it.
     #[must_use]
     pub fn renamed(mut self, words: impl Fn(&str) -> Vec<String>) -> Self {
         for reports in &mut self.turns {
@@ -154,7 +156,7 @@ impl Script {
         self
     }
 
-    /// Converts the script to the texts of a plan: `r0<60cm` becomes `r0 < 0.6`.
+    /// Replaces the names in the script by quark texts of a plan: `r0<60cm` becomes `r0 < 0.6`.
     ///
     /// # Errors
     /// Fails at the first name that is neither an interrupt of the plan nor a law of the plan that completes.
@@ -177,8 +179,8 @@ impl Script {
     }
 }
 
-/// Converts seconds or metres to billionths. Starts from the shortest decimal, which is the number as written,
-/// so that rounding occurs only once.
+/// Converts seconds or metres to billionths; `None` if the number is negative or too large. Starts from the shortest
+/// decimal, which is the number as written, so that rounding occurs only once.
 fn nanos(seconds: f64) -> Option<u64> {
     Decimal::parse(&seconds.to_string())?.to_nanos()
 }

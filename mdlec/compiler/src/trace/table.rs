@@ -24,7 +24,7 @@ pub struct Table<'p> {
     rows: Vec<Row<'p>>,
     /// For each row, the memory of its scope since the scope was entered.
     memories: Vec<Memory>,
-    /// For each record, the facts that hold.
+    /// For each record, a list with `true` for each fact that holds.
     records: BTreeMap<RecordId, Vec<bool>>,
     /// Index of the current state in `states`; the length of `states` when the plan has ended.
     state: usize,
@@ -40,8 +40,8 @@ struct AtomState<'p> {
     own: usize,
     /// Angle by which the state's frame is turned, in radians.
     turned: f64,
-    /// Row of the innermost enclosing scope, or the atom itself, that is entered in a frame of its own; `None`
-    /// if there is none.
+    /// Row of the innermost scope that contains the state and is entered in a frame of its own, perhaps the row of the
+    /// atom itself; `None` if there is no such scope.
     here: Option<usize>,
 }
 
@@ -52,7 +52,7 @@ struct Row<'p> {
     level: usize,
     /// Row of the enclosing scope; `None` for the plan itself.
     around: Option<usize>,
-    /// Record that is kept with the row's scope.
+    /// Record that is kept with the row's scope; `None` if the scope has no record.
     record: Option<Record>,
     next: Next,
     /// Labels of the row's scope. `ends_with` holds the labels of the elements whose last element is this
@@ -147,7 +147,8 @@ impl<'p> Table<'p> {
         Reading { table: self, memory: &self.memories[row], reports }
     }
 
-    /// Returns the outermost interrupt that has fired, or else the completion of the law.
+    /// Returns the outermost interrupt that has fired, or else the completion of the law; `None` if neither has
+    /// happened.
     fn fired(&self, reports: &Reports) -> Option<FiredRow<'p>> {
         let has_fired = |row: &usize| self.rows[*row].interrupt.condition.fired(&self.reading(*row, reports));
         if let Some(row) = self.around().filter(has_fired).last() {
@@ -191,7 +192,7 @@ impl<'p> Table<'p> {
         }
     }
 
-    /// Sets each memory of RISING, in the scopes that enclose the current state, whose operand is false.
+    /// Sets the memory of each RISING whose operand is false, in the scopes that enclose the current state.
     fn settle(&mut self, reports: &Reports) {
         let mut set = Vec::new();
         for row in self.around() {
@@ -247,7 +248,7 @@ struct Filling<'p> {
     rows: Vec<Row<'p>>,
     /// Rows of the scopes that have just ended; these rows lead to the next state.
     ended: Vec<usize>,
-    /// First row of the scopes that have begun since the last atom.
+    /// First row of the scopes that have begun since the last atom; `None` directly after an atom.
     begun: Option<usize>,
 }
 

@@ -60,7 +60,7 @@ struct Open {
     here: u64,
     /// Memories of RISING in the element's interrupt.
     memories: Vec<bool>,
-    /// For the outermost scope of a definition, the facts of its record that hold.
+    /// For the outermost scope of a definition, a list with `true` for each fact of its record that holds.
     facts: Vec<bool>,
 }
 
@@ -149,7 +149,7 @@ impl<'p> Tree<'p> {
         done.then(|| EndedScope { place, level, by: COMPLETED, operands: Vec::new(), operand: None })
     }
 
-    /// Sets each memory of RISING, in the scopes that enclose the current atom, whose operand is false.
+    /// Sets the memory of each RISING whose operand is false, in the scopes that enclose the current atom.
     fn settle(&mut self, reports: &Reports) {
         for place in 0..self.open.len() {
             let open = &self.open[place];
@@ -291,7 +291,7 @@ impl<'p> NodeKind<'p> {
 }
 
 impl Element<'_> {
-    /// Returns the record that is kept with the element.
+    /// Returns the record that is kept with the element; `None` if the element has no record.
     fn record(&self) -> Option<RecordId> {
         match self.kind {
             NodeKind::Scope(scope) => scope.record.map(|record| record.id),

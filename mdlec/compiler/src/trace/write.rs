@@ -1,4 +1,4 @@
-//! Traces as JSON lines: the same format for every machine (docs/src/reference/interfaces.md, 4).
+//! Writes traces as JSON lines, in the same format for every machine (docs/src/reference/interfaces.md, 4).
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! Texts of the lints of a machine, and plans that they leave alone.
+//! Tests of the texts of lints, and of plans without lints.
 
 use crate::samples::judged;
 

@@ -1,4 +1,4 @@
-//! The walk in single steps, and the state of its open elements, for a debugger.
+//! Makes the walk available in single steps, with the state of its open elements, for a debugger.
 
 use mdle_runtime::{Nanometers, Nanos, TRANSITIONS_PER_TURN};
 
@@ -110,7 +110,7 @@ impl<'t, 'p> OpenPart<'t, 'p> {
         &self.open.memories
     }
 
-    /// Returns the facts that hold in the record of a plan that uses `after`.
+    /// Returns, for a plan that uses `after`, a list with `true` for each fact of its record that holds.
     #[must_use]
     pub fn facts(self) -> &'t [bool] {
         &self.open.facts
