@@ -1,4 +1,5 @@
-//! The breakpoints of a session: at places of the plan, at the entry of a named scope or of an atom, and at times.
+//! The breakpoints of a session. A breakpoint is at a place of the plan, at the entry of an atom or of a named scope,
+//! or at a time.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,13 +20,13 @@ pub(crate) type Id = i64;
 #[derive(Debug)]
 pub(crate) struct Breakpoints {
     places: Vec<Place>,
-    /// Breakpoints of each file: their numbers, and the places at which they stop.
+    /// For each file, the numbers of its breakpoints and the places at which they stop the run.
     lines: BTreeMap<SourceId, Vec<(Id, Place)>>,
     names: Vec<(Id, Name)>,
     last: Id,
 }
 
-/// Condition of a breakpoint that is not in a file.
+/// Condition of a breakpoint that is not at a place in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Name {
     /// The entry of a scope with this name or of an atom with this law.
@@ -85,8 +86,8 @@ impl Breakpoints {
         set
     }
 
-    /// Returns the breakpoints at the current position of a run, to which `step` has led; `step` is `None` at the run's
-    /// start.
+    /// Returns the breakpoints at the current position of a run. `step` is the step that led to this position, or
+    /// `None` at the start of the run.
     pub(crate) fn hits(&self, run: &Run<'_>, plan: &Plan, step: Option<Step>) -> Vec<Id> {
         let entered = match step {
             None => 0,
@@ -111,7 +112,7 @@ impl Breakpoints {
     }
 }
 
-/// Reads the text of a breakpoint that is not in a file: a name, or a time with its unit.
+/// Parses the text of a breakpoint that is not at a place in a file: a name, or a time with its unit.
 fn name(plan: &Plan, text: &str) -> Result<Name, String> {
     if text.starts_with(|c: char| c.is_ascii_digit()) {
         return time(text).map(Name::Time).ok_or_else(|| format!("`{text}` is no time: write it as `2.5s` or `500ms`"));

@@ -22,7 +22,7 @@ pub(crate) struct Request {
 
 /// The client at the other end of the connection.
 pub(crate) struct Client<'o> {
-    /// Messages that a thread reads, so that a request can interrupt a run.
+    /// Messages from the client. A separate thread reads them, so that a request can interrupt a run.
     received: Receiver<Result<Value, ServeError>>,
     /// Requests that arrived during a run, in their order.
     waiting: VecDeque<Request>,
@@ -60,7 +60,7 @@ impl<'o> Client<'o> {
         }
     }
 
-    /// Returns `true` if a request has arrived that interrupts a run.
+    /// Returns `true` if the client has sent a request that interrupts the run.
     pub(crate) fn interrupts(&mut self) -> Result<bool, ServeError> {
         while let Ok(message) = self.received.try_recv() {
             self.waiting.extend(request(message?)?);
@@ -103,7 +103,7 @@ impl<'o> Client<'o> {
     }
 }
 
-/// Reads a request; `None` for a response, because the debugger sends no requests.
+/// Reads a request. Returns `None` for a response, which is ignored because the debugger sends no requests.
 fn request(mut message: Value) -> Result<Option<Request>, ServeError> {
     match message.get("type").and_then(Value::as_str) {
         Some("request") => {}

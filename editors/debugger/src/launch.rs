@@ -37,7 +37,7 @@ pub(crate) struct Loaded {
     script: Script,
     /// Lines of each file that was read.
     lines: BTreeMap<SourceId, Lines>,
-    /// Texts of the `after` conditions, by the facts that they test.
+    /// Texts of the `after` conditions. The keys are the facts that the conditions test.
     facts: BTreeMap<(RecordId, u32), String>,
 }
 
@@ -129,7 +129,7 @@ impl Loaded {
     }
 }
 
-/// Returns the texts of the `after` conditions of a plan, by the facts that they test.
+/// Returns the texts of the `after` conditions of a plan. The keys are the facts that the conditions test.
 fn facts(compiled: &Compiled) -> BTreeMap<(RecordId, u32), String> {
     let mut facts = BTreeMap::new();
     for interrupt in compiled.plan.parts().filter_map(mdle_compiler::plan::Part::interrupt) {
@@ -142,7 +142,7 @@ fn facts(compiled: &Compiled) -> BTreeMap<(RecordId, u32), String> {
     facts
 }
 
-/// Returns the diagnostics of a plan with errors as text, with their number.
+/// Returns the diagnostics of a plan with errors as text, followed by the number of errors.
 fn rendered(sources: &Sources, found: &[Diagnostic]) -> String {
     let shown = found.iter().take(most_shown(found)).map(|found| sources.render(found));
     shown.chain(judged(found, false).err()).collect::<Vec<_>>().join("\n")

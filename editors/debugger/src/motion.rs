@@ -103,8 +103,8 @@ impl Session<'_, '_, '_> {
         self.stopped("end", text, &[])
     }
 
-    /// Moves the run back to the last position that `is_there` accepts; the arguments are the breakpoints at the
-    /// position and the step that leads to it.
+    /// Moves the run back to the last earlier position that `is_there` accepts, or else to the start of the run, and
+    /// reports the stop. The arguments of `is_there` are the breakpoints at a position and the step that leads to it.
     fn back(&mut self, reason: &str, is_there: impl Fn(&[Id], Option<Step>) -> bool) -> Result<(), ServeError> {
         let (breakpoints, plan) = (&self.breakpoints, &self.loaded.compiled.plan);
         self.run.back(|run, step| is_there(&breakpoints.hits(run, plan, step), step));

@@ -39,8 +39,9 @@ pub(crate) fn places(loaded: &Loaded) -> Vec<Place> {
     places
 }
 
-/// Returns the place that a breakpoint means. With a column, this is the operand at the column, or else the next or
-/// last place in the line. Without a column, this is the element that begins in the line, or else the next place.
+/// Returns the place at which a breakpoint in the given line stops the run. With a column, this is the operand at the
+/// column, or else the next place in the line, or else the last place in the line. Without a column, this is the
+/// element that begins in the line. If there is no such place, it is the next place in the file.
 pub(crate) fn meant(places: &[Place], source: SourceId, line: u32, column: Option<u32>) -> Option<Place> {
     let from = places.partition_point(|place| (place.source, place.line) < (source, line));
     let to = places.partition_point(|place| (place.source, place.line) <= (source, line));
@@ -63,8 +64,8 @@ pub(crate) fn between(places: &[Place], source: SourceId, first: u32, last: u32)
 }
 
 impl Place {
-    /// Returns the column after the end of a place that ends in its first line; operands contain no character with two
-    /// UTF-16 units.
+    /// Returns the column after the end of the place, which must end in the line in which it begins. Operands contain
+    /// no character with two UTF-16 units.
     fn end_column(&self) -> u32 {
         self.column.saturating_add(self.span.end.saturating_sub(self.span.start))
     }

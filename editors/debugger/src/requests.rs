@@ -1,4 +1,4 @@
-//! Answers to the requests of a client whose run is stopped; each is a function of the session.
+//! Answers the requests that a client sends while its run is stopped. Each answer is a function of the session.
 
 use std::path::PathBuf;
 
@@ -178,7 +178,8 @@ fn shown(session: &Session<'_, '_, '_>, number: usize, frame: &Frame) -> Value {
     })
 }
 
-/// Returns the frame with this number; without a number, the frame of the current atom.
+/// Returns the frame with this number or, without a number, the frame of the current atom; `None` once the plan has
+/// ended.
 fn frame(session: &Session<'_, '_, '_>, number: Option<usize>) -> Result<Option<Frame>, String> {
     let frames = frames(&session.run, &session.loaded.compiled.plan);
     let index = number.unwrap_or(1).checked_sub(1).filter(|index| *index < frames.len().max(1));

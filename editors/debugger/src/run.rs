@@ -5,7 +5,7 @@ use mdle_compiler::diagnostic::Span;
 use mdle_compiler::plan::Plan;
 use mdle_compiler::trace::{Applied, OpenPart, Reports, Step as TreeStep, Tree};
 
-/// Maximum number of copies; beyond it every second copy is dropped.
+/// Maximum number of copies of the state. When it is reached, every second copy is dropped.
 const MOST_COPIES: usize = 64;
 
 /// A position in a run.
@@ -37,7 +37,8 @@ pub(crate) enum Input {
 pub(crate) enum Step {
     /// The next turn has begun, at a later time.
     Turn,
-    /// A scope has ended. Before that, `ended` open elements enclosed it; `kept` open elements were not entered again.
+    /// A scope has ended. `ended` is the number of open elements that enclosed the scope, and `kept` is the number of
+    /// open elements that have stayed open.
     Transition { ended: usize, kept: usize },
     /// The turn has ended.
     End,
@@ -192,7 +193,8 @@ mod tests {
       ExecPlan inf { (Atom (RISING bumper OR wait 3) (go 20 0)) (Atom (bumper AND wait 1) (go 10 0))^3 }
     }";
 
-    /// A plan and a script in which bumper has fired in every third and every seventh turn.
+    /// Runs `test` on a plan and a script of `turns` turns, in which bumper has fired in every third and every seventh
+    /// turn.
     fn with_run(turns: usize, test: impl FnOnce(Run<'_>)) {
         let target = mdle_files::target(Some("sim")).unwrap();
         let (compiled, _) = compile(SourceId(0), PLAN, &target.alphabet, None);
@@ -204,7 +206,7 @@ mod tests {
         test(Run::new(&compiled[0].plan, script.turns()).unwrap());
     }
 
-    /// All that a run keeps.
+    /// Returns the complete state of a run as text.
     fn state(run: &Run<'_>) -> String {
         format!("{:?} {:?}", run.at, run.tree)
     }

@@ -14,8 +14,8 @@ pub(crate) struct Frame {
     pub(crate) span: Span,
     /// Index of the frame among the open elements of the run.
     pub(crate) open: usize,
-    /// Indices, among the open elements, of the loops that directly enclose the element, from the outermost to the
-    /// innermost.
+    /// Loops that directly enclose the element, from the outermost to the innermost, as indices among the open elements
+    /// of the run.
     pub(crate) loops: Vec<usize>,
 }
 

@@ -22,8 +22,10 @@ pub(crate) struct Reason {
     pub(crate) operands: Vec<Reason>,
 }
 
-/// Returns the reasons of the frame's condition, or of the operands of it that `expression` names: by their text in the
-/// file, by their condition text, or by their first word. The name of a signal selects all its comparisons.
+/// Returns the reason for the value of the condition in `expression`. The expression can be the frame's whole condition
+/// or a part of it, as it is written in the file or as conditions are printed. It can also be the first word of an
+/// operand; the name of a signal selects all comparisons of the signal. Returns `None` if the frame's condition has no
+/// such part.
 pub(crate) fn why(loaded: &Loaded, run: &Run<'_>, frame: &Frame, expression: &str) -> Option<Vec<Reason>> {
     let (plan, reports) = (&loaded.compiled.plan, run.reports());
     let open = run.open().nth(frame.open)?;
@@ -46,8 +48,8 @@ pub(crate) fn why(loaded: &Loaded, run: &Run<'_>, frame: &Frame, expression: &st
     if comparisons.is_empty() { named.into_iter().next().map(|first| vec![first]) } else { Some(comparisons) }
 }
 
-/// Returns the sentence about `reasons`: for a single condition its value; for comparisons the text and value of each,
-/// because the number that they compare is neither true nor false.
+/// Returns a sentence about `reasons`: the value of a single condition or, for the comparisons of a number, the text
+/// and the value of each, because the number itself is neither true nor false.
 pub(crate) fn sentence(reasons: &[Reason], expression: &str) -> String {
     let expression = plain(expression);
     match reasons {
@@ -56,7 +58,8 @@ pub(crate) fn sentence(reasons: &[Reason], expression: &str) -> String {
     }
 }
 
-/// Returns the part of a condition that `is_meant` accepts by its first and its last operand.
+/// Returns the first part of a condition that `is_meant` accepts. The arguments of `is_meant` are the first and the
+/// last operand of the part.
 fn written<'c, 'p>(
     condition: &'c Condition,
     places: &mut Iter<'p, OperandPlace>,
@@ -86,7 +89,7 @@ fn plain(text: &str) -> String {
     inner.map_or_else(|| words.clone(), plain)
 }
 
-/// Returns `true` if no closing parenthesis precedes its opening parenthesis.
+/// Returns `true` if the parentheses of a text are balanced.
 fn is_balanced(text: &str) -> bool {
     let depth = text.chars().try_fold(0_i64, |depth, c| match c {
         '(' => Some(depth + 1),
@@ -139,7 +142,8 @@ fn detail(part: OpenPart<'_, '_>, condition: &Condition, reports: &Reports) -> S
 }
 
 impl Reason {
-    /// Returns the first part that `is_it` accepts; an operator precedes its operands.
+    /// Returns the first reason that `is_it` accepts; the reason for an operator comes before the reasons for its
+    /// operands.
     fn find(&self, is_it: &impl Fn(&Self) -> bool) -> Option<&Self> {
         if is_it(self) { Some(self) } else { self.operands.iter().find_map(|operand| operand.find(is_it)) }
     }
@@ -161,7 +165,7 @@ impl Reason {
         sentence
     }
 
-    /// Returns all nested operands that have no operands themselves.
+    /// Returns all nested reasons that have no operands.
     fn leaves(&self) -> Vec<&Self> {
         match self.operands.as_slice() {
             [] => vec![self],

@@ -10,7 +10,7 @@ use crate::documents::{Documents, Plan};
 use mdle_language_service::diagnostics::{Finding, Place};
 use mdle_language_service::lines::{Lines, Position};
 
-/// Converter of places in a plan's files, which determines the lines of each file once.
+/// Converter of places in a plan's files to the terms of the protocol. It determines the lines of each file only once.
 #[derive(Debug)]
 pub(crate) struct Converter<'d> {
     documents: &'d Documents,
@@ -85,7 +85,8 @@ impl<'d> Converter<'d> {
 /// Value of the field `source` of all diagnostics.
 const SOURCE: &str = "mdlec";
 
-/// Returns a diagnostic without a place in the plan, such as of an `mdle.toml`, at the first character of the document.
+/// Returns a diagnostic that has no place in the plan, such as an error in an `mdle.toml`. It is shown at the first
+/// character of the document.
 pub(crate) fn unplaced(message: &str) -> Value {
     let start = json!({ "line": 0, "character": 0 });
     json!({ "range": { "start": start, "end": start }, "severity": 1, "source": SOURCE, "message": message })

@@ -115,7 +115,7 @@ impl Documents {
         own.map_or_else(|| uri::of(path), |(uri, _)| uri.clone())
     }
 
-    /// Returns the plan files that may use each other: the open files, and the files in the same folders and below.
+    /// Returns the plan files that may use each other: the open files, and the files in their folders and subfolders.
     pub(crate) fn project(&self) -> BTreeSet<PathBuf> {
         let mut files: BTreeSet<PathBuf> = self.open.values().map(|document| document.path.clone()).collect();
         let folders: BTreeSet<_> = files.iter().filter_map(|file| file.parent()).map(Path::to_owned).collect();
@@ -154,7 +154,7 @@ fn plans_in(folder: &Path, depth: usize, left: &mut usize, files: &mut BTreeSet<
     }
 }
 
-/// Returns `true` if the name of a file is that of a plan file.
+/// Returns `true` if a file has the name of a plan file.
 fn is_plan(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "mdle") && !is_alphabet(path)
 }

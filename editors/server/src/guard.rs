@@ -1,4 +1,4 @@
-//! Work whose panic becomes an error of this work alone.
+//! Converts a panic of a task to an error of this task, so that the server continues.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -6,7 +6,7 @@ use lsp_server::ErrorCode;
 
 use crate::params::Refusal;
 
-/// Runs `work`; a panic becomes an error of this work alone.
+/// Runs `work`. If it panics, returns an internal error, and the server continues.
 pub(crate) fn guarded<T>(work: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|cause| {
         let text = cause.downcast_ref::<&str>().copied().map(str::to_owned);

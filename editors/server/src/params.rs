@@ -30,7 +30,7 @@ impl Refusal {
     }
 }
 
-/// Parameters of the requests about a document; a request has some of them.
+/// Parameters of all requests about a document; each request uses only some of the fields.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(crate) struct Params {

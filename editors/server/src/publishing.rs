@@ -12,7 +12,8 @@ use crate::params::Refusal;
 use crate::server::{Server, send};
 
 impl Server<'_> {
-    /// Checks one of the marked documents; after the last of them, publishes the changed diagnostics.
+    /// Checks one document of `stale`. If it is the last one, publishes the diagnostics of all documents in
+    /// `concerned`.
     pub(crate) fn check_one(&mut self) -> Result<(), ServeError> {
         let Some(uri) = self.stale.pop_first() else { return Ok(()) };
         let documents = &self.documents;
@@ -31,7 +32,8 @@ impl Server<'_> {
         concerned.iter().try_for_each(|uri| self.publish(uri))
     }
 
-    /// Stores the diagnostics of a check until they are published.
+    /// Stores the diagnostics of a check, and adds the documents that contain them, or contained the earlier ones, to
+    /// `concerned`.
     fn keep(&mut self, uri: String, checked: check::Checked) {
         if checked.uses_files {
             self.users.insert(uri.clone())
@@ -47,7 +49,7 @@ impl Server<'_> {
         self.concerned.extend(before.into_iter().flat_map(BTreeMap::into_keys));
     }
 
-    /// Publishes the diagnostics in a document; a diagnostic that several checks found is published once.
+    /// Publishes the diagnostics in a document. A diagnostic that was found by several checks is published once.
     fn publish(&self, uri: &str) -> Result<(), ServeError> {
         let mut diagnostics: Vec<&Value> = Vec::new();
         for diagnostic in self.found.values().filter_map(|found| found.get(uri)).flatten() {

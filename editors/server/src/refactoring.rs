@@ -16,10 +16,11 @@ use mdle_language_service::diagnostics::Place;
 use mdle_language_service::lines::Lines;
 use mdle_language_service::rename::{self as names, Named};
 
-/// Place of a definition: the path of the file, and the byte range of the name.
+/// A definition: the canonical path of its file, and the byte range of the name.
 type Definition = (PathBuf, Range<usize>);
 
-/// Returns the place of a definition in a form that is equal for all files that use it.
+/// Returns the definition at a place of a plan's files. The result is equal for all files that use the definition.
+/// Returns `None` if the place is in a file of the alphabet.
 fn global(plan: &Plan, defined: &Place) -> Option<Definition> {
     let path = plan.input.path(defined.source)?;
     Some((place(path).unwrap_or_else(|_| path.to_owned()), defined.range.clone()))

@@ -12,7 +12,8 @@ use crate::guard::guarded;
 use crate::params::Refusal;
 use crate::requests;
 
-/// Pause in the client's messages after which a document is checked; shorter than the time between two keystrokes.
+/// Time without messages from the client after which a document is checked. It is shorter than the time between two
+/// keystrokes.
 const PAUSE: Duration = Duration::from_millis(5);
 
 /// The server of one client, after `initialize`.
@@ -25,10 +26,11 @@ pub(crate) struct Server<'c> {
     pub(crate) waiting: VecDeque<Message>,
     /// URIs of documents to check.
     pub(crate) stale: BTreeSet<String>,
-    /// URIs of documents whose diagnostics are published once all documents are checked: before that, the diagnostics
-    /// in a file that several documents use could belong to different texts of the file.
+    /// URIs of documents whose diagnostics are published once all documents are checked. If they were published
+    /// earlier, the diagnostics in a file that several documents use could belong to different texts of the file.
     pub(crate) concerned: BTreeSet<String>,
-    /// Diagnostics by the document whose check found them, and by the document that contains them.
+    /// Diagnostics, by the URI of the document whose check found them, and then by the URI of the document that
+    /// contains them.
     pub(crate) found: BTreeMap<String, BTreeMap<String, Vec<Value>>>,
     /// URIs of open documents that use other files, or name files that cannot be read.
     pub(crate) users: BTreeSet<String>,
@@ -104,7 +106,7 @@ impl Server<'_> {
         }
     }
 
-    /// Returns the next message; `None` if no message arrives and a document has to be checked.
+    /// Returns the next message, or `None` if no message arrives and a document has to be checked.
     fn next(&mut self) -> Result<Option<Message>, ServeError> {
         while let Ok(message) = self.connection.receiver.try_recv() {
             self.receive(message)?;

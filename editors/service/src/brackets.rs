@@ -42,7 +42,7 @@ impl Open<'_> {
 }
 
 /// Updates the stack of open brackets for the next word of the text: a bracket opens or closes, and any other word
-/// belongs to the innermost open bracket.
+/// belongs to the innermost open bracket. `touches` is `true` if the word directly follows a name.
 pub(crate) fn read<'t>(stack: &mut Vec<Open<'t>>, word: &Word<'t>, touches: bool) {
     match word.text {
         "{" | "(" => {
@@ -70,7 +70,8 @@ pub(crate) fn read<'t>(stack: &mut Vec<Open<'t>>, word: &Word<'t>, touches: bool
     }
 }
 
-/// Returns the kind of the bracket that `sign` opens inside the bracket `outer`.
+/// Returns the kind of the bracket that `sign` opens inside the bracket `outer`. `touches` is `true` if the bracket
+/// directly follows a name.
 fn opened(outer: Option<&Open<'_>>, sign: &str, touches: bool) -> Bracket {
     let Some(outer) = outer else { return if sign == "{" { Bracket::Plan } else { Bracket::Body } };
     match (sign, outer.bracket) {

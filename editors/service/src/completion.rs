@@ -118,7 +118,7 @@ fn snippets(texts: &[(&str, &str)]) -> Vec<Item> {
     texts.iter().map(snippet).collect()
 }
 
-/// Returns the quarks of this kind that the robot supports, each name once.
+/// Returns the quarks of a kind that the robot supports, without duplicate names.
 fn quarks<'v>(view: &'v View<'_>, kind: DeclarationKind) -> impl Iterator<Item = Item> + 'v {
     let mut last = "";
     let declarations = view.alphabet.declarations().filter(move |declaration| declaration.kind == kind);
@@ -151,7 +151,8 @@ fn plans(view: &View<'_>) -> Vec<Item> {
     view.files.plans.iter().filter(|plan| plan.name.span.start < plan.name.span.end).map(item).collect()
 }
 
-/// Returns the units of the number at the cursor: those of the parameter that receives the number, or all units.
+/// Returns the units of the number at the cursor. If the parameter for the number is known, these are the units of the
+/// parameter's type; otherwise all units.
 fn units(view: &View<'_>, context: &Context<'_>) -> Vec<Item> {
     let kind = context.call.as_ref().and_then(|call| kind_of(view, call));
     let fits = |unit: &&Unit| kind.is_none_or(|kind| unit.kind == kind);
@@ -177,7 +178,7 @@ fn declared<'v>(view: &'v View<'_>, call: &OpenCall<'_>) -> Option<&'v Declarati
         .max_by_key(|found| found.params.len())
 }
 
-/// Returns the parameters of the plan at the cursor, and in a condition also the words that join operands.
+/// Returns the parameters of the plan that contains the cursor; in a condition also `OR` and `AND`.
 fn arguments(view: &View<'_>, context: &Context<'_>, byte: usize) -> Vec<Item> {
     let around = view.own().iter().filter(|plan| view.contains(plan.span, byte));
     let params = around.flat_map(|plan| plan.params);

@@ -85,7 +85,7 @@ pub fn context(text: &str, byte: usize) -> Context<'_> {
     found
 }
 
-/// Returns the context of a cursor that is in `word`, at its end, or before it.
+/// Returns the context of a cursor that is before `word`, in it, or at its end.
 fn at_cursor<'t>(stack: &[Open<'t>], word: &Word<'t>, byte: usize) -> Context<'t> {
     let is_in = word.range.start < byte;
     let typed = if is_in && word.kind == Kind::Name { word.range.start..byte } else { byte..byte };
@@ -144,7 +144,7 @@ fn expected(stack: &[Open<'_>]) -> Expected {
 mod tests {
     use super::*;
 
-    /// Returns the words that may follow at the cursor, which a `|` marks in the text.
+    /// Returns the kind of word that may follow at the cursor, which a `|` marks in the text.
     fn at(text: &str) -> Expected {
         let byte = text.find('|').unwrap_or(text.len());
         context(&text.replace('|', ""), byte).expected

@@ -41,7 +41,7 @@ pub fn place(sources: &Sources, span: Span) -> Place {
     Place { source, range }
 }
 
-/// Converts diagnostics to findings, up to the maximum number that a user is shown.
+/// Converts diagnostics to findings, up to the maximum number that is shown to a user.
 #[must_use]
 pub fn findings(sources: &Sources, diagnostics: &[Diagnostic]) -> Vec<Finding> {
     let shown = diagnostics.iter().take(most_shown(diagnostics));

@@ -19,7 +19,7 @@ pub struct Fix {
     pub replacement: String,
 }
 
-/// Returns the fixes of the diagnostics that touch `range` of the file whose places `own` accepts.
+/// Returns the fixes of the diagnostics that touch `range` in a file. `own` returns `true` for the places in this file.
 #[must_use]
 pub fn fixes(
     sources: &Sources,

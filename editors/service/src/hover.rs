@@ -66,7 +66,7 @@ const KEYWORDS: &[(&str, &str, &str)] = &[
     ),
 ];
 
-/// Form and meaning of the keyword at a byte.
+/// Returns the form and the meaning of the keyword at a byte offset.
 fn keyword(text: &str, byte: usize) -> Option<Hover> {
     let mut near = words(text).take_while(|word| word.range.start <= byte);
     let found = near.find(|word| word.range.end >= byte && word.kind == Kind::Name)?;
@@ -74,7 +74,7 @@ fn keyword(text: &str, byte: usize) -> Option<Hover> {
     Some(Hover { range: found.range, text: format!("```text\n{form}\n```\n{meaning}") })
 }
 
-/// Returns the signatures, meanings and needs of the quarks of this name.
+/// Returns the signatures, meanings and required capabilities of the quarks with this name.
 pub(crate) fn quark(alphabet: &Alphabet, name: &str, kind: DeclarationKind) -> Option<String> {
     let name = quark_name(alphabet, name, kind);
     let declarations = alphabet.declarations_of(name).filter(|declaration| declaration.kind == kind);
@@ -117,7 +117,8 @@ fn about(alphabet: &Alphabet, declaration: &Declaration) -> String {
     text
 }
 
-/// Returns the value of a number in the unit that a bare number has at its place.
+/// Returns a text with the value of a number in its own unit, in `bare`, which is the unit of a number without a unit
+/// at this place, and in the base unit. Returns `None` if a unit is unknown or does not fit.
 fn number(written: &str, bare: Option<Unit>) -> Option<String> {
     let bare = bare?;
     let digits = written.trim_end_matches(|letter: char| !letter.is_ascii_digit());

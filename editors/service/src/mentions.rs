@@ -1,5 +1,5 @@
-//! List of all names and numbers of the plans, with their meaning. Definition, references, rename, hover and colours
-//! use this list.
+//! Lists all names and numbers of the plans with their meanings. Definition, references, rename, hover and colours use
+//! this list.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ pub enum Role {
     Quark(DeclarationKind),
     /// The type of a parameter.
     Type,
-    /// A number; the unit is that of a bare number at this place, if it is known.
+    /// A number, with the unit that a number without a unit has at this place; `None` if this unit is not known.
     Number(Option<Unit>),
     /// A text in quotes, or a name that is a whole argument.
     Text,
@@ -108,12 +108,13 @@ pub fn declaration<'a>(alphabet: &'a Alphabet, call: &Call<'_>, kind: Declaratio
     of_kind().find(fits).or_else(|| of_kind().next())
 }
 
-/// Returns the unit of a bare number for a parameter.
+/// Returns the unit that a number without a unit has for a parameter.
 fn unit_of(param: &mdle_compiler::alphabet::Param) -> Option<Unit> {
     param.unit.or_else(|| param.kind.base_unit())
 }
 
-/// Returns the unit of a bare number for a plan's parameter of this type (docs/src/reference/language.md, 3.4).
+/// Returns the unit that a number without a unit has for a plan's parameter of this type
+/// (docs/src/reference/language.md, 3.4).
 #[must_use]
 pub fn bare_unit(type_name: &str) -> Option<Unit> {
     let kind = Kind::from_name(type_name)?;

@@ -13,7 +13,7 @@ use crate::view::View;
 pub enum SymbolKind {
     /// A plan of the file.
     Plan,
-    /// A behavior in place.
+    /// A behavior that is written inside a plan.
     Behavior,
     /// An element with a label.
     Labelled,
@@ -110,7 +110,7 @@ pub fn selections(view: &View<'_>, byte: usize) -> Vec<Range<usize>> {
     nested
 }
 
-/// Appends the spans of a plan and of everything in it.
+/// Appends the span of a plan and the spans of all its parts.
 fn spans_of(plan: &Plan<'_>, spans: &mut Vec<Span>) {
     spans.extend([plan.span, plan.name.span]);
     plan.params.iter().for_each(|param| spans.push(param.name.span.to(param.type_name.span)));

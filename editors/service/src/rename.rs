@@ -31,14 +31,14 @@ pub fn named(view: &View<'_>, byte: usize) -> Option<Named> {
     Some(Named { defined: at(mention.defined?), here: at(mention.span), name: mention.text.to_owned() })
 }
 
-/// Returns the path of the used file that is named at a byte offset, as it is written.
+/// Returns the path in the `use` at a byte offset, as it is written in the document.
 #[must_use]
 pub fn used_file(view: &View<'_>, byte: usize) -> Option<String> {
     let used = view.file.uses.iter().find(|used| view.contains(used.span, byte))?;
     Some(used.node.to_owned())
 }
 
-/// Returns the places in the document of names whose definition is at a place that `is_meant` accepts.
+/// Returns the places of all names in the document that refer to a definition that `is_meant` accepts.
 #[must_use]
 pub fn references(view: &View<'_>, is_meant: impl Fn(&Place) -> bool) -> Vec<Place> {
     let of_definition = |mention: &Mention<'_>| {
@@ -61,8 +61,8 @@ pub fn is_name(name: &str) -> bool {
     found.is_empty() && plan.name.node == name && matches!(plan.elements, [only] if is_other(only))
 }
 
-/// Returns the role and definition of each mention in the document, by number; the list is equal before and after a
-/// rename that keeps all meanings.
+/// Returns the role of each mention, as a number, and the index of the mention that defines its name. A rename keeps
+/// all meanings if the list is equal before and after it.
 #[must_use]
 pub fn meanings(view: &View<'_>) -> Vec<(u8, Option<usize>)> {
     let mentions = mentions(view.files, view.alphabet);

@@ -1,4 +1,4 @@
-//! Semantic tokens: the parts of a document whose role follows from the tree and not from the text.
+//! Semantic tokens: the parts of a document whose role is known only from the syntax tree.
 
 use std::ops::Range;
 

@@ -6,6 +6,6 @@ unsafe extern "C" {
     fn tree_sitter_mdle() -> *const ();
 }
 
-/// The grammar.
+/// The tree-sitter grammar of MDLe.
 // SAFETY: the generated parser defines this function, and its result is valid for ever.
 pub const LANGUAGE: LanguageFn = unsafe { LanguageFn::from_raw(tree_sitter_mdle) };

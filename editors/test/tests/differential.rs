@@ -1,4 +1,4 @@
-//! tree-sitter finds an error in a text if and only if mdlec finds a syntax error.
+//! Tests that tree-sitter finds an error in a text if and only if mdlec finds a syntax error.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_compiler::diagnostic::{Code, SourceId};
@@ -19,8 +19,8 @@ fn tree(parser: &mut Parser, text: &str) -> Tree {
     parser.parse(text, None).unwrap()
 }
 
-/// Returns the messages of mdlec about the notation of a text, as far as a grammar can have them: the depth of brackets
-/// and what a file lacks are not a question of notation.
+/// Returns mdlec's messages about syntax errors in a text. Errors that a grammar cannot express are left out: the
+/// nesting depth of brackets, and parts that a file lacks.
 fn syntax_errors(text: &str) -> Vec<String> {
     let arena = arena_for(text);
     let (_, found) = parse(SourceId(0), text, &arena);
@@ -28,7 +28,8 @@ fn syntax_errors(text: &str) -> Vec<String> {
     found.into_iter().filter(|found| is_of_notation(found.code)).map(|found| found.message).collect()
 }
 
-/// Returns how both judge a text differently.
+/// Returns a description of the difference if only one of tree-sitter and mdlec finds an error in a text, and `None` if
+/// they agree.
 fn difference(parser: &mut Parser, text: &str) -> Option<String> {
     let (tree, errors) = (tree(parser, text), syntax_errors(text));
     let has_error = tree.root_node().has_error();

@@ -1,4 +1,4 @@
-//! The colours that tree-sitter gives the example plans.
+//! Tests of the colours that tree-sitter gives the example plans.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
@@ -12,7 +12,7 @@ fn query(name: &str) -> String {
     std::fs::read_to_string(root().join("editors/tree-sitter/queries").join(name)).unwrap()
 }
 
-/// Returns a text in lines, each followed by the names of its colours in order.
+/// Returns a text in which each coloured part is written as `⟨NAME part⟩`, with the name of its colour.
 fn highlighted(text: &str) -> String {
     let mut config =
         HighlightConfiguration::new(LANGUAGE.into(), "mdle", &query("highlights.scm"), "", &query("locals.scm"))

@@ -10,7 +10,8 @@ use mdle_compiler::syntax::outline;
 use mdle_compiler::{Limit, fsm, picture, rust, syntax};
 use mdle_files::{Input, Settings, Target, read_plan};
 
-/// Runs a command line without a command.
+/// Runs `mdlec` without a command: builds the executable of a plan or prints another form of the plan and, with
+/// `--run`, runs the executable.
 pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
     let makes_none = options.build.emit.as_ref().is_some_and(|emit| emit.kind != EmitKind::Exe);
     if options.run && makes_none {
@@ -73,7 +74,7 @@ pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
     Ok(None)
 }
 
-/// Returns the limit on the size of plans that have this form.
+/// Returns the limit on the size of a plan that is printed in the form `kind` or built.
 fn limit(kind: EmitKind) -> Limit {
     match kind {
         EmitKind::Tree | EmitKind::Projected | EmitKind::Plan | EmitKind::Nondegenerate | EmitKind::Formal => {
@@ -123,7 +124,7 @@ fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, V
     Ok((text, input.inputs(&target)))
 }
 
-/// Returns the plans of the robots of a group as text, after a check of them.
+/// Checks the plan of a group, and returns the plans of its robots as text.
 fn projected(input: &mut Input, target: &Target, options: &Executable) -> Result<String, Failure> {
     let wanted = options.name.as_deref();
     if let Some(name) = wanted {

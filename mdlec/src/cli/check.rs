@@ -40,8 +40,8 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
     })
 }
 
-/// Returns the target of the `mdle.toml` beside the file `plan`, after a check of the options that a run would take
-/// from it.
+/// Returns the target that the `mdle.toml` beside the file `plan` names. Checks the options that a run would take from
+/// this `mdle.toml`.
 fn checked_target(plan: &Path) -> Result<Target, Failure> {
     let settings = Settings::beside(plan)?;
     let target = settings.target(None)?;

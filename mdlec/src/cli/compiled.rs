@@ -1,4 +1,4 @@
-//! Compiles the only plan of a file that is to run, and generates its Rust code. Messages go to standard error.
+//! Compiles the selected plan of a file, or its only plan, and generates the Rust code. Messages go to standard error.
 
 use std::path::Path;
 
@@ -7,7 +7,8 @@ use mdle_files::{Input, InputError, Target, read_plan};
 
 use super::{Failure, report};
 
-/// Compiles the only plan to run, if it is within the limit; messages go to standard error.
+/// Compiles the plan `name`, or the only plan that no other plan uses, if it is within the limit; messages go to
+/// standard error.
 pub(super) fn compile_one(
     input: &mut Input,
     target: &Target,
@@ -18,8 +19,8 @@ pub(super) fn compile_one(
     compile_judged(input, target, name, deny_warnings, limit, |compiled| compiled)
 }
 
-/// Compiles the only plan to run, and passes it by value to `judge`, which can drop the parts that it does not
-/// need.
+/// Compiles the plan `name`, or the only plan that no other plan uses, and passes it by value to `judge`, which can
+/// drop the parts that it does not need.
 pub(super) fn compile_judged<T>(
     input: &mut Input,
     target: &Target,
@@ -53,7 +54,7 @@ pub(super) struct Emitted {
     pub(super) rust: String,
 }
 
-/// Generates Rust from the only plan to compile, for the crate of this target.
+/// Compiles the plan `name`, or the only plan that no other plan uses, to Rust for the crate of `target`.
 pub(super) fn emitted(
     path: &Path,
     target: Target,

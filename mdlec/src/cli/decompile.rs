@@ -8,7 +8,7 @@ use mdle_compiler::syntax;
 use mdle_files::read::LARGEST_DATA;
 use mdle_theory::theorem::{Answer, Machine, as_printed, augment, decompile as theorem, monomial, read, string};
 
-/// Maximum number of states of a machine that is shown as matrices.
+/// Maximum number of states for which the matrices of a machine are printed.
 const SHOWN: usize = 12;
 
 /// Prints the plan of a machine, or the results of the paper's own conditions.
@@ -53,7 +53,7 @@ fn refused(message: String) -> Failure {
     Failure::of(1, message)
 }
 
-/// Prints a plan in the canonical layout. Reports laws and conditions of the machine's file that are not valid
+/// Prints a plan in the canonical layout. Reports an error if laws or conditions in the machine's file are not valid
 /// MDLe.
 fn print(file: &Path, plan: &str) -> Result<(), Failure> {
     let mut sources = Sources::default();
@@ -67,8 +67,8 @@ fn print(file: &Path, plan: &str) -> Result<(), Failure> {
     }
 }
 
-/// Returns a text about the results of the printed conditions for a machine, and their differences from the
-/// exact conditions.
+/// Returns a report on the conditions as printed in the paper: whether they hold for a machine, and how they differ
+/// from the exact conditions.
 fn printed(machine: &Machine, exactly: &Answer) -> String {
     let mut text = String::new();
     if machine.states().len() <= SHOWN {

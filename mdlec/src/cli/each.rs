@@ -1,10 +1,10 @@
-//! Iteration over several files, which continues after a file that fails.
+//! Processes several files, and continues after a file that fails.
 
 use std::path::{Path, PathBuf};
 
 use super::Failure;
 
-/// Calls `done` for every file, even if it fails for earlier ones; fails with the highest exit status.
+/// Calls `done` for every file, and prints each failure. Fails with the highest exit status.
 pub(super) fn each(paths: &[PathBuf], mut done: impl FnMut(&Path) -> Result<(), Failure>) -> Result<(), Failure> {
     let mut failed = None;
     for failure in paths.iter().filter_map(|path| done(path).err()) {

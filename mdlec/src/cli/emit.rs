@@ -60,7 +60,7 @@ impl EmitKind {
 }
 
 impl Emit {
-    /// Reads the argument.
+    /// Parses the argument: a kind, which `=FILE` may follow.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let (kind, file) = match text.split_once('=') {
             Some((_, "")) => return Err("name a file after `=`, or leave `=` out".into()),

@@ -1,5 +1,5 @@
-//! Checks the names of output files: an extension of another format than the command writes is refused before anything
-//! is read.
+//! Checks the extensions of output files before anything is read. An extension is refused if it belongs to another
+//! format than the one that the command writes.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use super::{EmitKind, Failure};
 /// Extensions of pictures.
 const PICTURES: [&str; 12] = ["svg", "png", "jpg", "jpeg", "gif", "webp", "bmp", "tif", "tiff", "pdf", "ps", "eps"];
 
-/// Refuses a name for the picture of `mdlec draw` with another extension than `.svg`.
+/// Refuses a file name for the picture of `mdlec draw` if it has an extension other than `.svg`.
 pub(super) fn svg(file: &Path) -> Result<(), Failure> {
     let Some(given) = file.extension().filter(|given| !given.eq_ignore_ascii_case("svg")) else { return Ok(()) };
     let (shown, name) = (file.display(), file.with_extension("svg"));
@@ -19,7 +19,8 @@ pub(super) fn svg(file: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// Refuses a picture's name for an executable or another form of `plan`, which are not pictures.
+/// Refuses a file name with the extension of a picture for an executable or for another form of `plan`, which is not a
+/// picture.
 pub(super) fn no_picture(file: &Path, kind: EmitKind, plan: &Path) -> Result<(), Failure> {
     let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if !PICTURES.iter().any(|picture| ending.eq_ignore_ascii_case(picture)) {

@@ -13,7 +13,7 @@ use crate::link::{self, Entry, Package, TargetCrate};
 use mdle_compiler::rust;
 use mdle_files::{RunOption, SafetyEntry, Settings};
 
-/// Builds the executable of a plan and becomes it.
+/// Builds the executable of a plan, and replaces this process by it.
 pub(super) fn run(options: &Run) -> Result<(), Failure> {
     let path = begin(&options.executable)?;
     let output = options.executable.output.clone();
@@ -24,8 +24,8 @@ pub(super) fn run(options: &Run) -> Result<(), Failure> {
     build(&options.executable, path, output, None)?.become_it(options.executable.target.as_deref(), &options.args)
 }
 
-/// Checks, before the build, the options that a run with the arguments `args` takes from an `mdle.toml`, which may name
-/// no safety rules: an executable has none.
+/// Checks the `mdle.toml` beside a plan before the build. The options that a run with the arguments `args` takes from
+/// it must be valid, and it must not name safety rules, which an executable does not have.
 pub(super) fn settings_fit(options: &Executable, args: &[String]) -> Result<(), Failure> {
     // A scenario takes none.
     let Some(path) = options.plan.as_ref().filter(|path| !scenario::is_scenario(path)) else { return Ok(()) };
@@ -38,13 +38,13 @@ pub(super) fn settings_fit(options: &Executable, args: &[String]) -> Result<(), 
     Ok(())
 }
 
-/// Prepares for signals, so that they leave no processes or files, and returns the file of the plan.
+/// Installs the signal handlers of `take_signals`, and returns the file of the plan.
 pub(super) fn begin(options: &Executable) -> Result<&Path, Failure> {
     take_signals()?;
     options.plan.as_deref().ok_or_else(|| Failure::usage("no plan was given"))
 }
 
-/// Makes signals end this process without leaving processes or files.
+/// Installs handlers for signals that end this process. They remove its child processes and unfinished files first.
 pub(super) fn take_signals() -> Result<(), Failure> {
     link::leave_nothing_behind(ProgressOutput::wipe)
         .map_err(|error| Failure::usage(format!("this system does not let signals be caught: {error}")))
@@ -99,8 +99,8 @@ pub(super) fn build(
 }
 
 impl Runnable {
-    /// Becomes the executable, with the options of `mdle.toml` before `args`; `target` is the target on the
-    /// command line.
+    /// Replaces this process by the executable, with the options of `mdle.toml` before `args`. `target` is the target
+    /// on the command line.
     pub(super) fn become_it(&self, target: Option<&str>, args: &[String]) -> Result<(), Failure> {
         let program = if self.path.is_absolute() { self.path.clone() } else { Path::new(".").join(&self.path) };
         let options = self.settings.run_options(target, args, link::known)?;
@@ -122,7 +122,8 @@ fn must_fit(option: &RunOption, program: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Becomes a program: its exit status and its signals are then those of this process.
+/// Replaces this process by a program, so that the exit status and the signals of the program are those of this
+/// process.
 pub(super) fn become_program(command: &mut Command) -> Result<(), Failure> {
     let error = command.exec();
     Err(Failure::usage(format!("cannot run `{}`: {error}", Path::new(command.get_program()).display())))

@@ -1,4 +1,4 @@
-//! `mdlec targets` and `mdlec quarks`: lists of robots, and of the laws, interrupts and signals of a robot.
+//! Prints the lists of `mdlec targets` and `mdlec quarks`: robots, and the laws, interrupts and signals of a robot.
 
 use mdle_compiler::alphabet::{Alphabet, Declaration, DeclarationKind};
 use mdle_compiler::builtin;

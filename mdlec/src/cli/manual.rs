@@ -28,7 +28,7 @@ pub(super) fn man(options: &Man) -> Result<(), Failure> {
     report::print_exactly(&String::from_utf8_lossy(&text))
 }
 
-/// Returns the command of this name; fails if there is none.
+/// Returns the command with this name, or an error if there is none.
 fn command<'c>(mdlec: &'c clap::Command, name: &str) -> Result<&'c clap::Command, Failure> {
     mdlec.find_subcommand(name).ok_or_else(|| {
         let names: Vec<_> = mdlec.get_subcommands().map(clap::Command::get_name).collect();

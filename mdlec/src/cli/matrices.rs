@@ -53,7 +53,7 @@ pub(super) fn matrices(
     Ok(())
 }
 
-/// Writes the files and then their list, removes files of an earlier list, and returns the number of matrices.
+/// Removes the files of an earlier list, writes the files and then their list, and returns the number of matrices.
 fn write(files: &MatrixFiles<'_, '_>, folder: &Path, inputs: &[PathBuf]) -> Result<usize, Failure> {
     let failed = |error: io::Error| Failure::usage(format!("`{}` cannot be written: {error}", folder.display()));
     fs::create_dir_all(folder).map_err(failed)?;
@@ -75,8 +75,8 @@ fn write(files: &MatrixFiles<'_, '_>, folder: &Path, inputs: &[PathBuf]) -> Resu
     Ok(count)
 }
 
-/// Returns the files in this folder whose names are those of matrices, since files of another plan could be
-/// mistaken for files of this plan.
+/// Returns the files in a folder that have names of matrix files. Files of another plan could be mistaken for files of
+/// this plan.
 fn matrix_files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {

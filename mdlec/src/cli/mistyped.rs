@@ -25,7 +25,8 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     ("emulator", &["emulate"]),
 ];
 
-/// Returns the error for a first argument that resembles a command and is not a file, so that clap took it for a plan.
+/// Returns the error for a first argument that resembles a command and is not a file; clap takes such an argument for a
+/// plan. Returns `None` if the first argument is anything else.
 pub(super) fn command() -> Option<Failure> {
     let cli = Cli::command();
     let word = words(&cli).into_iter().nth(1).and_then(|word| word.into_string().ok());
@@ -41,8 +42,8 @@ pub(super) fn command() -> Option<Failure> {
     )))
 }
 
-/// Returns the error for an option that belongs to other commands than the given one; `answer` is the error of
-/// clap.
+/// Returns the error for an option that the given command does not have, but other commands have. `answer` is the error
+/// of clap.
 pub(super) fn option(answer: &clap::Error) -> Option<Failure> {
     let Some(ContextValue::String(given)) = answer.get(ContextKind::InvalidArg) else { return None };
     if answer.kind() != ErrorKind::UnknownArgument {
@@ -77,7 +78,7 @@ pub(super) fn option(answer: &clap::Error) -> Option<Failure> {
     )))
 }
 
-/// Returns what an option is, without its values and default, in the middle of a sentence.
+/// Returns the help of an option as a phrase for the middle of a sentence, without its values and its default.
 fn meaning(option: &Arg) -> String {
     let help = option.get_help().map(ToString::to_string).unwrap_or_default();
     let mut phrase = help.split([':', ';', '[']).next().unwrap_or_default().trim_end().to_owned();
@@ -87,7 +88,7 @@ fn meaning(option: &Arg) -> String {
     phrase
 }
 
-/// Returns the error for the name of a robot without `--target`; `answer` is the error of clap.
+/// Returns the error for a robot that is named without `--target`; `answer` is the error of clap.
 pub(super) fn robot(answer: &clap::Error) -> Option<Failure> {
     let (given, cli) = (unexpected(answer)?, Cli::command());
     let command = env::args().skip(1).find_map(|word| cli.find_subcommand(word))?;
@@ -99,7 +100,7 @@ pub(super) fn robot(answer: &clap::Error) -> Option<Failure> {
     )))
 }
 
-/// Returns the error for the emulator of a robot that needs none; `answer` is the error of clap.
+/// Returns the error for `mdlec emulator` with a robot that has no emulator; `answer` is the error of clap.
 pub(super) fn emulator(answer: &clap::Error) -> Option<Failure> {
     let Some(ContextValue::String(given)) = answer.get(ContextKind::InvalidValue) else { return None };
     let cli = Cli::command();
@@ -114,7 +115,7 @@ pub(super) fn emulator(answer: &clap::Error) -> Option<Failure> {
     })
 }
 
-/// Returns the text that clap did not expect.
+/// Returns the argument that clap did not expect; `None` for other errors.
 fn unexpected(answer: &clap::Error) -> Option<&str> {
     match answer.get(ContextKind::InvalidArg) {
         Some(ContextValue::String(given)) if answer.kind() == ErrorKind::UnknownArgument => Some(given),
@@ -122,7 +123,8 @@ fn unexpected(answer: &clap::Error) -> Option<&str> {
     }
 }
 
-/// Replaces clap's tip to pass an unknown option as a value: no command of mdlec takes a value that looks like one.
+/// Replaces clap's tip that an unknown option can be passed as a value. The tip is wrong here, because no command of
+/// mdlec takes a value that looks like an option.
 pub(super) fn with_tip(mut answer: clap::Error) -> clap::Error {
     let Some(given) = unexpected(&answer).filter(|given| given.starts_with('-')).map(str::to_owned) else {
         return answer;

@@ -136,7 +136,8 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Returns the argument of `--color`, for help and usage errors, after which clap returns no parsed arguments.
+/// Returns the argument of `--color`. It is needed for help and for usage errors, for which clap returns no parsed
+/// arguments.
 fn color_of_help() -> Color {
     let mut words = std::env::args().take_while(|word| word != "--").skip_while(|word| !word.starts_with("--color"));
     let value = words.next().and_then(|word| match word.split_once('=') {

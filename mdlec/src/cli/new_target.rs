@@ -23,7 +23,7 @@ const FILES: [(&str, &str); 6] = [
     ("tests/conformance.rs", include_str!("../../template/conformance.rs")),
 ];
 
-/// Writes the folder, completely or not at all, and prints the next steps.
+/// Writes the folder of a new robot, completely or not at all, and prints the next steps.
 pub(super) fn new_target(options: &NewTarget) -> Result<(), Failure> {
     let name = options.name.as_str();
     must_be_free(name)?;
@@ -46,7 +46,7 @@ pub(super) fn new_target(options: &NewTarget) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes the files into an empty folder.
+/// Writes the files of a new robot into an empty folder.
 fn fill(folder: &Path, name: &str) -> Result<(), Failure> {
     let refused = |error| Failure::usage(format!("`{name}` cannot be written: {error}"));
     for inside in ["src", "tests"] {
@@ -58,8 +58,9 @@ fn fill(folder: &Path, name: &str) -> Result<(), Failure> {
     bind::bind(&Bind { alphabet: folder.join("alphabet.mdle"), check: false })
 }
 
-/// Returns the text of a template's file with this name in it. The manifest leaves mdlec's workspace and gets a
-/// workspace of its own, so that it works in any folder; the author of the robot chooses the licence.
+/// Returns the text of a template's file for a robot with this name. The manifest is not part of mdlec's workspace, but
+/// has a workspace of its own, so that it works in any folder. It has no licence, which the author of the robot
+/// chooses.
 fn named(file: &str, text: &str, name: &str) -> String {
     let text = text.replace(NAME, name);
     if file != "Cargo.toml" {
@@ -99,7 +100,7 @@ fn is_taken(name: &str) -> bool {
     name == "all" || builtin::alphabets().iter().any(|alphabet| alphabet.name == name)
 }
 
-/// Proposes a valid name that resembles this one.
+/// Returns a valid name that resembles `name`, or `rover` if there is none.
 fn near(name: &str) -> String {
     let last = Path::new(name).file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let near: String = last.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();

@@ -1,4 +1,4 @@
-//! Builds of packages, with their progress on standard error.
+//! Builds packages, and shows the progress on standard error.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
@@ -9,7 +9,8 @@ use mdle_runtime::Printable;
 use super::{Failure, report};
 use crate::link::{self, Built, Cache, Package, Progress};
 
-/// Builds a package, whose target may be in a folder, shows the progress, and prints a note about the executable.
+/// Builds a package, shows the progress, and prints a note about the executable. `target` is the folder of a
+/// third-party target.
 pub(super) fn build_package(
     package: &Package<'_>,
     output: &Path,
@@ -30,8 +31,8 @@ pub(super) fn build_package(
     Ok(())
 }
 
-/// Prints a note about a configuration file near the plan, or in the folder of its target, that mdlec ignores although
-/// cargo would read it.
+/// Prints a note if builds ignore a configuration file of cargo or rustup that is near the plan or in the folder of its
+/// target.
 fn note_ignored(plan: &Path, target: Option<&Path>) {
     let beside = plan.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let folders: Vec<&Path> = target.into_iter().chain([beside]).collect();
@@ -43,7 +44,7 @@ fn note_ignored(plan: &Path, target: Option<&Path>) {
     }
 }
 
-/// Progress output: a line that is overwritten on a terminal, and otherwise a line for each new step.
+/// Progress output: a single line that is overwritten on a terminal, and otherwise a line for each new step.
 #[derive(Default)]
 pub(super) struct ProgressOutput {
     open: bool,

@@ -103,7 +103,7 @@ pub(super) fn printed(result: io::Result<()>) -> Result<(), Failure> {
     }
 }
 
-/// Prints the answer of the command line itself: the requested help or version, or a usage error.
+/// Prints the output of clap: the requested help or version, or a usage error.
 pub(super) fn answer(answer: &clap::Error) -> Result<(), Failure> {
     // Only the arguments can have brought what a terminal would obey; beside its colours it could not be told from
     // them.

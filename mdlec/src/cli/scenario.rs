@@ -1,5 +1,5 @@
-//! Scenarios of several robots, `mdlec SCENARIO.toml`: the executable has all files of the scenario inside, and runs
-//! them as `mdle run SCENARIO.toml` does.
+//! Scenarios of several robots, `mdlec SCENARIO.toml`. The executable contains all files of the scenario, and runs them
+//! as `mdle run SCENARIO.toml` does.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -56,7 +56,7 @@ fn files(path: &Path) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     mdle::scenario_files(path).map_err(Failure::silent)
 }
 
-/// Refuses options that are for one plan, and other robots than the simulated one.
+/// Refuses options that only a single plan supports, and robots other than the simulated one.
 fn must_fit(options: &Executable, path: &Path) -> Result<(), Failure> {
     let settings = Settings::beside(path)?;
     needs_target(settings.names_target(options.target.as_deref()))?;
@@ -69,7 +69,7 @@ fn must_fit(options: &Executable, path: &Path) -> Result<(), Failure> {
     must_be_plain(options.deny_warnings)
 }
 
-/// Refuses another robot than the simulated one for the scenario in the file at `path`.
+/// Refuses a robot other than the simulated one for the scenario in the file at `path`.
 pub(super) fn must_be_simulated(path: &Path, robot: &str) -> Result<(), Failure> {
     if robot == SIM {
         return Ok(());
@@ -79,14 +79,14 @@ pub(super) fn must_be_simulated(path: &Path, robot: &str) -> Result<(), Failure>
     Err(Failure::usage(format!("`{}` {sentence}\nhelp: {help}", path.display())))
 }
 
-/// Refuses options about messages: those of a scenario are the messages of `mdle`.
+/// Refuses options that change messages, because `mdle` prints the messages about a scenario.
 fn must_be_plain(deny_warnings: bool) -> Result<(), Failure> {
     let given = [(deny_warnings, "--deny-warnings"), (report::is_json(), "--message-format json")];
     let Some((_, name)) = given.into_iter().find(|(is_given, _)| *is_given) else { return Ok(()) };
     Err(Failure::usage(format!("`{name}` is for plans, and this is a scenario\nhelp: leave it out")))
 }
 
-/// Returns the Rust text of the names and contents of files.
+/// Returns the Rust constant with the names and contents of files.
 fn constant(files: &[(String, Vec<u8>)]) -> String {
     let mut rust = "pub const FILES: &[(&str, &[u8])] = &[\n".to_owned();
     for (name, bytes) in files {

@@ -1,9 +1,11 @@
-//! Texts on which an executable depends, for its answer to `--version`; they contain neither places nor times.
+//! Computes the version text of an executable from everything on which the executable depends. The text contains no
+//! paths and no times.
 
 use mdle_files::Target;
 
-/// Returns the version text: the hash of `texts`, which are those of the plan and of the files that it uses, the
-/// target, the hash of its alphabet and of the shared alphabets, and the version of the compiler.
+/// Returns the version text. It contains a hash of `texts`, which are the texts of the plan and of the files that it
+/// uses; the name of the target; a hash of the target's alphabet and the shared alphabets; and the version of the
+/// compiler.
 pub(super) fn version<'t>(texts: impl Iterator<Item = &'t [u8]>, target: &Target) -> String {
     format!(
         "text {}, target {}, alphabet {}, mdlec {}",

@@ -1,13 +1,12 @@
-//! The words of the command line, in an order that clap accepts.
+//! Reorders the words of the command line so that clap accepts them.
 
 use std::env;
 use std::ffi::OsString;
 
 use clap::{Arg, Command};
 
-/// Returns the words of this process's command line. Options of all commands that come before the command are
-/// moved after it: in a call without a command, a plan can be at the same place, so clap would refuse the
-/// command there.
+/// Returns the words of this process's command line. Global options that come before the command are moved after it:
+/// without a command, a plan can follow such an option, so clap would refuse the command there.
 pub(super) fn words(cli: &Command) -> Vec<OsString> {
     ordered(env::args_os().collect(), cli)
 }

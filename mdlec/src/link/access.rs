@@ -1,5 +1,5 @@
-//! Access rights of the cache, which are restricted to its user, since mdlec runs the files in the cache and
-//! builds them into executables.
+//! Access rights of the cache. Only its user has access, because mdlec runs the files in the cache and builds them into
+//! executables.
 
 use std::fs::{self, DirBuilder, Metadata, Permissions};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, PermissionsExt};
@@ -12,7 +12,8 @@ use super::LinkError;
 /// Mode of the cache: its user has all permissions, other users have none.
 const OWN: u32 = 0o700;
 
-/// Bit of folders, such as shared temporary ones, in which users cannot remove or rename the files of other users.
+/// Permission bit of folders, such as shared temporary folders, in which users cannot remove or rename the files of
+/// other users.
 const STICKY: u32 = 0o1000;
 
 /// A folder that only its user can access.
@@ -20,7 +21,7 @@ const STICKY: u32 = 0o1000;
 pub(super) struct Private {
     /// Path of the folder, without symbolic links.
     pub(super) folder: PathBuf,
-    /// `true` if other users could write to the cache before.
+    /// `true` if other users could write to the folder before this program removed their permissions.
     pub(super) was_open: bool,
 }
 
@@ -52,7 +53,8 @@ pub(super) fn private(folder: &Path) -> Result<Private, LinkError> {
     Ok(Private { folder: place, was_open: others_write(&found) })
 }
 
-/// Fails if another user could replace the cache through this folder above it.
+/// Fails if another user could replace the cache by changing `path`, a folder above it or a symbolic link on the way to
+/// it.
 fn judge(path: &Path, found: &Metadata) -> Result<(), LinkError> {
     if !is_trusted(found.uid()) {
         return Err(LinkError::CacheOfOther { path: path.to_owned(), owner: found.uid() });
@@ -63,8 +65,8 @@ fn judge(path: &Path, found: &Metadata) -> Result<(), LinkError> {
     Ok(())
 }
 
-/// Returns `true` for this process's user, the superuser, and the owner of the root folder, who is the
-/// superuser outside a container with users of its own.
+/// Returns `true` for this process's user, the superuser, and the owner of the root folder. In a container with its own
+/// users, the owner of the root folder is the superuser of the system outside.
 fn is_trusted(user: u32) -> bool {
     let owns_all = || fs::metadata("/").is_ok_and(|root| root.uid() == user);
     user == geteuid().as_raw() || user == 0 || owns_all()

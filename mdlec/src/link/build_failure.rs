@@ -14,7 +14,7 @@ const NETWORK: &str = "spurious network error";
 /// Messages of rustc when there is no linker, or when the linker fails.
 const LINKER: [&str; 2] = [NO_LINKER, "error: linking with `"];
 
-/// Returns the fault for which a run of cargo ended without an executable.
+/// Returns the error that explains why a run of cargo ended without an executable.
 pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependencies: &Dependencies) -> LinkError {
     let text = run.text();
     if run.lacks_room() {
@@ -49,8 +49,8 @@ pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependen
     }
 }
 
-/// Returns the fault for an error of the linker: of the one for the machine `foreign` where the executable of
-/// the package `plan` is linked, and otherwise of this machine's.
+/// Returns the error for a linker that failed. If the executable of the package `plan` was linked, this is the linker
+/// for the machine `foreign`; otherwise it is the linker for this machine.
 fn linker(error: &Complaint, plan: &Path, foreign: Option<&str>, log: PathBuf) -> LinkError {
     // Of libraries only build scripts and procedural macros are linked, which run on this machine.
     match foreign.filter(|_| error.manifest == plan) {
@@ -59,7 +59,7 @@ fn linker(error: &Complaint, plan: &Path, foreign: Option<&str>, log: PathBuf) -
     }
 }
 
-/// Returns the fault for emitted text that does not compile.
+/// Returns the error for emitted text that does not compile.
 fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
     match target {
         TargetCrate::Builtin { .. } => LinkError::Emitted { log },
@@ -68,8 +68,8 @@ fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
     }
 }
 
-/// Returns the fault for a crate that mdlec did not emit and that does not compile, or for a run in which cargo
-/// did not begin to compile.
+/// Returns the error for a crate that mdlec did not emit and that does not compile, or for a run in which cargo did not
+/// begin to compile.
 fn others(
     job: &Job<'_>,
     run: &Run,

@@ -31,7 +31,7 @@ pub(super) fn fits(plan: &PlanPackage, executable: &Path) -> bool {
     })
 }
 
-/// Returns `true` if cargo's lock file in the package's `folder` is as cargo left it.
+/// Returns `true` if cargo's lock file in the package's `folder` has not changed since it was recorded.
 pub(super) fn has_lock(folder: &Path) -> bool {
     read(folder).is_some_and(|[_, noted, _]| lock(folder).is_some_and(|lock| lock == noted))
 }

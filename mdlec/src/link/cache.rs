@@ -1,7 +1,8 @@
-//! The cache, which mdlec keeps between runs: unpacked sources, compiled libraries, and the packages of plans.
+//! The cache, which mdlec keeps between runs. It contains unpacked sources, compiled libraries, and the packages of
+//! plans.
 //!
-//! It is the folder `mdlec` in the user's cache folder unless `MDLEC_CACHE` names another; it may be deleted at any
-//! time.
+//! It is the folder `mdlec` in the user's cache folder, unless `MDLEC_CACHE` names another folder; it may be deleted at
+//! any time.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
@@ -29,8 +30,8 @@ impl Cache {
         Self::at(&Self::folder_of_user()?)
     }
 
-    /// Returns the folder of the user's cache, which need not exist: the value of `MDLEC_CACHE`, else `mdlec` in the
-    /// user's cache folder.
+    /// Returns the folder of the user's cache, which need not exist: the value of `MDLEC_CACHE` or, without this
+    /// variable, `mdlec` in the user's cache folder.
     ///
     /// # Errors
     /// Fails if there is neither the variable nor a home folder.
@@ -44,7 +45,7 @@ impl Cache {
         }
     }
 
-    /// Returns the cache in `folder`, which is created if necessary, and closed to other users.
+    /// Returns the cache in `folder`, which is created if necessary. Access by other users is removed.
     ///
     /// # Errors
     /// Fails if `folder` cannot be created, or if others can change or replace it.
@@ -66,12 +67,12 @@ impl Cache {
         &self.folder
     }
 
-    /// Folder of cargo's build results.
+    /// Returns the folder of cargo's build results.
     pub(super) fn target(&self) -> PathBuf {
         self.folder.join("target")
     }
 
-    /// Folder of the packages of plans.
+    /// Returns the folder of the packages of plans.
     pub(super) fn plans(&self) -> PathBuf {
         self.folder.join("plans")
     }
@@ -85,7 +86,7 @@ impl Cache {
         Ok(folder)
     }
 
-    /// Waits until no other mdlec uses the cache; locks it for others as long as the returned file is open.
+    /// Waits until no other mdlec uses the cache, and locks it until the returned file is closed.
     pub(super) fn lock(&self, progress: &mut dyn FnMut(Progress)) -> Result<File, LinkError> {
         let path = self.folder.join("lock");
         let failed = |error| LinkError::cache(&path, error);
@@ -106,8 +107,8 @@ impl Cache {
     }
 }
 
-/// Writes `contents` to `file` if they differ; returns `true` if it wrote. Readers see the old file or the new
-/// file.
+/// Writes `contents` to `file` if they differ; returns `true` if it wrote. Another process that reads the file sees
+/// either the old or the new contents.
 pub(super) fn write_if_changed(file: &Path, contents: &[u8]) -> Result<bool, LinkError> {
     if fs::read(file).is_ok_and(|found| found == contents) {
         return Ok(false);
@@ -116,7 +117,7 @@ pub(super) fn write_if_changed(file: &Path, contents: &[u8]) -> Result<bool, Lin
     Ok(true)
 }
 
-/// Writes a file next to `file`, and renames it.
+/// Writes a temporary file next to `file`, and renames it to `file`.
 fn replace(file: &Path, contents: &[u8]) -> io::Result<()> {
     if let Some(folder) = file.parent() {
         fs::create_dir_all(folder)?;

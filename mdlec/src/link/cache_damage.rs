@@ -1,5 +1,5 @@
-//! Detection of damage in the cache that cargo does not notice, since cargo compares the times of files and not
-//! their contents.
+//! Detects damage in the cache that cargo does not notice, because cargo compares the times of files and not their
+//! contents.
 
 use std::os::unix::process::ExitStatusExt;
 
@@ -43,7 +43,7 @@ pub(super) enum Damage {
     Libraries,
 }
 
-/// Returns the damaged part of the cache, judged by a run of cargo; `None` if there is no sign of damage.
+/// Returns the part of the cache that is damaged according to a run of cargo; `None` if there is no sign of damage.
 pub(super) fn found(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>) -> Option<Damage> {
     if run.status.success() {
         let stored = run.executable.as_ref().filter(|executable| executable.fresh)?;
@@ -73,7 +73,7 @@ fn is_of_damage(complaint: &Complaint, plan: &PlanPackage, target: &TargetCrate<
     complaint.is_error && !says(&LACKING) && (is_tested || says(&UNREADABLE) && !is_forgotten(complaint, target))
 }
 
-/// Returns `true` if a third-party crate uses a crate on which it does not depend.
+/// Returns `true` if the error is that a third-party crate uses a crate that is not among its dependencies.
 fn is_forgotten(complaint: &Complaint, target: &TargetCrate<'_>) -> bool {
     let TargetCrate::Path { folder, .. } = target else { return false };
     let is_own = folder.canonicalize().is_ok_and(|folder| complaint.manifest.starts_with(folder));

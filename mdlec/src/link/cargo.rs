@@ -92,11 +92,11 @@ impl Job<'_> {
         command
     }
 
-    /// Returns the flags of rustc: for a static executable at a fixed address, which makes its relocation table
-    /// unnecessary, and without any path of this machine in the executable.
+    /// Returns the flags of rustc. They make the executable static, with a fixed address, so that it needs no
+    /// relocation table, and they keep the paths of this machine out of it.
     ///
-    /// The flags are equal for all plans, since other flags would build everything again; so a target outside the home
-    /// folder keeps its path in the messages of its panics.
+    /// The flags are equal for all plans, because cargo would compile everything again for other flags. Therefore the
+    /// messages of panics contain the path of a target outside the home folder.
     fn flags(&self) -> OsString {
         let mut flags = OsString::from("-Ctarget-feature=+crt-static\x1f-Crelocation-model=static");
         let home = env::home_dir();

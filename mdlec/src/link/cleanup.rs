@@ -1,4 +1,4 @@
-//! Cleans up after a signal: ends a running cargo, and removes half-written files.
+//! Cleans up when a signal ends this process: kills a running cargo, and removes incomplete files.
 
 use std::fs::{self, File};
 use std::io;
@@ -26,8 +26,8 @@ enum Unfinished {
     File(PathBuf),
 }
 
-/// Installs handlers: from now on a signal that ends this process first ends its cargo and removes half-written files.
-/// The exit status is that of shells: 128 plus the signal's number. `farewell` runs last.
+/// Installs signal handlers. From now on, a signal that ends this process first kills its cargo and removes incomplete
+/// files. The exit status is the same as in shells: 128 plus the signal's number. `farewell` runs last.
 ///
 /// # Errors
 /// Fails if the system does not let a signal be caught.
@@ -65,7 +65,7 @@ fn end(signal: i32, farewell: impl FnOnce()) {
     process::exit(128 + signal)
 }
 
-/// Keeps an entry on the list as long as it lives.
+/// An entry of the list `UNFINISHED`. The entry is removed from the list when this value is dropped.
 #[derive(Debug)]
 pub(super) struct Watched(Unfinished);
 
@@ -85,7 +85,7 @@ pub(super) fn spawn(command: &mut Command, guard: &Guard) -> io::Result<(Child, 
     Ok((child, Watched(entry)))
 }
 
-/// Creates a file that a signal removes.
+/// Creates a file. A signal that ends this process removes it, unless the returned [`Watched`] was dropped before.
 pub(super) fn create(path: &Path) -> io::Result<(File, Watched)> {
     let mut unfinished = list();
     let file = File::create_new(path)?;

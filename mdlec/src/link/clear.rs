@@ -14,16 +14,16 @@ use super::{Cache, LinkError, Progress, sources};
 /// same file.
 const LOCK: &str = "lock";
 
-/// Names of the other files and folders of a cache, without the unpacked sources; `cargo` is a note that earlier
-/// versions left where they were killed.
+/// Names of the other files and folders of a cache, except the unpacked sources. `cargo` is a file that earlier
+/// versions of mdlec left when they were killed.
 const OWN: [&str; 6] = ["cargo", "compiled", "compiled.new", "target", "tmp", "plans"];
 
 /// Removes the contents of the cache in `folder`, once no other mdlec uses it, and returns the number of bytes freed.
 /// The folder stays, with its lock file.
 ///
 /// # Errors
-/// Fails if the folder is not a cache, since it holds a file that mdlec did not write, or no lock; nothing is changed
-/// then. Also fails if the system refuses.
+/// Fails and changes nothing if the folder is not a cache: it contains a file that mdlec did not write, or no lock
+/// file. Also fails if the system refuses.
 pub fn clear(folder: &Path, progress: &mut dyn FnMut(Progress)) -> Result<u64, LinkError> {
     // Before anything is changed, permissions included.
     let Some(found) = contents(folder)? else { return Ok(0) };
@@ -65,8 +65,8 @@ fn is_own(name: &OsStr) -> bool {
     name == LOCK || OWN.iter().any(|own| name == *own) || name.to_str().is_some_and(sources::is_folder)
 }
 
-/// Returns the disk space of a file, or of a folder with all its contents, in bytes. A file with several names counts
-/// once.
+/// Returns the disk space of a file, or of a folder with all its contents, in bytes. A file with several hard links
+/// counts once.
 fn size(path: &Path, counted: &mut BTreeSet<(u64, u64)>) -> io::Result<u64> {
     let found = fs::symlink_metadata(path)?;
     let own = if counted.insert((found.dev(), found.ino())) { found.blocks() * 512 } else { 0 };

@@ -59,12 +59,12 @@ pub enum LinkError {
          name another folder with the variable MDLEC_CACHE"
     )]
     CacheOpen(PathBuf),
-    /// The folder to be emptied is not a cache.
+    /// The folder to be emptied is not a cache of mdlec.
     #[error("`{path}` is not a cache of mdlec: {why}; nothing was removed")]
     NotACache {
         /// Path of the folder.
         path: PathBuf,
-        /// Content of the folder that a cache does not have, or the absence of a lock file.
+        /// Reason why the folder is not a cache: an unknown file, or no lock file.
         why: String,
     },
     /// The disk is full: the path that could not be written.

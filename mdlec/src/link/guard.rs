@@ -1,4 +1,4 @@
-//! Ends a cargo whose mdlec was killed, which would otherwise delay the next build until it is done.
+//! Kills a running cargo if its mdlec was killed. Otherwise this cargo would delay the next build until it is done.
 
 use std::io;
 use std::os::unix::process::CommandExt;
@@ -8,11 +8,11 @@ use rustix::process::Pid;
 
 const SHELL: &str = "/bin/sh";
 
-/// Program of the guarding shell. Its input ends when this process has ended, however that happened; signals that end
-/// the group leave the shell alive.
+/// Script of the guarding shell. Its standard input is closed when this process ends for any reason, and the shell then
+/// kills its process group. The shell ignores the signals that usually end a process group.
 const PROGRAM: &str = "trap '' HUP INT QUIT TERM; read line; kill -KILL 0";
 
-/// A shell that leads a process group, and kills the group when this process ends before the guard is dropped.
+/// A shell that leads a process group. It kills the group if this process ends before the guard is dropped.
 #[derive(Debug)]
 pub(super) struct Guard(Child);
 

@@ -1,5 +1,5 @@
-//! The machine for which an executable is built: this machine, or another machine, for which rustc needs only
-//! the standard library.
+//! The machine for which an executable is built: this machine, or another machine. For another machine, rustc needs
+//! only its standard library.
 
 use std::fs;
 use std::path::Path;
@@ -30,7 +30,7 @@ pub(super) struct Machine {
 }
 
 impl Machine {
-    /// Returns the machine with this target triple, which builds for itself.
+    /// Returns the machine on which the build runs, which has this target triple.
     pub(super) fn host(triple: &str) -> Self {
         Self { triple: triple.to_owned(), is_foreign: false }
     }
@@ -68,9 +68,10 @@ impl Machine {
         }
     }
 
-    /// Returns the variable that names the linker to cargo, with its value, if rustc's own linker suffices: for
-    /// the C library musl, rustc comes with the object files at the start and the end of a static executable.
-    /// Returns `None` if the configuration in `cargo_home` names a linker, which the variable would override.
+    /// Returns the environment variable that names the linker to cargo, with its value, if rustc's own linker suffices.
+    /// It suffices for the C library musl, for which rustc comes with the object files at the start and the end of a
+    /// static executable. Returns `None` if the configuration in `cargo_home` names a linker, which the variable would
+    /// override.
     pub(super) fn linker(&self, cargo_home: Option<&Path>) -> Option<(String, &'static str)> {
         let is_configured = || cargo_home.is_some_and(|home| names_linker(home, &self.triple));
         let own = self.is_foreign && self.triple.contains("-linux-musl") && !is_configured();

@@ -32,7 +32,7 @@ pub(super) struct Run {
     pub(super) online: bool,
     /// `true` if cargo compiled a package, or found a compiled package.
     pub(super) began: bool,
-    /// `true` if cargo used anything that was compiled before and was in the cache.
+    /// `true` if cargo used at least one crate that an earlier run had compiled.
     pub(super) reused: bool,
     /// Executable of the plan; `None` if there is none.
     pub(super) executable: Option<Executable>,
@@ -62,20 +62,20 @@ pub(super) struct Complaint {
 }
 
 impl Run {
-    /// Returns `true` if the run ended because cargo was not allowed to fetch something. Cargo names the option
-    /// in this case.
+    /// Returns `true` if the run ended because cargo was not allowed to fetch something. In this case cargo's message
+    /// names the option `--offline`.
     pub(super) fn lacks_libraries(&self) -> bool {
         !self.status.success() && !self.began && self.stderr.contains("--offline")
     }
 
-    /// Returns `true` if the run ended because there was no disk space for a file.
+    /// Returns `true` if the run ended because the disk was full or a file was too large.
     pub(super) fn lacks_room(&self) -> bool {
         let text = self.text();
         self.status.signal() == Some(SIGXFSZ) || FULL.iter().any(|sign| text.contains(sign))
     }
 
-    /// Returns `true` if cargo itself panicked. Cargo indents the output of build scripts, so a panic in a
-    /// build script does not begin a line; panics of rustc do not count.
+    /// Returns `true` if cargo itself panicked. Panics of rustc do not count. A panic in a build script does not begin
+    /// a line, because cargo indents the output of build scripts.
     pub(super) fn is_cargo_broken(&self) -> bool {
         let is_panic = |line: &str| line.starts_with("thread '") && line.contains("panicked at");
         !self.status.success() && self.stderr.lines().any(|line| is_panic(line) && !line.starts_with("thread 'rustc'"))
@@ -97,8 +97,8 @@ enum CargoLine {
     Blocked,
 }
 
-/// Follows the run of cargo to its end; `online` is `true` if cargo may use the network, and `plan` is the
-/// plan's manifest. Compiled files enter `seal` at once, so that a build that is stopped keeps them.
+/// Follows a run of cargo to its end. `online` is `true` if cargo may use the network, and `plan` is the plan's
+/// manifest. Each compiled file is recorded in `seal` at once, so that it is kept if the build is stopped.
 pub(super) fn follow(
     mut child: Child,
     online: bool,

@@ -1,4 +1,4 @@
-//! The output file, which is checked before the build and written at once after it.
+//! The output file, which is checked before the build and written in one step after it.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::{LinkError, cleanup};
 
-/// Writes `bytes` to the file `output`, completely or not at all; a device gets them directly. A file that is
+/// Writes `bytes` to the file `output`, completely or not at all; a device is written directly. A file that is
 /// overwritten keeps its permissions. `inputs` are the files from which `bytes` were made.
 ///
 /// # Errors
@@ -30,7 +30,8 @@ pub fn write_whole(output: &Path, bytes: &[u8], inputs: &[PathBuf]) -> Result<()
     }
 }
 
-/// Refuses an `output` that is one of `inputs`, by any path, link or name: writing would destroy the input.
+/// Refuses an `output` that is the same file as one of `inputs`, even under another path or as a link, because writing
+/// would destroy the input.
 ///
 /// # Errors
 /// Fails with [`LinkError::OutputIsInput`].
@@ -45,13 +46,12 @@ pub fn must_not_be_read(output: &Path, inputs: &[PathBuf]) -> Result<(), LinkErr
 pub(super) struct Destination {
     /// Path as the caller wrote it.
     shown: PathBuf,
-    /// Path with symbolic links resolved, since a rename would replace the link.
+    /// Path with symbolic links resolved, because a rename to a link would replace the link.
     path: PathBuf,
 }
 
 impl Destination {
-    /// Checks that a file can be written to `output`, before the build takes its time; `output` must not be one of
-    /// `inputs`.
+    /// Checks before the build that a file can be written to `output`, which must not be one of `inputs`.
     pub(super) fn check(output: &Path, inputs: &[PathBuf]) -> Result<Self, LinkError> {
         let shown = output.to_owned();
         let path = match fs::metadata(output) {
@@ -86,7 +86,7 @@ impl Destination {
         })
     }
 
-    /// Creates a file next to the destination with `write`, and renames it.
+    /// Creates a file next to the destination, fills it with `write`, and renames it to the destination.
     fn put<T>(&self, write: impl FnOnce(&mut File) -> io::Result<T>) -> Result<T, LinkError> {
         let new = self.beside();
         let refused = |error| LinkError::output(&self.shown, error);

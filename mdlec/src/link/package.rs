@@ -11,7 +11,7 @@ use super::target::{Dependencies, utf8};
 use super::toolchain::Toolchain;
 use super::{Cache, Entry, LinkError, Package, build_record, sources};
 
-/// Writes the package of `package`; unchanged files keep their times, which cargo compares.
+/// Writes the cargo package of a plan or of a scenario. Unchanged files keep their times, which cargo compares.
 pub(super) fn write(
     cache: &Cache,
     package: &Package<'_>,
@@ -24,8 +24,8 @@ pub(super) fn write(
     write_package(cache, &name, &[("src/main.rs", &main), ("src/plan.rs", package.rust)], dependencies)
 }
 
-/// Returns the answer of the executable to `--version`, after the plan's name. If two builds with the same
-/// answer differ, then the crate of a third-party target differs, or the path of the cache does.
+/// Returns the text that the executable prints for `--version` after the plan's name. If two builds differ although
+/// this text is equal, then the crate of a third-party target or the path of the cache differs.
 fn version(package: &Package<'_>, dependencies: &Dependencies, toolchain: &Toolchain) -> String {
     let code = [package.rust, sources::hash(), &dependencies.lock].join("\0");
     format!("({}, code {}, rustc {})", package.version, &hash(code.as_bytes())[..12], toolchain.release)
@@ -80,7 +80,7 @@ fn write_files(folder: &Path, files: &[(&str, &str)], lock: &str) -> Result<(), 
     Ok(())
 }
 
-/// Returns a readable package name that is unique to the text, the target and the machine: all executables are
+/// Returns a readable package name that is unique for the emitted text, the target and the machine. All executables are
 /// built in one folder, and their bytes depend on the name.
 fn name(package: &Package<'_>, main: &str, target: &str, machine: &str) -> String {
     let mut hasher = blake3::Hasher::new();
@@ -133,7 +133,7 @@ fn main(package: &Package<'_>, version: &str) -> String {
     )
 }
 
-/// Quotes a TOML string: JSON's escapes are valid in TOML.
+/// Returns a text as a TOML string; JSON's escapes are valid in TOML.
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }

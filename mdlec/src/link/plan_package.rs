@@ -26,7 +26,7 @@ impl PlanPackage {
         self.folder.join("Cargo.toml")
     }
 
-    /// Keeps the output of a build in a log file, for a report; returns its path.
+    /// Writes the output of a build to a log file for bug reports, and returns the path of the log file.
     pub(super) fn keep(&self, text: &str) -> Result<PathBuf, LinkError> {
         let log = self.folder.join("build.log");
         write_if_changed(&log, text.as_bytes())?;

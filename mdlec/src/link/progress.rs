@@ -5,14 +5,14 @@ use std::fmt;
 /// A step of a build. A build that compiles only the plan reports no steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Progress {
-    /// Another mdlec is building, in the process of this number if it is known; this build continues
+    /// Another mdlec is building; the field is the number of its process, if it is known. This build continues
     /// afterwards.
     Waiting(Option<u32>),
     /// Cargo waits for another cargo, which mdlec did not start.
     Blocked,
     /// Cargo fetches libraries that are not on this machine yet.
     Fetching,
-    /// The libraries in the cache are damaged or were replaced, and all are compiled again.
+    /// The libraries in the cache are damaged or were replaced, so all of them are compiled again.
     Mending,
     /// Compiled files in the cache differ from what cargo wrote, and are compiled again.
     Discarding,
@@ -21,7 +21,7 @@ pub enum Progress {
 }
 
 impl Progress {
-    /// Returns `true` if the step is new, and not the same step with a higher number.
+    /// Returns `true` if this is the first report of the step, and not the same step with a higher number.
     #[must_use]
     pub fn is_first(&self) -> bool {
         match self {

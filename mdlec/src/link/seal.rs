@@ -59,7 +59,8 @@ impl Seal {
         Ok(seal)
     }
 
-    /// Records `files`, which cargo has just compiled, in the list, unless they are listed already and `fresh`.
+    /// Records the hashes of `files` in the list. If `fresh` is `true`, cargo has found the files already compiled, and
+    /// those that are listed are not recorded again.
     pub(super) fn add(&mut self, files: &[PathBuf], fresh: bool) {
         let new = files.iter().filter(|file| !fresh || self.listed(file).is_none());
         let lines: Vec<_> = new.filter_map(|file| Some((self.name(file)?.to_owned(), hash_of(file)?))).collect();
@@ -121,13 +122,13 @@ fn hash_of(file: &Path) -> Option<String> {
     fs::read(file).ok().map(|bytes| hash(&bytes))
 }
 
-/// Returns the number of threads; a few threads read files as fast as memory allows.
+/// Returns the number of threads that read files: at most 4, which read as fast as memory allows.
 fn workers() -> usize {
     thread::available_parallelism().map_or(1, |all| all.get().min(4))
 }
 
-/// Collects in `files` the files below `folder` that a build uses, and all links; collects every file if `all`
-/// is `true`.
+/// Adds to `files` all symbolic links below `folder` and all files that a build uses; if `all` is `true`, adds every
+/// file.
 fn taken(folder: &Path, all: bool, files: &mut Vec<PathBuf>) -> io::Result<()> {
     let entries = match fs::read_dir(folder) {
         Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => return Ok(()),

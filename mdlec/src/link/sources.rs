@@ -17,10 +17,10 @@ pub(super) const SHARED: [(&str, &str); 3] =
 /// Name and folder of the package that runs scenarios.
 pub(super) const RUNNER: (&str, &str) = ("mdle", "runtime/mdle");
 
-/// Prefix of the folders of unpacked sources.
+/// Prefix of the names of folders with unpacked sources.
 const PREFIX: &str = "src-";
 
-/// Time after which an unused version is removed.
+/// Time after which the unpacked sources of an unused version are removed.
 const FORGOTTEN: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
 /// Name of the lock file, with the versions of dependencies with which mdlec was tested.
@@ -43,14 +43,14 @@ pub(super) fn emulator(robot: &str) -> Option<(String, &'static str)> {
     Some((format!("targets/{name}/emulator"), package))
 }
 
-/// Returns the worlds that come with a built-in target, in alphabetical order; none for a target that takes no
-/// worlds.
+/// Returns the worlds that come with a built-in target, in alphabetical order; an empty iterator for a target that
+/// takes no worlds.
 fn worlds(target: &str) -> impl Iterator<Item = &'static str> {
     let folder = format!("targets/{target}/worlds/");
     embedded::FILES.iter().filter_map(move |(file, _)| file.strip_prefix(&*folder)?.strip_suffix(".toml"))
 }
 
-/// Returns the worlds and options of a target that are known before a run: none for a third-party target.
+/// Returns the worlds and options of a target that are known before a run. They are not known for a third-party target.
 pub fn known(target: &str) -> Known {
     Known { worlds: worlds(target).collect(), options: options(target) }
 }
@@ -84,10 +84,9 @@ pub(super) struct Sources {
 }
 
 impl Sources {
-    /// Writes the files that the cache lacks, and those that differ from the packed ones.
+    /// Writes the files that are missing in the cache, and those that differ from the packed files.
     ///
-    /// Unchanged files keep their times, by which cargo recognizes what it has built. Must be called with the
-    /// cache locked.
+    /// Unchanged files keep their times, by which cargo recognizes what it has built. The cache must be locked.
     pub(super) fn unpack(cache: &Cache) -> Result<Self, LinkError> {
         let folder = cache.folder().join(format!("{PREFIX}{}-{}", env!("CARGO_PKG_VERSION"), embedded::HASH));
         if !folder.exists() {

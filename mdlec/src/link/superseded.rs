@@ -1,5 +1,5 @@
-//! Removes the results of a plan file's former text from the cache. A package is named after its text, so an
-//! edit would leave the earlier package with an executable of some megabytes.
+//! Removes the package of a plan file's former text from the cache. The name of a package depends on the text, so each
+//! edit would otherwise leave the earlier package with an executable of some megabytes.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -12,8 +12,8 @@ use super::machine::Machine;
 use super::plan_package::PlanPackage;
 use super::{Cache, LinkError};
 
-/// Name of the file, in a package's folder, that contains the hash of the plan file's path, and of the machine
-/// if it is not this machine.
+/// Name of a file in a package's folder. It contains a hash of the plan file's path and, if the package is not for this
+/// machine, of the machine.
 const OWNER: &str = "owner";
 
 /// Records that `plan_file` was last built for `machine` as `package`, and removes the packages of its earlier

@@ -41,8 +41,8 @@ impl<'a> TargetCrate<'a> {
         }
     }
 
-    /// Fails if `output` is a file of a third-party crate. Executables may be overwritten, since users build
-    /// plans in that folder.
+    /// Fails if `output` is a file in the folder of a third-party crate, unless it is an executable: users build plans
+    /// in that folder, and executables may be overwritten.
     pub(super) fn must_not_lose(&self, output: &Path) -> Result<(), LinkError> {
         let Self::Path { folder, .. } = self else { return Ok(()) };
         let is_inside = output.canonicalize().is_ok_and(|output| {
@@ -63,8 +63,8 @@ fn is_executable(file: &Path) -> bool {
 pub(super) struct Dependencies {
     /// Names of packages, with their folders.
     pub(super) packages: Vec<(String, PathBuf)>,
-    /// Packages of the target to replace: the source as `[patch]` names it, the package, and the folder to use
-    /// instead.
+    /// Packages of the target that are replaced, each as the source that `[patch]` names, the name of the package, and
+    /// the folder to use instead.
     pub(super) patches: Vec<(String, String, PathBuf)>,
     /// Initial lock file of the package.
     pub(super) lock: String,
@@ -126,7 +126,7 @@ pub(super) fn emulator_dependencies(robot: &str, sources: &Sources) -> Result<De
     })
 }
 
-/// Returns the dependencies of a third-party target, as its manifest chooses them.
+/// Returns the dependencies of a third-party target, with the packages that its manifest selects.
 fn by_path(folder: &Path, crate_name: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
     let manifest = folder.join("Cargo.toml").canonicalize().map_err(|_| LinkError::NotACrate(folder.to_owned()))?;
     let metadata = read(&manifest, crate_name)?;

@@ -10,8 +10,9 @@ use super::LinkError;
 /// Oldest Rust version that compiles the packed sources.
 const NEEDED: &str = env!("CARGO_PKG_RUST_VERSION");
 
-/// Prefixes of variables that cargo may read, since they are the user's choice: its folders, its registries,
-/// the network, and its use of the machine. All other variables could change builds or repeat them.
+/// Prefixes of environment variables that cargo may read, because they are the user's choice: cargo's folders, its
+/// registries, the network, and its use of the machine. All other variables could change builds, or make cargo build
+/// everything again.
 const KEPT: [&str; 6] =
     ["CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTRIES_", "CARGO_REGISTRY_", "CARGO_BUILD_JOBS"];
 
@@ -55,8 +56,8 @@ fn version(text: &str) -> Option<(u32, u32)> {
     Some((parts.next()?.parse().ok()?, parts.next()?.parse().ok()?))
 }
 
-/// Returns a command for `tool` that ignores the configuration of cargo and rustc in this process's environment and
-/// folder.
+/// Returns a command for `tool` that ignores the configuration of cargo and rustc in the environment and in the folder
+/// of this process.
 pub(super) fn command(tool: &str) -> Command {
     let mut command = Command::new(tool);
     command.current_dir(OUTSIDE).stdin(Stdio::null());
@@ -80,7 +81,7 @@ pub(super) fn cargo_home() -> Option<PathBuf> {
     absolute("CARGO_HOME").or_else(|| Some(env::home_dir()?.join(".cargo")))
 }
 
-/// Runs `command`, whose program is `tool`, to its end.
+/// Runs `command` to its end. `tool` is the name of its program, for errors.
 pub(super) fn output(mut command: Command, tool: &'static str) -> Result<Output, LinkError> {
     command.output().map_err(|error| unusable(tool, &error))
 }

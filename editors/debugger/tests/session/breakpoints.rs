@@ -1,10 +1,11 @@
-//! Breakpoints on lines, on operands, on names and on times.
+//! Tests of breakpoints on lines, on operands, on names and on times.
 
 use serde_json::{Value, json};
 
 use crate::client::Session;
 
-/// Runs to the end with these breakpoints; returns turn and stack of each stop.
+/// Sets breakpoints with `set`, sends `commands`, and returns the time of the turn and the innermost frame after each
+/// command.
 fn stops(test: &str, set: impl FnOnce(&mut Session), commands: &[&str]) -> Vec<String> {
     let mut session = Session::of(test, crate::client::PLAN, crate::client::SCRIPT, &json!({}));
     set(&mut session);

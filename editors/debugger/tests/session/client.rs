@@ -1,4 +1,4 @@
-//! A client that sends all its requests, and reads the answers.
+//! A client for tests, which sends all requests of a session and then reads the messages of the debugger.
 
 use std::fs;
 use std::io::Cursor;
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use mdle_debugger::{ServeError, serve_on};
 use serde_json::{Value, json};
 
-/// The plan of the tests, with its lines from 1.
+/// The plan of the tests. Its lines count from 1.
 pub(crate) const PLAN: &str = "{ Tour (wait 100s)
   s1: (Atom (bumper AND wait 2s OR atIsection 1000) (go 20 0))
   { Shake (RISING bumper)
@@ -17,7 +17,7 @@ pub(crate) const PLAN: &str = "{ Tour (wait 100s)
 }
 ";
 
-/// The script of the tests: bumper from 3 s to 4 s and at 7 s, and the second turn completes at 6.5 s.
+/// The script of the tests: bumper fires from 3 s to 4 s and at 7 s, and `turn 90` completes at 6.5 s.
 pub(crate) const SCRIPT: &str = r#"{"t": 0}
 {"t": 1, "fired": ["bumper"]}
 {"t": 2.5}
@@ -37,12 +37,12 @@ pub(crate) struct Session {
 }
 
 impl Session {
-    /// Writes both files, and launches the plan.
+    /// Writes [`PLAN`] and [`SCRIPT`] to files, and launches the plan.
     pub(crate) fn launched(test: &str) -> Self {
         Self::of(test, PLAN, SCRIPT, &json!({ "stopOnEntry": true }))
     }
 
-    /// Writes these files, and launches the plan with more arguments.
+    /// Writes a plan and a script to files, and launches the plan with the additional arguments `more`.
     pub(crate) fn of(test: &str, plan: &str, script: &str, more: &Value) -> Self {
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("debugger").join(test);
         fs::create_dir_all(&folder).unwrap();
@@ -76,7 +76,8 @@ impl Session {
         }
     }
 
-    /// Sets breakpoints in the plan at lines from 1, and columns from 1, 0 for none.
+    /// Sets breakpoints in the plan at these lines and columns, which count from 1; column 0 sets a breakpoint without
+    /// a column. Returns the number of the request.
     pub(crate) fn breakpoints(&mut self, places: &[(u32, u32)]) -> i64 {
         let place = |(line, column): &(u32, u32)| match column {
             0 => json!({ "line": line }),
@@ -95,7 +96,7 @@ impl Session {
     }
 }
 
-/// Serves a client that sends these bytes.
+/// Serves a client that sends the bytes `input`. Returns the messages of the debugger and its result.
 pub(crate) fn served(input: Vec<u8>) -> (Messages, Result<(), ServeError>) {
     let mut output = Vec::new();
     let ended = serve_on(Cursor::new(input), &mut output);
@@ -132,7 +133,7 @@ impl Messages {
         response["message"].as_str().unwrap()
     }
 
-    /// Returns the reasons of all stops, in order, and `terminated`.
+    /// Returns the reason of each stop in order, and `terminated` for the end of the session.
     pub(crate) fn stops(&self) -> Vec<&str> {
         let events = self.0.iter().filter(|message| message["type"] == "event");
         let stop = |message: &'_ Value| match message["event"].as_str().unwrap() {

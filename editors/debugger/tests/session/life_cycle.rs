@@ -1,11 +1,11 @@
-//! The beginning and the end of a session, and what cannot be launched.
+//! Tests of the start and the end of a session, and of launches that fail.
 
 use mdle_debugger::ServeError;
 use serde_json::{Value, json};
 
 use crate::client::{PLAN, SCRIPT, Session, served};
 
-/// Message of a launch that fails.
+/// Returns the error message of a launch that fails.
 fn refused(test: &str, plan: &str, script: &str, more: &Value) -> String {
     let session = Session::of(test, plan, script, more);
     session.end().refusal(2).to_owned()

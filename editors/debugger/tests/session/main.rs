@@ -1,4 +1,4 @@
-//! Sessions of the debugger: what it answers to the requests of a client.
+//! Tests of the debugger's answers to the requests of a client.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -1,10 +1,10 @@
-//! Steps forward and back.
+//! Tests of steps forward and back.
 
 use serde_json::{Value, json};
 
 use crate::client::Session;
 
-/// Stacks after each of these commands, the first at the entry, with the reasons of all stops.
+/// Returns the stack at the entry and after each command, and the reasons of all stops.
 fn stacks(test: &str, commands: &[&str]) -> (Vec<Vec<String>>, Vec<String>) {
     let mut session = Session::launched(test);
     session.requests(&["configurationDone"]);

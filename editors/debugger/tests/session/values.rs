@@ -1,10 +1,10 @@
-//! Variables, and why a condition does not hold.
+//! Tests of variables, and of the reasons why a condition does not hold.
 
 use serde_json::{Value, json};
 
 use crate::client::Session;
 
-/// Goes to the end of the turn at 3 s minus one step, and asks for these expressions.
+/// Sends `next` `steps` times, and returns the answers to `expressions`.
 fn evaluated(test: &str, steps: usize, expressions: &[&str]) -> Vec<String> {
     let mut session = Session::launched(test);
     session.requests(&["configurationDone"]);
@@ -50,7 +50,7 @@ fn a_condition_says_which_of_its_operands_hold() {
     );
 }
 
-/// A signal is a number: the conditions on it are what holds or not.
+/// A signal is a number, which cannot hold or fail; the answer lists the comparisons of the signal instead.
 #[test]
 fn a_number_shows_its_comparisons() {
     let plan = "{ P (r0 < 60cm OR NOT r0 < 3m AND bumper OR t > 9s)\n  (Atom (way > 2m) (go 20 0))\n}\n";

@@ -1,4 +1,4 @@
-//! A client of the server.
+//! A client for tests of the server.
 
 use std::path::PathBuf;
 use std::thread::JoinHandle;
@@ -18,7 +18,7 @@ pub(crate) struct Client {
     connection: Option<Connection>,
     server: Option<JoinHandle<Result<(), ServeError>>>,
     requests: i32,
-    /// Notifications that came while an answer was awaited.
+    /// Notifications that arrived while the client waited for an answer.
     pub(crate) notified: Vec<Notification>,
 }
 
@@ -87,13 +87,13 @@ impl Client {
         self.notify("textDocument/didOpen", json!({ "textDocument": document }));
     }
 
-    /// Makes these edits.
+    /// Notifies the server of edits of a document.
     pub(crate) fn change(&self, uri: &str, version: i32, changes: Value) {
         let document = json!({ "uri": uri, "version": version });
         self.notify("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
     }
 
-    /// Waits for the diagnostics of a document.
+    /// Waits for the diagnostics of a document, of its version `version` if given.
     pub(crate) fn diagnostics(&mut self, uri: &str, version: Option<i32>) -> Vec<Diagnostic> {
         loop {
             let notification = match self.notified.is_empty() {
@@ -129,7 +129,7 @@ pub(crate) fn codes(diagnostics: &[Diagnostic]) -> Vec<String> {
     diagnostics.iter().map(code).collect()
 }
 
-/// A folder of its own for a test, empty.
+/// Returns the path of an empty folder for a test.
 #[allow(clippy::disallowed_methods, reason = "a test makes files")]
 pub(crate) fn folder(test: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test);

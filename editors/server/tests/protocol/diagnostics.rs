@@ -1,4 +1,4 @@
-//! Diagnostics as one types, in all files that a plan uses.
+//! Tests of the diagnostics that are published while a user types, in all files that a plan uses.
 #![allow(clippy::disallowed_methods, reason = "a test makes files")]
 
 use std::fs;

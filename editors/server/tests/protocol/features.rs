@@ -1,4 +1,4 @@
-//! The features on one document, each through the protocol.
+//! Tests of each feature on one document, through the protocol.
 
 use lsp_types as lsp;
 use serde_json::{Value, json};
@@ -7,7 +7,7 @@ use crate::client::Client;
 
 const URI: &str = "file:///tmp/features.mdle";
 
-/// A client with this text open, in which `|` marks the cursor; and the parameters of requests at the cursor.
+/// Returns a client with this text open, in which `|` marks the cursor, and the parameters of requests at the cursor.
 fn at(text: &str) -> (Client, Value) {
     let client = Client::with_options(json!({ "target": "sim" }));
     let byte = text.find('|').expect("a cursor");

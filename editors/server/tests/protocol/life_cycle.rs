@@ -1,4 +1,4 @@
-//! The server's life: `initialize` to `exit`, and clients that break the rules.
+//! Tests of the server from `initialize` to `exit`, and of clients that violate the protocol.
 
 use lsp_types::Hover;
 use mdle_language_server::ServeError;

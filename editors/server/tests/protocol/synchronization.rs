@@ -1,4 +1,4 @@
-//! The text of a document follows the edits, which are in UTF-16.
+//! Tests that the text of a document follows the client's edits, whose columns count UTF-16 units.
 
 use serde_json::{Value, json};
 
