@@ -1,4 +1,4 @@
-//! Packs the sources that executables are built from.
+//! Packs the sources from which executables are built.
 
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 

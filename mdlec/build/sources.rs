@@ -1,5 +1,5 @@
-//! Packs the sources that executables are built from, so that an installed mdlec needs no checkout: a table for
-//! `link::sources` to include.
+//! Packs the sources from which executables are built, so that an installed mdlec needs no checkout. Writes them as a
+//! table, which `link::sources` includes.
 
 use std::error::Error;
 use std::ffi::OsStr;
@@ -9,7 +9,7 @@ use std::{env, fs};
 
 use crate::targets::{checkout, manifest, targets};
 
-/// The packages that targets share, and that scenarios need; the targets come on top.
+/// Packages that are packed in addition to those of the targets: targets share them, or scenarios need them.
 const SHARED: [&str; 13] = [
     "runtime/core",
     "runtime/quantity",
@@ -26,17 +26,19 @@ const SHARED: [&str; 13] = [
     "mdlec/files",
 ];
 
-/// Folders that no build of an executable reads; a folder with a package of its own is left out as well.
+/// Names of folders that are not packed, because no build of an executable reads them. A folder that contains a package
+/// of its own is not packed with the package around it either.
 const LEFT_OUT: [&str; 5] = ["tests", "benches", "examples", "snapshots", "target"];
 
 /// Name of a workspace's lock file.
 const LOCK: &str = "Cargo.lock";
 
-/// The folder of the package that robot emulators share, and below a target's folder that of its emulator.
+/// Name of two kinds of folders: `targets/emulator` contains the package that all robot emulators share, and
+/// `targets/NAME/emulator` contains the emulator of a target.
 const EMULATOR: &str = "emulator";
 
-/// Writes `$OUT_DIR/sources.rs`: the files with their contents, a hash of them all, the targets, and their
-/// emulators.
+/// Writes `$OUT_DIR/sources.rs`: the files with their contents, a hash of all files, the targets, and the emulators of
+/// targets.
 pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
     let root = checkout("..")?;
     let out = PathBuf::from(env::var("OUT_DIR")?);
@@ -73,7 +75,8 @@ pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The root manifest, reduced to `packages`; those `apart` are workspaces of their own.
+/// Returns the root manifest with only `packages` as members. The packages `apart` are excluded, because each of them
+/// is a workspace of its own.
 fn workspace(root: &Path, packages: &[String], apart: &[String]) -> Result<String, Box<dyn Error>> {
     let mut manifest: toml::Table = read_manifest(root)?.parse()?;
     let workspace = table_in(&mut manifest, "workspace")?;
@@ -87,8 +90,8 @@ fn workspace(root: &Path, packages: &[String], apart: &[String]) -> Result<Strin
     Ok(toml::to_string(&manifest)?)
 }
 
-/// Returns a package's manifest without the targets that are left out: cargo reads no manifest that names a missing
-/// file.
+/// Returns a package's manifest without the tests, benchmarks and examples, whose files are not packed: cargo rejects a
+/// manifest that names a missing file.
 fn manifest_of(text: &str) -> Result<String, Box<dyn Error>> {
     let mut manifest: toml::Table = text.parse()?;
     if !["test", "bench", "example"].map(|kind| manifest.remove(kind).is_some()).contains(&true) {
@@ -97,17 +100,17 @@ fn manifest_of(text: &str) -> Result<String, Box<dyn Error>> {
     Ok(toml::to_string(&manifest)?)
 }
 
-/// The text of the manifest in `folder`.
+/// Returns the text of the manifest in `folder`.
 fn read_manifest(folder: &Path) -> Result<String, Box<dyn Error>> {
     Ok(fs::read_to_string(manifest(folder).ok_or_else(|| format!("{} has no manifest", folder.display()))?)?)
 }
 
-/// The table `name` in `table`.
+/// Returns the table `name` in `table`.
 fn table_in<'a>(table: &'a mut toml::Table, name: &str) -> Result<&'a mut toml::Table, String> {
     table.get_mut(name).and_then(toml::Value::as_table_mut).ok_or_else(|| format!("Cargo.toml has no table `{name}`"))
 }
 
-/// Adds the files in `folder` and below, with names that begin with `name`.
+/// Adds the files to be packed in `folder` and below to `files`. Their names begin with `name`.
 fn collect(folder: &Path, name: &str, files: &mut Vec<(String, PathBuf)>) -> Result<(), Box<dyn Error>> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
@@ -125,7 +128,7 @@ fn collect(folder: &Path, name: &str, files: &mut Vec<(String, PathBuf)>) -> Res
     Ok(())
 }
 
-/// The Rust text of the table.
+/// Returns the Rust text of the table.
 fn table(
     root: &Path,
     files: &[(String, PathBuf)],
@@ -155,14 +158,14 @@ fn table(
     Ok(rust)
 }
 
-/// The name in the manifest of the package in `folder`.
+/// Returns the name of the package in `folder`, according to its manifest.
 fn package_name(folder: &Path) -> Result<String, Box<dyn Error>> {
     let manifest: toml::Table = read_manifest(folder)?.parse()?;
     let name = manifest.get("package").and_then(|package| package.get("name")).and_then(toml::Value::as_str);
     Ok(name.ok_or_else(|| format!("{} has no package name", folder.display()))?.to_owned())
 }
 
-/// A path or its last part as text.
+/// Returns a path, or a part of a path, as text.
 fn text(path: Option<&OsStr>) -> Result<&str, String> {
     path.and_then(OsStr::to_str).ok_or_else(|| format!("{path:?} is not UTF-8"))
 }

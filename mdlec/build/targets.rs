@@ -1,19 +1,19 @@
-//! The folders of the targets that are part of mdlec, for the build scripts that pack their files.
+//! Finds the folders of the targets that are part of mdlec, for the build scripts that pack their files.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// Folder below `targets` that contains no robot, but the template for `mdlec new-target`.
+/// Folder below `targets` that contains the template for `mdlec new-target` instead of a robot.
 const TEMPLATE: &str = "template";
 
-/// The folder of the sources in a published package, which `.ci/package` writes, and the name of a manifest there:
-/// cargo leaves a folder with a `Cargo.toml` out of a package.
+/// Name of the folder of the sources in a published package, which `.ci/package` writes, and name of the manifests in
+/// this folder. They are renamed because cargo does not publish a subfolder that contains a `Cargo.toml`.
 const PACKED: &str = "packed";
 const PACKED_MANIFEST: &str = "manifest.toml";
 
-/// Returns the folder of the sources: the packed sources of a published package, or else the checkout, at the path `up`
-/// from the package.
+/// Returns the folder of the sources: the packed sources of a published package or, if there are none, the checkout,
+/// whose path relative to the package is `up`.
 pub(crate) fn checkout(up: &str) -> Result<PathBuf, Box<dyn Error>> {
     let package = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let packed = package.join(PACKED);
@@ -25,7 +25,7 @@ pub(crate) fn manifest(folder: &Path) -> Option<PathBuf> {
     ["Cargo.toml", PACKED_MANIFEST].map(|name| folder.join(name)).into_iter().find(|path| path.is_file())
 }
 
-/// The folders below `targets` that are packages with an alphabet, the template aside.
+/// Returns the names of the folders below `targets` that are packages with an alphabet, except the template.
 pub(crate) fn targets(root: &Path) -> Result<Vec<String>, Box<dyn Error>> {
     let mut targets = Vec::new();
     for entry in fs::read_dir(root.join("targets"))? {

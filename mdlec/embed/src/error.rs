@@ -1,4 +1,4 @@
-//! Reasons why no plan was embedded, as a build script shows them.
+//! Reasons why a plan could not be embedded, as a build script shows them.
 
 use std::fmt;
 use std::io;
@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use mdle_compiler::diagnostic::{Diagnostic, Severity, Sources, most_shown};
 use mdle_files::{FaultyFile, InputError, Spelling};
 
-/// Reason why no plan was embedded.
+/// Reason why a plan could not be embedded.
 ///
-/// `Debug` prints the message as well, since a `main` that returns the error prints that form.
+/// `Debug` prints the same text as `Display`, because a `main` that returns the error prints it with `Debug`.
 #[derive(thiserror::Error)]
 pub enum EmbedError {
     /// The plan has errors.
@@ -20,18 +20,18 @@ pub enum EmbedError {
         /// Diagnostics of `mdlec check`, which include errors.
         diagnostics: Vec<Diagnostic>,
     },
-    /// The plan or the target cannot be read, or the plan to compile is not determined.
+    /// The plan or the target cannot be read, or the plan to compile cannot be selected in the file.
     #[error("{}", .0.message(Spelling::BuildScript))]
     Input(InputError),
-    /// The process is not a build script, as cargo has not set `OUT_DIR`.
+    /// The process is not a build script: cargo has not set `OUT_DIR`.
     #[error("the variable OUT_DIR is not set: plans are embedded by the build script of a package")]
     NoOutDir,
-    /// The name of an input has a line break, after which cargo would read another instruction.
+    /// The name of an input file contains a line break. Cargo would read the text after it as another instruction.
     #[error(
         "the name {0:?} contains a line break, so cargo cannot watch this file\nhelp: rename the file or its folder"
     )]
     LineBreak(PathBuf),
-    /// The file to write is a file that was read: its path.
+    /// The output file, whose path this is, is also an input file.
     #[error("`{0}` is the plan itself and would be lost: rename the plan's file")]
     OutputIsInput(PathBuf),
     /// The Rust code cannot be written.
@@ -42,7 +42,7 @@ pub enum EmbedError {
         /// Error of the system.
         error: io::Error,
     },
-    /// Cargo cannot be informed on standard output.
+    /// The instructions for cargo cannot be written to standard output.
     #[error("cargo does not get the list of files to watch: {0}")]
     Cargo(io::Error),
 }
@@ -60,7 +60,7 @@ impl From<InputError> for EmbedError {
     }
 }
 
-/// Returns the number of errors, followed by the diagnostics for people.
+/// Returns a message with the number of errors, followed by the diagnostics as text.
 fn report(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
     let errors = diagnostics.iter().filter(|found| found.code.severity() == Severity::Error).count();
     let most = most_shown(diagnostics);

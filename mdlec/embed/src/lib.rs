@@ -48,7 +48,7 @@ pub struct Embed {
     plan: Option<String>,
 }
 
-/// Returns the plan of this file, to be embedded; a path is relative to the folder of the package.
+/// Returns an [`Embed`] for the plan in `file`. A relative path is relative to the folder of the package.
 pub fn plan(file: impl Into<PathBuf>) -> Embed {
     Embed { file: file.into(), target: None, plan: None }
 }
@@ -59,18 +59,18 @@ impl Embed {
         Self { target: Some(target.into()), ..self }
     }
 
-    /// Selects a plan of the file. Required if the file has several plans that no other plan uses.
+    /// Selects a plan of the file. This is required if the file contains several plans that no other plan uses.
     pub fn plan(self, name: impl Into<String>) -> Self {
         Self { plan: Some(name.into()), ..self }
     }
 
     /// Writes `$OUT_DIR/STEM.rs`, where `STEM` is the plan file's name without its extension; embedding two plans of
-    /// one file overwrites the first. Makes cargo show the warnings, and run the build script again when a file changes
-    /// that was read: the plan, the files that it uses, and the alphabet of a target of your own.
+    /// one file overwrites the first. Makes cargo show the warnings, and makes it run the build script again when an
+    /// input file changes: the plan, a file that it uses, or the alphabet of a target of your own.
     ///
     /// # Errors
-    /// Fails if the plan has errors, if its file or the target cannot be read, or if the Rust code cannot be
-    /// written. A `main` that returns the error shows the messages of `mdlec check`.
+    /// Fails if the plan has errors, if its file or the target cannot be read, or if the Rust code cannot be written. A
+    /// `main` that returns the error shows the messages of `mdlec check`.
     pub fn write(self) -> Result<(), EmbedError> {
         let folder = env::var_os("OUT_DIR").ok_or(EmbedError::NoOutDir)?;
         let mut name = OsString::from(self.file.file_stem().unwrap_or_default());

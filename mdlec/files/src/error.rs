@@ -9,7 +9,7 @@ use mdle_compiler::diagnostic::{Diagnostic, Sources};
 /// Reason why a plan or a target cannot be read.
 #[derive(Debug)]
 pub enum InputError {
-    /// A file cannot be read, or a folder is not a target: the reason, as a sentence.
+    /// A file cannot be read, or a folder is not a target; the text is a sentence with the reason.
     Unusable(String),
     /// No target is named, although Rust code can be written only for a target.
     NoTarget,
@@ -33,15 +33,14 @@ pub enum InputError {
         /// Names of the file's plans.
         plans: Vec<String>,
     },
-    /// The file is the plan of a group, and the robot was not named.
+    /// The file contains the plan of a group, and none of its robots was selected.
     Group {
         /// Name of the file.
         file: String,
         /// Names of the plans of the robots.
         plans: Vec<String>,
     },
-    /// The choice of a plan is not clear: none was named, and the file has no plan, or several, that no other plan
-    /// uses.
+    /// No plan was selected, and the file does not contain exactly one plan that no other plan uses.
     NotOnePlan {
         /// Name of the file.
         file: String,
@@ -85,7 +84,7 @@ impl Spelling {
         }
     }
 
-    /// Returns the words that choose a plan of a file.
+    /// Returns the text by which a user selects the plan `name` of a file, for messages.
     fn plan(self, name: &str) -> String {
         let place = match self {
             Self::TestEntry => " before the first test",
@@ -96,8 +95,8 @@ impl Spelling {
 }
 
 impl InputError {
-    /// Returns the file with errors, if that is the reason, also if the file is named by a line of
-    /// another file.
+    /// Returns the file with errors, if a file has errors. This includes a file that is named in another file, such as
+    /// an `mdle.toml`. Returns `None` for all other reasons.
     #[must_use]
     pub fn faulty_file(self) -> Option<FaultyFile> {
         match self {
@@ -112,8 +111,9 @@ impl InputError {
         }
     }
 
-    /// Returns the message, with options in the user's syntax. It does not include the diagnostics of
-    /// [`InputError::Faulty`]; for these, the message is empty unless there is a target.
+    /// Returns the message, with options in the user's syntax. The message does not include the diagnostics of
+    /// [`InputError::Faulty`]; it is empty for a plan file with errors, and names the target of an alphabet with
+    /// errors.
     #[must_use]
     pub fn message(&self, spelling: Spelling) -> String {
         match self {

@@ -28,9 +28,9 @@ pub struct Input {
     read: BTreeMap<PathBuf, SourceId>,
     /// Texts that are used instead of files.
     unsaved: Unsaved,
-    /// Parts of groups among the plans that were compiled last.
+    /// Plans of single robots that the last compilation made from the plans of groups.
     parts: Vec<Part>,
-    /// `true` if no other file is read.
+    /// `true` if the files that the plan uses must not be read.
     is_alone: bool,
 }
 
@@ -44,7 +44,7 @@ pub struct Group {
 }
 
 impl Group {
-    /// Returns the name of the plan of this robot, if the robot is one of the group.
+    /// Returns the name of the plan of `robot`, or `None` if the group has no such robot.
     #[must_use]
     pub fn plan_of(&self, robot: &str) -> Option<String> {
         self.robots.iter().any(|known| known == robot).then(|| part_name(&self.name, robot))
@@ -66,18 +66,19 @@ impl Input {
         self.paths.get(&source).map(PathBuf::as_path)
     }
 
-    /// Refuses all files that the plan uses, for a text whose author must not read files here.
+    /// Returns an input that refuses to read the files that the plan uses, for a text whose author must not read files
+    /// here.
     #[must_use]
     pub fn alone(self) -> Self {
         Self { is_alone: true, ..self }
     }
 
-    /// Compiles the plans of the file, or only its plan `wanted`.
+    /// Compiles the plans of the file, or only the plan `wanted`.
     pub fn compile(&mut self, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Compiled>, Vec<Diagnostic>) {
         self.compile_within(alphabet, wanted, |_| Ok(()))
     }
 
-    /// Compiles as [`Input::compile`] does; a plan that exceeds the limit is an error.
+    /// Compiles like [`Input::compile`], and reports an error for a plan that exceeds the limit.
     pub fn compile_within(
         &mut self,
         alphabet: &Alphabet,
@@ -90,7 +91,8 @@ impl Input {
         compiled
     }
 
-    /// Compiles as [`Input::compile`] does; a plan that exceeds the bounds is an error before it is made.
+    /// Compiles like [`Input::compile`], and reports an error for a plan that exceeds the bounds before the plan is
+    /// built.
     pub fn compile_bounded(&mut self, alphabet: &Alphabet, bounds: Bounds) -> (Vec<Compiled>, Vec<Diagnostic>) {
         let text = self.sources.text(self.source).to_owned();
         let compiled = compile_bounded(self.source, &text, alphabet, self, bounds);
@@ -104,14 +106,15 @@ impl Input {
         roots(self.source, &text, alphabet, self)
     }
 
-    /// Returns the plans of the robots of the file's groups as MDLe text, or only that called `wanted`; empty without a
-    /// group.
+    /// Returns the plans of the robots of the file's groups as MDLe text, or only the plan `wanted`. The text is empty
+    /// if the file has no group.
     pub fn projected(&mut self, alphabet: &Alphabet, wanted: Option<&str>) -> String {
         let text = self.sources.text(self.source).to_owned();
         projected(self.source, &text, alphabet, wanted, self)
     }
 
-    /// Returns the group whose plan is called `wanted`, or that is the only plan of the file itself.
+    /// Returns the group whose plan is called `wanted`. Without a name, returns the group of the file's only plan.
+    /// Returns `None` if there is no such plan, or if it is not the plan of a group.
     pub fn group(&mut self, wanted: Option<&str>) -> Option<Group> {
         let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
         let (files, _) = syntax::parse_with(self.source, &text, &arena, self);
@@ -147,7 +150,8 @@ impl Input {
         self.files().map(named).chain(target.files()).collect()
     }
 
-    /// Names of the plans in the file and in the files that it uses; a group has one for each robot.
+    /// Returns the names of the plans in the file and in the files that it uses. For a group, returns the name of each
+    /// robot's plan.
     pub fn plan_names(&mut self) -> Vec<String> {
         let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
         let (files, _) = syntax::parse_with(self.source, &text, &arena, self);
@@ -168,17 +172,17 @@ impl Input {
         files.plans.iter().filter_map(named).collect()
     }
 
-    /// Returns `true` if a plan of the file, or of a file that it uses, takes parameters.
+    /// Returns `true` if the plan `name`, in the file or in a file that it uses, takes parameters.
     pub fn takes_parameters(&mut self, name: &str) -> bool {
         let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
         let (files, _) = syntax::parse_with(self.source, &text, &arena, self);
         files.plans.iter().any(|plan| plan.name.node == name && !plan.params.is_empty())
     }
 
-    /// Checks that the file, or a file that it uses, has a plan of this name.
+    /// Checks that the file, or a file that it uses, contains a plan with this name.
     ///
     /// # Errors
-    /// Fails if there are plans, but none has this name.
+    /// Fails if there are plans, but none of them has this name.
     pub fn must_have(&mut self, name: &str) -> Result<(), InputError> {
         let plans = self.plan_names();
         if plans.is_empty() || plans.iter().any(|plan| plan == name) {
@@ -188,7 +192,7 @@ impl Input {
         Err(InputError::UnknownPlan { file, name: name.to_owned(), plans })
     }
 
-    /// Returns the only plan of `plans`, the names and plans that [`compile`](Self::compile) found.
+    /// Returns the only plan in `plans`. They are the results of [`compile`](Self::compile), each with the plan's name.
     ///
     /// # Errors
     /// Fails if `plans` is empty or has several plans.
@@ -277,7 +281,7 @@ pub fn plan(path: &Path, text: String, target: &Target) -> Result<Input, InputEr
     Ok(Input { sources, source, paths, read, unsaved: Unsaved::default(), parts: Vec::new(), is_alone: false })
 }
 
-/// Names of the robots of a group's plan; `None` for the plan of one robot.
+/// Returns the names of the robots of a group's plan; `None` for the plan of a single robot.
 fn robots(plan: &Plan<'_>) -> Option<Vec<String>> {
     let names = plan.group?.iter().filter_map(|robot| match robot {
         Arg::Name(name) => Some(name.node.to_owned()),
@@ -298,8 +302,8 @@ pub fn add(sources: &mut Sources, path: &Path, text: String) -> Result<SourceId,
     }
 }
 
-/// Returns the name of the plan file beside `path` that was probably meant: a name that differs only in upper
-/// and lower case or in the extension, or otherwise in a few letters.
+/// Returns the name of the plan file in the folder of `path` that the user probably meant: a name that differs only in
+/// case or in the extension or, failing that, only in a few letters.
 fn like(path: &Path) -> Option<String> {
     let name = path.file_name()?.to_str()?.to_lowercase();
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));

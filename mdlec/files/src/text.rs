@@ -38,8 +38,8 @@ pub(crate) fn shown(path: &Path) -> String {
     if path == Path::new("-") { "standard input".into() } else { path.display().to_string() }
 }
 
-/// Returns the error for a file that is not text, with the part of the file that can be shown; its first
-/// `valid` bytes are valid UTF-8.
+/// Returns the error for a file that is not text. The message shows the invalid character; the first `valid` bytes of
+/// the file are valid UTF-8.
 fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> InputError {
     let mut sources = Sources::default();
     let source = sources.add(name, String::from_utf8_lossy(bytes));

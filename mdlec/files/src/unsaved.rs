@@ -8,14 +8,15 @@ use std::sync::Arc;
 /// Texts in place of files.
 #[derive(Debug, Clone, Default)]
 pub struct Unsaved {
-    /// The texts by the canonical paths of their files.
+    /// The texts. The keys are the canonical paths of the files that they replace.
     texts: BTreeMap<PathBuf, Arc<str>>,
-    /// `true` if there are no other files; a canonical path is then one without `.` and, where possible, `..`.
+    /// `true` if these texts are the only files. A path is then canonical if it contains no `.` and, where possible, no
+    /// `..`.
     are_all: bool,
 }
 
 impl Unsaved {
-    /// Returns these texts, each with the path of its file, in place of all files: none is read.
+    /// Returns texts that replace all files, so that no file is read. Each text has the path of its file.
     #[must_use]
     pub fn all(texts: impl IntoIterator<Item = (PathBuf, String)>) -> Self {
         let texts = texts.into_iter().map(|(path, text)| (normal(&path), text.into())).collect();
@@ -35,7 +36,7 @@ impl Unsaved {
         self.texts.get(place).map(AsRef::as_ref)
     }
 
-    /// Returns the canonical path of a file that is on the disk or among these texts.
+    /// Returns the canonical path of a file that exists on the disk or among these texts.
     pub(crate) fn place(&self, path: &Path) -> io::Result<PathBuf> {
         let is_here = |place: &PathBuf| self.texts.contains_key(place);
         if self.are_all {
@@ -45,7 +46,7 @@ impl Unsaved {
     }
 }
 
-/// Returns a path without `.`, and without `..` after the name of a folder.
+/// Returns a path without `.`. Each `..` that follows the name of a folder is removed together with this name.
 #[must_use]
 pub fn normal(path: &Path) -> PathBuf {
     let mut normal = PathBuf::new();

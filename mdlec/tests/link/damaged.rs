@@ -1,8 +1,8 @@
-//! A damaged cache is repaired: the executable is the one that the current plan gives.
+//! Tests that a damaged cache is repaired, and that the executable is then the one of the current plan.
 //!
-//! To compile all libraries again takes long. If the variable `MDLE_LONG` is more than 1, each damage of them is mended
-//! to the end; otherwise a test damages the libraries of mdlec or of the robot alone, or ends when the build reports
-//! that it compiles all again.
+//! Compiling all libraries again takes long. If the variable `MDLE_LONG` is set to anything but 1, the tests damage all
+//! libraries and compile them again. Otherwise a test damages only the libraries of mdlec or of the robot, or it ends
+//! when the build reports that it compiles everything again.
 
 use std::fs::{self, File};
 use std::os::unix::fs::MetadataExt;
@@ -15,7 +15,7 @@ use mdlec::link::{LinkError, Progress};
 
 use crate::robot::{MANIFEST, PLAN, ROVER, Robot, target};
 
-/// Returns the robot whose cache is damaged: it has libraries of earlier runs of the tests, but no plans of theirs.
+/// Returns the robot whose cache is damaged. The cache contains libraries from earlier test runs, but no plans.
 fn robot() -> Robot {
     let robot = Robot::new("damaged", MANIFEST, ROVER);
     for plan in files(robot.cache.folder(), &|name| name.starts_with("plan-nap-")) {
@@ -28,20 +28,21 @@ fn robot() -> Robot {
     robot
 }
 
-/// Returns `true` if all libraries may be compiled again and again.
+/// Returns `true` if the tests may compile all libraries several times.
 fn is_long() -> bool {
     std::env::var("MDLE_LONG").is_ok_and(|factor| factor != "1")
 }
 
-/// Builds the plan that ends by this cause, and runs it.
+/// Builds the plan that ends with the cause `cause`, runs it, and checks its output.
 fn assert_builds(robot: &Robot, cause: &str) {
     let (_, output) = robot.build("nap.mdle", &PLAN.replace("morning", cause)).unwrap();
     let message = Command::new(output).output().unwrap();
     assert!(String::from_utf8(message.stdout).unwrap().contains(&format!("plan over: {cause}")));
 }
 
-/// Asserts that a build finds that everything has to be compiled again. With [`is_long`] everything is, and the plan
-/// that ends by this cause runs; otherwise `restore` undoes the damage.
+/// Asserts that a build finds that everything must be compiled again. If [`is_long`] is `true`, the build compiles
+/// everything, and the plan that ends with the cause `cause` runs. Otherwise the build is stopped, and `restore` undoes
+/// the damage.
 fn assert_mends(robot: &Robot, cause: &str, restore: impl FnOnce()) {
     if is_long() {
         return assert_builds(robot, cause);
@@ -62,7 +63,7 @@ fn assert_mends(robot: &Robot, cause: &str, restore: impl FnOnce()) {
     assert_eq!(ended.unwrap_err().downcast_ref(), Some(&Progress::Mending));
 }
 
-/// The files below `folder` of whose names this is true.
+/// Returns the files below `folder` whose names `wanted` accepts.
 fn files(folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -76,7 +77,7 @@ fn files(folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Vec<PathBuf> {
     found
 }
 
-/// Shortens each file to this many hundredths; where other names have links to it, these see it as well.
+/// Truncates each file to this percentage of its length; hard links to the file change as well.
 fn cut(files: &[PathBuf], hundredths: u64) {
     assert!(!files.is_empty());
     for path in files {

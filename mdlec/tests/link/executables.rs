@@ -1,4 +1,4 @@
-//! Emitted Rust becomes a static executable; an error message explains what prevents it.
+//! Tests that emitted Rust becomes a static executable, and that an error message explains why it cannot.
 
 use std::fs;
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! A robot of a third party, for tests of `link`, and the builds for it.
+//! A third-party robot for tests of `link`, and the builds for it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,17 +23,17 @@ mdle-runtime = "0.1"
 mdle-host = "0.1"
 "#;
 
-/// Returns the folder of what cargo has built in a cache.
+/// Returns the folder of cargo's build results in a cache.
 pub(crate) fn target(cache: &Cache) -> PathBuf {
     cache.folder().join("target")
 }
 
-/// A target crate by path in a folder of its own.
+/// A third-party target crate in a folder of its own.
 pub(crate) struct Robot {
     pub(crate) folder: PathBuf,
-    /// Outlives the tests: only the first run compiles the runtime.
+    /// The cache, which is kept between runs of the tests, so that only the first run compiles the runtime.
     pub(crate) cache: Cache,
-    /// The right to use the cache, and to damage it: one test after the other.
+    /// Lock on the cache, so that only one test at a time uses and damages it.
     _turn: MutexGuard<'static, ()>,
 }
 
@@ -55,7 +55,7 @@ impl Robot {
         Self { folder, cache, _turn: turn }
     }
 
-    /// Builds `rust`, as if emitted from `plan`; the executable is beside the plan.
+    /// Builds `rust` as if it had been emitted from `plan`. The executable is beside the plan.
     pub(crate) fn build(&self, plan: &str, rust: &str) -> Result<(Built, PathBuf), LinkError> {
         self.build_with(plan, rust, &mut |_| {})
     }

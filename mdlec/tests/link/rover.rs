@@ -1,4 +1,4 @@
-//! The robot of the tests of `link`, as a third party would write it: one that can do nothing.
+//! The robot of the tests of `link`, as a third party would write it. It has no capabilities.
 #![forbid(unsafe_code)]
 
 use std::convert::Infallible;

@@ -41,10 +41,11 @@ pub(super) struct OptionText {
 }
 
 impl OptionText {
-    /// Checks the option against those of an executable, each with the placeholder of its value.
+    /// Checks the option against the options of an executable, each of which has the placeholder of its value.
     ///
     /// # Errors
-    /// Fails with a message if there is no such option, if its value is missing, or if it takes none.
+    /// Fails with a message if there is no such option, if its value is missing, or if it has a value and must not have
+    /// one.
     pub(super) fn must_be_among(&self, known: &[(&str, &str)]) -> Result<(), String> {
         let name = &*self.name;
         let Some((_, value)) = known.iter().find(|(known, _)| *known == name) else {

@@ -1,9 +1,9 @@
-//! Prints the transition matrices of a small plan in the paper's notation: `Π(t) = E_1 ξ̄_1(t) + …`, as in the paper's
-//! Eq. 6.
+//! Prints the transition matrices of a small plan in the paper's notation: `Π(t) = E_1 ξ̄_1(t) + …`, as in Eq. 6 of the
+//! paper.
 
 use super::terms::{Extent, Term, Terms};
 
-/// Maximum number of states whose matrices are printed in the paper's notation: more matrices do not fit on a line.
+/// Maximum number of states whose matrices are printed in the paper's notation; larger matrices do not fit on a line.
 const STATES: usize = 16;
 /// Maximum length of a line, in characters.
 const WIDTH: usize = 100;
@@ -66,7 +66,7 @@ fn written(lines: &[String]) -> String {
     lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
-/// Returns the width of a text; the bar over a letter takes no column of its own.
+/// Returns the width of a text in columns; a bar over a letter takes no column of its own.
 fn width(text: &str) -> usize {
     text.chars().filter(|letter| *letter != '\u{304}').count()
 }
@@ -107,7 +107,7 @@ fn symbols(terms: &Terms<'_>) -> String {
     text
 }
 
-/// Returns `true` if terms with equal texts are separate because they have timers.
+/// Returns `true` if several terms have the same text and are not combined because their interrupts have timers.
 fn is_kept_apart(terms: &[Term<'_>]) -> bool {
     let mut texts: Vec<_> = terms.iter().filter(|term| term.waits).map(|term| term.text).collect();
     texts.sort_unstable();
@@ -124,7 +124,8 @@ fn interrupts(terms: &[Term<'_>], numbered: bool) -> String {
     table(&rows.collect::<Vec<_>>())
 }
 
-/// Returns the states of a scope, and the scope's name, as text.
+/// Returns the states of a scope as text, with the scope's name and, if `numbered` is `true`, the number of its
+/// interrupt.
 fn states(place: &Extent<'_>, numbered: bool) -> String {
     let states = if place.first == place.last {
         format!("e{}", place.first + 1)
@@ -154,8 +155,8 @@ mod tests {
         equation(&terms(&compiled(text)[0].nondegenerate, combined).unwrap())
     }
 
-    /// The string of Fig. 3, `((u1, ξ1)(u2, ξ2)(u1, ξ3))`: the first law comes twice, and is a state of its own each
-    /// time.
+    /// In the string of Fig. 3, `((u1, ξ1)(u2, ξ2)(u1, ξ3))`, the first law occurs twice, and each occurrence is a
+    /// state.
     #[test]
     fn the_string_of_figure_3_has_three_terms_of_four_states() {
         let text = "{ Fig3 (Atom (bumper) (go 20 0)) (Atom (atIsection 0100) (go 0 0.36)) (Atom (wait 7) (go 20 0)) }";

@@ -9,7 +9,7 @@ use super::terms::{Extent, Term, Terms};
 
 /// Version of the list's format.
 const VERSION: u32 = 1;
-/// Maximum total number of ones in all files; each one is a line.
+/// Maximum total number of ones in all files; each one takes a line.
 const ONES: usize = 10_000_000;
 /// Maximum length of a comment, in characters: a line of a MatrixMarket file has at most 1024 bytes.
 const COMMENT: usize = 200;
@@ -21,7 +21,7 @@ pub struct MatrixFiles<'t, 'p>(&'t Terms<'p>);
 /// Returns the files of the terms' matrices.
 ///
 /// # Errors
-/// Returns the total number of ones in all files, and its maximum of ten million, if there are more ones than that.
+/// Returns the total number of ones in all files and its maximum of ten million if the maximum is exceeded.
 pub fn matrix_files<'t, 'p>(terms: &'t Terms<'p>) -> Result<MatrixFiles<'t, 'p>, (usize, usize)> {
     let ones = terms.states().saturating_mul(terms.live.len());
     if ones > ONES { Err((ones, ONES)) } else { Ok(MatrixFiles(terms)) }
@@ -48,7 +48,7 @@ struct Entry<'t> {
     places: Vec<ScopeStates<'t>>,
 }
 
-/// States of a scope, from 1.
+/// Range of the states of a scope, which count from 1.
 #[derive(Debug, Serialize)]
 struct ScopeStates<'t> {
     number: usize,

@@ -1,4 +1,5 @@
-//! The terms of `Π(t) = Σ E_i ξ̄_i(t)` of a plan (paper, Eq. 2), or with equal interrupts combined to one term (Eq. 3).
+//! The terms of `Π(t) = Σ E_i ξ̄_i(t)` of a plan (paper, Eq. 2), or of the sum in which equal interrupts are combined
+//! to one term (Eq. 3).
 //!
 //! Terms are numbered as in the FSM file: `x1`, `x2`, … in pre-order, and `completed` for the completion of laws.
 
@@ -13,7 +14,7 @@ use mdle_compiler::plan::{Condition, Functions, Nondegenerate, Plan};
 pub struct Terms<'p> {
     /// Name of the plan.
     pub source: &'p str,
-    /// Law of each state but the termination state, as the text of a quark.
+    /// Law of each state except the termination state, as the text of a quark.
     pub laws: Vec<&'p str>,
     /// Terms whose interrupt can fire, in pre-order, completion last.
     pub live: Vec<Term<'p>>,
@@ -26,8 +27,8 @@ pub struct Terms<'p> {
 /// An interrupt with its transition matrix.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Term<'p> {
-    /// Name of the interrupt: `x1`, `x2`, …, or `completed`. An interrupt in several places has the name of its first
-    /// place.
+    /// Name of the interrupt: `x1`, `x2`, …, or `completed`. If several scopes have the interrupt, the name is that of
+    /// the first occurrence.
     pub name: String,
     /// Text of the interrupt's condition.
     pub text: &'p str,
@@ -37,12 +38,12 @@ pub struct Term<'p> {
     pub places: Vec<Extent<'p>>,
 }
 
-/// A scope that has an interrupt, as a range of columns and the row in which these columns have their one. All indices
-/// count from 0.
+/// A scope that has an interrupt. In the interrupt's matrix, it is a range of columns that have their 1 in the same
+/// row. All indices count from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Extent<'p> {
-    /// Number of the interrupt in pre-order, from 1: of interrupts that fire at the same time, the lowest number
-    /// decides.
+    /// Number of the interrupt in pre-order, from 1. If several interrupts fire at the same time, the one with the
+    /// lowest number takes effect.
     pub number: usize,
     /// Name of the scope; empty for an atom.
     pub scope: &'p str,
@@ -50,7 +51,7 @@ pub struct Extent<'p> {
     pub first: usize,
     /// Last column of the range.
     pub last: usize,
-    /// Row in which the columns have their one.
+    /// Row of the 1 in each of these columns.
     pub row: usize,
 }
 
@@ -61,9 +62,9 @@ impl Terms<'_> {
         self.laws.len() + 1
     }
 
-    /// Returns the transition matrix of a term, as the row of the one in each column. The matrix is `Σ E_ij − (n−1) I`
-    /// over the term's places (Eq. 3): a column in a place's range comes from this place, because in all other places
-    /// it is a column of the identity.
+    /// Returns the transition matrix of a term, as the row of the 1 in each column. The matrix is `Σ E_ij − (n−1) I`
+    /// over the scopes of the term (Eq. 3). A column in the range of a scope is the column of this scope's matrix,
+    /// because it is a column of the identity in the matrices of all other scopes.
     #[must_use]
     pub fn matrix(&self, term: &Term<'_>) -> Vec<usize> {
         let mut rows: Vec<_> = (0..self.states()).collect();
@@ -107,7 +108,8 @@ pub fn terms(plan: &Nondegenerate, combined: bool) -> Result<Terms<'_>, Diagnost
     Ok(Terms { source: &plan.root.name, laws, live, never, combined })
 }
 
-/// Returns the term of the interrupt that fires when laws complete; it counts as the atoms' own interrupt.
+/// Returns the term of the interrupt that fires when a law completes, which ends the atom like the atom's own
+/// interrupt. Returns `None` if no law of the plan can complete.
 fn completion<'p>(plan: &'p Plan, made: &Matrices<'p>) -> Option<Term<'p>> {
     let places = made.completion(plan).map(|(number, matrix)| {
         let (scope, column) = (made.transitions[number].name, *matrix.columns().start());
@@ -124,7 +126,7 @@ mod tests {
     use super::*;
     use crate::samples::compiled;
 
-    /// A matrix with all its zeros.
+    /// Returns the matrix that has its 1 in row `rows[j]` of each column `j`, with all zeros.
     fn dense(rows: &[usize]) -> DMatrix<i64> {
         DMatrix::from_fn(rows.len(), rows.len(), |row, column| i64::from(rows[column] == row))
     }

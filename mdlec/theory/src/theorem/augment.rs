@@ -1,5 +1,5 @@
-//! Writes any machine as a plan with `after` (paper, below Theorem 1: "auxiliary variables"): an endless loop over all
-//! states, in which each state's condition tests the element that ended last.
+//! Writes any machine as a plan with `after` (paper, below Theorem 1: "auxiliary variables"). The plan is an endless
+//! loop over all states, in which the condition of each state tests which element ended last.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -11,8 +11,8 @@ use mdle_compiler::syntax::operands;
 /// Returns a machine of any shape as a plan. If several interrupts lead from a state, the first in the file takes
 /// precedence.
 ///
-/// The plan has the machine's states in the order of the file, after a state that ends at once. In each turn the plan
-/// is in the machine's state, up to a turn in which the machine would enter a state twice.
+/// The plan has a start state that ends at once, followed by the machine's states in the order of the file. In each
+/// turn the plan is in the same state as the machine, until a turn in which the machine would enter a state twice.
 #[must_use]
 pub fn augment(machine: &Machine) -> String {
     let (texts, mut names) = texts(machine);
@@ -58,7 +58,8 @@ pub fn augment(machine: &Machine) -> String {
 
 /// Transitions from a state.
 struct Exits<'t> {
-    /// Operands of the state's conditions in the order of the file, each once, with their destinations.
+    /// Operands of the conditions of the state's interrupts, in the order of the file and without duplicates, each with
+    /// the destination of its interrupt.
     operands: Vec<(&'t str, State)>,
     /// Destination after the state's law completes.
     completed: Option<State>,
@@ -83,14 +84,14 @@ impl<'t> Exits<'t> {
         exits
     }
 
-    /// Returns the interrupt of the state's atom.
+    /// Returns the text of the interrupt of the state's atom.
     fn condition(&self) -> String {
         let operands: Vec<_> = self.operands.iter().map(|(operand, _)| *operand).collect();
         if operands.is_empty() { "null".to_owned() } else { operands.join(" OR ") }
     }
 
-    /// Returns each destination of the state, with the condition that shows that the state was left for this
-    /// destination.
+    /// Returns each destination of the state, with a condition that holds if the state was left for this destination.
+    /// `label` is the label of the state's atom.
     fn ways(&self, label: &str) -> Vec<(State, String)> {
         let after = |operand: &str| match is_a_name(operand) {
             true => format!("after {label} {operand}"),

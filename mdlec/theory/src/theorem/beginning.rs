@@ -1,14 +1,14 @@
-//! Prefix of an order of a machine's states, with its scopes and loops. Computes the scopes that must end if a state
-//! follows, and whether they can end (Theorem 1, R1 to R4).
+//! Prefix of an order of a machine's states, with its scopes and loops. Computes the scopes that must end if a certain
+//! state follows, and checks that they can end (Theorem 1, R1 to R4).
 //!
-//! All stretches that have ended are pairwise nested or disjoint, and each place but the last has an interrupt of its
-//! own.
+//! When scopes and loops end, the range of positions that they enclose is closed. All closed ranges are pairwise nested
+//! or disjoint, and each state but the last has an interrupt of its own.
 
 mod fits;
 
 use super::{Broken, InterruptId, Loop, Machine, Run, State, Stretch};
 
-/// An interrupt that has led to the state `to` from each place of the order since `first`.
+/// A scope that has not ended: an interrupt that leads to the state `to` from each position of the order since `first`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Open {
     interrupt: InterruptId,
@@ -20,11 +20,11 @@ pub(super) struct Open {
 #[derive(Default)]
 pub(super) struct Boundary {
     runs: Vec<Run>,
-    /// First places of the loops that end at the boundary, in ascending order.
+    /// First positions of the loops that end at the boundary, in ascending order.
     loops: Vec<usize>,
     /// Scopes that continue after the boundary.
     open: Vec<Open>,
-    /// First place of the widest scope or loop that ends at the boundary.
+    /// First position of the widest scope or loop that ends at the boundary; `None` if none ends.
     widest: Option<usize>,
 }
 
@@ -33,7 +33,7 @@ pub(super) struct Boundary {
 pub(super) struct Before {
     runs: usize,
     loops: usize,
-    /// Closed stretches that are now inside a wider one.
+    /// Closed ranges that the step has enclosed in a wider closed range.
     wholes: Vec<(usize, usize)>,
     has_whole: bool,
 }
@@ -47,9 +47,10 @@ pub(super) struct Beginning<'m> {
     sources: Vec<Vec<State>>,
     pub(super) runs: Vec<Run>,
     pub(super) loops: Vec<Loop>,
-    /// First and last place of each closed stretch that is not inside another one.
+    /// First and last position of each closed range that is not inside another closed range.
     wholes: Vec<(usize, usize)>,
-    /// Interrupt of the completion of laws, if it may end only atoms; `None` if it may end any scope.
+    /// The interrupt that fires when a law completes, if it may end only atoms; `None` if every interrupt may end any
+    /// scope.
     completed: Option<InterruptId>,
 }
 
@@ -79,9 +80,9 @@ impl<'m> Beginning<'m> {
     /// Returns the scopes and loops that end if `next` follows: those that must end and, if given, the open scope
     /// `extra`. Returns `None` if the scope `extra` must end anyway, or must not end.
     ///
-    /// More than one extra scope is never needed. A scope that ends early provides an interrupt of its own for this
-    /// place or the next. If two scopes lead back, one of them suffices for both purposes. Two parts of a scope that
-    /// leads to its own start could be joined instead.
+    /// More than one extra scope is never needed. A scope that ends early provides an interrupt of its own for the
+    /// state at this position or at the next position. If two scopes lead back, one of them suffices for both purposes.
+    /// Two parts of a scope that leads to its own start could be joined instead.
     ///
     /// # Errors
     /// Returns the condition that `next` breaks.
@@ -111,8 +112,8 @@ impl<'m> Beginning<'m> {
         self.ended(open, next, &ends, widest).map(Some)
     }
 
-    /// Returns `true` if a scope would end before `next` although its interrupt also leads to its destination from
-    /// other states, which have no place yet.
+    /// Returns `true` if a scope would end before `next` although its interrupt also leads to `next` from other states,
+    /// which have no position yet.
     pub(super) fn ends_too_early(&self, open: &[Open], next: State) -> bool {
         let mut ending = open.iter().filter(|run| run.to == next && self.completed != Some(run.interrupt));
         ending.any(|run| {
@@ -121,7 +122,8 @@ impl<'m> Beginning<'m> {
         })
     }
 
-    /// Returns `true` if a scope must end before `next`.
+    /// Returns `true` if an open scope must end if `next` follows. Returns the broken condition if the scope can
+    /// neither end nor continue.
     fn must_end(&self, run: Open, next: State) -> Result<bool, Broken> {
         if run.to == next {
             return Ok(true);
@@ -136,12 +138,13 @@ impl<'m> Beginning<'m> {
         Ok(!goes_on)
     }
 
-    /// Returns the first place of an ending scope, or of the loop to whose start the scope leads.
+    /// Returns the first position of an ending scope or, if the scope leads back, of the loop to whose start it leads.
     fn reach(&self, run: Open, next: State) -> usize {
         if run.to == next { run.first } else { self.place(run.to).unwrap_or(run.first) }
     }
 
-    /// Marks every scope as ending that begins inside an ending scope.
+    /// Marks every scope that begins inside an ending scope as ending too. Returns the broken condition if such a scope
+    /// cannot end.
     fn spread(&self, open: &[Open], next: State, ends: &mut [bool], widest: &mut usize) -> Result<(), Broken> {
         for (run, ends) in open.iter().zip(ends).rev() {
             if run.first <= *widest {
@@ -156,7 +159,8 @@ impl<'m> Beginning<'m> {
         Ok(())
     }
 
-    /// Returns the broken condition of a scope that continues although a scope that encloses its first state ends.
+    /// Returns the condition that is broken if the scope `run` continues although a scope that encloses its first state
+    /// ends.
     fn crossing(&self, run: Open, open: &[Open], widest: usize, next: State) -> Broken {
         let around = open.iter().find(|around| around.first == widest || self.place(around.to) == Some(widest));
         let [.., here] = *self.order.as_slice() else { return Broken::NoExit(next) };
@@ -169,7 +173,8 @@ impl<'m> Beginning<'m> {
         }
     }
 
-    /// Returns the boundary at which the scopes marked in `ends` end, or the condition that forbids it.
+    /// Returns the boundary at which the scopes that are marked in `ends` end, or the condition that is broken if they
+    /// end.
     fn ended(&self, open: &[Open], next: State, ends: &[bool], widest: usize) -> Result<Boundary, Broken> {
         let here = self.order.len() - 1;
         let mut ending = Boundary { widest: Some(widest), ..Boundary::default() };
@@ -194,7 +199,7 @@ impl<'m> Beginning<'m> {
         Ok(ending)
     }
 
-    /// Appends a state; returns the scopes that are open with it, and the data for undoing this step.
+    /// Appends a state; returns the scopes that are open at this state, and the data for undoing this step.
     pub(super) fn fill(&mut self, ending: Boundary, next: State) -> (Vec<Open>, Before) {
         let place = self.order.len();
         let mut before = Before { runs: self.runs.len(), loops: self.loops.len(), ..Before::default() };
@@ -216,9 +221,9 @@ impl<'m> Beginning<'m> {
         (open, before)
     }
 
-    /// Returns a hash of all data that determine which states can follow: the states that have a place, the starts of
-    /// closed stretches, the open scopes, and the last state. The inside of a closed stretch does not matter any
-    /// longer.
+    /// Returns a hash of all data that determine which states can follow: the states that have a position, the first
+    /// states of the closed ranges, the open scopes, and the last state. The order inside a closed range has no effect
+    /// any longer.
     pub(super) fn outline(&self, open: &[Open]) -> [u8; 32] {
         let mut placed = vec![0_u8; self.places.len().div_ceil(8)];
         for state in &self.order {

@@ -7,12 +7,12 @@ use mdle_runtime::Printable;
 
 use super::{InterruptId, Machine, State};
 
-/// A stretch of consecutive states in an order.
+/// A range of consecutive states in an order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stretch {
-    /// First state of the stretch.
+    /// First state of the range.
     pub first: State,
-    /// Last state of the stretch.
+    /// Last state of the range.
     pub last: State,
 }
 
@@ -23,14 +23,14 @@ pub enum Broken {
     EndIsLeft(InterruptId),
     /// No interrupt leads from this state to another state.
     NoExit(State),
-    /// The only possible order begins with another state than the start state in the file.
+    /// The only possible order begins with a state other than the start state in the file.
     StartNotFirst {
         /// Start state in the file.
         start: State,
         /// First state of the order.
         first: State,
     },
-    /// Two states must be neighbours, but neither of them leads to the other.
+    /// Two states must be neighbours, but the first state does not lead to the second.
     SideBySide(State, State),
     /// A state has no interrupt of its own that leads to the next state.
     NoOwnInterrupt {
@@ -38,7 +38,8 @@ pub enum Broken {
         state: State,
         /// Next state in the order.
         next: State,
-        /// An interrupt that leads to the next state, but also from the previous state; with that previous state.
+        /// An interrupt that leads to the next state both from `state` and from the state before it, with the state
+        /// before it; `None` if there is no such interrupt.
         shared: Option<(InterruptId, State)>,
     },
     /// An interrupt leads past a state, but does not lead from that state to the same destination.
@@ -54,28 +55,28 @@ pub enum Broken {
         /// State to which the interrupt leads from `past`, if any.
         other: Option<State>,
     },
-    /// The states that two interrupts enclose overlap, and neither stretch contains the other.
+    /// The ranges of states that two interrupts enclose overlap, and neither range contains the other.
     Crosses {
-        /// Interrupt whose stretch begins first.
+        /// Interrupt whose range begins first.
         interrupt: InterruptId,
-        /// States that this interrupt encloses.
+        /// Range of states that this interrupt encloses.
         around: Stretch,
-        /// Interrupt whose stretch begins later.
+        /// Interrupt whose range begins later.
         other: InterruptId,
         /// First state that the interrupt `other` encloses.
         begins: State,
-        /// State after the stretch `around` that the interrupt `other` also encloses.
+        /// A state after the range `around` that the interrupt `other` also encloses.
         goes_on: State,
     },
-    /// An interrupt leads into the middle of a closed stretch.
+    /// An interrupt leads into the middle of the range that a scope or a loop encloses.
     IntoTheMiddle {
-        /// Interrupt that leads into the stretch.
+        /// Interrupt that leads into the range.
         interrupt: InterruptId,
         /// State from which the interrupt leads.
         from: State,
         /// State to which the interrupt leads.
         to: State,
-        /// Closed stretch into whose middle the interrupt leads.
+        /// Range into whose middle the interrupt leads.
         whole: Stretch,
     },
     /// An interrupt must lead back to the first state of an enclosing loop, but leads to another state.
@@ -101,7 +102,7 @@ pub enum Broken {
     },
 }
 
-/// Maximum number of states of an order that a sentence names, from the order's end.
+/// Maximum number of states that a sentence names of an order; these are the last states of the order.
 const NAMED: usize = 6;
 
 /// Returns the conditions that a machine breaks in every order of its states.
@@ -112,7 +113,7 @@ pub(super) fn of_every_order(machine: &Machine) -> Vec<Broken> {
 }
 
 impl Broken {
-    /// Returns a sentence about the broken condition, which begins with the condition's name.
+    /// Returns a sentence that describes the broken condition and begins with the name of the condition.
     #[must_use]
     pub fn sentence(&self, machine: &Machine) -> String {
         let state = |state: State| quoted(machine.name(state));

@@ -1,15 +1,14 @@
-//! Theorem 1 without loops: the order of the states is determined, and so are the states that each interrupt encloses
-//! (R1 to R3).
+//! Theorem 1 without loops (R1 to R3): only one order of the states is possible, and it determines the states that each
+//! interrupt encloses.
 
 use std::cmp::Reverse;
 
 use super::order::places;
 use super::{Broken, InterruptId, Machine, Run, State, Stretch};
 
-/// Returns the scopes of each interrupt in an order in which all interrupts lead forwards.
+/// Returns the scopes of all interrupts. In `order`, all interrupts must lead forwards.
 ///
-/// Only one such order is possible: each state leads to the next, and in no other order do all interrupts lead
-/// forwards.
+/// No other order is possible: each state leads to the next one, and in any other order an interrupt would lead back.
 ///
 /// # Errors
 /// Returns all conditions that the machine breaks.
@@ -28,7 +27,8 @@ pub(super) fn runs(machine: &Machine, order: &[State]) -> Result<Vec<Run>, Vec<B
     if broken.is_empty() { Ok(runs) } else { Err(broken) }
 }
 
-/// Splits the moves of interrupts into runs (R2): from the first place that leads to a state up to that state.
+/// Combines the moves of an interrupt from consecutive positions to the same destination into a run (R2). Returns the
+/// runs that end just before their destination, and the conditions that all other runs break.
 pub(super) fn cut(machine: &Machine, order: &[State]) -> (Vec<Run>, Vec<Broken>) {
     let places = places(order);
     let (mut runs, mut skips) = (Vec::new(), Vec::new());
@@ -44,8 +44,8 @@ pub(super) fn cut(machine: &Machine, order: &[State]) -> (Vec<Run>, Vec<Broken>)
     (runs, skips)
 }
 
-/// Appends a run that ends just before its destination to `runs`; another run leads past a state and becomes a broken
-/// condition.
+/// Appends the run to `runs` if it ends just before its destination. Otherwise the interrupt leads past a state, and
+/// the broken condition is appended to `skips`.
 fn end(machine: &Machine, order: &[State], run: Run, runs: &mut Vec<Run>, skips: &mut Vec<Broken>) {
     if run.last + 1 == run.to {
         runs.push(run);
@@ -61,7 +61,8 @@ fn end(machine: &Machine, order: &[State], run: Run, runs: &mut Vec<Run>, skips:
     });
 }
 
-/// Returns, for each interrupt and destination, the places from which the interrupt leads to the destination, in order.
+/// Returns, for each interrupt and destination, the ascending positions in `order` of the states from which the
+/// interrupt leads to the destination.
 fn by_destination(machine: &Machine, order: &[State]) -> Vec<([u32; 2], Vec<usize>)> {
     let mut moves: Vec<([u32; 2], usize)> = Vec::new();
     for (place, state) in order.iter().enumerate() {
@@ -72,7 +73,7 @@ fn by_destination(machine: &Machine, order: &[State]) -> Vec<([u32; 2], Vec<usiz
     groups.filter_map(|group| Some((group.first()?.0, group.iter().map(|(_, place)| *place).collect()))).collect()
 }
 
-/// Returns the conditions broken by states without an interrupt of their own (R1).
+/// Returns the conditions that states without an interrupt of their own break (R1).
 fn atoms(machine: &Machine, order: &[State], runs: &[Run]) -> Vec<Broken> {
     let mut has_own = vec![false; order.len()];
     for run in runs.iter().filter(|run| run.first == run.last) {
@@ -90,8 +91,8 @@ fn atoms(machine: &Machine, order: &[State], runs: &[Run]) -> Vec<Broken> {
     lacking.map(why).collect()
 }
 
-/// Returns the conditions broken by runs that overlap without nesting (R3); `runs` are sorted by their first place,
-/// longest first.
+/// Returns the conditions that overlapping runs break if neither contains the other (R3). `runs` are sorted by their
+/// first position, longest first.
 pub(super) fn crossings(order: &[State], runs: &[Run]) -> Vec<Broken> {
     let mut open: Vec<Run> = Vec::new();
     let mut broken = Vec::new();

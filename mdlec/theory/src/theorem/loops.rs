@@ -1,20 +1,20 @@
-//! Theorem 1 with endless loops (R4): searches among the orders of the states, and abandons a prefix of an order when
-//! no next state can make it a string.
+//! Theorem 1 with endless loops (R4). Searches among the orders of the states, and abandons a prefix of an order if no
+//! next state is possible.
 
 use std::collections::BTreeSet;
 
 use super::beginning::{Before, Beginning, Boundary, Open};
 use super::{Answer, Broken, Found, InterruptId, Machine, State};
 
-/// Maximum number of states after the longest prefix that are reported.
+/// Maximum number of states that are reported as impossible successors of the longest prefix.
 const TOLD: usize = 10;
 
 /// Number of steps after which failed prefixes are remembered; most searches end earlier.
 const REMEMBERS: u64 = 2_000;
 
-/// A place with a state, and the continuations that have been tried.
+/// A step of the search: a position with a state, and the continuations that have been tried.
 struct Step {
-    /// Scopes that are open at this place.
+    /// Scopes that are open at this position.
     open: Vec<Open>,
     /// Index of the next state to try, among the states to which the last state leads and then all others.
     candidate: usize,
@@ -48,13 +48,15 @@ struct Furthest {
 /// Cases that a search omits at first, because most strings are found without them.
 #[derive(Debug, Clone, Copy)]
 struct Leaves {
-    /// Interrupt of the completion of laws, if it may end only atoms; `None` if it may end any scope.
+    /// The interrupt that fires when a law completes, if it may end only atoms; `None` if every interrupt may end any
+    /// scope.
     completed: Option<InterruptId>,
     /// `true` if no scope may end before a state to which its interrupt also leads from later states.
     early_ends: bool,
 }
 
-/// Searches for the string of a machine with cycles, and tries states in the order of `candidates`.
+/// Searches for the string of a machine with cycles in at most `steps` steps. States are tried in the order of
+/// `candidates`.
 pub(super) fn search(machine: &Machine, candidates: &[State], steps: u64) -> Answer {
     let completed = machine.completed();
     let atoms_only = completed.map(|_| completed);
@@ -73,8 +75,8 @@ pub(super) fn search(machine: &Machine, candidates: &[State], steps: u64) -> Ans
     answer
 }
 
-/// Returns the states to which a state leads, without duplicates, beginning with the destination of the last interrupt,
-/// which is the innermost in lowered plans.
+/// Returns the states to which a state leads, without duplicates. The destination of the last interrupt, which is the
+/// innermost interrupt in lowered plans, comes first.
 fn successors(machine: &Machine, state: State) -> Vec<State> {
     let mut seen = BTreeSet::new();
     machine.exits(state).iter().rev().map(|exit| exit.to).filter(|to| seen.insert(*to)).collect()
@@ -128,8 +130,9 @@ impl<'m> Search<'m> {
         (Answer::None(vec![Broken::NoOrder { begins, tries, more }]), steps)
     }
 
-    /// Returns the next state to try: first a state to which the last state leads, then any other state; then, in the
-    /// same order, a state before which a scope would end although other states of the scope have no place yet.
+    /// Returns the next state to try. States to which the last state leads come first, then all others. After them, in
+    /// the same order, come states before which a scope would end although other states of the scope have no position
+    /// yet.
     fn candidate(&self, step: &mut Step) -> Option<State> {
         let order = &self.beginning.order;
         let near = order.last().map_or(&[][..], |last| &self.next[last.0 as usize]);
@@ -157,8 +160,8 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Returns the scopes and loops that end if `next` follows, for the next choice of an additional scope; `None` if
-    /// they cannot end.
+    /// Returns the scopes and loops that end if `next` follows and the next choice of an additional open scope ends;
+    /// the first choice is no additional scope. Returns `None` if they cannot end.
     fn ending(&mut self, step: &mut Step, next: State) -> Option<Boundary> {
         let extra = step.extra.checked_sub(1);
         let result = self.beginning.ending(&step.open, next, extra);

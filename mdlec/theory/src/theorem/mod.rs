@@ -1,8 +1,8 @@
-//! Theorem 1 in both directions (paper, Theorem 1; docs/src/reference/semantics.md, 8.5): the MDLe string of a machine,
-//! or the reasons why it has no string.
+//! Theorem 1 in both directions (paper, Theorem 1; docs/src/reference/semantics.md, 8.5): finds the MDLe string of a
+//! machine, or the reasons why it has no string.
 //!
-//! In a string, the places of the states count from 0, the termination state has the last place, and runs and loops are
-//! pairwise nested or disjoint.
+//! In a string, the positions of the states count from 0, the termination state has the last position, and runs and
+//! loops are pairwise nested or disjoint.
 
 mod augment;
 mod beginning;
@@ -22,7 +22,7 @@ pub use printed::{Rule, as_printed, monomial};
 pub use read::{FileError, read};
 pub use string::string;
 
-/// Default maximum number of steps in the search among orders, which take a few seconds.
+/// Default maximum number of steps in the search among orders; these steps take a few seconds.
 pub const STEPS: u64 = 1_000_000;
 
 /// Name of the interrupt that fires when a law completes; plans do not contain it.
@@ -36,7 +36,7 @@ pub struct State(pub u32);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct InterruptId(pub u32);
 
-/// A machine as in an FSM file: its last state is the termination state.
+/// A machine as in an FSM file. Its last state is the termination state.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Machine {
     states: Vec<String>,
@@ -51,7 +51,7 @@ pub struct Machine {
 pub struct Named {
     /// Name of the interrupt.
     pub name: String,
-    /// Condition of the interrupt, if the file has one.
+    /// Condition of the interrupt; `None` if the file has none.
     pub text: Option<String>,
 }
 
@@ -60,7 +60,7 @@ pub struct Named {
 pub struct Exit {
     /// Interrupt of the transition.
     pub interrupt: InterruptId,
-    /// Destination; it can be the same state, which is then entered again.
+    /// Destination. It can be the state itself, which is then entered again.
     pub to: State,
 }
 
@@ -78,7 +78,7 @@ pub enum Answer {
 /// A string of a machine: an order of the states, with the scopes and loops that enclose them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
-    /// States in the order of their places, with the termination state last.
+    /// States in the order of their positions, with the termination state last.
     pub order: Vec<State>,
     /// Scopes of the string.
     pub runs: Vec<Run>,
@@ -86,31 +86,31 @@ pub struct Found {
     pub loops: Vec<Loop>,
 }
 
-/// A scope: an interrupt, and the consecutive places from which it leads to the same place.
+/// A scope: an interrupt, and the consecutive positions from which it leads to the same position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Run {
     /// Interrupt of the scope.
     pub interrupt: InterruptId,
-    /// First place of the scope.
+    /// First position of the scope.
     pub first: usize,
-    /// Last place of the scope.
+    /// Last position of the scope.
     pub last: usize,
-    /// Place to which the interrupt leads: the place after the last one, or the start of a loop.
+    /// Position to which the interrupt leads: the position after `last`, or the start of a loop.
     pub to: usize,
 }
 
-/// An endless loop, as the range of places that it encloses.
+/// An endless loop, as the range of positions that it encloses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Loop {
-    /// First place of the loop.
+    /// First position of the loop.
     pub first: usize,
-    /// Last place of the loop.
+    /// Last position of the loop.
     pub last: usize,
 }
 
 impl Machine {
-    /// Returns a machine with these states and interrupts. Each interrupt has moves from state to state, at most one
-    /// from each state. Moves of unknown states are left out.
+    /// Returns a machine with these states and interrupts. Each interrupt has moves, which lead from one state to
+    /// another, at most one from each state. Moves from or to unknown states are ignored.
     #[must_use]
     pub fn new(states: Vec<String>, interrupts: Vec<(Named, Vec<(State, State)>)>) -> Self {
         let mut exits = vec![Vec::new(); states.len()];
@@ -126,7 +126,7 @@ impl Machine {
         Self { states, laws: None, start: None, interrupts: named, exits }
     }
 
-    /// Sets the state that must be first in an order.
+    /// Sets the start state, which must be the first state of an order.
     #[must_use]
     pub fn starting(self, start: State) -> Self {
         Self { start: Some(start), ..self }
@@ -174,7 +174,7 @@ impl Machine {
         (0..self.end().0).map(State)
     }
 
-    /// Returns the interrupt of the completion of laws, if the machine has one.
+    /// Returns the interrupt that fires when a law completes, if the machine has one.
     fn completed(&self) -> Option<InterruptId> {
         let place = self.interrupts.iter().position(|interrupt| interrupt.name == COMPLETED)?;
         Some(InterruptId(number(place)))
@@ -194,8 +194,8 @@ fn number(place: usize) -> u32 {
     u32::try_from(place).unwrap_or(u32::MAX)
 }
 
-/// Returns the string of a machine, if there is one. A machine without a cycle is decided at once, any other machine by
-/// a search of at most `steps` steps.
+/// Returns the string of a machine, if there is one. For a machine with a cycle, this is a search of at most `steps`
+/// steps; for other machines the string is computed directly.
 #[must_use]
 pub fn decompile(machine: &Machine, steps: u64) -> Answer {
     let broken = conditions::of_every_order(machine);

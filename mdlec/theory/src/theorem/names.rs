@@ -26,14 +26,14 @@ const RESERVED: &[&str] = &[
     "INFINITY",
 ];
 
-/// Names in use, with the number of names derived from each name.
+/// Names that are in use and, for each name, the number of names that were derived from it.
 #[derive(Default)]
 pub(super) struct Names {
     taken: BTreeSet<String>,
     made: BTreeMap<String, usize>,
 }
 
-/// Texts in a plan for the laws and interrupts of a machine.
+/// Texts of a machine's laws and interrupts in a plan.
 pub(super) struct Texts {
     /// Law of each state except the termination state.
     pub(super) laws: Vec<String>,
@@ -63,7 +63,7 @@ impl Names {
     }
 }
 
-/// Returns the texts of a machine, and the names that they use.
+/// Returns the texts of a machine in a plan, and the names that are in use in them.
 pub(super) fn texts(machine: &Machine) -> (Texts, Names) {
     let mut names = Names::default();
     // Words in the texts are names that are already in use.

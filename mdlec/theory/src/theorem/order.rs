@@ -3,7 +3,7 @@
 use super::{Machine, State};
 
 /// Returns the states in an order in which all interrupts lead forwards if the machine has no cycle; the termination
-/// state is last. Among several such orders, the start state in the file and the order of the file decide.
+/// state is last. If there are several such orders, the start state and the order in the file determine the result.
 pub(super) fn forwards(machine: &Machine) -> Vec<State> {
     let first = machine.start().unwrap_or(State(0));
     let mut seen = vec![false; machine.states().len()];
@@ -41,7 +41,7 @@ fn leave(machine: &Machine, root: State, seen: &mut [bool], left: &mut Vec<State
     }
 }
 
-/// Returns the place of each state in an order.
+/// Returns the position in `order` of each state; the index is that of the state in the file.
 pub(super) fn places(order: &[State]) -> Vec<usize> {
     let mut places = vec![0; order.len()];
     for (place, state) in order.iter().enumerate() {

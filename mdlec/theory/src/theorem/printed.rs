@@ -1,5 +1,5 @@
-//! Checks Theorem 1 as printed in the paper, on the columns of transition matrices: R1 to R4 literally, and as
-//! intended.
+//! Checks the conditions R1 to R4 of Theorem 1 as printed in the paper, on the columns of transition matrices, both
+//! literally and as intended.
 //!
 //! The columns of an interrupt are the columns that it moves. A move to the same state does not count, because there
 //! the matrix is the identity.
@@ -8,7 +8,7 @@ use super::loop_free::{crossings, cut};
 use super::order::{forwards, places};
 use super::{Answer, InterruptId, Machine, State};
 
-/// Result of a printed condition for a machine.
+/// Result of checking a printed condition for a machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rule {
     /// Name of the condition, `R1` to `R4`.
@@ -19,16 +19,16 @@ pub struct Rule {
     pub meant: Option<String>,
 }
 
-/// Columns of the matrices in an order of the states, from 0.
+/// Columns of the matrices, numbered from 0 in an order of the states.
 struct Columns<'m> {
     machine: &'m Machine,
     order: Vec<State>,
     places: Vec<usize>,
 }
 
-/// Checks the printed conditions in the only order in which they can hold, the order in which all interrupts lead
-/// forwards. For a machine with a cycle they cannot hold; then the order is that of the machine's string or, if it has
-/// no string, a similar order.
+/// Checks the printed conditions in the only order in which they can hold, in which all interrupts lead forwards. They
+/// cannot hold for a machine with a cycle. In this case the order is that of the machine's string `exactly` or, if it
+/// has no string, an order in which most interrupts lead forwards.
 #[must_use]
 pub fn as_printed(machine: &Machine, exactly: &Answer) -> [Rule; 4] {
     let mut order = forwards(machine);
@@ -50,7 +50,7 @@ pub fn as_printed(machine: &Machine, exactly: &Answer) -> [Rule; 4] {
     ]
 }
 
-/// Neighbouring columns of an interrupt that have their one in the same row.
+/// Consecutive columns of an interrupt's matrix that have their 1 in the same row.
 #[derive(Debug, Clone, Copy)]
 struct Same {
     first: usize,
@@ -58,8 +58,8 @@ struct Same {
     behind: usize,
 }
 
-/// Minimum destination row of some moves, with the interrupt, and the minimum destination row of the moves by other
-/// interrupts.
+/// Minimum destination row of a set of moves, with its interrupt, and the minimum destination row of the moves by all
+/// other interrupts.
 #[derive(Debug, Clone, Copy, Default)]
 struct Lowest {
     one: Option<(usize, InterruptId)>,
@@ -90,7 +90,8 @@ impl Lowest {
 }
 
 impl Columns<'_> {
-    /// Returns all moves of interrupts from one place to another place.
+    /// Returns all moves of interrupts to a different position, each as the interrupt, the position from which it
+    /// leads, and the position to which it leads.
     fn moves(&self) -> impl Iterator<Item = (InterruptId, usize, usize)> {
         let from = self.order.iter().enumerate();
         let all = from.flat_map(|(place, state)| self.machine.exits(*state).iter().map(move |exit| (place, exit)));
@@ -98,7 +99,7 @@ impl Columns<'_> {
         all.filter(|(_, from, to)| from != to)
     }
 
-    /// Returns the row in which a column of an interrupt has its one.
+    /// Returns the row of the 1 in a column of an interrupt's matrix.
     fn row(&self, interrupt: InterruptId, column: usize) -> usize {
         let to = self.machine.destination(self.order[column], interrupt);
         to.map_or(column, |to| self.places[to.0 as usize])
@@ -112,8 +113,8 @@ impl Columns<'_> {
         format!("`{}`", self.machine.interrupt(interrupt).name)
     }
 
-    /// Checks R1: for each column there is an interrupt, different from all others, that moves the column to the next
-    /// one and moves no other column.
+    /// Checks R1: for each column except the last, exactly one interrupt moves the column to the next one and moves no
+    /// other column. Returns the reason if this fails.
     fn atoms(&self) -> Option<String> {
         let mut moved = vec![0_usize; self.machine.interrupts().len()];
         self.moves().for_each(|(interrupt, ..)| moved[interrupt.0 as usize] += 1);
@@ -136,7 +137,8 @@ impl Columns<'_> {
         })
     }
 
-    /// Checks R2: no interrupt leads back, and an interrupt leads to its destination from all columns between.
+    /// Checks R2: no interrupt leads back, and an interrupt that leads from one column to another also leads there from
+    /// all columns between them. Returns the reason if this fails.
     fn forwards(&self) -> Option<String> {
         let runs = self.runs();
         self.moves().zip(&runs).find_map(|((interrupt, from, to), run)| {
@@ -154,8 +156,8 @@ impl Columns<'_> {
         })
     }
 
-    /// Returns, for each move in order, the neighbouring columns in which the interrupt has its one in the destination
-    /// row.
+    /// Returns, for each move in order, the consecutive columns around it that have their 1 in the move's destination
+    /// row in the interrupt's matrix.
     fn runs(&self) -> Vec<Same> {
         let moves: Vec<_> = self.moves().collect();
         let mut runs: Vec<Same> = moves.iter().map(|(_, from, _)| Same { first: *from, behind: from + 1 }).collect();
@@ -182,7 +184,8 @@ impl Columns<'_> {
         runs
     }
 
-    /// Checks R3 as intended: the columns that two interrupts enclose are disjoint or nested.
+    /// Checks R3 as intended: the columns that two interrupts enclose are disjoint or nested. Returns the reason if
+    /// this fails.
     fn nested(&self) -> Option<String> {
         let (mut runs, _) = cut(self.machine, &self.order);
         runs.sort_by_key(|run| (run.first, std::cmp::Reverse(run.last), run.interrupt));
@@ -190,8 +193,8 @@ impl Columns<'_> {
         Some(sentence.trim_start_matches("R3: ").to_owned())
     }
 
-    /// Returns the first column from which on all columns, up to the destination row of a move, have their one in this
-    /// row; `None` if there is no such column.
+    /// Returns the first column such that this column and all later ones up to the destination row of a move have their
+    /// 1 in this row; `None` if there is no such column.
     fn first_enclosed(&self, moves: &[(InterruptId, usize, usize)], runs: &[Same], number: usize) -> Option<usize> {
         let (interrupt, from, to) = moves[number];
         if from < to {
@@ -206,7 +209,8 @@ impl Columns<'_> {
         Some(before.filter(|before| moves[*before].2 == to).map_or(to, |before| runs[before].first))
     }
 
-    /// Checks R3 literally: if `k2 <= k1` and `p2 < p1`, one of two interrupts must enclose the other.
+    /// Checks R3 literally: if `k2 <= k1` and `p2 < p1` in the paper's notation, one of two interrupts must enclose the
+    /// other. Returns the reason if this fails.
     fn nested_to_the_letter(&self) -> Option<String> {
         let (moves, runs) = (self.moves().collect::<Vec<_>>(), self.runs());
         let mut lowest = Vec::with_capacity(moves.len() + 1);
@@ -239,8 +243,8 @@ impl Columns<'_> {
         None
     }
 
-    /// Checks R4 literally: if any interrupt leads forwards to a column, this column differs from its neighbour in all
-    /// matrices.
+    /// Checks R4 literally: if any interrupt leads forwards to a column, this column differs from its neighbours in all
+    /// matrices. Returns the reason if this fails.
     fn loops_to_the_letter(&self) -> Option<String> {
         let mut equal = vec![None; self.order.len()];
         for (interrupt, from, _) in self.moves() {

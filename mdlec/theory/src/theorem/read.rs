@@ -164,7 +164,7 @@ impl<'n> States<'n> {
         Ok(Self(states))
     }
 
-    /// Returns the state with this name; `asks` returns the description of the entry that uses it, for the error.
+    /// Returns the state with this name. `asks` describes the entry that contains the name, for the error message.
     fn find(&self, name: &str, asks: impl Fn() -> String) -> Result<State, FileError> {
         self.0.get(name).copied().ok_or_else(|| {
             let near = nearest(name, self.0.keys().copied());

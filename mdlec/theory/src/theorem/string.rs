@@ -7,16 +7,16 @@ use std::fmt::Write;
 use super::names::{Names, Texts, in_a_comment, texts};
 use super::{Found, InterruptId, Machine, Run};
 
-/// Maximum nesting depth of brackets in a plan; deeper parts become plans that are used by name.
+/// Maximum nesting depth of brackets in a plan. Deeper parts become separate plans, which are used by name.
 const DEPTH: usize = 100;
 
-/// A scope or a loop, with its stretch of places.
+/// A scope or a loop, with the range of positions that it encloses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Enclosed {
     first: usize,
     last: Reverse<usize>,
-    /// Rank among scopes and loops with the same stretch: a loop is between the scopes that lead out of it and the
-    /// scopes that lead back to its start.
+    /// Rank among scopes and loops with the same range. A loop is inside the scopes that lead out of it, and encloses
+    /// the scopes that lead back to its start.
     rank: Rank,
     interrupt: Option<InterruptId>,
 }
@@ -66,8 +66,8 @@ fn enclosed_by(run: &Run) -> Enclosed {
     Enclosed { first: run.first, last: Reverse(run.last), rank, interrupt: Some(run.interrupt) }
 }
 
-/// Returns the interrupt of the completion of laws if it can be left out: it encloses only single atoms, and leads
-/// where the atoms' own interrupts lead.
+/// Returns the interrupt that fires when a law completes, if the plan need not contain it: it encloses only single
+/// atoms, and leads where the atoms' own interrupts lead.
 fn completed(machine: &Machine, enclosed: &[Enclosed]) -> Option<InterruptId> {
     let completed = machine.completed()?;
     let mut own = enclosed.chunk_by(|one, other| (one.first, one.last) == (other.first, other.last));

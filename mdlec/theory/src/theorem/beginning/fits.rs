@@ -1,12 +1,12 @@
-//! Checks that scopes and loops can end after a prefix of an order: no interrupt may lead into the middle of a
-//! closed stretch (Theorem 1, R4).
+//! Checks that scopes and loops can end after a prefix of an order: no interrupt may lead into the middle of a closed
+//! range (Theorem 1, R4).
 
 use super::{Beginning, Boundary};
 use crate::theorem::{Broken, InterruptId, State, Stretch};
 
 impl Beginning<'_> {
-    /// Checks that each ending scope leads to a place where a loop can begin, and not past the start of a loop that
-    /// ends with it (R4).
+    /// Checks that each ending scope leads to a position at which a loop can begin, and that it does not lead past the
+    /// start of a loop that ends at the same boundary (R4).
     pub(super) fn loops_fit(&self, ending: &Boundary, next: State) -> Result<(), Broken> {
         let here = self.order.len() - 1;
         let stretch = |first: usize, last: usize| Stretch { first: self.order[first], last: self.order[last] };
@@ -38,8 +38,8 @@ impl Beginning<'_> {
         Ok(())
     }
 
-    /// Checks that every state that leads into the middle of an ending or continuing stretch has a place in it, or can
-    /// still get one (R4).
+    /// Checks that every state that leads into the middle of an ending or continuing range of positions has a position
+    /// in this range, or can still get one (R4).
     pub(super) fn nothing_leads_inside(&self, ending: &Boundary, next: State, widest: usize) -> Result<(), Broken> {
         let here = self.order.len() - 1;
         let inside = self.wholes.partition_point(|(first, _)| *first <= widest);
@@ -69,13 +69,13 @@ impl Beginning<'_> {
         Ok(())
     }
 
-    /// Returns the states without a place that lead to `state`.
+    /// Returns the states that lead to `state` and have no position yet.
     pub(super) fn outside(&self, state: State) -> impl Iterator<Item = State> {
         self.sources[state.0 as usize].iter().copied().filter(|source| self.place(*source).is_none())
     }
 
-    /// Returns the broken condition of a state without a place that leads into the middle of the stretch that begins at
-    /// place `first`.
+    /// Returns the condition that the state `from`, which has no position, breaks because it leads to `to` in the
+    /// middle of the range that begins at position `first`.
     fn leads_inside(&self, from: State, to: State, first: usize, last: State) -> Broken {
         let exit = self.machine.exits(from).iter().find(|exit| exit.to == to);
         let interrupt = exit.map_or(InterruptId(0), |exit| exit.interrupt);
