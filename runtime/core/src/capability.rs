@@ -5,21 +5,21 @@ use crate::{
     Links, Meters, Nanos, Output, Peer, Pings, Pose, PublishedNumber, Radians, Setpoint, SonarId, Twist, Volts,
 };
 
-/// `odometry`: the robot knows where it is and how fast it moves, in axes that stay put while it is switched on.
+/// `odometry`: the robot measures its pose and its velocities, in axes that stay fixed while it is switched on.
 pub trait Odometry: Output {
     /// Returns the pose.
     fn pose(&self) -> Pose;
     /// Returns the measured velocities.
     fn velocity(&self) -> Twist;
-    /// Returns the angle, as far as the heading has drifted, by which walls deviate from the axes of a frame;
-    /// one of these axes has the direction `axis`. Returns 0 unless the robot has a better estimate than its
-    /// odometry, for example from a [`crate::Compass`].
+    /// Returns the angle by which walls deviate from the axes of a frame because the heading has drifted; one of these
+    /// axes has the direction `axis`. Returns 0 unless the robot has a better estimate than its odometry, for example
+    /// from a [`crate::Compass`].
     fn drift(&self, _axis: Radians) -> Radians {
         Radians(0.0)
     }
 }
 
-/// `bumper`: the robot feels contact.
+/// `bumper`: the robot detects contact.
 pub trait Bumpers: Output {
     /// Returns `true` if any bumper is in contact.
     fn pressed(&self) -> bool;
@@ -40,13 +40,13 @@ pub trait DiffDrive: Output {
     }
     /// Returns the distance between the wheels.
     fn wheel_base(&self) -> Meters;
-    /// Returns the gains by which laws steer.
+    /// Returns the steering gains of the laws.
     fn steering(&self) -> Steering {
         Steering::USUAL
     }
 }
 
-/// Gains by which laws steer (the factor `k` of each law): turn rate per remaining error (paper, section IV-A).
+/// Steering gains of the laws (the factor `k` of each law): turn rate per remaining error (paper, section IV-A).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Steering {
     /// `rotate`, `turn` and `path`: in rad/s for each radian still to turn.
@@ -67,7 +67,7 @@ impl Steering {
 pub trait SonarRing: Output {
     /// Returns the last pings of one sonar.
     fn pings(&self, sonar: SonarId) -> &Pings;
-    /// Returns the time of this output, on the clock that also dates the pings.
+    /// Returns the time of this output, on the same clock as the times of the pings.
     fn now(&self) -> Nanos;
     /// Returns the distance of the transducers from the centre of the body.
     fn ring_radius(&self) -> Meters;
@@ -82,7 +82,7 @@ pub trait SonarRing: Output {
     }
 }
 
-/// `power`: the robot measures its battery, and knows whether it is plugged in.
+/// `power`: the robot measures its battery, and detects whether it is plugged in.
 pub trait Power: Output {
     /// Returns the voltage of the battery, as the robot measures it.
     fn battery(&self) -> Volts;
@@ -101,12 +101,11 @@ pub trait Paths: Output {
 /// `modules`: an engine runs the plan, together with modules that publish values which no sensor of the robot
 /// measures.
 pub trait Modules: Output {
-    /// Returns the number that this module has published last under this name; `None` before the first
-    /// publication.
+    /// Returns the last number that this module has published under this name; `None` before the first publication.
     fn published(&self, module: &str, attribute: &str) -> Option<PublishedNumber>;
 }
 
-/// `state_link`: an engine runs the plan, with a link by which robots tell each other their states.
+/// `state_link`: an engine runs the plan, with a link over which robots send each other their states.
 pub trait StateLink: Output {
     /// Returns the other robots that the plan names.
     fn links(&self) -> &Links;

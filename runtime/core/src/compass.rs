@@ -1,9 +1,9 @@
-//! The drift of a heading by odometry, measured by walls: wheels slip in turns, so the heading by odometry
-//! becomes wrong, while walls do not turn.
+//! Measures the drift of the heading by odometry from walls: wheels slip in turns, so that this heading becomes wrong,
+//! while walls do not turn.
 //!
-//! Walls are assumed to run at right angles to each other. The drift is an estimate with an error, which grows
-//! with each turn and with the distance driven. A measurement is weighted by its own error; a measurement that
-//! deviates by more than both errors is rejected, as the echo is not from such a wall.
+//! Walls are assumed to run at right angles to each other. The drift is an estimate with an error, which grows with
+//! each turn and with the distance driven. A measurement is weighted by its own error. It is rejected if it deviates
+//! from the estimate by more than both errors allow, because the echo is then not from such a wall.
 
 mod line;
 #[cfg(test)]
@@ -20,21 +20,22 @@ const SIDES: [(usize, f64); 2] = [(4, 1.0), (12, -1.0)];
 const ALONG: Radians = Radians::from_degrees(25.0);
 /// Distance, in metres, beyond which walls are ignored.
 const WITHIN: f64 = 1.5;
-/// Minimum sum of squared distances along a single wall, in square metres, by which its direction is known.
+/// Minimum of `Line::squares`, in square metres, at which a wall on one side alone determines the direction.
 const LONG: f64 = 4.0;
-/// Maximum difference of the slopes of walls on both sides.
+/// Maximum difference between the slopes of the left and the right wall at which they count as parallel.
 const PARALLEL: f64 = 0.14;
-/// Maximum difference, in metres, between the ranges of the two sonars beside the one that faces a wall, at which the
-/// robot counts as nearly square to the wall.
+/// Maximum difference, in metres, between the ranges of the two outer of three adjacent sonars at which the robot
+/// counts as nearly square to the wall.
 const SQUARE: f64 = 0.12;
-/// Maximum distance, in metres, of the middle of a straight wall from the mean of its sides.
+/// Maximum difference, in metres, between the range of the middle sonar and the mean range of its two neighbours at
+/// which the wall counts as straight.
 const STRAIGHT: f64 = 0.1;
 
-/// Error of a direction, in radians, by walls on both sides of the way.
+/// Error, in radians, of a direction that is measured by walls on both sides of the path.
 const BOTH: f64 = 0.026;
-/// Error of a direction, in radians, by one wall beside the way.
+/// Error, in radians, of a direction that is measured by a wall on one side of the path.
 const ONE: f64 = 0.06;
-/// Error of a direction, in radians, by three pings of a wall.
+/// Error, in radians, of a direction that is measured by three pings of a wall.
 const THREE: f64 = 0.12;
 /// Minimum time, in nanoseconds, between two measurements by three pings.
 const AGAIN: Nanos = Nanos(1_000_000_000);
@@ -44,21 +45,23 @@ const AT_FIRST: f64 = 0.1;
 const UNKNOWN: f64 = 0.35;
 /// Maximum error, in radians, at which the drift counts as known.
 const BELIEVED: f64 = 0.3;
-/// Number of errors by which a measurement may deviate; beyond that it is rejected, as it is not from a wall.
+/// Maximum deviation of a measurement from the drift, as a multiple of their combined error. A measurement with a
+/// larger deviation is not from a wall and is rejected.
 const GATE: f64 = 2.0;
 /// Error of a turn by odometry, as a fraction of the angle.
 const OF_TURNS: f64 = 0.025;
-/// Square of the error of the heading that a metre of driving adds, in square radians.
+/// Increase of the squared error of the heading per metre driven, in square radians.
 const OF_WAYS: f64 = 2e-4;
 /// Angle, in radians, up to which a frame counts as aligned with the axes of odometry.
 const ALIGNED: f64 = 0.02;
 /// Maximum angle, in radians, between the first walls and the axes of odometry at which the walls count as parallel to
 /// these axes.
 const ALONG_AXES: f64 = 0.17;
-/// Maximum drift of a frame whose axes are not those of odometry. At a larger angle, the frame lies askew in the room.
+/// Maximum drift of a frame whose axes are not those of odometry. A frame with a larger drift counts as askew in the
+/// room.
 const MOST: Radians = Radians::from_degrees(20.0);
 
-/// The drift of the heading by odometry from walls at right angles to each other.
+/// Estimate of the drift of the heading by odometry, from walls at right angles to each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compass {
     /// The direction of the walls in the axes of odometry, in radians; 0 if nothing has drifted.
@@ -70,8 +73,8 @@ pub struct Compass {
     askew: Option<f64>,
     /// The pose by odometry at the last output.
     last: Pose,
-    /// The place from which lines are measured, and the direction along which the robot drives; `None` while
-    /// the robot drives along no wall.
+    /// Origin and direction of the axis along which the lines of the walls are measured; `None` while the robot does
+    /// not drive along walls.
     way: Option<Pose>,
     sides: [Line; 2],
     /// Time of the newest ping when three pings were last evaluated.
@@ -93,11 +96,11 @@ impl Default for Compass {
 }
 
 impl Compass {
-    /// Returns the angle by which the drift of odometry has turned a frame, one of whose axes has the direction
-    /// `axis` by odometry; 0 while the drift is not known.
+    /// Returns the angle by which the drift of odometry has turned a frame, one of whose axes has the direction `axis`
+    /// by odometry; 0 while the drift is not known.
     ///
-    /// A frame is taken to be along the walls, unless the first walls lay askew to the axes of odometry: then
-    /// only the later drift of those axes is known, and the drift of other frames is not.
+    /// A frame is assumed to be parallel to the walls. But if the first walls lay askew to the axes of odometry, only
+    /// the later drift of a frame along these axes is known, and the result for any other frame is 0.
     #[must_use]
     pub fn drift(&self, axis: Radians) -> Radians {
         let (of_frame, askew) = (-off_quarter(axis.0), self.askew.unwrap_or(0.0));
@@ -141,9 +144,10 @@ impl Compass {
         }
     }
 
-    /// Returns the place from which lines are measured; `None` if the robot does not head along walls.
+    /// Returns the origin and the direction of the axis along which lines are measured; `None` if the robot does not
+    /// head along walls.
     ///
-    /// Before any wall was measured, walls may run in any direction: then lines are measured along the robot's heading.
+    /// Before any wall is measured, walls may run in any direction: lines are then measured along the robot's heading.
     fn along(&mut self, pings: &[Pings; SONARS], odometry: Pose) -> Option<Pose> {
         let heads_along = |axis: Radians| Radians(odometry.theta.0 - axis.0).wrapped().0.abs() <= ALONG.0;
         self.way = self.way.filter(|origin| heads_along(origin.theta));
@@ -163,7 +167,7 @@ impl Compass {
         self.way
     }
 
-    /// Measures the drift by walls beside the way.
+    /// Measures the drift by the walls on the left and on the right of the robot's path.
     fn drives(&mut self, pings: &[Pings; SONARS], odometry: Pose, shape: &Shape) {
         let Some(origin) = self.along(pings, odometry) else { return };
         let mut takes = false;
@@ -189,8 +193,8 @@ impl Compass {
         }
     }
 
-    /// Returns the slope of the walls beside the robot's way, and the error of the slope in radians; `None`
-    /// while it is not known.
+    /// Returns the slope of the walls on both sides of the robot's path, and the error of the slope in radians; `None`
+    /// while the slope is not known.
     fn slope(&self) -> Option<(f64, f64)> {
         let [left, right] = self.sides;
         match (left.slope(), right.slope()) {
@@ -204,11 +208,11 @@ impl Compass {
         }
     }
 
-    /// Measures the drift by a straight wall that three adjacent sonars hear, unless the drift is known more
-    /// precisely; the middle sonar is about square to the wall. Three pings are too few to tell first whether
-    /// the room is askew to the axes of odometry.
+    /// Measures the drift by a straight wall that three adjacent sonars hear, with the middle sonar about square to the
+    /// wall. Nothing is measured while the drift is known more precisely, or before the first measurement by another
+    /// method: three pings are too few to decide whether the room is askew to the axes of odometry.
     ///
-    /// The sonars on both sides of the middle sonar hear equal ranges if the robot is square to the wall.
+    /// If the robot is square to the wall, the two outer sonars hear equal ranges.
     fn faces(&mut self, pings: &[Pings; SONARS], odometry: Pose, apart: Meters) {
         let newest = pings.iter().filter_map(|pings| pings.newest_first().next()).map(|ping| ping.at).max();
         let Some(newest) =

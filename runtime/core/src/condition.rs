@@ -48,8 +48,8 @@ pub(crate) struct Reading<'r, I, Y, M> {
 }
 
 impl<I> Condition<I> {
-    /// Returns `true` if the condition has fired. Only operands with numbers from `from` on are read. The
-    /// recursion is as deep as the text's parentheses.
+    /// Returns `true` if the condition has fired. Operands with numbers below `from` are ignored. The recursion is as
+    /// deep as the parentheses in the condition's text are nested.
     pub(crate) fn fired<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> bool
     where
         I: Interrupt<Y>,
@@ -74,7 +74,8 @@ impl<I> Condition<I> {
         }
     }
 
-    /// Returns the place of the first operand of an OR that has fired; 0 for any other condition.
+    /// Returns the index, from 0, of the first operand that has fired if the condition is an OR; 0 for any other
+    /// condition.
     pub(crate) fn cause<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>) -> u32
     where
         I: Interrupt<Y>,
@@ -87,8 +88,8 @@ impl<I> Condition<I> {
         operands.next().unwrap_or(0)
     }
 
-    /// Returns the first RISING in the condition, from memory `from` on, whose operand has not fired; `None` if
-    /// there is no such RISING.
+    /// Returns the lowest memory number, from `from` on, of a RISING in the condition whose operand has not fired;
+    /// `None` if there is no such RISING.
     pub(crate) fn first_low<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> Option<u32>
     where
         I: Interrupt<Y>,
@@ -102,7 +103,8 @@ impl<I> Condition<I> {
         first
     }
 
-    /// Calls `tell` with the memory of every RISING in the condition whose operand has not fired.
+    /// Calls `tell` with the memory number of every RISING in the condition whose operand has not fired. Operands with
+    /// numbers below `from` are ignored.
     pub(crate) fn low<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32, tell: &mut impl FnMut(u32))
     where
         I: Interrupt<Y>,

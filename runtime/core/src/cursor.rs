@@ -14,10 +14,10 @@ pub struct Cursor<E, P> {
 }
 
 impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
-    /// Returns a cursor at the first atom of `fsm`, with all its scopes entered at time `t`.
+    /// Returns a cursor at the first atom of `fsm`, all of whose enclosing scopes are entered at time `t`.
     ///
-    /// `entered` needs a place for each level of scopes for which [`Cursor::since`] is called, and `left` needs
-    /// a place for each level of loops; their values do not matter.
+    /// `entered` must have a slot for each level of scopes for which [`Cursor::since`] is called, and `left` must have
+    /// a slot for each level of loops; their initial values do not matter.
     pub fn start(fsm: Fsm<'_>, entered: E, left: P, t: Nanos) -> Self {
         let mut cursor = Self { atom: 0, entered, left };
         cursor.open(fsm, 0, None, t);
@@ -46,14 +46,14 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         self.entered.stalled()
     }
 
-    /// Takes the output of a turn and the report of the law of the previous turn, before anything in the turn is read
-    /// or entered.
+    /// Records the output of a turn, and the time for which the law of the previous turn has made no progress. Called
+    /// before anything in the turn is read or entered.
     #[inline(always)]
     pub(crate) fn observe<Y: Output>(&mut self, y: &Y, stalled: Option<Nanos>) {
         self.entered.observe(y, stalled);
     }
 
-    /// Takes the output of the first turn after the plan was suspended.
+    /// Records the output of the first turn after the plan was suspended.
     pub(crate) fn resume<Y: Output>(&mut self, y: &Y) {
         self.entered.resume(y);
     }
@@ -65,8 +65,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         Some(Frame(self.entered.heading(level)).turned(turned))
     }
 
-    /// Returns the time and frame in which the law of the current atom begins; `begin` has the frame of the
-    /// plan.
+    /// Returns `begin`, with the frame of the current atom instead of the plan's frame if a `FRAME here` encloses the
+    /// atom.
     #[inline(always)]
     pub(crate) fn begins(&self, begin: Begin) -> Begin {
         self.frame().map_or(begin, |frame| Begin { frame, ..begin })
@@ -161,8 +161,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         }
     }
 
-    /// Makes `atom` current and restarts every enclosing bracket that lies inside `holder`, or all of them if that is
-    /// `None`.
+    /// Makes `atom` current, and restarts every enclosing bracket inside `holder`, or all enclosing brackets if
+    /// `holder` is `None`.
     fn open(&mut self, fsm: Fsm<'_>, atom: u32, holder: Option<u32>, t: Nanos) {
         self.atom = atom;
         // Known when the plan is compiled, and then nobody looks at the tables.

@@ -1,9 +1,9 @@
-//! The entry of each scope, as a cursor keeps it: the time, and for plans with `way`, `FRAME here` or `stuck` the
-//! odometer's reading and the heading as well (docs/src/reference/semantics.md, 3.2 to 3.4).
+//! Stores the entry of each scope for a cursor: its time, and in plans with `way`, `FRAME here` or `stuck` also the
+//! odometer reading and the heading (docs/src/reference/semantics.md, 3.2 to 3.4).
 
 use crate::{Nanometers, Nanos, Output, Pose, Radians, Slots};
 
-/// Storage for the moment at which each level of scopes was entered: times alone, or [`Stamps`].
+/// Storage for the entry of the scope at each level: only times, or [`Stamps`].
 pub trait Entries {
     /// Returns `true` if no level is stored.
     fn is_empty(&self) -> bool;
@@ -11,17 +11,18 @@ pub trait Entries {
     fn time(&self, level: u16) -> Option<Nanos>;
     /// Records that the scope of this level is entered at time `t`.
     fn note(&mut self, level: u16, t: Nanos);
-    /// Takes the output of a turn and the report of the law of the previous turn
-    /// ([`Law::stalled`](crate::Law::stalled)), before anything in the turn is read or entered.
+    /// Records the output of a turn, and the time for which the law of the previous turn has made no progress
+    /// ([`Law::stalled`](crate::Law::stalled)). Called before anything in the turn is read or entered.
     #[inline(always)]
     fn observe<Y: Output>(&mut self, _y: &Y, _stalled: Option<Nanos>) {}
-    /// Returns the report of the law of the previous turn; `None` where it is not stored.
+    /// Returns the time for which the law of the previous turn has made no progress; `None` if the law has no goal, or
+    /// if this time is not stored.
     #[inline(always)]
     fn stalled(&self) -> Option<Nanos> {
         None
     }
-    /// Takes the output of the first turn after the plan was suspended; the path that another plan drove meanwhile does
-    /// not count.
+    /// Records the output of the first turn after the plan was suspended; the path that another plan drove meanwhile
+    /// does not count.
     fn resume<Y: Output>(&mut self, _y: &Y) {}
     /// Returns the length of the path driven since the scope of this level was entered.
     #[inline(always)]
@@ -64,13 +65,13 @@ impl<S: AsRef<[Nanos]> + AsMut<[Nanos]>> Entries for S {
 /// The frame of an atom inside a `FRAME here`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Here {
-    /// The level of the scope at whose entry the heading is taken.
+    /// Level of the scope whose entry determines the heading.
     pub level: u16,
-    /// The sum of the angles of those `FRAME a` inside that scope that enclose the atom, counter-clockwise.
+    /// Sum of the angles, counter-clockwise, of all `FRAME a` that enclose the atom inside the scope at `level`.
     pub turned: Radians,
 }
 
-/// The moment at which a scope was entered.
+/// Entry of a scope: time, odometer reading and heading.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Stamp {
     /// Time of the entry.
@@ -86,7 +87,8 @@ impl Stamp {
     pub const START: Self = Self { time: Nanos::ZERO, way: Nanometers::ZERO, heading: Radians(0.0) };
 }
 
-/// The moments at which scopes were entered, the odometer that they are read from, and the progress of the law.
+/// Entries of scopes with times, odometer readings and headings, together with the current odometer reading and
+/// heading, and the progress of the law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stamps<S, F = &'static [Option<Here>]> {
     slots: S,
@@ -101,8 +103,8 @@ pub struct Stamps<S, F = &'static [Option<Here>]> {
 }
 
 impl<S: Slots<Stamp>, F: AsRef<[Option<Here>]>> Stamps<S, F> {
-    /// Returns a stamp for each level that `slots` has room for; the values do not matter. `frames` has the
-    /// frame of each atom as written, and may be empty in a plan without `FRAME here`.
+    /// Returns storage for as many levels as `slots` has; the initial values do not matter. `frames` has the frame of
+    /// each atom as written, and may be empty in a plan without `FRAME here`.
     #[must_use]
     pub const fn new(slots: S, frames: F) -> Self {
         Self { slots, frames, now: Stamp::START, last: None, stalled: None }

@@ -1,5 +1,5 @@
-//! Successor of a scope, where it is known before the plan runs (docs/src/reference/semantics.md, 5.3; Eq. 2:
-//! the single destination of a transition matrix).
+//! Computes the successor of a scope before the plan runs, where no loop is involved (docs/src/reference/semantics.md,
+//! 5.3; Eq. 2: the single destination of a transition matrix).
 
 use crate::Fsm;
 use crate::fsm::Kind;
@@ -9,9 +9,10 @@ use crate::fsm::Kind;
 pub struct Follows {
     /// The atom that becomes current; the number of atoms when the plan is over.
     pub atom: u32,
-    /// The first level of the scopes that are entered with the atom.
+    /// Level of the outermost scope that is entered with the atom.
     pub from: u16,
-    /// The end of these levels, exclusive; at most `from` when the plan is over.
+    /// One more than the level of the innermost scope that is entered with the atom; at most `from` when the plan is
+    /// over.
     pub to: u16,
 }
 

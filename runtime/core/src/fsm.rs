@@ -1,9 +1,9 @@
-//! The finite state machine of a plan, as a tree of brackets instead of N×N matrices (Algorithm 1; Eq. 2).
-//! See docs/src/reference/generated_code.md, 1.
+//! The finite state machine of a plan, as a tree of brackets instead of N×N matrices (Algorithm 1; Eq. 2). See
+//! docs/src/reference/generated_code.md, 1.
 //!
-//! A transition matrix `E_i` is an interval of columns and one destination, so a scope that holds atoms `a..b`
-//! is stored as those two numbers. It is a tree and not a list of intervals because `((s)^2, ξ)` and `(s, ξ)^2`
-//! cover the same atoms, but an interrupt ξ leaves the first plan, while it starts the second pass of the
+//! A transition matrix `E_i` is determined by an interval of columns and one destination, so a scope with the atoms
+//! `a..b` is stored as these two numbers. Brackets form a tree instead of a list of intervals because `((s)^2, ξ)` and
+//! `(s, ξ)^2` cover the same atoms, but an interrupt ξ leaves the first plan, while it starts the second pass of the
 //! second plan.
 
 /// A plan's machine: tables that generated code holds as constants and a loaded plan owns.
@@ -61,7 +61,7 @@ pub enum Kind {
     Loop {
         /// Number of passes in all; 0 for a loop without end.
         times: u64,
-        /// Number of enclosing loops: the place of the loop's counter in a cursor.
+        /// Number of enclosing loops, which is the index of the loop's counter in a cursor.
         slot: u16,
         /// Number of states of one pass in the expanded plan; 0 where passes share their states (a loop without
         /// end).
@@ -93,7 +93,8 @@ impl Bracket {
 }
 
 impl Atom {
-    /// Returns an atom whose bracket is `scope` and whose first number is `state`.
+    /// Returns an atom whose own scope is the bracket `scope`, and whose state in the first pass of all enclosing loops
+    /// is `state`.
     #[must_use]
     pub const fn new(scope: u32, state: u64) -> Self {
         Self { scope, state }

@@ -1,5 +1,5 @@
-//! Knowledge that a robot has of other robots by its state link, limited to the robots that its plan names
-//! (paper, section IV-A).
+//! States of other robots that a robot receives by its state link, limited to the robots that its plan names (paper,
+//! section IV-A).
 
 use crate::{Nanos, Pose, Twist};
 
@@ -65,7 +65,7 @@ pub struct Meeting {
     pub robot: &'static str,
 }
 
-/// The robots that a plan names, as the state link knows them. Without a link there are none.
+/// The robots that a plan names, with their states from the state link; empty without a link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Links([Option<Peer>; PEERS]);
 

@@ -27,8 +27,8 @@ pub trait Watch {
     /// `false` if the observer ignores its arguments, so that the state numbers need not be computed.
     const LOOKS: bool = true;
 
-    /// Reports that the operand of this number has fired, in the interrupt that ends a scope. The machine calls
-    /// this for each such operand, in order, before [`Watch::transition`].
+    /// Reports that the operand with this number has fired in the interrupt that ends a scope. The machine calls this
+    /// for each such operand, in order, before [`Watch::transition`].
     fn operand(&mut self, _number: u32, _measured: Measured) {}
 
     /// Reports a transition, after it is made.
@@ -89,8 +89,9 @@ impl<P: Plan> Machine<P> {
         if self.plan.observes() { self.run::<true, W>(y, t, watch) } else { self.run::<false, W>(y, t, watch) }
     }
 
-    /// Makes a turn. `OBSERVES` is the value of [`Plan::observes`]: a plan that asks for it when it runs, not when
-    /// it is compiled, has two copies of this loop, and the one for plans without memories asks nothing.
+    /// Makes a turn. `OBSERVES` is the value of [`Plan::observes`]. If a plan determines this value at run time instead
+    /// of at compile time, there are two copies of this loop, and the copy for plans that do not observe has no further
+    /// checks.
     fn run<const OBSERVES: bool, W: Watch>(&mut self, y: &P::Output, t: Nanos, watch: &mut W) -> Turn<P::Input> {
         if OBSERVES {
             self.cursor.observe(y, self.plan.stalled(y, t));
@@ -160,13 +161,13 @@ impl<P: Plan> Machine<P> {
         (self.cursor.state(fsm), scope)
     }
 
-    /// Takes the output at which the plan is suspended: the output that followed its last input.
+    /// Records the output at which the plan is suspended: the output that followed its last input.
     pub fn suspend(&mut self, y: &P::Output) {
         self.cursor.observe(y, None);
     }
 
-    /// Creates the law of the current atom anew, for a plan that continues after another plan has driven the
-    /// robot. The path driven since [`Machine::suspend`] does not count.
+    /// Creates the law of the current atom again, for a plan that resumes after another plan has driven the robot. The
+    /// path driven since [`Machine::suspend`] does not count.
     pub fn reenter(&mut self, y: &P::Output, t: Nanos) {
         self.cursor.resume(y);
         if !self.is_over() {

@@ -1,5 +1,5 @@
-//! Memory of a plan: for RISING in each entered scope, and for `after` about the latest endings
-//! (docs/src/reference/semantics.md, 2.2 and 2.3).
+//! Memories of a plan: those of RISING in each entered scope, and those of labels, in which `after` reads which
+//! elements ended last (docs/src/reference/semantics.md, 2.2 and 2.3).
 
 use crate::Slots;
 
@@ -30,12 +30,12 @@ impl Memory for () {
     fn forget(&mut self, _: u16) {}
 }
 
-/// A label of an element that ends with a bracket, and the place of its memories.
+/// A label of an element, with the bracket at which the element ends, and the positions of the label's memories.
 #[derive(Debug, Clone, Copy)]
 pub struct MarkRow {
     /// Number of the bracket with which the labelled element ends.
     pub bracket: u32,
-    /// Level of the scopes in whose row the label's memories are.
+    /// Level of the row that contains the label's memories.
     pub level: u16,
     /// Number of the label's first memory in the row.
     pub first: u32,
@@ -52,7 +52,7 @@ pub struct MarkRow {
 pub struct Fact {
     /// Number of the memory, in the row that [`MarkRow::level`] gives.
     pub memory: u32,
-    /// Operand of the bracket's interrupt that must have fired, if the condition names an operand.
+    /// Index of the operand of the bracket's interrupt that must have fired; `None` if the `after` names no cause.
     pub operand: Option<u32>,
 }
 
@@ -71,7 +71,7 @@ impl MarkRow {
     }
 }
 
-/// The memories of a plan that has some.
+/// Memories of a plan with RISING or `after`.
 #[derive(Debug, Clone, Copy)]
 pub struct Memories<S> {
     /// Number of memories for each level.
@@ -80,7 +80,8 @@ pub struct Memories<S> {
 }
 
 impl<S: Slots<bool>> Memories<S> {
-    /// Returns memories that are not set: `width` for each level of scopes. `set` limits their number.
+    /// Returns `width` memories for each level of scopes, stored in `set`, whose values must be `false`. A memory for
+    /// which `set` has no place is never set.
     #[must_use]
     pub const fn new(width: u32, set: S) -> Self {
         Self { width, set }

@@ -1,7 +1,8 @@
-//! Operands of a condition that have fired, with their values: evaluated when a scope ends and an observer is attached.
+//! Determines which operands of a condition have fired, and their values, when a scope ends and an observer is
+//! attached.
 //!
-//! The operands of a condition are the parts that AND and OR join, from left to right. A NOT or RISING is one
-//! operand together with its own operand.
+//! The operands of a condition are the parts that AND and OR join, from left to right. A NOT or RISING is one operand
+//! together with its own operand.
 
 use crate::condition::Reading;
 use crate::fsm::Kind;
@@ -71,7 +72,8 @@ impl<I> Condition<I> {
         }
     }
 
-    /// Visits the operands of the condition, each with the number from which its own operands are numbered.
+    /// Calls `visit` with each operand of the condition, and with the lowest number that the operand's own operands can
+    /// have.
     fn each_operand(&self, operands: &[Self], from: u32, visit: &mut dyn FnMut(&Self, u32)) {
         match self {
             Self::Or(first, count) | Self::And(first, count) => {
@@ -86,8 +88,8 @@ impl<I> Condition<I> {
         }
     }
 
-    /// Returns the values of an operand. For NOT and RISING, these are the values of their operand, unless it
-    /// is an AND or OR.
+    /// Returns the values from which an operand was evaluated. For a NOT or RISING, these are the values of its own
+    /// operand; an AND or OR has none.
     fn measured<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> Measured
     where
         I: Interrupt<Y>,

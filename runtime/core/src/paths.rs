@@ -13,7 +13,7 @@ pub struct Setpoint {
     pub speed: MetersPerSecond,
 }
 
-/// A path under the name by which plans ask for it.
+/// A path, with the name that plans use for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StoredPath {
     /// Name of the path, which the plan gives after `path`.
@@ -31,7 +31,7 @@ impl PathStore {
     /// A store without paths.
     pub const EMPTY: Self = Self(&[]);
 
-    /// Returns a store of these paths, which are in the order of their names.
+    /// Returns a store of these paths, which must be sorted by name.
     #[must_use]
     pub const fn new(paths: &'static [StoredPath]) -> Self {
         Self(paths)

@@ -1,11 +1,12 @@
-//! Answers of a plan to the machine: the enclosing scope that ends, and the cause (docs/src/reference/semantics.md,
-//! 5.2).
+//! Interface between a plan and the machine: the plan determines which enclosing scope ends, and the cause
+//! (docs/src/reference/semantics.md, 5.2).
 
 use crate::{Begin, Cursor, Entries, Follows, Fsm, Measured, Meeting, ModuleRead, Nanos, Output, Slots, Source, Words};
 
-/// Meaning of the atoms and the scopes of a plan on one robot: emitted by `mdlec`, or loaded from text.
+/// Conditions and laws of a plan for one robot, with the tables of its machine: emitted by `mdlec`, or loaded from
+/// text.
 ///
-/// A plan does not decide the order of atoms: [`Cursor`] does, or [`Fsm::follows`] did beforehand.
+/// A plan does not determine the order of atoms: [`Cursor`] does, or [`Fsm::follows`] in advance.
 pub trait Plan {
     /// Output of the robot.
     type Output: Output;
@@ -22,9 +23,9 @@ pub trait Plan {
     fn slots(&self) -> (Self::Entered, Self::Left);
     /// Creates the law of `atom`, which is now the current atom. Called once for each atom entered.
     fn enter(&mut self, atom: u32, y: &Self::Output, begin: Begin);
-    /// Evaluates the interrupts of the scopes that enclose the current atom, the outermost first, and then the
-    /// completion of the law. Returns the ending of the first scope whose interrupt has fired; `None` if the
-    /// atom continues.
+    /// Evaluates the interrupts of the scopes that enclose the current atom, and then the completion of the law.
+    /// Returns the ending of the outermost scope whose interrupt has fired, or of the atom's own scope if the law is
+    /// done; `None` if the atom continues.
     fn next(&self, cursor: &Cursor<Self::Entered, Self::Left>, y: &Self::Output, t: Nanos) -> Option<Ending>;
 
     /// Returns `false` if the plan keeps neither odometry, progress nor memories: the machine then calls none of
@@ -44,13 +45,13 @@ pub trait Plan {
         None
     }
 
-    /// Called before the cursor leaves a scope. A plan with memories of endings records this one and clears the
-    /// memories of nested scopes. [`Cursor::ending`] returns the brackets that end.
+    /// Called before the cursor leaves a scope. A plan with memories of endings records the ending of the scope and
+    /// clears the memories of nested scopes. [`Cursor::ending`] returns the brackets that end.
     #[inline(always)]
     fn leave(&mut self, _cursor: &Cursor<Self::Entered, Self::Left>, _cause: Cause, _y: &Self::Output, _t: Nanos) {}
 
-    /// Called when the atom of a turn is known, before its law is applied. A plan with RISING records which
-    /// conditions have not fired.
+    /// Called after the transitions of a turn, before the law of the current atom is applied. A plan with RISING
+    /// records which operands of RISING have not fired.
     #[inline(always)]
     fn settle(&mut self, _cursor: &Cursor<Self::Entered, Self::Left>, _y: &Self::Output, _t: Nanos) {}
 
@@ -77,7 +78,7 @@ pub trait Plan {
     /// Returns the name of a scope, given the number of its bracket; an empty text for an atom.
     fn name(&self, scope: u32) -> &str;
 
-    /// Returns the words and places of the plan's source text, which may be empty.
+    /// Returns the plan's source text for reports; it may be empty.
     fn source(&self) -> &dyn Words {
         &Source::NONE
     }
@@ -140,7 +141,7 @@ impl From<Cause> for Ending {
 }
 
 impl Cause {
-    /// Returns the ending of a scope that has this successor.
+    /// Returns the ending of a scope with this cause and the successor `follows`.
     #[must_use]
     pub const fn then(self, follows: Follows) -> Ending {
         Ending { cause: self, follows: Some(follows) }

@@ -23,8 +23,8 @@ impl Pose {
         Meters(libm::hypot(other.x.0 - self.x.0, other.y.0 - self.y.0))
     }
 
-    /// Returns the pose with this heading at distance `range` in direction `bearing`, both in the axes of this
-    /// pose.
+    /// Returns the pose at distance `range` from this position in direction `bearing`, with the heading `bearing`. Both
+    /// poses and `bearing` are in the same axes.
     #[must_use]
     pub fn towards(&self, bearing: Radians, range: Meters) -> Self {
         let (sin, cos) = libm::sincos(bearing.0);

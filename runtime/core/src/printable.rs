@@ -1,16 +1,16 @@
-//! Foreign text as people see it: no character in it moves the cursor, colours the terminal or reverses the
-//! direction of text.
+//! Shows foreign text to people: no character of it moves the cursor, colours the terminal or reverses the direction of
+//! text.
 
 use core::fmt::{self, Write};
 
-/// Shows a text on one line, with each character that [is not printable](is_printable) replaced by its number:
-/// `U+001B`.
+/// A text that is displayed on one line, with each character that [is not printable](is_printable) replaced by its
+/// number: `U+001B`.
 ///
 /// Widths and precisions of format strings have no effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Printable<T>(pub T);
 
-/// Shows a text of several lines as [`Printable`] shows a single line: line breaks and tabs remain.
+/// A text of several lines that is displayed like a [`Printable`], except that line breaks and tabs remain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PrintableLines<T>(pub T);
 
@@ -54,7 +54,7 @@ pub const fn is_printable(letter: char) -> bool {
     )
 }
 
-/// Writes text, with the number in place of each character that `keeps` rejects.
+/// Writer of text that replaces each character for which `is_kept` returns `false` by its number.
 struct Replacing<'a, 'f, K> {
     to: &'a mut fmt::Formatter<'f>,
     is_kept: K,

@@ -42,8 +42,8 @@ impl Published {
     /// Published numbers of no module.
     pub const NONE: Self = Self::new(&[]);
 
-    /// Returns the numbers of these attributes before any is published. Attributes after the first
-    /// [`PUBLISHED`] have no number.
+    /// Returns the storage for the numbers of these attributes before any number is published. Attributes after the
+    /// first [`PUBLISHED`] have no number.
     #[must_use]
     pub const fn new(names: &'static [ModuleRead]) -> Self {
         Self { names, numbers: [None; PUBLISHED], oldest: Nanos::ZERO, links: Links::NONE }
@@ -80,7 +80,7 @@ impl Published {
         }
     }
 
-    /// Returns the number that the module has published last; `None` before the first publication.
+    /// Returns the last number that the module has published under this name; `None` before the first publication.
     #[must_use]
     pub fn number(&self, module: &str, attribute: &str) -> Option<PublishedNumber> {
         let place = self.names.iter().position(|name| name.module == module && name.attribute == attribute)?;

@@ -9,13 +9,15 @@ pub trait Interrupt<Y: ?Sized> {
     fn fired(&self, y: &Y) -> bool;
 
     /// Returns `true` if the interrupt has fired, given that the law of the previous turn reports `stalled`
-    /// ([`Law::stalled`]). Called instead of [`Interrupt::fired`]; only `stuck` uses the report.
+    /// ([`Law::stalled`]). For `stuck`, this is called instead of [`Interrupt::fired`]; other interrupts ignore the
+    /// report.
     #[inline(always)]
     fn fired_during(&self, y: &Y, _stalled: Option<Nanos>) -> bool {
         self.fired(y)
     }
 
-    /// Returns the values that the interrupt compares, for reports. Not called while no interrupt fires.
+    /// Returns the values that the interrupt compares, for reports and explanations. A turn calls this only when a
+    /// scope ends.
     fn measured(&self, _y: &Y) -> Measured {
         Measured::Nothing
     }
@@ -31,7 +33,7 @@ pub struct Begin {
 }
 
 impl Begin {
-    /// Returns this moment in a frame turned counter-clockwise.
+    /// Returns the same time, with the frame turned counter-clockwise by `by`.
     #[must_use]
     pub fn turned(self, by: Radians) -> Self {
         Self { frame: self.frame.turned(by), ..self }
@@ -40,11 +42,11 @@ impl Begin {
 
 /// A control quark with its arguments. An atom that begins creates a [`Law`] from it.
 pub trait Control<Y: ?Sized> {
-    /// Type of the law, which has the state.
+    /// Type of the law, which stores the state.
     type Law: Law<Y>;
 
-    /// Returns the law in the state in which its atom is entered. The function has no side effects: the law of
-    /// a skipped atom is created and never runs.
+    /// Returns the law in its initial state, for an atom that is entered. The function must have no side effects,
+    /// because the law of a skipped atom is created but never applied.
     fn begin(&self, y: &Y, begin: Begin) -> Self::Law;
 }
 

@@ -1,4 +1,4 @@
-//! The kinetic state machine as the run-time system meets it (paper, Eq. 1: an output `y` for an input `u`).
+//! Interface of a robot, which is a kinetic state machine (paper, Eq. 1: an output `y` for an input `u`).
 
 use core::time::Duration;
 
@@ -40,8 +40,8 @@ pub trait Robot {
 /// The part of an output that every robot offers, whatever its sensors. The traits of [`crate::capability`] add
 /// the rest.
 pub trait Output {
-    /// Returns the pose by odometry, at which a plan that begins now would put its frame; the origin on a robot
-    /// without odometry.
+    /// Returns the pose by odometry, from which a plan that begins now takes its frame; the origin on a robot without
+    /// odometry.
     fn here(&self) -> Pose {
         Pose::ORIGIN
     }

@@ -26,8 +26,8 @@ type OutputOf<T> = <<T as Table>::Alphabet as Alphabet>::Output;
 type InputOf<T> = <<T as Table>::Alphabet as Alphabet>::Input;
 
 impl<T: Table, E: Entries, P: Slots<u64>> InRows<T, E, P> {
-    /// Returns the plan before it begins, with storage for each level of scopes and of loops, whose values do
-    /// not matter.
+    /// Returns the plan before it begins. `entered` and `left` are the storage for each level of scopes and of loops;
+    /// their initial values do not matter.
     #[must_use]
     pub const fn new(table: T, entered: E, left: P) -> Self {
         Self { table, slots: (entered, left), memory: (), running: None, own: 0 }
@@ -35,13 +35,13 @@ impl<T: Table, E: Entries, P: Slots<u64>> InRows<T, E, P> {
 }
 
 impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
-    /// Returns a plan with a memory for RISING and `after`; `memory` is empty at first.
+    /// Returns a plan with the memories `memory` for RISING and `after`, none of which is set at first.
     #[must_use]
     pub const fn remembering(table: T, entered: E, left: P, memory: M) -> Self {
         Self { table, slots: (entered, left), memory, running: None, own: 0 }
     }
 
-    /// Returns the guard of the outermost enclosing scope whose interrupt has fired.
+    /// Returns the guard of the outermost enclosing scope whose interrupt has fired; `None` if no interrupt has fired.
     #[inline(always)]
     fn outermost(&self, cursor: &Cursor<E, P>, y: &OutputOf<T>, t: Nanos) -> Option<&Guard<InterruptOf<T>>> {
         // From inside out, and the last one found counts: so the outermost wins, however deep scopes are nested.
@@ -108,7 +108,7 @@ impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
         memory.forget(outermost);
     }
 
-    /// Sets the memory of every RISING in the conditions of the enclosing scopes whose operand has not fired.
+    /// Sets the memory of every RISING whose operand has not fired, in the conditions of all enclosing scopes.
     fn remember(&mut self, cursor: &Cursor<E, P>, y: &OutputOf<T>, t: Nanos) {
         let Self { table, memory, own, .. } = self;
         let mut here = *own;

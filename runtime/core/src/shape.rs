@@ -14,13 +14,13 @@ pub struct Shape {
     pub half_width: Meters,
     /// Distance between the wheels.
     pub wheel_base: Meters,
-    /// Distance, on a wall beside the robot, between the points that the two neighbours of the sonar square to
-    /// the wall hear; `None` for a robot whose odometry measures the heading better than walls do.
+    /// Distance between the two points of a wall beside the robot from which the neighbours of the sonar square to the
+    /// wall get their echoes; `None` for a robot whose odometry measures the heading better than walls do.
     pub sonars_apart: Option<Meters>,
     /// Distance of the sonars from the robot's centre.
     pub ring_radius: Meters,
     /// Number of pings that must agree before a direction counts as free.
     pub confirmation: usize,
-    /// Gains by which laws steer the robot.
+    /// Steering gains of the laws.
     pub steering: Steering,
 }

@@ -66,7 +66,7 @@ impl<Y: ?Sized> Signal<Y> for NoSignal {
 mod tests {
     use super::*;
 
-    /// A robot whose output is two numbers.
+    /// Signal that is the first of the two numbers of an output.
     struct First;
     struct Second;
 

@@ -51,7 +51,7 @@ pub struct Ping {
 /// an output keeps 48 pings.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Mount {
-    /// Distance, in metres, by which the transducer's axis passes the robot's centre on the left.
+    /// Distance, in metres, at which the transducer's axis passes the robot's centre; positive on the left.
     pub left: f32,
     /// Angle, in radians, by which the transducer's axis is turned counter-clockwise from that of the sonar.
     pub turned: f32,
@@ -116,7 +116,7 @@ impl Pings {
 mod tests {
     use super::*;
 
-    /// Pings of these ranges, in the order in which they are taken.
+    /// Returns pings with these ranges, in the order in which they are taken.
     fn pings(ranges: &[Option<f64>]) -> Pings {
         let mut pings = Pings::default();
         for range in ranges {

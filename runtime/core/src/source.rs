@@ -1,13 +1,14 @@
-//! The source text of a plan: the words of its conditions and operands, and their lines.
+//! The source text of a plan: its conditions and operands as written, and their lines.
 
 use crate::TextList;
 
-/// The words and places of a plan, for reports: constants of an executable, or owned by a plan that is loaded
-/// at run time.
+/// Conditions and operands of a plan as written, with their lines, for reports: constants of an executable, or owned by
+/// a plan that is loaded at run time.
 pub trait Words {
-    /// Returns the words of a bracket; `None` for a plan without source text.
+    /// Returns the line and the condition of a bracket; `None` for a plan without source text.
     fn bracket(&self, bracket: u32) -> Option<BracketWords<'_>>;
-    /// Returns the words of an operand in a bracket's condition; `number` numbers its operands from 0.
+    /// Returns the text and the line of operand `number`, from 0, in a bracket's condition; `None` if there is no such
+    /// operand.
     fn operand(&self, bracket: u32, number: u32) -> Option<OperandWords<'_>>;
     /// Returns the name of the file that contains this line; an empty text if the file is not known.
     fn file(&self, at: SourceLine) -> &str;
@@ -20,8 +21,8 @@ impl<'w> dyn Words + 'w {
     }
 }
 
-/// The words and places of a plan as constants. They are rows of numbers and long texts, because rustc takes
-/// long to compile many texts.
+/// The source text of a plan as constants. They are rows of numbers and long joined texts, because rustc takes long to
+/// compile many texts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source<'a> {
     /// Names of the files, without folders.
@@ -36,7 +37,7 @@ pub struct Source<'a> {
     pub texts: TextList<'a>,
     /// The words of each operand as written.
     pub written: TextList<'a>,
-    /// The places of the values of all operands.
+    /// Positions of the values in the texts of all operands.
     pub values: &'a [ValueWords<'a>],
 }
 
@@ -49,7 +50,7 @@ pub struct SourceLine {
     pub line: u32,
 }
 
-/// The words of a bracket, for reports.
+/// Line and condition of a bracket in the source text, for reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BracketWords<'a> {
     /// Line in which the atom or the scope begins; 0 for a loop.
@@ -62,7 +63,7 @@ pub struct BracketWords<'a> {
     pub count: u32,
 }
 
-/// The words of an operand: a part of a condition that AND and OR join.
+/// Text and line of an operand, which is a part of a condition that AND and OR join.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OperandWords<'a> {
     /// Condition text of the operand, as traces show it.
@@ -71,19 +72,19 @@ pub struct OperandWords<'a> {
     pub written: &'a str,
     /// Line in which the operand begins.
     pub at: SourceLine,
-    /// The places in the written words at which measured values are shown: of the signal, then of the signal
+    /// Positions in `written` at which measured values are shown: first that of the signal, then that of the signal
     /// with which it is compared.
     pub values: &'a [ValueWords<'a>],
 }
 
-/// A place in the words of an operand at which a measured value is shown.
+/// Position in the text of an operand at which a measured value is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ValueWords<'a> {
-    /// Number of bytes of the words before this place.
+    /// Number of bytes of [`OperandWords::written`] before this position.
     pub after: u32,
     /// Unit of the signal; empty for a number.
     pub unit: &'a str,
-    /// SI value of one such unit.
+    /// SI value of one unit.
     pub scale: f64,
 }
 
@@ -120,7 +121,7 @@ impl Words for Source<'_> {
     }
 }
 
-/// Returns a line of the file of this number.
+/// Returns the line `line` of the file with the number `file`.
 fn place(file: u32, line: u32) -> SourceLine {
     SourceLine { file: u16::try_from(file).unwrap_or(u16::MAX), line }
 }

@@ -1,8 +1,7 @@
-//! Tables of a plan: the meaning of its scopes and atoms, as values instead of code.
+//! Tables of a plan: its conditions and laws as values instead of code.
 //!
-//! `mdlec` emits tables for plans that are too long for inline code, and a plan loaded at run time owns its
-//! tables. A row takes rustc almost no time, and a turn reads one row for each scope that encloses the current
-//! atom.
+//! `mdlec` emits tables for plans that are too long for inline code, and a plan loaded at run time owns its tables. A
+//! row takes rustc almost no time, and a turn reads one row for each scope that encloses the current atom.
 
 use crate::{Alphabet, Condition, Fact, Follows, Fsm, MarkRow, Meeting, ModuleRead, Radians, Source, TextList, Words};
 
@@ -13,7 +12,7 @@ pub trait Table {
 
     /// Returns the machine's tables.
     fn fsm(&self) -> Fsm<'_>;
-    /// Returns the condition that ends each bracket, in the order of the brackets.
+    /// Returns the condition that ends each bracket and the successor of the bracket, in the order of the brackets.
     fn guards(&self) -> &[Guard<<Self::Alphabet as Alphabet>::Interrupt>];
     /// Returns the operands of conditions. The operands of an operand come after it, so they cannot form a
     /// cycle.
@@ -30,7 +29,7 @@ pub trait Table {
     fn condition(&self, scope: u32) -> &str;
     /// Returns the name of a bracket.
     fn name(&self, scope: u32) -> &str;
-    /// Returns the words and places of the plan's text.
+    /// Returns the plan's source text for reports.
     fn source(&self) -> &dyn Words;
     /// Returns the names of the paths that the plan's laws replay.
     fn paths(&self) -> &[&'static str];
@@ -51,7 +50,7 @@ pub trait Table {
     }
 }
 
-/// Meaning of the brackets and atoms of a plan.
+/// Tables of a plan: its machine, conditions, laws, labels and texts.
 pub struct Rows<'a, A: Alphabet> {
     /// The machine's tables.
     pub fsm: Fsm<'a>,
@@ -155,14 +154,14 @@ pub struct Texts<'a> {
     pub conditions: TextList<'a>,
     /// The name of each bracket.
     pub names: TextList<'a>,
-    /// The words and places of the plan's text.
+    /// The plan's source text for reports.
     pub source: Source<'a>,
     /// The names of the paths that the plan's laws replay.
     pub paths: &'a [&'static str],
 }
 
 impl Texts<'_> {
-    /// The texts of a plan without texts.
+    /// Empty texts.
     pub const NONE: Self = Self {
         laws: TextList::NONE,
         conditions: TextList::NONE,

@@ -1,5 +1,5 @@
-//! Many short texts joined into one text, which takes rustc a hundredth of the time that it takes for a list of
-//! texts.
+//! Stores many short texts as one joined text, which rustc compiles in a hundredth of the time that it needs for a list
+//! of texts.
 
 /// List of texts, which are found by number: constants of an executable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

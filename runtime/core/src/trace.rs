@@ -1,4 +1,4 @@
-//! The line of a trace: a JSON object for each turn, which has the transitions and the law
+//! Formats a turn as a line of a trace: a JSON object with the transitions and the law
 //! (docs/src/reference/interfaces.md, 4).
 
 use core::fmt::{self, Write};
@@ -39,7 +39,7 @@ pub struct Fired<'a, O> {
 pub const COMPLETED: &str = "completed";
 
 impl Cause {
-    /// Returns the trace text for this cause, in a scope whose interrupt has this condition text.
+    /// Returns the trace text for this cause; `condition` is the condition text of the scope's interrupt.
     #[must_use]
     pub const fn by(self, condition: &str) -> &str {
         match self {

@@ -52,7 +52,7 @@ impl Radians {
     }
 }
 
-/// A word of `N` bits, as in `atIsection 0100`; the first bit is the one written first.
+/// A word of `N` bits, as in `atIsection 0100`, in the order in which they are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bits<const N: usize>(pub [bool; N]);
 

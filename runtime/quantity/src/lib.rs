@@ -73,7 +73,8 @@ impl Quantity {
             .ok_or_else(|| format!("expected a time from {least:?} to {most:?}"))
     }
 
-    /// Returns the quantity that has this unit, and the factor and the divisor that convert a number of the unit.
+    /// Returns the quantity that has this unit, and the factor and the divisor that convert a number with this unit;
+    /// `None` if there is no such unit.
     #[must_use]
     pub fn of_unit(name: &str) -> Option<(Self, f64, f64)> {
         Self::ALL.into_iter().find_map(|kind| {
@@ -101,7 +102,7 @@ impl Quantity {
         }
     }
 
-    /// The name of the kind with its article.
+    /// Returns the name of the quantity with its article.
     fn words(self) -> &'static str {
         match self {
             Self::Time => "a time",

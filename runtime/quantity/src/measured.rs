@@ -1,4 +1,5 @@
-//! Causes of transitions, and the values from which operands of conditions were evaluated, in the words of the plan.
+//! Formats causes of transitions, and the values from which operands of conditions were evaluated, in the words of the
+//! plan.
 
 use std::fmt::Write as _;
 
@@ -7,13 +8,14 @@ use mdle_runtime::{Cause, Measured, OperandWords, Operator, SourceLine, Transiti
 
 use crate::rounded;
 
-/// Decimals of a value, unless more are needed to distinguish it from the value that it is compared with.
+/// Number of decimals of a value, unless more are needed to distinguish it from the value with which it is compared.
 const DECIMALS: usize = 2;
 /// Maximum number of decimals of a value.
 const DECIMALS_MOST: usize = 9;
 
-/// Returns the cause of a transition with the values of the operands that had fired, each by its number in the
-/// interrupt of the scope that ended: `r1 = 0.38 m < 40cm (wall.mdle:7)`. Returns `None` for a plan without a text.
+/// Returns the text of a transition's cause, with the values of the operands that have fired: `r1 = 0.38 m < 40cm
+/// (wall.mdle:7)`. `operands` has the number of each of them in the interrupt of the scope that ended, and its values.
+/// Returns `None` for a plan without source text.
 #[must_use]
 pub fn cause_text(source: &dyn Words, transition: &Transition, operands: &[(u32, Measured)]) -> Option<String> {
     let Transition { scope, cause, .. } = *transition;
@@ -37,14 +39,14 @@ pub fn cause_text(source: &dyn Words, transition: &Transition, operands: &[(u32,
     Some(format!("{} ({}{of})", words.join(" and "), file_line(source, at)))
 }
 
-/// Returns a line of a file of the plan: `wall.mdle:7`.
+/// Returns a file of the plan and a line in it as text: `wall.mdle:7`.
 #[must_use]
 pub fn file_line(source: &dyn Words, at: SourceLine) -> String {
     format!("{}:{}", source.file(at), at.line)
 }
 
-/// Returns the words of an operand with its values: `r1 = 0.38 m < 40cm` if what was measured `holds`, and
-/// `r1 = 0.5 m, not < 40cm` otherwise.
+/// Returns the words of an operand with its values: `r1 = 0.38 m < 40cm` if the operand `holds`, and `r1 = 0.5 m, not <
+/// 40cm` otherwise.
 #[must_use]
 pub fn operand_words(operand: &OperandWords<'_>, measured: Measured, holds: bool) -> String {
     let values = match measured {

@@ -1,10 +1,10 @@
-//! Times and lengths as people read them.
+//! Formats times and lengths for people.
 
 use std::fmt;
 
 use mdle_runtime::Nanos;
 
-/// Nanoseconds as seconds, or nanometres as metres: to the thousandth, with at least one decimal.
+/// Formats nanoseconds as seconds, or nanometres as metres, rounded to the thousandth and with at least one decimal.
 #[must_use]
 pub fn rounded(nanos: u64) -> String {
     let thousandths = nanos / 1_000_000 + u64::from(nanos % 1_000_000 >= 500_000);
@@ -13,7 +13,7 @@ pub fn rounded(nanos: u64) -> String {
     if short.ends_with('.') { format!("{short}0") } else { short.to_owned() }
 }
 
-/// A time to the millisecond.
+/// A time that is displayed in seconds, rounded to the millisecond.
 pub struct Clocked(
     /// The time.
     pub Nanos,

@@ -14,7 +14,7 @@ pub struct Begin {
     pub target: String,
     /// Name of the plan.
     pub plan: String,
-    /// The command that repeats the run, as a shell takes it: without the options that ask for its log.
+    /// Shell command that repeats the run, without the options that ask for its log.
     pub command: String,
     /// Period of a turn.
     pub period: Nanos,

@@ -1,4 +1,4 @@
-//! Numbers and texts as little-endian bytes, and back.
+//! Writes numbers and texts as little-endian bytes, and reads them.
 
 use mdle_runtime::{Meters, Nanos, Pose, Radians};
 
@@ -33,7 +33,7 @@ pub(crate) fn put_text(to: &mut Vec<u8>, text: &str) {
     to.extend_from_slice(text.as_bytes());
 }
 
-/// Bytes to read: each function reads a value from their start, or returns `None` if the bytes end before.
+/// Bytes to read: each function reads a value from their start, or returns `None` if there are too few bytes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bytes<'b>(pub(crate) &'b [u8]);
 

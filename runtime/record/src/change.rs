@@ -1,5 +1,5 @@
-//! Causes of a turn besides the robot's output, as bytes and back: values that modules have published, knowledge of
-//! other robots, paths that were recorded, and what people and the engine have changed at the break before the turn.
+//! Writes and reads the causes of a turn besides the robot's output: values that modules have published, states of
+//! other robots, paths that were recorded, and changes that people and the engine made at the break before the turn.
 
 use mdle_runtime::{Nanos, PeerState, Setpoint, Twist};
 
@@ -7,7 +7,7 @@ use crate::begin::{count, put_files, put_path, take_files, take_path};
 use crate::bytes::{Bytes, put_f64, put_pose, put_text, put_u32, put_u64};
 use crate::exact::{put_twist, take_twist};
 
-/// A cause of a turn besides the robot's output.
+/// A change that influences a turn, besides the robot's output.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Change {
     /// A module has an attribute from now on. Later changes refer to attributes by number, counted from 0 in a record.
@@ -19,7 +19,7 @@ pub enum Change {
         /// Number of the kind of the attribute's values.
         kind: u8,
     },
-    /// The attribute with this number has vanished.
+    /// The attribute with this number no longer exists.
     Vanished(u32),
     /// A module has published a value at a turn break.
     Published {
@@ -33,20 +33,20 @@ pub enum Change {
     /// Name and text of each file of a plan, the plan's own file first. Later changes refer to such lists by number,
     /// counted from 0 in a record.
     Files(Vec<(String, String)>),
-    /// A plan is ready to take over.
+    /// A plan is ready to replace the current plan.
     Armed {
         /// Number of the list with the plan's files.
         files: u32,
         /// Name of the plan.
         plan: String,
-        /// Number of the kind of moment at which the plan takes over.
+        /// Number of the kind of event at which the plan replaces the current plan.
         when: u8,
     },
     /// The armed plan is cancelled.
     Cancelled,
     /// The trial of a plan has ended, and the plan is replaced, for this reason.
     RolledBack(String),
-    /// A plan that takes over from now on is on trial for this duration.
+    /// From now on, each plan that replaces another plan is on trial for this duration.
     Trial(Nanos),
     /// A limit of the safety rules has a new value.
     Limit {
@@ -65,12 +65,12 @@ pub enum Change {
     Peer {
         /// Name of the robot.
         name: String,
-        /// Number of scopes with a `rendezvous` with it that the receiver had entered.
+        /// Number of scopes with a `rendezvous` with this robot that the receiver had entered.
         rounds: u64,
         /// The newest state that has arrived; `None` before the first.
         state: Option<PeerState>,
     },
-    /// The way back along a path driven was recorded: from now on it replaces the path of this name.
+    /// The path back along a driven path was recorded: from now on it replaces the path of this name.
     Path {
         /// Name of the path.
         name: String,

@@ -1,4 +1,5 @@
-//! An output as bytes and back, to the bit: the pings that are newer than the previous output, and all other numbers.
+//! Writes and reads an output exactly to the bit: the pings that are newer than the previous output, and all other
+//! numbers.
 
 use mdle_runtime::{
     Compass, Meters, MetersPerSecond, Mount, Nanos, Ping, Pings, Pose, Published, RadiansPerSecond, SONARS, Sensed,

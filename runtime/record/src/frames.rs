@@ -1,5 +1,5 @@
-//! Frames, which the thread that drives a robot passes to the thread that writes the record. A frame consists of a tag,
-//! the number of bytes that follow, and these bytes.
+//! Encodes the turns of a run as frames, which the thread that drives a robot passes to the thread that writes the
+//! record. A frame consists of a tag, the number of bytes that follow, and these bytes.
 
 use mdle_runtime::{Nanos, Sensed};
 
@@ -96,7 +96,8 @@ impl Frames {
     }
 }
 
-/// Returns the first frame in `bytes`, with its number of bytes; `None` if the frame is incomplete or invalid.
+/// Returns the tag and the content of the first frame in `bytes`, and the length of the whole frame; `None` if the
+/// frame is incomplete or invalid.
 pub(crate) fn first(bytes: &[u8]) -> Option<(Tag, &[u8], usize)> {
     let mut from = Bytes(bytes);
     let tag = Tag::of(from.u8()?)?;

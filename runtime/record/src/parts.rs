@@ -1,5 +1,4 @@
-//! The channels and messages of an MCAP file in their order, with checks of the checksums of its chunks and of the
-//! file.
+//! Reads the channels and messages of an MCAP file in order, and verifies the checksums of its chunks and of the file.
 
 use std::io::{self, Read};
 
@@ -7,9 +6,9 @@ use mcap::records::{Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{MAGIC, McapError};
 
-/// Maximum size of a part of the file, in bytes: more than a robot's data of a second.
+/// Maximum size of a part of the file, in bytes: more than the data of a robot in one second.
 const LARGEST: usize = 64_000_000;
-/// Maximum number of bytes that are read at a time: a length that was changed asks for no more memory.
+/// Maximum number of bytes that are read at a time, so that a changed length does not request more memory.
 const STEP: usize = 1 << 18;
 
 /// A part of an MCAP file.
@@ -30,8 +29,8 @@ pub(crate) enum Unreadable {
     Damaged(String),
 }
 
-/// Number of consecutive parts of nine zeros that mean the end of a file: more than a megabyte of zeros, which no chunk
-/// of a record contains.
+/// Number of consecutive parts of nine zeros at which the file counts as ended: more than a megabyte of zeros, which no
+/// chunk of a record contains.
 const MOST_ZEROS: u32 = 120_000;
 
 /// Reader of the parts of an MCAP file.
@@ -43,7 +42,7 @@ pub(crate) struct Parts<R> {
     last: [u8; MAGIC.len()],
     /// Number of consecutive parts that consist of zeros.
     zeros: u32,
-    /// `true` once the end of the file has been read: the file was not cut short.
+    /// `true` once the end of the file has been read, so that the file was not cut short.
     pub(crate) is_whole: bool,
 }
 
@@ -124,8 +123,8 @@ impl Chunk {
     /// Number of bytes in a chunk's head before and after the name of its compression.
     const HEAD: [usize; 2] = [32, 8];
 
-    /// Reads the head of an uncompressed chunk. A chunk that is shorter than its head declares must not reach the
-    /// library, which would panic.
+    /// Reads an uncompressed chunk. A chunk whose length differs from the length in its head is refused, because the
+    /// library would panic on a shorter one.
     fn of(data: &[u8]) -> Result<Self, Unreadable> {
         let shorter = || Unreadable::Damaged("one of its seconds has another length than it gives".to_owned());
         let [before, after] = Self::HEAD;
@@ -181,7 +180,7 @@ impl Chunk {
     }
 }
 
-/// The damage of a file in the words of this format: an error of the library names parts of MCAP.
+/// Converts an error of the library to the damage of a record, in words without terms of MCAP.
 fn damage(error: McapError) -> Unreadable {
     let why = match error {
         McapError::Io(error) => return Unreadable::System(error),

@@ -67,7 +67,7 @@ pub enum MessageKind {
 /// Turns of a record, each with the messages that follow it in the record.
 pub struct TurnsWithMessages<R> {
     records: Records<R>,
-    /// The turn after the last one that was returned.
+    /// The turn after the last one that was returned; `None` before the first turn was returned, and at the end.
     peeked: Option<Result<RecordedTurn, ReadError>>,
 }
 
@@ -78,7 +78,8 @@ impl<R: Read> TurnsWithMessages<R> {
         self.records.is_whole()
     }
 
-    /// Returns the time of the next turn; `None` at the end of the record.
+    /// Returns the time of the turn after the last one that was returned; `None` before the first turn was returned, at
+    /// the end of the record, and if the rest cannot be read.
     #[must_use]
     pub fn next_time(&self) -> Option<Nanos> {
         self.peeked.as_ref().and_then(|next| next.as_ref().ok()).map(|next| next.t)

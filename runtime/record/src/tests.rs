@@ -1,5 +1,5 @@
-//! Tests of records in memory: the decoder below the sums, which a changed byte never reaches in a file, the chain of
-//! sums, and files that are cut short.
+//! Tests of records in memory: the decoder without its checksums, which detect any changed byte of a file before it is
+//! decoded; the chain of checksums; and files that are cut short.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_runtime::capability::Steering;
@@ -51,7 +51,7 @@ fn peer_state() -> PeerState {
     PeerState { pose: Pose { x: Meters(1.5), ..Pose::ORIGIN }, velocity, age: Nanos(8), rounds: 3, atom: 4 }
 }
 
-/// An output with an echo.
+/// Returns an output with an echo.
 fn output() -> Sensed {
     let (metres, steering) = (Meters(0.2), Steering { rotate: 1.0, align: 1.0, avoid: 1.0 });
     let [body_radius, half_length, half_width, wheel_base, ring_radius] = [metres; 5];
@@ -75,7 +75,7 @@ fn output() -> Sensed {
     y
 }
 
-/// The bytes of a begin, and those of a turn with everything that a turn can have.
+/// Returns the bytes of the beginning of a record, and the bytes of a turn with everything that a turn can contain.
 fn encoded() -> (Vec<u8>, Vec<u8>) {
     let (mut first, mut turn) = (Vec::new(), Vec::new());
     begin().put(&output(), &mut first);
@@ -109,7 +109,7 @@ fn a_turn_is_read_as_it_was_written() {
     assert_eq!((read.plan, read.state, read.steps.len()), (2, 5, 1));
 }
 
-/// Bytes that no run has written are refused or read as something else, and lengths beyond the end take no memory.
+/// Changed bytes are refused or decoded as something else, and lengths beyond the end take no memory.
 #[test]
 fn any_byte_of_a_turn_may_be_another() {
     let (first, turn) = encoded();
@@ -129,7 +129,7 @@ fn any_byte_of_a_turn_may_be_another() {
     }
 }
 
-/// The turn of this number of a run with ten turns a second.
+/// Returns turn `number` of a run with ten turns per second.
 fn made(number: u64) -> TurnMade<'static> {
     TurnMade {
         number,
@@ -143,7 +143,7 @@ fn made(number: u64) -> TurnMade<'static> {
     }
 }
 
-/// The outputs of a run of this many turns, in each of which every sonar pings.
+/// Returns the outputs of a run of this many turns, in each of which every sonar pings.
 fn outputs(turns: u64) -> Vec<Sensed> {
     let mut y = output();
     let pinged = (0..turns).map(|number| {
@@ -156,7 +156,7 @@ fn outputs(turns: u64) -> Vec<Sensed> {
     pinged.collect()
 }
 
-/// The content of the begin and of each turn of a run of this many turns.
+/// Returns the contents of the frames of a run of this many turns: the beginning, and each turn.
 fn contents(begin: &Begin, turns: u64) -> Vec<Vec<u8>> {
     let (mut frames, mut bytes) = (Frames::default(), Vec::new());
     let outputs = outputs(turns);
@@ -170,7 +170,8 @@ fn contents(begin: &Begin, turns: u64) -> Vec<Vec<u8>> {
     contents
 }
 
-/// Reads a begin and turns; returns the number of turns before the first that is refused, and why it is.
+/// Reads the beginning of a record and its turns; returns the number of turns before the first refused one, and the
+/// reason for the refusal.
 fn read(begin: &[u8], turns: &[&[u8]]) -> (usize, Option<Undecoded>) {
     let mut chained = match Turns::of(begin) {
         Ok(turns) => turns,
@@ -281,7 +282,7 @@ impl std::io::Read for Unreadable {
     }
 }
 
-/// A system that lost its power leaves a file with zeros at its end, of any length.
+/// A system that loses power may leave any number of zeros at the end of a file.
 #[test]
 fn zeros_after_a_cut_record_are_its_end() {
     use std::io::Read as _;
@@ -294,7 +295,7 @@ fn zeros_after_a_cut_record_are_its_end() {
     assert!(turns >= 40 && !records.is_whole(), "{turns}");
 }
 
-/// A length that leads over the end of the file is not a cut: the end is there.
+/// A changed length that points beyond the end of the file does not count as a cut, because the file has its end.
 #[test]
 fn a_flipped_bit_in_the_head_of_any_part_is_noticed() {
     const TURNS: u64 = 12;
@@ -320,7 +321,7 @@ fn a_flipped_bit_in_the_head_of_any_part_is_noticed() {
     assert!(parts > 5, "{parts} parts");
 }
 
-/// Messages are about the run, in plain words: a reader knows no terms of MCAP.
+/// Messages describe the run in plain words, because users do not know the terms of MCAP.
 #[test]
 fn damage_is_described_in_plain_words() {
     let (whole, _) = written(&outputs(12));

@@ -20,9 +20,9 @@ pub struct TurnMade<'a> {
     pub applied: Applied,
     /// Number of the plan that ran, from 1.
     pub plan: u64,
-    /// State of the plan at the end of the turn; 0 if no plan made the turn.
+    /// State of the plan at the end of the turn; 0 if no plan was active.
     pub state: u64,
-    /// Causes of the turn besides its output.
+    /// Changes that influence the turn, besides its output.
     pub changes: &'a [Change],
     /// Input that a safety rule changed.
     pub overruled: Option<&'a Overruled>,
@@ -52,11 +52,11 @@ pub struct RecordedTurn {
     pub applied: Applied,
     /// Number of the plan that ran, from 1.
     pub plan: u64,
-    /// State of the plan at the end of the turn; 0 if no plan made the turn.
+    /// State of the plan at the end of the turn; 0 if no plan was active.
     pub state: u64,
     /// Transitions of the turn, in order.
     pub steps: Vec<Step>,
-    /// Causes of the turn besides its output, in order.
+    /// Changes that influenced the turn, besides its output, in order.
     pub changes: Vec<Change>,
     /// Input that a safety rule changed.
     pub overruled: Option<Overruled>,
@@ -168,7 +168,7 @@ impl Chain {
         Self(sum.finalize())
     }
 
-    /// Returns `content` without the checksum at its end, after a check that this checksum is right.
+    /// Verifies the checksum at the end of `content`, and returns `content` without it.
     pub(crate) fn checked<'c>(&mut self, content: &'c [u8]) -> Result<&'c [u8], Undecoded> {
         let length = content.len().checked_sub(Self::LENGTH).ok_or(Undecoded::Unreadable)?;
         let (content, sum) = content.split_at_checked(length).ok_or(Undecoded::Unreadable)?;

@@ -1,4 +1,4 @@
-//! The time of a robot's outputs: by the computer's clock or in lockstep.
+//! Determines the time of a robot's outputs: by the computer's clock or in lockstep.
 
 use std::time::{Duration, Instant};
 
@@ -14,11 +14,12 @@ pub enum Clock {
     Stepped(Duration),
 }
 
-/// Factor of timeouts in lockstep: there a robot needs as long as its machine needs, and stands still meanwhile.
+/// Factor of timeouts in lockstep: an answer then takes as long as the robot's computer needs, and the robot stands
+/// still meanwhile.
 const LONGER: u32 = 10;
 
 impl Clock {
-    /// Returns the time to wait, by the computer's clock, for an action for which a robot has `limit`.
+    /// Returns the timeout, by the computer's clock, of an action that the robot has to complete within `limit`.
     #[must_use]
     pub const fn patience(self, limit: Duration) -> Duration {
         match self {
@@ -58,7 +59,7 @@ impl Clock {
 #[derive(Debug)]
 pub struct Times {
     clock: Clock,
-    /// Moment of the first output, by the computer's clock.
+    /// Time of the first output, by the computer's clock; `None` before it.
     first: Option<Instant>,
     /// Number of outputs so far.
     outputs: u64,

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::settings::Settings;
 
-/// Values in which robots of one kind differ.
+/// Configuration of a robot: the values in which robots of one kind differ.
 pub trait Configuration: Sized {
     /// Returns the values of the configuration file and of `device`, and defaults for all other values.
     ///

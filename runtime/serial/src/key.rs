@@ -46,7 +46,7 @@ impl Key {
     }
 }
 
-/// The type of a value.
+/// Type of a configuration value, with the conversion from its form in a file.
 pub trait Setting: Sized {
     /// Type of the value in a file, and of its default.
     type Written: DeserializeOwned + fmt::Debug;

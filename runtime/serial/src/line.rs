@@ -23,7 +23,7 @@ pub struct Line {
     port: OwnedFd,
 }
 
-/// Fault of a line.
+/// Error of a connection to a robot: it cannot be opened, or reading or writing failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LineFault {
     /// A device cannot be opened: its name, and the reason.

@@ -1,15 +1,15 @@
-//! A moment by a clock that continues while the computer is suspended.
+//! Points in time by a clock that continues while the computer is suspended.
 
 use std::time::Duration;
 
 use rustix::time::{ClockId, clock_gettime};
 
-/// A moment. The clock of [`std::time::Instant`], in contrast, stops while the computer sleeps.
+/// A point in time. The clock of [`std::time::Instant`], in contrast, stops while the computer is suspended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Moment(Duration);
 
 impl Moment {
-    /// Returns the current moment.
+    /// Returns the current time.
     #[must_use]
     pub fn now() -> Self {
         let time = clock_gettime(ClockId::Boottime);
@@ -17,7 +17,7 @@ impl Moment {
         Self(Duration::new(u64::try_from(time.tv_sec).unwrap_or(0), u32::try_from(time.tv_nsec).unwrap_or(0)))
     }
 
-    /// Returns the time since this moment, including suspensions.
+    /// Returns the time since this point in time, including suspensions.
     #[must_use]
     pub fn elapsed(self) -> Duration {
         Self::now().0.saturating_sub(self.0)

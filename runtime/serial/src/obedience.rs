@@ -1,9 +1,10 @@
 //! Detects a robot that does not move as commanded, but faster or in the opposite direction. See
 //! docs/src/reference/protocols.md, 3.
 //!
-//! A robot that is blocked by an obstacle, or with a stuck side, moves less than commanded; that is not disobedience.
-//! The measured speeds of both sides have to stay within the band that the commands so far allow. The band always
-//! contains zero and the last two commands. It shrinks from earlier commands only as fast as the robot brakes.
+//! A robot that is blocked by an obstacle, or one of whose sides is stuck, moves less than commanded; this is not
+//! disobedience. The measured speeds of both sides must stay within the band that the commands so far allow. The band
+//! always contains zero and the last two commands. After an earlier command, it narrows only as fast as the robot
+//! brakes.
 
 use std::time::Duration;
 
@@ -32,7 +33,7 @@ pub struct Obedience {
     last: Option<Nanos>,
     /// Speed of the faster side at the last measurement, in m/s.
     measured: f64,
-    /// Time since which the speeds have been outside of the band.
+    /// Time at which the speeds left the band; `None` while they are within the band.
     since: Option<Nanos>,
 }
 
@@ -83,8 +84,9 @@ impl Obedience {
         self.limit > Nanos::ZERO && since.is_some_and(|since| at.since(since) >= self.limit)
     }
 
-    /// Returns the maximum time in which the robot stops: twice the braking time at the commanded deceleration from the
-    /// highest speed that it may have, at least `least` and at most five seconds.
+    /// Returns the maximum time in which the robot stops: a reaction time of 100 ms, and twice the braking time at the
+    /// commanded deceleration from the highest speed that the robot may have; at least `least` and at most five
+    /// seconds.
     #[must_use]
     pub fn time_to_stand(&self, least: Duration) -> Duration {
         let time = |band: &Band| band.fastest().max(self.measured) / band.brakes;
@@ -100,7 +102,8 @@ impl Band {
         Self { low: 0.0, high: 0.0, command: 0.0, brakes }
     }
 
-    /// Narrows the band by the braking of the robot in `seconds` seconds; the band keeps the last two commands.
+    /// Narrows the band as far as the robot can brake in `seconds` seconds. The band still contains `command` and the
+    /// previous command.
     fn tell(&mut self, command: f64, seconds: f64) {
         let before = std::mem::replace(&mut self.command, command);
         let by = self.brakes * seconds;

@@ -22,7 +22,7 @@ pub trait SerialRobot: Robot<Output = Sensed, Input = Twist, Error: Into<Refusal
     const FASTEST: Twist;
     /// Settings that a user can change while the robot drives, if there are any.
     const SETTINGS: Option<SettingsOf<Self>> = None;
-    /// Values in which robots of this kind differ.
+    /// Type of the configuration: the values in which robots of this kind differ.
     type Config: Configuration;
 
     /// Opens the line and prepares the robot, which is at rest.
@@ -39,7 +39,7 @@ pub trait SerialRobot: Robot<Output = Sensed, Input = Twist, Error: Into<Refusal
     /// Stores the paths that the plan replays.
     fn take_paths(&mut self, paths: PathStore);
 
-    /// Returns the time for which the line is busy in a turn.
+    /// Returns the time that the line needs to transmit the data of a turn.
     fn turn_takes(config: &Self::Config) -> Duration;
 
     /// Returns the maximum time for an answer, in milliseconds.

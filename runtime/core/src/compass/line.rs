@@ -1,4 +1,4 @@
-//! A wall as a line through the echoes of the sonar that faces it, while the robot drives along the wall.
+//! Fits a line to the echoes of a wall from the sonar that faces it, while the robot drives along the wall.
 
 use crate::Nanos;
 
@@ -6,19 +6,21 @@ use crate::Nanos;
 const APART: f64 = 0.1;
 /// Maximum number of echoes that a line takes into account.
 const KEPT: f64 = 24.0;
-/// Minimum sum of squared distances along a wall, in square metres, at which its direction counts as known: errors of
-/// 1.5 cm then amount to 1 degree. Sides of boxes are shorter, and may lie at any angle.
+/// Minimum of `Line::squares`, in square metres, at which the direction of a wall counts as known: range errors of 1.5
+/// cm then cause an error of 1 degree. Sides of boxes are shorter, and may lie at any angle.
 const KNOWN: f64 = 1.0;
-/// Minimum sum of squared distances, in square metres, from which the line predicts the next echo of the wall.
+/// Minimum of `Line::squares`, in square metres, at which the slope of the line is used to predict the next echo of the
+/// wall.
 const GUESSED: f64 = 0.02;
 
-/// A line through echoes, from their distances along the axis and across it, in metres.
+/// Regression line through echoes, from their coordinates along and across an axis, in metres.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Line {
     count: f64,
     along: f64,
     across: f64,
-    /// Sums of the squares and of the products of the deviations from the means, in square metres.
+    /// Sum of the squared deviations of the coordinates along the axis from their mean, in square metres. `products` is
+    /// the sum of the products of the deviations along and across the axis.
     pub(super) squares: f64,
     products: f64,
     /// `true` if the last echo did not fit the line.

@@ -1,4 +1,4 @@
-//! Tests of the compass: robots in hallways and rooms, by pings written by hand.
+//! Tests of the compass: robots in hallways and rooms, with handwritten pings.
 
 use super::*;
 use crate::capability::Steering;
@@ -27,7 +27,7 @@ impl Trial {
         Self { pings: [Pings::default(); SONARS], compass: Compass::default(), now: Nanos::ZERO }
     }
 
-    /// Lets the compass take in these ranges, in metres, heard half a second later at this pose.
+    /// Updates the compass with pings of these ranges, in metres, half a second later and at this pose.
     fn hears(&mut self, pose: Pose, ranges: &[(usize, f64)], shape: &Shape) {
         self.now = Nanos(self.now.0 + 500_000_000);
         for (sonar, range) in ranges {
@@ -37,8 +37,9 @@ impl Trial {
         self.compass.take(&self.pings, pose, shape);
     }
 
-    /// Drives in a hallway 1.5 m wide whose axis deviates from that of odometry by `turned` degrees. Every
-    /// seventh echo of the left sonar strays, and the right wall recedes by `leads` in each step of 10 cm.
+    /// Drives `metres` metres in a hallway 1.5 m wide whose axis deviates from the axis of odometry by `turned`
+    /// degrees. Every seventh echo of the left sonar does not fit the wall, and the right wall recedes by `leads`
+    /// metres in each step of 10 cm.
     fn drives(&mut self, turned: f64, metres: f64, leads: f64) {
         let theta = Radians::from_degrees(turned);
         for step in 1..=libm::round(metres / 0.1) as u32 {
@@ -76,7 +77,7 @@ fn walls_askew_to_the_first_heading_are_no_drift() {
     assert_eq!(trial.drift(30.0), 0.0, "of a frame that is not along odometry's axes nothing is known");
 }
 
-/// Before any wall was measured, the robot does not know at which angle to walls it drives along them.
+/// Until a wall is measured, the angle between the walls and the first heading is unknown.
 #[test]
 fn walls_at_any_angle_to_the_first_heading_are_measured() {
     for turned in [-40.0, 33.0, 45.0] {

@@ -1,5 +1,4 @@
-//! The value of every part of a condition in a turn, for explanations. It is read beside a run and never by the
-//! run itself.
+//! Evaluates every part of a condition in a turn, for explanations. A run itself never uses these values.
 
 use super::{InRows, OutputOf, reading};
 use crate::{Completes as _, Cursor, Entries, Measured, Memory, Nanos, Slots, Table};
@@ -14,9 +13,9 @@ pub struct Examined {
 }
 
 impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
-    /// Calls `tell` with the condition of `scope`, which encloses the current atom, and with all parts of the
-    /// condition. A part comes before its own operands, which come from left to right. `stuck` counts as one
-    /// part.
+    /// Calls `tell` with the value of the condition of `scope`, which encloses the current atom, and with the values of
+    /// all parts of the condition. A part comes before its own operands, and operands come from left to right. `stuck`
+    /// counts as one part.
     pub fn examine(
         &self,
         cursor: &Cursor<E, P>,

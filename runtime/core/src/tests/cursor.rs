@@ -32,7 +32,7 @@ const SCOPE_IN_LOOP: Fsm<'static> = Fsm {
     termination: 4,
 };
 
-/// `((a b)^2)^outer`, where the states of one pass of the outer loop are `stride`.
+/// Returns the brackets of `((a b)^2)^outer`, where one pass of the outer loop has `stride` states.
 const fn loops(outer: u64, stride: u64) -> [Bracket; 5] {
     [
         Bracket::scope(0, 0, 1, 0),
@@ -52,7 +52,7 @@ fn start(fsm: Fsm<'_>) -> Walk {
     Cursor::start(fsm, [Nanos(77); 3], [77; 2], Nanos(100))
 }
 
-/// Returns the states, at most `most`, of a plan whose scopes at this level end one after another.
+/// Returns at most `most` states of a plan in which one scope at this level ends after another.
 fn states(fsm: Fsm<'_>, level: u16, most: usize) -> Vec<u64> {
     let mut cursor = start(fsm);
     let mut states = std::vec![cursor.state(fsm)];

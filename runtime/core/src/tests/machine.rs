@@ -22,7 +22,7 @@ struct Toy {
     entered: Vec<u32>,
     /// Number of inputs computed.
     computed: u32,
-    /// `true` if the plan knows the successor when a scope ends.
+    /// `true` if the plan uses the successors that [`Fsm::follows`] computes in advance.
     foresees: bool,
 }
 
@@ -34,7 +34,7 @@ const SECOND: u32 = 3;
 const LAST: u32 = 4;
 
 impl Toy {
-    /// `{ Plan { Scope (Atom first) (Atom second) } (Atom last) }`.
+    /// Returns `{ Plan { Scope (Atom first) (Atom second) } (Atom last) }`.
     fn nested() -> Self {
         Self::new(
             [
@@ -49,8 +49,8 @@ impl Toy {
         )
     }
 
-    /// Returns `{ Plan ((Atom first))^times (Atom last) }`, where bracket 2 is the first atom's; 0 times is a
-    /// loop without end.
+    /// Returns `{ Plan ((Atom first))^times (Atom last) }`, where bracket 2 is the scope of the first atom; 0 times
+    /// means a loop without end.
     fn repeated(times: u64) -> Self {
         Self::new(
             [
