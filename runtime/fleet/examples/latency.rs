@@ -15,12 +15,12 @@ use mdle_engine::link::{Link, LinkSettings, State, Tcp, TcpSettings};
 use mdle_runtime::{Meters, Nanos, Pose, Twist};
 
 const TURN: Duration = Duration::from_millis(20);
-/// Time between two looks for states: what is measured is too long by half of it on average.
+/// Time between two checks for states. On average, the measured latencies are too long by half of this time.
 const LOOK: Duration = Duration::from_micros(100);
-/// Time in which the robots connect, before anything counts.
+/// Time in which the robots connect, before latencies are measured.
 const WARM_UP: Duration = Duration::from_secs(5);
 
-/// Returns the time of the machine in seconds.
+/// Returns the system time in seconds since the Unix epoch.
 fn clock() -> f64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |time| time.as_secs_f64())
 }
@@ -38,8 +38,8 @@ fn opened(kind: &str, number: usize, count: usize, port: u16) -> Result<Box<dyn 
     Ok(mdle_fleet::open(&RouterSettings { link, router: at(0), file: "latency".into() })?)
 }
 
-/// Latencies of states, in seconds, and for each robot the numbers of its first and last state, and of all that
-/// arrived.
+/// Latencies of states, in seconds, and for each robot the numbers of its first and last state and the count of states
+/// that arrived.
 #[derive(Default)]
 struct Heard {
     latencies: Vec<f64>,

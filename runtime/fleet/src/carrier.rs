@@ -1,4 +1,4 @@
-//! The thread that keeps a session with the router, and publishes only the newest state, and each letter.
+//! Runs the thread that keeps a session with the router. It publishes every letter, but only the newest state.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -18,14 +18,15 @@ use crate::topics;
 const AGAIN: Duration = Duration::from_millis(200);
 /// Maximum time for an attempt to connect, in milliseconds.
 const OPENS: u64 = 2000;
-/// Time without a sign of this robot after which the router gives it up, in milliseconds.
+/// Time without data from this robot after which the router considers it disconnected, in milliseconds.
 const LEASE: u64 = 2000;
-/// Minimum time between two states: only the newest counts, and a receiver takes 2000 a second.
+/// Minimum time between two published states. Only the newest state matters, and a receiver accepts at most 2000 states
+/// per second.
 const SPACING: Duration = Duration::from_millis(1);
-/// Time between two looks at the connection.
+/// Time between two checks of the connection.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// All that the thread has.
+/// Data of the thread that keeps the session.
 pub(crate) struct Carrier {
     name: String,
     router: SocketAddr,
@@ -70,7 +71,7 @@ impl Carrier {
     /// Opens a session, and subscribes.
     ///
     /// # Errors
-    /// The router cannot be reached.
+    /// Fails if the router cannot be reached.
     fn session(&self) -> zenoh::Result<Session> {
         let session = zenoh::open(self.config()?).wait()?;
         subscribe(&session, &self.name, &self.endpoint)?;
@@ -104,7 +105,7 @@ impl Carrier {
     /// Publishes states and letters until the run is over.
     ///
     /// # Errors
-    /// The session fails.
+    /// Fails if the session fails.
     fn publish(&mut self, session: &Session) -> zenoh::Result<()> {
         let states = self.states(session)?;
         let (mut last, mut looked) = (None::<Draft>, None::<Instant>);
@@ -133,13 +134,13 @@ impl Carrier {
         Ok(())
     }
 
-    /// Returns the publisher of states: each is sent at once, and dropped where the connection is full.
+    /// Returns the publisher of states. It sends a state at once, or drops the state if the connection is congested.
     fn states<'s>(&self, session: &'s Session) -> zenoh::Result<Publisher<'s>> {
         let publisher = session.declare_publisher(topics::of_states(&self.name));
         publisher.congestion_control(CongestionControl::Drop).priority(Priority::RealTime).express(true).wait()
     }
 
-    /// Looks if the session has a connection to the router.
+    /// Checks whether the session has a connection to the router, and reports a connection that was lost or restored.
     fn look(&mut self, session: &Session) {
         let was_up = std::mem::replace(&mut self.is_up, session.info().routers_zid().wait().next().is_some());
         if !self.is_up {
@@ -154,7 +155,7 @@ impl Carrier {
         }
     }
 
-    /// Reports that the router cannot be reached.
+    /// Reports that the router cannot be reached, unless this has been reported already.
     fn is_down(&mut self, failure: &str) {
         if self.is_known_as_down || self.endpoint.is_over() {
             return;

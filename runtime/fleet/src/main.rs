@@ -1,4 +1,4 @@
-//! `mdle`, with links by a router.
+//! The program `mdle` with state links over a Zenoh router.
 
 use std::process::ExitCode;
 

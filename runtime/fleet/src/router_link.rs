@@ -1,5 +1,5 @@
-//! A robot's link by a router. A turn only hands over a state and takes states that have arrived; a thread of its own
-//! publishes, as Zenoh may wait.
+//! A robot's state link over a router. A turn only hands over a state and takes states that have arrived. A separate
+//! thread publishes, because Zenoh may block.
 
 use std::io;
 use std::sync::Arc;
@@ -12,14 +12,14 @@ use mdle_runtime::Nanos;
 
 use crate::carrier::Carrier;
 
-/// The endpoint of one robot on a state link by a router.
+/// The endpoint of one robot on a state link over a router.
 struct RouterLink {
     endpoint: Arc<Endpoint>,
     outbox: Arc<Outbox>,
     peers: Vec<String>,
 }
 
-/// Opens a link by a router, which need not be reachable yet.
+/// Opens a link over a router, which need not be reachable yet.
 ///
 /// # Errors
 /// Fails if the system cannot create a thread.

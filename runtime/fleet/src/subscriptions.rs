@@ -1,4 +1,4 @@
-//! Frames that the router brings: the states of all other robots, and their letters to this one.
+//! Receives frames from the router: the states of the other robots, and their letters to this robot.
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -9,13 +9,13 @@ use zenoh::{Session, Wait as _};
 
 use crate::topics;
 
-/// Maximum number of reasons that are reported for one robot.
+/// Maximum number of reasons for refused messages that are reported for one robot.
 const REASONS: usize = 16;
 
 /// Subscribes to the frames for the robot of this name, until the session ends.
 ///
 /// # Errors
-/// The session has ended, or a key is none.
+/// Fails if the session has ended, or if a key is invalid.
 pub(crate) fn subscribe(session: &Session, name: &str, endpoint: &Arc<Endpoint>) -> zenoh::Result<()> {
     for peer in endpoint.peers() {
         let intake = Arc::new(Intake::new(peer));
@@ -28,10 +28,10 @@ pub(crate) fn subscribe(session: &Session, name: &str, endpoint: &Arc<Endpoint>)
     Ok(())
 }
 
-/// Frames under the keys of one robot.
+/// Receiver of the frames that one robot publishes.
 struct Intake(Mutex<Counted>);
 
-/// The number of frames of a robot, and the reasons for which some were refused.
+/// A robot as a source of frames, and the reported reasons for which its messages were refused.
 struct Counted {
     source: Source,
     reasons: BTreeSet<String>,
@@ -42,8 +42,8 @@ impl Intake {
         Self(Mutex::new(Counted { source: Source::without_connection(robot), reasons: BTreeSet::new() }))
     }
 
-    /// Takes a message, or refuses it. In contrast to a connection, a key cannot be closed: each reason is reported
-    /// once.
+    /// Passes a message to the endpoint, or refuses it. A key cannot be closed like a connection, so each reason for a
+    /// refusal is reported only once.
     fn take(&self, sample: &Sample, endpoint: &Endpoint) {
         let mut counted = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let payload = sample.payload();

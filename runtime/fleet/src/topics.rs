@@ -1,5 +1,5 @@
 //! Key expressions under which robots publish: `mdle/ROBOT/state`, and `mdle/ROBOT/letters/RECIPIENT`. A robot's name
-//! has no character that means something in a key expression (docs/src/many_robots.md).
+//! contains no character with a special meaning in key expressions (docs/src/many_robots.md).
 
 /// Returns the key under which the robot of this name publishes its state.
 pub(crate) fn of_states(robot: &str) -> String {

@@ -1,5 +1,5 @@
-//! A target and a plan in plain Rust: a cart that shuttles on a track. `mdlec` generates the second half; the author of
-//! a robot writes the first.
+//! A target and a plan in plain Rust: a cart that shuttles on a track. For a real robot, its author writes the first
+//! half, and `mdlec` generates the second half.
 //!
 //! Run it with `cargo run -p mdle-host --example cart -- --speed max --timeout 20`. The tests of this package run the
 //! program.

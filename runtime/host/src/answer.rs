@@ -1,4 +1,5 @@
-//! Output of an executable that does not run: help, the answer that an option asks for, or an error in the arguments.
+//! Prints the output of an executable that makes no run: help, the answer that an option asks for, or an error in the
+//! arguments.
 
 use std::io::Write;
 
@@ -17,7 +18,8 @@ pub(crate) fn unparsed<'o>(error: clap::Error, out: impl FnOnce() -> Box<dyn Wri
     print_answer(&error.render().to_string(), &mut *out())
 }
 
-/// Prints the answer that an option asks for instead of a run. Its reader may go before the end.
+/// Prints the answer that an option asks for instead of a run, and returns the exit status. Write errors are ignored,
+/// because the reader may close the stream early.
 pub(crate) fn print_answer(answer: &str, out: &mut dyn Write) -> u8 {
     let _ = write!(out, "{}", PrintableLines(answer)).and_then(|()| out.flush());
     run_end::OVER

@@ -106,7 +106,7 @@ pub(crate) fn command(target: &TargetOptions, program: Program<'_>, call: &Call)
     with_statuses((target.arguments)(if target.fastest.is_some() { paths::arguments(command) } else { command }))
 }
 
-/// Returns a command, which must have all its options, with the exit statuses in its help.
+/// Returns `command`, which must have all its options, with the exit statuses added to its help.
 fn with_statuses(command: Command) -> Command {
     let has_runs = command.get_arguments().any(|argument| argument.get_id() == "runs");
     let statuses = STATUSES.into_iter().filter(|(number, _)| *number != "1" || has_runs);

@@ -75,7 +75,8 @@ impl Shared {
 }
 
 impl Queue {
-    /// Appends a piece of text, unless there is no space. There is always space for a single piece of any length.
+    /// Appends a piece of text, or returns it as the error if there is no space. An empty queue has space for a piece
+    /// of any length.
     fn push(&mut self, piece: Vec<u8>) -> Result<(), Vec<u8>> {
         if self.bytes > 0 && self.bytes.saturating_add(piece.len()) > WAITING {
             return Err(piece);

@@ -31,8 +31,8 @@ pub struct RecordedPlan {
     pub beside: String,
     /// Safety rules of the run, if there are any.
     pub safety: Option<SafetyTexts>,
-    /// Words besides those of the call that determine the run, such as the target and the modules of a file of
-    /// settings.
+    /// Words that determine the run but are not part of the call, such as the target and the modules from a settings
+    /// file.
     pub settings: Vec<String>,
 }
 
@@ -50,14 +50,15 @@ impl Call {
         }
     }
 
-    /// Returns the words with which the usage begins, if they are more than the name of a file.
+    /// Returns the words with which the usage line begins; `None` if the call has no words besides the name of the
+    /// program.
     pub(crate) fn several_words(&self) -> Option<String> {
         let (program, others) = self.words.split_first().filter(|(_, others)| !others.is_empty())?;
         let name = Path::new(program).file_name().unwrap_or(program);
         Some([&[name.to_owned()], others].concat().join(" ".as_ref()).to_string_lossy().into_owned())
     }
 
-    /// Returns all words in the form in which a command line is parsed.
+    /// Returns the name of the program and the options, as a parser of command lines expects them.
     pub(crate) fn arguments(&self) -> impl Iterator<Item = &OsString> {
         self.words.iter().take(1).chain(&self.options)
     }
@@ -68,7 +69,8 @@ impl Call {
         if words.is_empty() { quoted(plan) } else { words.join(" ") }
     }
 
-    /// Returns the command that repeats the run: all words as a shell takes them, without those that ask for its log.
+    /// Returns the command that repeats the run: the words of the call and the options that determine the run, quoted
+    /// for a shell.
     pub(crate) fn repeating(&self, plan: &str) -> String {
         let settings = self.recorded.settings.iter().map(OsString::from);
         let words = settings.chain(determining(&self.options)).map(|word| quoted(&word.to_string_lossy()));
@@ -80,7 +82,7 @@ impl Call {
 const BESIDE: [&str; 8] =
     ["--log", "--plot", "--record", "--trail", "--trips", "--record-path", "--recorded-paths", "--threads"];
 
-/// Returns the options that determine a run, without those of its log, its pictures and its tables.
+/// Returns the options that determine a run, without the options for its log, its pictures and its tables.
 pub fn determining(options: &[OsString]) -> impl Iterator<Item = OsString> {
     let mut was_beside = false;
     let others = options.iter().filter(move |option| {

@@ -1,5 +1,5 @@
-//! Words for a transition in reports: the operands that fired with their values, as the plan's author wrote them, and
-//! their places.
+//! Formats transitions and places of atoms for reports: the operands that fired with their values, as the plan's author
+//! wrote them, and their lines.
 
 use std::fmt;
 

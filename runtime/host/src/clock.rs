@@ -85,7 +85,8 @@ impl<I: Instants> Clock<I> {
         }
     }
 
-    /// Changes the pace of stepped time: the next turn begins one period after now. The wall clock has only one pace.
+    /// Changes the pace of stepped time: the next turn begins one period after now, at the new pace. The wall clock has
+    /// only one pace.
     pub(crate) fn set_pace(&mut self, pace: Pace) {
         let Time::Stepped(before) = &mut self.time else { return };
         *before = pace;

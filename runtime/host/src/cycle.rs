@@ -1,7 +1,7 @@
 //! The control cycle: exchange, time, a turn, and the wait for the next turn (docs/src/reference/semantics.md, 5.1).
 //!
-//! In an executable, one plan makes a turn; in other programs more than a plan may take part. The cycle handles
-//! exchange, limits, signals and the end of a run in every case.
+//! In an executable, only a plan takes part in a turn; in other programs, an engine runs modules as well. The cycle
+//! handles exchange, limits, signals and the end of a run in every case.
 
 use std::time::Duration;
 
@@ -44,7 +44,7 @@ pub(crate) trait Turns {
     /// # Errors
     /// Returns the reason why the run must end although the robot has no fault.
     fn turn(&mut self, t: Nanos, number: u64) -> Result<Step, RunEnd>;
-    /// Returns the pace of stepped time from now on, if it changes.
+    /// Returns the new pace of stepped time; `None` if the pace does not change.
     fn pace(&mut self) -> Option<Pace> {
         None
     }

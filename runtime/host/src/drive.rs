@@ -1,5 +1,5 @@
-//! A plan that drives a robot, behind an interface without the types of the plan and the robot. So the host is compiled
-//! once, and each executable compiles only its own turn.
+//! Interface to a plan on its robot without the types of the plan and the robot. The host is therefore compiled once,
+//! and each executable compiles only its own turn.
 
 use std::any::Any;
 use std::time::Duration;
@@ -39,11 +39,12 @@ pub(crate) trait Drive {
     fn motion(&self) -> Option<(Radians, MetersPerSecond)>;
     /// Returns the last output, for views of the run; `None` if there is no output, or if it is not a [`Sensed`].
     fn sensed(&self) -> Option<&Sensed>;
-    /// Returns the last output and input for a record; `None` if their types are not those of records.
+    /// Returns the last output and input for a record; `None` if there is no output, or if a record cannot contain
+    /// their types.
     fn exact(&self) -> Option<Exact<'_>>;
     /// Starts recording the changes that [`Drive::take_changes`] returns; called before the first turn.
     fn record(&mut self);
-    /// Removes and returns the causes of the last turn besides its output.
+    /// Removes and returns the changes that influenced the last turn, besides its output.
     fn take_changes(&mut self) -> Vec<Change>;
     /// Makes turn `number` with the last output at time `t`; the first turn begins the plan.
     ///

@@ -1,4 +1,4 @@
-//! The target and the plan of an executable, behind an interface without their types.
+//! Interface to the target and the plan of an executable without their types.
 
 use std::marker::PhantomData;
 use std::os::fd::BorrowedFd;
@@ -15,7 +15,7 @@ use crate::runs::Runs;
 use crate::target_options::TargetOptions;
 use crate::{Microphones, Pace, Refusal, Replays, StopRequest, Supervision, Target, Time};
 
-/// Text to type if a robot has no microphones.
+/// Suggestion in the error message for a robot without microphones.
 const NO_EARS: &str = "give `--ears FILE.wav`, or `--ears -` for the pipe of a recorder";
 
 /// The target and the plan of an executable.
@@ -24,7 +24,7 @@ pub(crate) trait Executable: Sync {
     fn target(&self) -> TargetOptions;
     /// Returns the stream of the report and of messages in a session; `None` if there is no session.
     fn session(&self) -> Option<BorrowedFd<'_>>;
-    /// Makes a plan, for its texts.
+    /// Creates a plan, for access to its texts.
     fn plan(&self) -> Box<dyn Texts + '_>;
     /// Opens the robot with [`Target::connect`], the plan that will drive it, and the paths that the plan replays.
     ///
@@ -44,7 +44,7 @@ pub(crate) trait Executable: Sync {
     fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore) -> Result<Option<Runs<'_>>, Refusal>;
 }
 
-/// An executable of a plan for the target `T`, with the pilot `B` of its runs.
+/// Executable of a plan for the target `T`. The pilot `B` computes the inputs of its runs.
 pub(crate) struct PlanOnTarget<'p, 's, T, P, B: Pilot> {
     /// Function that creates the plan.
     plan: &'p (dyn Fn() -> P + Sync),

@@ -68,7 +68,7 @@ mod tests {
 
     use super::*;
 
-    /// A place for a file of a test.
+    /// Returns a path for a file of a test.
     fn place(name: &str) -> PathBuf {
         let place = std::env::temp_dir().join(format!("mdle-files-{}-{name}", std::process::id()));
         let _ = fs::remove_file(&place);

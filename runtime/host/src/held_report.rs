@@ -1,5 +1,4 @@
-//! A report that is shown only after the live view has left the screen; of a very long report, only the last part is
-//! shown.
+//! Stores a report until the live view has left the screen; of a very long report, only the last part is shown.
 
 use std::io::{self, Write};
 

@@ -79,7 +79,7 @@ where
         Ok(kind)
     }
 
-    /// Sets the input that is sent next: `asked`, as the supervisor changes it if there is an output.
+    /// Sets the input that is sent next to `asked`, which the supervisor may change first if there is an output.
     pub(crate) fn send(&mut self, asked: PilotInput<B>, y: Option<&PilotOutput<B>>) {
         self.asked = (&asked as &dyn Any).downcast_ref().copied();
         self.input = match (&mut self.supervised, y) {
@@ -135,7 +135,7 @@ where
         self.supervised.as_mut().map(|supervised| &mut *supervised.supervisor)
     }
 
-    /// Starts recording the data that a record needs besides outputs.
+    /// Starts recording the changes that [`Helm::take_changes`] returns.
     pub(crate) fn record(&mut self) {
         self.pilot.record();
         if let Some(supervisor) = self.supervisor_mut() {
@@ -143,7 +143,7 @@ where
         }
     }
 
-    /// Removes and returns the causes of the last turn besides its output.
+    /// Removes and returns the changes that influenced the last turn, besides its output.
     pub(crate) fn take_changes(&mut self) -> Vec<Change> {
         let mut changes = self.pilot.take_changes();
         changes.extend(self.supervisor_mut().map(Supervisor::take_changes).unwrap_or_default());

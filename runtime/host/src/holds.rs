@@ -1,32 +1,32 @@
-//! The holds of a robot by safety rules, of which a report has the first ones.
+//! Counts how often each safety rule holds the robot, so that a report shows only the first times.
 
 use mdle_runtime::Nanos;
 
-/// Number of holds of a rule that are reported, until the rule pauses for [`PAUSE`].
+/// Number of times that a report shows that a rule begins to hold the robot, until the rule pauses for [`PAUSE`].
 const REPORTED: u32 = 3;
-/// Time between two holds of a rule after which the second one is reported again.
+/// Time since a rule last began to hold the robot after which a report shows the rule again.
 const PAUSE: Nanos = Nanos(10_000_000_000);
 
-/// The holds of a robot by each rule.
+/// Counters of the safety rules that have held the robot.
 #[derive(Debug, Default)]
 pub(crate) struct Holds {
     rules: Vec<HoldsOfRule>,
-    /// Place of the rule that held the robot last.
+    /// Index of the rule that last held the robot.
     last: usize,
 }
 
-/// The holds by a rule since it last paused.
+/// Counter of a rule, which restarts after the rule has paused for [`PAUSE`].
 #[derive(Debug)]
 struct HoldsOfRule {
     rule: String,
     count: u32,
-    /// Time at which the last hold began.
+    /// Time at which the rule last began to hold the robot.
     last: Nanos,
 }
 
 impl Holds {
-    /// Notes that a rule begins to hold the robot at time `t`. Returns the end of the line for the report; `None` if
-    /// this hold is not reported.
+    /// Records that a rule begins to hold the robot at time `t`. Returns the end of the line for the report; `None` if
+    /// the report has no line about it.
     pub(crate) fn begins(&mut self, rule: &str, t: Nanos) -> Option<&'static str> {
         let known = self.rules.iter().position(|holds| holds.rule == rule);
         self.last = known.unwrap_or(self.rules.len());
@@ -44,7 +44,7 @@ impl Holds {
         }
     }
 
-    /// Returns `true` if the report says of the last hold that the plan goes on after it.
+    /// Returns `true` if the report has a line when the plan goes on after the robot was last held.
     pub(crate) fn is_followed(&self) -> bool {
         self.rules.get(self.last).is_none_or(|holds| holds.count < REPORTED)
     }

@@ -8,7 +8,7 @@ use crate::scheduling;
 
 /// Source of real time, which a test can control.
 pub(crate) trait Instants {
-    /// Returns the time since a moment before the first turn; it never goes back.
+    /// Returns the time since a fixed point in time before the first turn; it never decreases.
     fn now(&mut self) -> Duration;
     /// Sleeps for approximately `time`.
     fn sleep(&mut self, time: Duration);

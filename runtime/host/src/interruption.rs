@@ -1,5 +1,5 @@
-//! Signals for a program without a robot of its own, such as several simulated runs: after a signal the program ends in
-//! order, with all output written so far.
+//! Signals for a program without a robot of its own, such as several simulated runs: after a signal, the program ends
+//! in an orderly way, and the output so far is written.
 
 use std::io::{self, Write};
 

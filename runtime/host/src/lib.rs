@@ -149,8 +149,8 @@ where
     run_called::<T, P>(program, Call::of_executable(std::env::args_os()), plan)
 }
 
-/// Runs the plan that `plan` creates on the robot of the target `T` like [`run`], for a program with the call `call`
-/// instead of the arguments of this process.
+/// Runs the plan that `plan` creates on the robot of the target `T` like [`run`], but with the words and options of
+/// `call` instead of the arguments of this process.
 pub fn run_called<'a, T: Target, P>(
     program: impl Into<Program<'a>>,
     call: Call,

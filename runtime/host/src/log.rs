@@ -48,7 +48,8 @@ pub(crate) struct Entry<'a> {
 }
 
 impl Entry<'_> {
-    /// Returns the keys of a turn that appear only with a supervisor, each with a comma before it.
+    /// Returns the additional keys of a turn with a supervisor as JSON, each with a comma before it; `None` if there
+    /// are none.
     fn more(&self) -> Option<String> {
         let plan = (self.plan_number > 1).then(|| format!(",\"plan\":{}", self.plan_number));
         let safety = self.supervised.intervention().map(|Intervention { verdict, rule, .. }| {

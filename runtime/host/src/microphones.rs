@@ -1,4 +1,4 @@
-//! Sound from a robot with two microphones for a module that listens.
+//! Passes the sound of a robot with two microphones to a module that listens.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

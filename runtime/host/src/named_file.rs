@@ -1,4 +1,5 @@
-//! The files that options name: a file that a run writes may be named by only one option, and the run must not read it.
+//! Checks the files that options name: a file that a run writes may be named by only one option, and the run must not
+//! read it.
 
 use std::fs;
 use std::io;
@@ -51,7 +52,7 @@ pub(crate) fn check(mut files: Vec<NamedFile>) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Returns the sentence about a file for writing that is also another file.
+/// Returns the error message for a file to write that is the same file as `other`.
 fn clash(file: &NamedFile, other: &NamedFile) -> String {
     let (option, path) = (file.option, file.path.display());
     match other {
@@ -87,7 +88,8 @@ mod tests {
 
     use super::*;
 
-    /// Returns the refusal of two outputs with these names and an input `input`, in a folder of its own.
+    /// Returns the error message for two output files with these names and an input file `input`, in a folder of the
+    /// test; `None` if the files are accepted.
     fn refused(test: &str, log: &str, plot: &str) -> Option<String> {
         let folder = std::env::temp_dir().join(format!("mdle-files-{test}-{}", std::process::id()));
         let _ = fs::remove_dir_all(&folder);

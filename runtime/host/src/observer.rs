@@ -1,5 +1,5 @@
-//! Observer of a run: the view of a simulated robot on its own run, which a driver of a real robot does not need. See
-//! docs/src/reference/interfaces.md, 7.4.
+//! Observer of a run, which shows a robot, such as a simulated one, the course of the plan that drives it. A driver of
+//! a real robot needs no observer. See docs/src/reference/interfaces.md, 7.4.
 
 use std::fmt;
 

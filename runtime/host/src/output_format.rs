@@ -1,4 +1,4 @@
-//! Names of output files: a name is refused if its ending means another format than that of the option.
+//! Checks names of output files: a name is refused if it has another ending than that of the option's format.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ pub fn output_format(format: &'static str, ending: &'static str) -> impl TypedVa
     })
 }
 
-/// Returns the sentence that refuses `path` if its ending means another format.
+/// Returns the error message for `path` if it has another ending than `ending`; `None` if the name is accepted.
 fn refusal(path: &Path, format: &str, ending: &str) -> Option<String> {
     let given = path.extension().filter(|given| !given.eq_ignore_ascii_case(ending))?;
     let (given, name) = (given.to_string_lossy(), path.with_extension(ending));

@@ -1,4 +1,4 @@
-//! Paths of a run: paths that the plan replays are read before the robot moves, and the driven path can be recorded.
+//! Reads the paths that the plan of a run replays, before the robot moves, and records the driven path.
 
 mod record;
 #[cfg(test)]
@@ -96,7 +96,7 @@ pub(crate) fn files(matches: &ArgMatches, names: &[&'static str]) -> impl Iterat
     names.iter().map(move |name| place(folder.as_deref(), name))
 }
 
-/// Returns the file of the path with this name in a plan: a name without an ending is that of a CSV file.
+/// Returns the file of the path with this name in a plan. A name without an ending gets the ending `csv`.
 fn place(folder: Option<&Path>, name: &str) -> PathBuf {
     let file = if Path::new(name).extension().is_some() { name.to_owned() } else { format!("{name}.csv") };
     folder.map_or_else(|| PathBuf::from(&file), |folder| folder.join(&file))
@@ -119,11 +119,11 @@ fn read(folder: Option<&Path>, name: &str, fastest: Twist) -> Result<Vec<Setpoin
     setpoints(&shown.to_string(), &bytes, fastest)
 }
 
-/// Returns the setpoints of a path from the bytes of its file, for a robot with the maximum speeds `fastest`; error
-/// messages call the file `file`.
+/// Parses a path file into setpoints for a robot with the maximum speeds `fastest`. Error messages call the file
+/// `file`.
 ///
 /// # Errors
-/// Returns a sentence with the defect of the path and its line.
+/// Returns a message that describes the error in the path, and its place.
 pub fn setpoints(file: &str, bytes: &[u8], fastest: Twist) -> Result<Vec<Setpoint>, String> {
     let read = text::utf8(bytes).and_then(|text| text::setpoints(text, fastest));
     read.map_err(|TextFault { place, what }| match place {

@@ -1,5 +1,5 @@
-//! Time that a writer waits for its reader: without limit before the run, not at all while a robot is driven, and for a
-//! limited time afterwards.
+//! Determines how long a writer waits for its reader: without limit before the run, not at all while a robot is driven,
+//! and for a limited time afterwards.
 
 use std::sync::Arc;
 use std::sync::OnceLock;

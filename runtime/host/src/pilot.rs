@@ -66,8 +66,8 @@ pub trait Pilot {
     /// run.
     fn record(&mut self) {}
 
-    /// Removes and returns the causes of the last turn besides the robot's output, in order. With these causes and the
-    /// outputs, the run can be repeated.
+    /// Removes and returns the changes that influenced the last turn, besides the robot's output, in order. With these
+    /// changes and the outputs, the run can be repeated.
     fn take_changes(&mut self) -> Vec<Change> {
         Vec::new()
     }

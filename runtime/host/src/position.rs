@@ -1,4 +1,4 @@
-//! A plan and the position in it, behind interfaces without their types.
+//! Interfaces to a plan and to the position in it, without the types of the plan and the robot.
 
 use mdle_runtime::{Frame, Fsm, Machine, Nanos, Plan, Words};
 
@@ -12,7 +12,7 @@ pub trait Texts {
     fn condition(&self, scope: u32) -> &str;
     /// Returns the name of a scope, by its bracket; empty for an atom.
     fn name(&self, scope: u32) -> &str;
-    /// Returns the words and places of the plan's text, if the plan has a text.
+    /// Returns the plan's source text for reports; it may be empty.
     fn source(&self) -> &dyn Words;
     /// Returns the names of the paths that the plan's laws replay.
     fn paths(&self) -> &[&'static str];

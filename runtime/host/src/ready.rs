@@ -66,7 +66,7 @@ pub(crate) fn ready<'p>(
     opened.unwrap_or_else(bug_before)
 }
 
-/// The files of a plan.
+/// Files that a run reads for its plan.
 #[derive(Clone, Copy)]
 pub(crate) struct KnownFiles<'a> {
     /// Files that the program has read for the plan.
@@ -127,7 +127,8 @@ fn begun(
     Ok(RunLog::new(format, options.log_best_effort))
 }
 
-/// Opens a file that the run writes if the options request it, and leaves it unchanged.
+/// Opens the file at `path`, which the run will write, but leaves it unchanged; returns `None` if there is no path.
+/// Error messages call the file `what`.
 fn untouched<'p>(what: &str, path: Option<&'p Path>) -> Result<Option<UnchangedFile<'p>>, Refusal> {
     let refused =
         |path: &Path, error| Refusal::Usage(format!("the {what} {} cannot be written: {error}", path.display()));
@@ -139,7 +140,8 @@ pub(crate) fn bug_before<T>(Panicked(message): Panicked) -> Result<T, Refusal> {
     Err(Refusal::Fault(format!("the robot's code panicked before it ran, which is a bug: {message}")))
 }
 
-/// Returns `true` if a person may be watching; at the fastest pace, cheap writing is more important.
+/// Returns `true` unless the run has the fastest pace. At other paces a person may be watching; at the fastest pace,
+/// cheap writing is more important.
 pub(crate) fn is_watched(time: Time) -> bool {
     match time {
         Time::Wall | Time::Stepped(Pace::Times(_)) => true,

@@ -30,7 +30,7 @@ pub(crate) struct Record<W = Outlet> {
     begin: Begin,
     /// Output of the turn, the input that the plan requested, and the input that is sent.
     exact: Option<(Sensed, Twist, Twist)>,
-    /// Causes of the turn besides its output.
+    /// Changes that influenced the turn, besides its output.
     changes: Vec<Change>,
     has_begun: bool,
     /// `true` if each second of the run is written to the file at once; `false` at the fastest pace.
@@ -56,7 +56,7 @@ pub(crate) struct UnmadeTurn<'a> {
 }
 
 impl<W: Write> Record<W> {
-    /// A record to `file` of a run that begins.
+    /// Returns the record of a run that begins, which is written to `file`.
     pub(crate) fn new(file: W, begin: Begin, prompt: bool) -> Self {
         let (frames, bytes, intervention) = (Frames::default(), Vec::new(), String::new());
         let flushed = Nanos::ZERO;
@@ -64,7 +64,7 @@ impl<W: Write> Record<W> {
         Self { file, frames, begin, exact: None, changes, has_begun: false, prompt, flushed, bytes, intervention }
     }
 
-    /// Stores the output and the input of a turn, and the causes of the turn besides the output.
+    /// Stores the output and the input of a turn, and the changes that influenced the turn besides the output.
     pub(crate) fn take(&mut self, exact: Option<Exact<'_>>, changes: Vec<Change>) {
         self.exact = exact.map(|Exact { y, asked, sent }| (*y, asked, sent));
         self.changes = changes;
@@ -97,7 +97,7 @@ impl<W: Write> Record<W> {
         self.written(unmade)
     }
 
-    /// Writes the beginning, unless a turn was written.
+    /// Writes the beginning of the record, unless it was written with a turn.
     ///
     /// # Errors
     /// Fails if the file cannot be written.

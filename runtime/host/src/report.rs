@@ -26,11 +26,12 @@ pub(crate) struct Report<'a> {
     course: Course,
     /// End of the plan; `None` until the plan has ended.
     over: Option<Over>,
-    /// The strength and the rule of the intervention that was reported last, if it lasts.
+    /// Strength and rule of the intervention in the last turn; `None` if there was none, or if it only limited an
+    /// input.
     last_verdict: Option<(Verdict, String)>,
     /// The rules that have limited an input.
     limiting: Vec<String>,
-    /// The holds of each rule.
+    /// Counters of the rules that have held the robot, so that only the first times are reported.
     holds: Holds,
 }
 
@@ -119,9 +120,9 @@ impl<'a> Report<'a> {
         self.line(t, &line);
     }
 
-    /// Reports the supervisor's part in the turn at time `t`, unless it equals that in the previous turn. A rule that
-    /// limits inputs is reported only once, because it may start and stop with every turn, and a rule that holds the
-    /// robot again and again only at first.
+    /// Reports the supervisor's intervention in the turn at time `t`, unless it is the same as in the previous turn. A
+    /// rule that limits inputs is reported only once, because it may start and stop with every turn. A rule that holds
+    /// the robot again and again is reported only the first times.
     pub(crate) fn supervised(&mut self, t: Nanos, supervised: &Supervised) {
         let intervention = supervised.intervention();
         if let Some(limit) = intervention.filter(|it| it.verdict == Verdict::Limited)
@@ -193,7 +194,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Closes the report after an error: a report is not a reason for stopping a robot.
+    /// Closes the report if writing it failed, because a report is not a reason for stopping a robot.
     fn note(&mut self, written: io::Result<()>) {
         if let Err(error) = written {
             self.state = ReportState::Closed((error.kind() != io::ErrorKind::BrokenPipe).then_some(error));

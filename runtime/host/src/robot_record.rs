@@ -14,7 +14,7 @@ use crate::record::{Record, UnmadeTurn};
 use crate::supervised::Supervised;
 use crate::transitions::Transitions;
 
-/// The record of a robot that is being written. Each second of the run reaches the file when it is over.
+/// The record of a robot that is being written. Each second of the run is written to the file when the second is over.
 pub struct RobotRecord(Record<RecordFile<File>>);
 
 /// A turn, for the record of a robot.
@@ -37,12 +37,12 @@ pub struct RobotTurn<'a> {
     pub begins: Option<&'a str>,
     /// Transitions of the turn.
     pub transitions: &'a Transitions,
-    /// Causes of the turn besides its output.
+    /// Changes that influenced the turn, besides its output.
     pub changes: Vec<Change>,
 }
 
 impl RobotRecord {
-    /// Creates the file of a record, or empties the file that has its name.
+    /// Creates the file of a record, or truncates an existing file.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -77,8 +77,8 @@ impl RobotRecord {
         }
     }
 
-    /// Completes the record, whose last turn had this number, with the cause of the end. The output at this time
-    /// begins a record without turns.
+    /// Completes the record with the cause of the end at time `t`; `number` is the number of the last turn. The output
+    /// `y` begins the record if it has no turns.
     ///
     /// # Errors
     /// Fails if the file cannot be written.

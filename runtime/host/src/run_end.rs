@@ -43,11 +43,11 @@ pub(crate) enum RunEnd {
     Safety(String),
     /// A signal requested the end.
     Signal(Signal),
-    /// The first exchange failed, before any law was applied, with the robot's sentence.
+    /// The first exchange failed, before any law was applied, with this message of the robot.
     Unstarted(String),
-    /// An exchange failed, with the robot's sentence.
+    /// An exchange failed, with this message of the robot.
     Robot(String),
-    /// An exchange failed, with the robot's sentence, and then the stop failed too.
+    /// An exchange failed, with this message of the robot, and then the stop failed too.
     Unstopped(String),
     /// The run log could not be written, for this reason.
     Log(String),
@@ -69,9 +69,9 @@ pub(crate) enum RunEnd {
 impl RunEnd {
     /// Returns the exit status of the executable, given the faults after the end of the turns.
     ///
-    /// A robot that could not be stopped in good order, or an incomplete log, is a fault after any end. A file that
-    /// [`Observer::finish`](crate::Observer::finish) could not write is a fault only after the end of the plan: any
-    /// other reason for the end is more important.
+    /// A robot that could not be stopped in good order, or an incomplete log, is a fault after any end. A driven path,
+    /// or a file of [`Observer::finish`](crate::Observer::finish), that could not be written is a fault only after the
+    /// end of the plan: any other reason for the end is more important.
     pub(crate) fn status(&self, faults: &[RunFault]) -> u8 {
         let grave = faults.iter().any(|fault| match fault {
             RunFault::Exchange(_) | RunFault::Log(_) | RunFault::Stop(_) => true,
@@ -96,9 +96,9 @@ impl RunEnd {
         }
     }
 
-    /// Returns this end after a stop that failed for the reason `stop`, if it failed, and the reason if it must still
-    /// be reported. After a failed exchange it is not reported, because the exchange's error is sufficient and mostly
-    /// the same.
+    /// Combines this end with the reason `stop` for which the stop failed, if it failed. Returns the resulting end, and
+    /// the reason if it must still be reported. After a failed exchange the reason is not reported, because the
+    /// exchange's error is sufficient and mostly the same.
     pub(crate) fn with_stop(self, stop: Option<String>) -> (Self, Option<String>) {
         match (self, stop) {
             (Self::Unstarted(fault) | Self::Robot(fault), Some(_)) => (Self::Unstopped(fault), None),
@@ -106,8 +106,9 @@ impl RunEnd {
         }
     }
 
-    /// Returns `true` if the robot still accepts inputs. No input is sent after a failed exchange, or after a panic,
-    /// which leaves the robot in an unknown state; the stop command is sent in any case.
+    /// Returns `true` if the robot still accepts inputs. No input is sent after a failed exchange, after too long a
+    /// time without a command, or after a panic, which leaves the robot in an unknown state; the stop command is sent
+    /// in any case.
     pub(crate) fn robot_listens(&self) -> bool {
         match self {
             Self::Over
@@ -229,9 +230,9 @@ pub(crate) enum RunFault {
     Log(io::Error),
     /// The driven path could not be written completely.
     Path(io::Error),
-    /// The stop command could not be delivered, or the robot did not stop, with the robot's sentence.
+    /// The stop command could not be delivered, or the robot did not stop, with this message of the robot.
     Stop(String),
-    /// Files of the robot could not be written, with the robot's sentence.
+    /// Files of the robot or of the views could not be written, with this message.
     Finish(String),
 }
 

@@ -24,7 +24,7 @@ pub(crate) struct RunLog {
     has_ended: bool,
     /// Time of the last turn.
     t: Nanos,
-    /// A message about that end which nobody has seen yet.
+    /// Message that the log has ended before the run, until [`RunLog::take_message`] returns it.
     message: Option<String>,
 }
 
@@ -56,7 +56,7 @@ impl RunLog {
         }
     }
 
-    /// Stores the output and the input of a turn, and the causes of the turn besides the output.
+    /// Stores the output and the input of a turn, and the changes that influenced the turn besides the output.
     pub(crate) fn take(&mut self, exact: Option<Exact<'_>>, changes: Vec<Change>) {
         match &mut self.format {
             Format::Lines(_) => {}

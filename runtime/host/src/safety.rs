@@ -1,4 +1,4 @@
-//! Protection against panics in code of the robot and of the plan: a panic becomes a value, so that the robot is
+//! Protects a run against panics in code of the robot and of the plan: a panic becomes a value, so that the robot is
 //! stopped.
 
 use std::any::Any;

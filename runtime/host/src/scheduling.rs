@@ -1,5 +1,5 @@
-//! Protection against other programs that would make turns late: real-time scheduling, and memory that is not paged
-//! out.
+//! Protects turns against other programs that would make them late, by real-time scheduling and by memory that is not
+//! paged out.
 
 use rustix::mm::{MlockAllFlags, mlockall};
 use thread_priority::{

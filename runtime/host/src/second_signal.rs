@@ -1,4 +1,4 @@
-//! Handling of a second signal: it ends a program that hangs, but not before the stop of the robot was attempted.
+//! Handles a second signal, which ends a program that hangs, but not before an attempt to stop the robot.
 
 use std::io;
 use std::thread::{self, Builder};

@@ -78,7 +78,7 @@ impl Signal {
         self.0 >= REAL_TIME.0
     }
 
-    /// Returns `true` if a program that was started with this signal ignored keeps ignoring it.
+    /// Returns `true` if the program keeps ignoring this signal when the signal was ignored at its start.
     ///
     /// `nohup` requires that. But a script's shell starts background jobs with SIGINT and SIGQUIT ignored, which is not
     /// intended: a person who presses Ctrl-C wants the robot to stop.
@@ -145,8 +145,8 @@ impl Signals {
         }
     }
 
-    /// Lets signals only be recorded from now on, because the robot must be stopped first. From now on, output does not
-    /// delay a robot in real time.
+    /// Stops signals from ending the program: from now on they are only recorded, because the robot must be stopped
+    /// first. From now on, output does not delay a robot in real time.
     pub(crate) fn robot_runs(&self, time: Time) {
         self.deadly.store(false, Ordering::SeqCst);
         if time == Time::Wall {
@@ -203,7 +203,7 @@ impl Signals {
         }
     }
 
-    /// Ends the process as the system does by default for this signal.
+    /// Records this signal as if it had arrived.
     #[cfg(test)]
     pub(crate) fn raise(&self, signal: Signal) {
         self.caught.store(usize::from(signal.number()), Ordering::SeqCst);

@@ -79,7 +79,8 @@ impl Summary<'_> {
         self.runs.iter().filter(|run| run.outcome.is_good())
     }
 
-    /// Returns the median time of the runs that ended as required, and the slowest of these runs.
+    /// Returns the median time of the runs that ended as required, and the slowest of these runs; `None` if there are
+    /// none.
     fn times(&self) -> Option<(Nanos, &EndedRun)> {
         let mut good: Vec<&EndedRun> = self.good().collect();
         // The first of equals is the one with the first seed: sorting keeps their order.

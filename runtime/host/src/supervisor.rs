@@ -97,9 +97,9 @@ pub enum Verdict {
     Limited,
     /// The robot is prevented from driving forwards; the plan continues.
     HeldForward,
-    /// The robot is prevented from what the plan requests; the plan continues.
+    /// The robot is prevented from doing what the plan requests; the plan continues.
     Held,
-    /// The next turn is the first turn of another plan, with this number among [`Supervision::diversions`].
+    /// The next turn is the first turn of another plan, which [`Supervision::diversions`] creates for this number.
     Diverted(usize),
     /// The plan is ended, and the robot is stopped.
     Ended,
@@ -151,7 +151,7 @@ pub struct Break<'b, B: Pilot> {
     pub turns: u64,
     /// Time of the last turn; zero before the first turn.
     pub t: Nanos,
-    /// Output of the last turn; before the first turn, the output for it.
+    /// Output of the last turn; at the break before the first turn, the output for the first turn.
     pub y: &'b PilotOutput<B>,
     /// Input that the robot will be sent next.
     pub input: &'b PilotInput<B>,

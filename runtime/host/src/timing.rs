@@ -51,7 +51,7 @@ impl Timing {
         Self { period, late: Counts::default(), took: Counts::default(), overruns: 0, in_a_row: 0 }
     }
 
-    /// Records the start of a turn, `late` nanoseconds after its time.
+    /// Records the start of a turn, `late` nanoseconds after its scheduled time.
     pub(crate) fn begins(&mut self, late: u64) {
         self.late.add(late);
     }

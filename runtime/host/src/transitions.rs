@@ -5,7 +5,7 @@ use mdle_runtime::{Measured, Transition, Watch};
 /// The transitions of a turn, for reports. The plan, which has their texts, is not accessible while they are made.
 #[derive(Debug, Default)]
 pub struct Transitions {
-    /// Transitions in order, each with the number of operands up to its own.
+    /// Transitions in order, each with the total number of operands of all transitions up to and including it.
     transitions: Vec<(Transition, usize)>,
     operands: Vec<Operand>,
 }

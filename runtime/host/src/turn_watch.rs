@@ -19,7 +19,7 @@ const LOOK: Duration = Duration::from_millis(100);
 /// Maximum number of checks that find the same turn, after which the program ends. Checks are counted instead of time,
 /// because a suspended computer makes no checks.
 const LOOKS: u32 = 100;
-/// Time in which the program's writers can write text that they received before.
+/// Time before the program ends, in which its writers can write the text that they have already received.
 const LAST_LINES: Duration = Duration::from_millis(300);
 
 /// Runs of a program, whose turns another thread watches.
@@ -169,7 +169,7 @@ mod tests {
     use super::*;
     use crate::Pace;
 
-    /// Looks this many times; returns the first turn that has not ended in time.
+    /// Checks all turns `times` times; returns the number of the first turn that is found not to have ended in time.
     fn looked(watch: &TurnWatch, times: u32) -> Option<u64> {
         (0..times).find_map(|_| watch.look()).map(|hung| hung.turn)
     }

@@ -96,8 +96,8 @@ impl Watch {
         (self.now.touches, self.now.contacts) = (touches, contacts);
     }
 
-    /// A turn was made: shows it, if it is time to show anything. Where the walls are not known, `heard` are the places
-    /// of all echoes so far.
+    /// Shows a turn, if it is time for a new picture. If the walls are not known, `echoes` are the places of all echoes
+    /// so far.
     pub fn turned(&mut self, standing: &PlanPosition<'_>, echoes: &[Place]) {
         if self.shown.is_some_and(|shown| shown.elapsed() < EVERY) {
             return;

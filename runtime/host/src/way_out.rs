@@ -1,4 +1,4 @@
-//! The end of a run: the robot is stopped, and then the cause of the end and all faults are reported.
+//! Ends a run: stops the robot, and then reports the cause of the end and all faults.
 
 use std::io::{self, Write};
 

@@ -57,7 +57,7 @@ impl WholeFile {
         Ok(Self { path, unfinished })
     }
 
-    /// Writes the file; an error calls it `what`.
+    /// Writes the file; error messages call it `what`.
     ///
     /// # Errors
     /// Returns a sentence for the user if the file cannot be written.
@@ -103,7 +103,7 @@ impl<W: Write> Unfinished<W> {
         }
     }
 
-    /// Puts the file in its place; an error calls it `what`.
+    /// Completes the file and moves it to its path; error messages call it `what`.
     ///
     /// # Errors
     /// Returns a sentence for the user if the file cannot be written.

@@ -1,9 +1,9 @@
-//! An executable in which panics abort is refused: the robot would not be stopped.
+//! Tests that an executable in which panics abort does not compile, because a panic would not stop the robot.
 #![allow(clippy::unwrap_used, reason = "what fails here is the test")]
 
 use std::process::Command;
 
-/// Returns `true` if the check compiles with this setting of panics, and the messages of rustc.
+/// Returns `true` if the check compiles with this panic strategy, and the messages of rustc.
 fn compiled(panic: &str) -> (bool, String) {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let mut command = Command::new(rustc);

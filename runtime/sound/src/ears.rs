@@ -1,4 +1,4 @@
-//! The signals of two ears in a room, from where the robot is, one stretch after the other.
+//! Computes the signals of two ears in a room, block by block, at the current pose of the robot.
 
 use microfft::Complex32;
 use microfft::complex::cfft_16384;
@@ -8,11 +8,11 @@ use crate::room::SoundRoom;
 use crate::source::{RandomStream, SoundSource, SourceSignal};
 use crate::{RATE, SPEED, WINDOW};
 
-/// Length of the transform by which sources and responses are convolved.
+/// Length, in samples, of the Fourier transform with which sources are convolved with responses.
 const LENGTH: usize = 16_384;
 /// Maximum length of a room's response, in samples.
 const LONGEST: usize = LENGTH - WINDOW;
-/// Purposes of random numbers: that of the microphones, and the first of the sources.
+/// Number of the random stream of the microphones' noise. The streams from `SOURCES` on are those of the sources.
 const MICROPHONES: u64 = 0;
 const SOURCES: u64 = 1;
 
@@ -40,7 +40,8 @@ pub struct Ears {
 }
 
 impl Ears {
-    /// Returns ears that have heard nothing yet. Noise and sources are drawn by `seed`.
+    /// Returns ears that have heard nothing yet. `seed` determines the noise of the microphones and the signals of the
+    /// sources.
     #[must_use]
     pub fn new(head: SphericalHead, room: SoundRoom, sources: &[SoundSource], seed: u64) -> Self {
         let signal = |(purpose, source): (u64, &SoundSource)| (*source, SourceSignal::new(source.kind, seed, purpose));
@@ -49,13 +50,13 @@ impl Ears {
         Self { head, room, sources, chance: RandomStream::new(seed, MICROPHONES), noise: 1.0, under_way }
     }
 
-    /// Sets the loudness of the microphones' own noise, 1 by default, by which levels of sources count.
+    /// Sets the loudness of the microphones' own noise. The default is 1, to which the levels of sources refer.
     #[must_use]
     pub fn with_noise(self, noise: f64) -> Self {
         Self { noise, ..self }
     }
 
-    /// Appends the next `count` samples of the left and the right ear, which are here meanwhile.
+    /// Appends the next `count` samples of the left and the right ear, while the head is at the pose `here`.
     pub fn hear(&mut self, here: &EarPose, count: usize, samples: &mut Vec<[f32; 2]>) {
         let mut left = count;
         while left > 0 {
@@ -77,7 +78,7 @@ impl Ears {
         }
     }
 
-    /// Sends a stretch of the sound of a source on its way.
+    /// Adds the next `stretch` samples of source `number`, as both ears will hear them, to the sound that is under way.
     fn emit(&mut self, number: usize, here: &EarPose, stretch: usize) {
         let Some((source, signal)) = self.sources.get_mut(number) else { return };
         // At 2 m half of the pressure at 1 m.
@@ -99,7 +100,8 @@ impl Ears {
         }
     }
 
-    /// Returns the response of both ears to a source.
+    /// Returns the impulse response of both ears at the pose `here` to a source at this place: the left ear as the real
+    /// part, the right ear as the imaginary part.
     fn response(&self, source: (f64, f64), here: &EarPose) -> Vec<Complex32> {
         let mut response = vec![Complex32::default(); LENGTH];
         let (sin, cos) = libm::sincos(here.heading);
@@ -119,7 +121,7 @@ impl Ears {
     }
 }
 
-/// Transforms in place.
+/// Computes the Fourier transform in place.
 // Inlined three times into `emit`, its nested loops take LLVM minutes to optimize.
 #[inline(never)]
 fn transform(values: &mut [Complex32]) {

@@ -1,4 +1,5 @@
-//! The angle of a source off straight ahead, from the delay between two ears (paper, equation 7).
+//! Estimates the angle between straight ahead and the direction of a source, from the delay between two ears (paper,
+//! equation 7).
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -8,38 +9,39 @@ use num_complex::Complex64;
 
 use crate::{RATE, SPEED, WINDOW};
 
-/// Length of the transform.
+/// Length of the Fourier transform, in samples.
 const LENGTH: usize = 8192;
-/// Bins that count: from 500 to 4000 Hz.
+/// Bins of the spectrum that the estimator uses: 500 to 4000 Hz.
 const BAND: std::ops::RangeInclusive<usize> = 93..=743;
-/// Steps of the correlation in a sample.
+/// Number of delays per sample at which the correlation is computed.
 const FINE: usize = 4;
 /// Exponent of the whitening: 0 is plain correlation, 1 the phase transform.
 const WHITENING: f64 = 0.7;
-/// Ratio of the radius of equation 7 to that of the head: the equation is a law of high frequencies.
+/// Ratio of the radius in equation 7 to the radius of the head. It is not 1, because the equation holds for high
+/// frequencies.
 const WIDER: f64 = 1.05;
-/// Part of the greatest delay of a head up to which delays are tried.
+/// Largest delay that is tried, as a multiple of the largest delay by equation 7.
 const MARGIN: f64 = 1.08;
 
-/// The estimator of a head.
+/// Estimator of the direction of a source, for a head with a given radius.
 #[derive(Debug, Clone)]
 pub struct Estimator {
     /// Hann window.
     window: Vec<f32>,
-    /// Complex numbers of length 1, a full turn in `LENGTH * FINE` steps.
+    /// Complex numbers of modulus 1: a full turn in `LENGTH * FINE` steps.
     turns: Vec<Complex64>,
-    /// Number of fine steps of the greatest delay that is tried.
+    /// Largest delay that is tried, in steps of the correlation.
     most: usize,
-    /// Angle of a delay of one fine step by equation 7 without its sine, in radians.
+    /// Sum of the angle and its sine in equation 7, in radians, for a delay of one step of the correlation.
     unit: f64,
 }
 
-/// An estimate.
+/// An estimated direction of a source.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// Angle off straight ahead, to the left, in radians from -π/2 to π/2.
+    /// Angle from straight ahead to the left, in radians from -π/2 to π/2.
     pub angle: f64,
-    /// Maximum of the correlation over the root of its mean square.
+    /// Ratio of the maximum of the correlation to its root mean square.
     pub ratio: f64,
 }
 
@@ -62,8 +64,8 @@ impl Estimator {
         }
     }
 
-    /// Estimates the angle from the last [`WINDOW`] samples of the left and the right ear; `None` if there are less,
-    /// or one of the ears is silent.
+    /// Estimates the angle from the last [`WINDOW`] samples of the left and the right ear; returns `None` if there are
+    /// fewer samples, or if one of the ears is silent.
     #[must_use]
     pub fn estimate(&self, samples: &[[f32; 2]]) -> Option<Estimate> {
         let newest = samples.get(samples.len().checked_sub(WINDOW)?..)?;
@@ -92,7 +94,7 @@ impl Estimator {
         Some(Estimate { angle: angle(delay * self.unit), ratio: 2.0 * peak / libm::sqrt(2.0 * square) })
     }
 
-    /// Returns the band of one ear's spectrum.
+    /// Returns one ear's spectrum in the band that the estimator uses.
     fn spectrum(&self, samples: &[[f32; 2]], ear: usize) -> Vec<Complex64> {
         let mut windowed = Box::new([0.0; LENGTH]);
         for ((value, sample), window) in windowed.iter_mut().zip(samples).zip(&self.window) {
@@ -103,8 +105,8 @@ impl Estimator {
         band.iter().map(|bin| Complex64::new(f64::from(bin.re), f64::from(bin.im))).collect()
     }
 
-    /// Returns the correlation at the delays of the left ear from `-most` to `most` fine steps: half of it, as the
-    /// negative frequencies are left out.
+    /// Returns half the correlation at the delays of the left ear from `-most` to `most` steps. The negative
+    /// frequencies, which contribute the other half, are left out.
     fn correlation(&self, weighted: &[Complex64]) -> Vec<f64> {
         let mut both = vec![0.0; 2 * self.most + 1];
         for step in 0..=self.most {
@@ -125,13 +127,13 @@ impl Estimator {
     }
 }
 
-/// Returns a bin of the cross spectrum, whitened.
+/// Returns the whitened value of a bin of the cross spectrum.
 fn weight(cross: Complex64) -> Complex64 {
     let square = cross.norm_sqr();
     if square > 0.0 { cross * libm::pow(square, -WHITENING / 2.0) } else { cross }
 }
 
-/// Solves equation 7 for the angle: `delay` is the sum of angle and sine.
+/// Solves equation 7 for the angle: `delay` is the sum of the angle and its sine.
 fn angle(delay: f64) -> f64 {
     if delay.abs() >= 1.0 + FRAC_PI_2 {
         return FRAC_PI_2.copysign(delay);
@@ -149,7 +151,7 @@ mod tests {
     use super::*;
     use crate::source::RandomStream;
 
-    /// Noise in both ears, the right one `late` samples after the left.
+    /// Returns noise in both ears, which the right ear hears `late` samples after the left ear.
     fn delayed(late: usize) -> Vec<[f32; 2]> {
         let mut chance = RandomStream::new(3, 0);
         let noise: Vec<_> = (0..WINDOW + late).map(|_| chance.noise() as f32).collect();

@@ -1,13 +1,13 @@
-//! The gate of an estimator: estimates of little certainty are dropped, as long as there are better ones.
+//! Drops uncertain estimates, as long as there are better ones.
 
-/// Ratio that an estimate needs while others are kept.
+/// Limit of the ratio after an estimate was kept.
 const HIGHEST: f64 = 7.0;
-/// Ratio that an estimate needs when none was kept for long.
+/// Minimum limit of the ratio, after no estimate was kept for some time.
 const LOWEST: f64 = 3.5;
-/// Fall of the ratio in a second in which no estimate is kept.
+/// Decrease of the limit per second in which no estimate is kept.
 const FALL: f64 = 1.4;
 
-/// A gate by the ratio of the greatest correlation to the root of its mean square.
+/// Gate that keeps an estimate if the ratio of the maximum of its correlation to the root mean square exceeds a limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RatioGate {
     limit: f64,
@@ -20,8 +20,8 @@ impl Default for RatioGate {
 }
 
 impl RatioGate {
-    /// Returns `true` if an estimate with this ratio is kept. `seconds` is the time since the previous samples, by
-    /// which the limit falls while nothing is kept.
+    /// Returns `true` if an estimate with this ratio is kept. `seconds` is the time since the previous samples; the
+    /// limit falls with this time while nothing is kept.
     pub fn keeps(&mut self, ratio: f64, seconds: f64) -> bool {
         let keeps = ratio > self.limit;
         self.limit = if keeps { HIGHEST } else { (self.limit - FALL * seconds).max(LOWEST) };

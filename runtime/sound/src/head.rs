@@ -1,5 +1,5 @@
-//! The sound at the surface of a hard sphere, by the exact series (Kuhn, "Model for the interaural time differences in
-//! the azimuthal plane", 1977), as impulse responses.
+//! Computes the sound at the surface of a hard sphere as impulse responses, by the exact series (Kuhn, "Model for the
+//! interaural time differences in the azimuthal plane", 1977).
 
 use std::f64::consts::PI;
 
@@ -9,21 +9,22 @@ use crate::{RATE, SPEED};
 
 /// Length of a response, in samples.
 pub(crate) const TAPS: usize = 128;
-/// Samples by which a response is late, so that it can begin before the sound reaches the centre of the head.
+/// Delay of a response, in samples, so that the response can begin before the sound reaches the centre of the head.
 pub(crate) const LATE: usize = 40;
-/// Length of the transform by which a response is computed.
+/// Length, in samples, of the Fourier transform with which a response is computed.
 const PERIOD: usize = 256;
 /// Maximum number of terms of the series.
 const TERMS: usize = 200;
-/// Frequencies in Hz between which a response falls to nothing, so that it is short.
+/// Frequencies, in Hz, between which the spectrum of a response falls to zero, so that the response is short.
 const FALL: (f64, f64) = (12_000.0, 18_000.0);
-/// Angles of incidence, one a degree.
+/// Number of angles of incidence: one for each degree from 0 to 180.
 const ANGLES: usize = 181;
 
 /// A hard spherical head with a microphone at each end of a diameter.
 #[derive(Debug, Clone)]
 pub struct SphericalHead {
-    /// Response at each degree between the direction of the sound and that of the microphone.
+    /// Response for each angle, in whole degrees, between the direction of the sound and the direction of the
+    /// microphone.
     responses: Vec<[f32; TAPS]>,
 }
 
@@ -37,8 +38,8 @@ impl SphericalHead {
         Self { responses: responses.collect() }
     }
 
-    /// Returns the response of a microphone to a sound; `cosine` is that of the angle between the directions of the
-    /// microphone and of the sound.
+    /// Returns the response of a microphone to a sound; `cosine` is the cosine of the angle between the directions of
+    /// the microphone and of the sound.
     pub(crate) fn response(&self, cosine: f64) -> &[f32; TAPS] {
         const SILENT: [f32; TAPS] = [0.0; TAPS];
         let degrees = libm::round(libm::acos(cosine.clamp(-1.0, 1.0)) * 180.0 / PI);
@@ -57,7 +58,7 @@ fn frequency(bin: usize) -> f64 {
     bin as f64 * f64::from(RATE) / PERIOD as f64
 }
 
-/// Returns the complex number of length 1 at this part of a full turn.
+/// Returns the complex number of modulus 1 whose angle is `part` of a full turn.
 fn turn(part: f64) -> Complex64 {
     let (sin, cos) = libm::sincos(2.0 * PI * part);
     Complex64::new(cos, sin)
@@ -108,8 +109,8 @@ impl Series {
         Self(factors)
     }
 
-    /// Returns the pressure at a place of the sphere over that of the undisturbed wave at its centre; an angle above 0
-    /// is a lead.
+    /// Returns the ratio of the pressure at a point of the sphere to the pressure of the undisturbed wave at the
+    /// sphere's centre; a positive phase is a lead.
     fn transfer(&self, cosine: f64) -> Complex64 {
         let (mut before, mut polynomial) = (0.0, 1.0);
         let mut sum = Complex64::new(0.0, 0.0);
@@ -123,7 +124,7 @@ impl Series {
     }
 }
 
-/// Returns the factor of an order by the slope of its Hankel function.
+/// Returns the factor of the Legendre polynomial of this order, from the derivative `slope` of its Hankel function.
 fn factor(order: usize, slope: Complex64, ka: f64) -> Complex64 {
     let power = match order % 4 {
         0 => Complex64::new(0.0, 1.0),
@@ -139,7 +140,8 @@ fn factor(order: usize, slope: Complex64, ka: f64) -> Complex64 {
 mod tests {
     use super::*;
 
-    /// Delay between two microphones at ±90° over that of equation 7, from the phases in a band weighted alike.
+    /// Returns the ratio of the delay between two microphones at ±90° to the delay by equation 7. The delay is measured
+    /// by the phases in a band, which have equal weights.
     fn over_equation_7(radius: f64, (from, to): (f64, f64), bearing: f64) -> f64 {
         let sin = libm::sin(bearing);
         let [left, right] = [sin, -sin];

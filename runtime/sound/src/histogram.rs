@@ -1,16 +1,17 @@
-//! A histogram of bearings in the axes of odometry, in which the true side of a head prevails over the mirrored one.
+//! A histogram of bearings in the axes of odometry, in which the true direction of a source prevails over the direction
+//! mirrored at the axis of the ears.
 
 use std::f64::consts::{PI, TAU};
 
-/// Bins of 5°.
+/// Number of bins, each of 5°.
 const BINS: usize = 72;
 /// Part of a bin that spreads to each neighbour in a turn, since the source may move.
 const SPREAD: f64 = 0.02;
-/// Part of everything that is forgotten in a turn.
+/// Part of all probabilities that is replaced by a uniform distribution in a turn.
 const FORGOTTEN: f64 = 0.02;
 /// Standard deviation of an estimate, in radians: 8°.
 const DEVIATION: f64 = 8.0 * PI / 180.0;
-/// Maximum and minimum likelihood of an estimate.
+/// Parameters of the likelihood of an estimate: the height of the bell curve, and the constant that is added to it.
 const LIKELY: (f64, f64) = (0.85, 0.015);
 
 /// Probabilities of the bearing of a source.
@@ -26,7 +27,7 @@ impl Default for Histogram {
 }
 
 impl Histogram {
-    /// Lets a turn pass, in which the source may have moved.
+    /// Updates the probabilities for a turn in which the source may have moved.
     pub fn pass(&mut self) {
         let before = self.bins;
         let at = |place: usize| before.get(place % BINS).copied().unwrap_or_default();
@@ -36,8 +37,8 @@ impl Histogram {
         }
     }
 
-    /// Takes an estimate of the angle off straight ahead, to the left and in radians, made at this heading. A head
-    /// cannot tell front from back: the angle is from -90° to 90°.
+    /// Updates the probabilities with an estimate, made at this heading, of the angle from straight ahead to the left,
+    /// in radians. A head cannot distinguish front from back: the angle is from -90° to 90°.
     pub fn take(&mut self, angle: f64, heading: f64) {
         for (place, bin) in self.bins.iter_mut().enumerate() {
             let off = (libm::asin(libm::sin(centre(place) - heading)) - angle) / DEVIATION;
@@ -47,7 +48,7 @@ impl Histogram {
         self.bins.iter_mut().for_each(|bin| *bin /= sum);
     }
 
-    /// Returns the most probable bearing, in radians: the centre of the greatest bin and its neighbours.
+    /// Returns the most probable bearing, in radians: the weighted mean of the greatest bin and its neighbours.
     #[must_use]
     pub fn bearing(&self) -> f64 {
         let at = |place: usize| self.bins.get(place % BINS).copied().unwrap_or_default();

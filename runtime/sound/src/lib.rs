@@ -23,11 +23,11 @@ pub use localizer::Localizer;
 pub use room::SoundRoom;
 pub use source::{SoundKind, SoundSource};
 
-/// Samples of each ear in a second.
+/// Sampling rate of each ear, in samples per second.
 pub const RATE: u32 = 44_100;
-/// Samples of each ear from which a bearing is estimated: a turn of 100 ms.
+/// Number of samples of each ear from which a bearing is estimated: a turn of 100 ms.
 pub const WINDOW: usize = 4_410;
 /// Speed of sound, in m/s.
 pub const SPEED: f64 = 343.0;
-/// Radius of the head unless another is given, in metres.
+/// Default radius of the head, in metres.
 pub const RADIUS: f64 = 0.0875;

@@ -1,4 +1,4 @@
-//! The bearing of a source from the signals of two microphones that turn with a robot.
+//! Estimates the bearing of a source from the signals of two microphones that turn with a robot.
 
 use crate::{Estimator, Histogram, RatioGate};
 
@@ -8,7 +8,7 @@ pub struct Localizer {
     estimator: Estimator,
     gate: RatioGate,
     histogram: Histogram,
-    /// Seconds since an estimate was kept; `None` before the first.
+    /// Time since an estimate was last kept, in seconds; `None` before the first one.
     silent: Option<f64>,
 }
 
@@ -20,8 +20,9 @@ impl Localizer {
         Self { estimator, gate, histogram, silent: None }
     }
 
-    /// Takes the newest samples of the left and the right ear, in the middle of which the robot had this heading, in
-    /// radians; `seconds` have passed since the previous call. Returns the estimated angle, if it was kept.
+    /// Updates the bearing with the newest samples of the left and the right ear. `heading` is the robot's heading in
+    /// the middle of these samples, in radians, and `seconds` is the time since the previous call. Returns the
+    /// estimated angle if the estimate was kept.
     pub fn take(&mut self, samples: &[[f32; 2]], heading: f64, seconds: f64) -> Option<f64> {
         self.histogram.pass();
         self.silent = self.silent.map(|silent| silent + seconds);
@@ -34,8 +35,8 @@ impl Localizer {
         Some(estimate.angle)
     }
 
-    /// Returns the most probable bearing, in radians, and the seconds since it was last confirmed; `None` before
-    /// anything was heard.
+    /// Returns the most probable bearing, in radians, and the time since an estimate was last kept, in seconds; `None`
+    /// before the first one.
     #[must_use]
     pub fn bearing(&self) -> Option<(f64, f64)> {
         self.silent.map(|silent| (self.histogram.bearing(), silent))

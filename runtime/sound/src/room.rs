@@ -1,15 +1,17 @@
-//! A room as a box with walls that reflect alike, by image sources (Allen and Berkley, 1979).
+//! Computes the reflections in a box-shaped room, all of whose walls reflect alike, by image sources (Allen and
+//! Berkley, 1979).
 
 use crate::SPEED;
 
 /// Height of the room, in metres.
 const HEIGHT: f64 = 2.7;
-/// Height of ears and sources above the floor, in metres: lower, the floor answers within the delays of a head.
+/// Height of ears and sources above the floor, in metres. At a smaller height, the echo of the floor would arrive
+/// within the delays of a head.
 const EARS: f64 = 1.2;
-/// Distance within which no sound gets louder, in metres.
+/// Minimum distance for the loudness of a source, in metres: a nearer source is no louder.
 const NEAREST: f64 = 0.2;
 
-/// Maximum number of reflections of sound that is heard.
+/// Maximum number of reflections of a sound that is still heard.
 const ORDER: i32 = 5;
 
 /// A room, or open air.
@@ -19,21 +21,21 @@ pub struct SoundRoom {
     corners: [(f64, f64); 2],
     /// Part of the pressure that a wall reflects.
     reflects: f64,
-    /// Length of the longest way of the sound that is heard, in metres; 0 in open air.
+    /// Maximum length of the path of a sound that is still heard, in metres; 0 in open air.
     longest: f64,
 }
 
-/// A source as it is heard directly or in walls.
+/// A source, or a mirror image of it in the walls, as a listener hears it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ImageSource {
     /// Vector from the listener, in metres.
     pub(crate) from: [f64; 3],
     pub(crate) distance: f64,
-    /// Pressure over that of the source at 1 m.
+    /// Ratio of the pressure at the listener to the pressure at a distance of 1 m from the source.
     pub(crate) pressure: f64,
 }
 
-/// An image along one axis: its place from the listener, and the number of reflections.
+/// An image along one axis: the coordinate relative to the listener, and the number of reflections.
 type Along = (f64, i32);
 
 impl SoundRoom {
@@ -46,9 +48,10 @@ impl SoundRoom {
         Self { corners: [(0.0, 0.0); 2], reflects: 0.0, longest: 0.0 }
     }
 
-    /// Returns the room over a rectangle, in metres, whose sound falls by 60 dB in `t60` seconds by Eyring's formula,
-    /// at most [`SoundRoom::T60_MOST`]. Sound that was reflected more than five times is left out, so its end is
-    /// missing.
+    /// Returns a room over the rectangle from `min` to `max`, in metres. Its reverberation time by Eyring's formula, in
+    /// which sound falls by 60 dB, is `t60` seconds, but at most [`SoundRoom::T60_MOST`]. Sound that was reflected more
+    /// than five times is left out, so that the end of the reverberation is missing. Returns open air unless `t60` and
+    /// the sides are above 0.
     #[must_use]
     pub fn new(min: (f64, f64), max: (f64, f64), t60: f64) -> Self {
         let (width, depth) = (max.0 - min.0, max.1 - min.1);

@@ -5,13 +5,13 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::RATE;
 
-/// Gain by which speech is as loud as white noise over a long time.
+/// Gain at which speech is as loud as white noise, averaged over a long time.
 const SPEECH_GAIN: f64 = 13.66;
 
 /// Kind of the sound of a source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SoundKind {
-    /// All frequencies alike, without a pause.
+    /// White noise without pauses.
     White,
     /// A pitch with overtones that fall by 6 dB an octave, in syllables with pauses.
     Speech,
@@ -22,13 +22,13 @@ pub enum SoundKind {
 pub struct SoundSource {
     /// Place on the floor, in metres.
     pub at: (f64, f64),
-    /// Kind of its sound.
+    /// Kind of the sound.
     pub kind: SoundKind,
-    /// Level at a distance of 2 m over that of the noise of a microphone, in dB.
+    /// Level of the sound at a distance of 2 m, relative to the noise of a microphone, in dB.
     pub level: f64,
 }
 
-/// Random numbers of a purpose.
+/// Stream of random numbers for one purpose.
 #[derive(Debug, Clone)]
 pub(crate) struct RandomStream(ChaCha8Rng);
 
@@ -39,14 +39,14 @@ impl RandomStream {
         Self(random)
     }
 
-    /// A number of mean 0 and variance 1, nearly normal: the sum of four even ones.
+    /// Returns a nearly normal random number of mean 0 and variance 1: the sum of four uniform random numbers.
     pub(crate) fn noise(&mut self) -> f64 {
         let bits = self.0.next_u64();
         let sum: u64 = (0..4).map(|part| bits >> (16 * part) & 0xffff).sum();
         (sum as f64 / 65_536.0 - 2.0) * 1.732
     }
 
-    /// A number from 0 to 1.
+    /// Returns a uniform random number from 0 to 1.
     pub(crate) fn even(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
@@ -67,7 +67,7 @@ struct Speech {
     pulse: f64,
     /// Time since the syllable began, and its length.
     syllable: (f64, f64),
-    /// Length of the pause after it.
+    /// Length of the pause after the syllable.
     pause: f64,
     /// Output of the low-pass.
     low: f64,

@@ -1,4 +1,5 @@
-//! Errors of the bearing of a source, over bearings, places and sounds, as the book promises them.
+//! Tests that the errors of the bearing of a source are as small as the book promises, for many bearings, places and
+//! sounds.
 #![allow(clippy::print_stdout, clippy::expect_used, reason = "a test prints its table, and fails by panicking")]
 
 use mdle_sound::{
@@ -7,12 +8,12 @@ use mdle_sound::{
 
 /// Floor of the room, in metres.
 const FLOOR: (f64, f64) = (7.0, 6.0);
-/// Places of the head in it.
+/// Places of the head in the room, in metres.
 const PLACES: [(f64, f64); 3] = [(2.6, 2.3), (3.0, 3.2), (4.1, 3.4)];
-/// Windows for each bearing and place, after one by which the room fills with sound.
+/// Number of windows for each bearing and place, after a first window in which the room fills with sound.
 const WINDOWS: usize = 20;
 
-/// A room, the distance of the source, its sound, and the level of the sound over the noise in dB.
+/// A room, the distance of the source, the kind of its sound, and the level of the sound relative to the noise in dB.
 #[derive(Debug, Clone, Copy)]
 struct Case {
     t60: f64,
@@ -21,7 +22,8 @@ struct Case {
     level: f64,
 }
 
-/// Root mean square of the errors that are kept, in degrees, and the part of the windows that is kept.
+/// Returns the root mean square error of the estimates that are kept, in degrees, and the part of the windows whose
+/// estimates are kept.
 fn judged(case: Case, places: &[(f64, f64)]) -> (f64, f64) {
     let (head, estimator) = (SphericalHead::new(RADIUS), Estimator::new(RADIUS));
     let room = if case.t60 > 0.0 { SoundRoom::new((0.0, 0.0), FLOOR, case.t60) } else { SoundRoom::open() };
@@ -61,7 +63,8 @@ fn noisy(ears: Ears, head: &SphericalHead, here: &EarPose, level: f64) -> Vec<[f
     samples.iter().zip(&noise).map(|(one, noise)| [0, 1].map(|ear| one[ear] + loudness * noise[ear])).collect()
 }
 
-/// Prints the error and the part that is kept, and checks both against bounds, in degrees and of 1.
+/// Prints the error and the part that is kept, and asserts that the error is at most `degrees` and the part at least
+/// `part`.
 fn errs_at_most(case: Case, degrees: f64, part: f64) {
     let (error, kept) = judged(case, &PLACES);
     println!("{case:?}: {error:.1}°, {:.0} % kept", 100.0 * kept);

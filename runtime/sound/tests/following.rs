@@ -1,4 +1,4 @@
-//! A robot that turns towards what it hears reaches the source, and what it hears is the same to the bit everywhere.
+//! Tests that a robot that turns towards a sound reaches its source, and that the ears hear the same bits everywhere.
 //!
 //! `MDLE_LONG=17 cargo test --release -p mdle-sound --test following -- --nocapture` drives 51 seeds of each sound.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, reason = "a test fails by panicking")]
@@ -12,11 +12,12 @@ const TURNS: u32 = 600;
 const ARRIVED: f64 = 0.8;
 /// Place of the source.
 const SOURCE: (f64, f64) = (5.5, 4.2);
-/// First seed, one by which nothing was chosen.
+/// First random seed of these tests. No parameter was chosen by means of these seeds.
 const FIRST: u64 = 9_800_000;
 
-/// Drives at 20 cm/s in a room without obstacles; returns the seconds until arrival, and the part of the time in which
-/// the bearing was within 15°. Each seed has a heading of its own at the start.
+/// Drives towards the estimated bearing at up to 20 cm/s, in a room without obstacles. Returns the seconds until
+/// arrival, or `None` if the robot did not arrive, and the part of the time in which the bearing was within 15°. The
+/// heading at the start depends on the seed.
 fn drive(kind: SoundKind, seed: u64) -> (Option<f64>, f64) {
     let source = SoundSource { at: SOURCE, kind, level: 10.0 };
     let room = SoundRoom::new((0.0, 0.0), (7.0, 6.0), 0.24);

@@ -1,18 +1,18 @@
-//! Readers that are slow, that have gone, and that take nothing.
+//! Tests with readers that are slow, that have closed the stream, and that read nothing.
 
 use std::io::{Read, pipe};
 
 use super::*;
 use crate::stop_request::StopRequest;
 
-/// The patience of a run in which a robot drives.
+/// Returns the patience of a run in which a robot is driven.
 fn driving() -> Patience {
     let patience = Patience::new(StopRequest::default());
     patience.robot_drives();
     patience
 }
 
-/// A piece of 10 KB.
+/// Returns a piece of text of 10 KB.
 fn piece(number: usize) -> Vec<u8> {
     format!("{number:9999}\n").into_bytes()
 }

@@ -20,7 +20,7 @@ impl Instants for ByHand {
 
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// The real time in milliseconds at which the next turn begins, when the current one took `took` milliseconds.
+/// Returns the real time, in milliseconds, at which the next turn begins if the current turn takes `took` milliseconds.
 fn next_after(clock: &mut Clock<ByHand>, took: u64) -> u128 {
     clock.instants.0 += Duration::from_millis(took);
     clock.next_turn(&Signals::unheard()).expect("no signal");

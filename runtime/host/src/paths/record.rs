@@ -9,7 +9,7 @@ use crate::background_writer::Outlet;
 /// A path that is being recorded.
 pub(crate) struct Recorder<W: Write = Outlet> {
     file: W,
-    /// Heading by odometry at the beginning of the plan.
+    /// Heading by odometry in the first row; `None` before it.
     begun: Option<Radians>,
     /// Result of writing. After an error nothing more is written, and the error is reported at the end: it is not a
     /// reason for stopping a robot.
@@ -33,7 +33,7 @@ impl<W: Write> Recorder<W> {
         }
     }
 
-    /// Passes the rest to the system.
+    /// Passes the remaining rows to the system.
     ///
     /// # Errors
     /// Fails if a row could not be written.

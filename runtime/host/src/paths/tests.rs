@@ -1,4 +1,4 @@
-//! Tests of the messages about files that hold no path, and that a recorded path is read as it was driven.
+//! Tests of the error messages for files without a valid path, and of paths that are recorded and read again.
 
 use std::fmt::Write as _;
 
@@ -98,13 +98,13 @@ fn invalid_utf8_has_its_place() {
     assert_eq!(place(b"time s\n\xc3\n"), Some((2, 1)));
 }
 
-/// Numbers by chance, the same in every run: between 0 and 1.
+/// Returns a pseudorandom number between 0 and 1; the numbers are the same in every run.
 fn chance(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*state >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// A drive by chance: times, headings and speeds.
+/// Returns a random drive: times, headings and speeds.
 fn drive(state: &mut u64) -> Vec<(Nanos, Radians, MetersPerSecond)> {
     let (mut t, mut heading) = (0, chance(state) * 6.0);
     let turns = 2 + (chance(state) * 50.0) as usize;
@@ -119,7 +119,7 @@ fn drive(state: &mut u64) -> Vec<(Nanos, Radians, MetersPerSecond)> {
         .collect()
 }
 
-/// The recording of a drive.
+/// Returns the recording of a drive.
 fn recorded(drive: &[(Nanos, Radians, MetersPerSecond)]) -> String {
     let mut file = Vec::new();
     let mut recorder = Recorder::new(&mut file);

@@ -1,4 +1,5 @@
-//! Text of a path: a header with the columns and their units, then a row for each setpoint; `#` begins a comment.
+//! Parses the text of a path: a header with the columns and their units, then a row for each setpoint; `#` begins a
+//! comment.
 
 use std::f64::consts::PI;
 use std::str::from_utf8;
@@ -35,7 +36,7 @@ pub(super) struct TextFault {
     pub(super) what: String,
 }
 
-/// Text between commas.
+/// A cell of a row: the text between two commas.
 #[derive(Debug, Clone, Copy)]
 struct Cell<'t> {
     place: (usize, usize),
@@ -47,7 +48,7 @@ impl Cell<'_> {
         TextFault { place: Some(self.place), what }
     }
 
-    /// Returns the number in the cell; messages call it `what`.
+    /// Returns the number in the cell; error messages call it `what`.
     fn number(&self, what: &str) -> Result<f64, TextFault> {
         match self.text.parse::<f64>() {
             _ if self.text.is_empty() => Err(self.wrong(format!("the {what} is missing"))),

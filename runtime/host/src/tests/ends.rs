@@ -1,4 +1,4 @@
-//! The end of a run: the causes of `--require`, the robot's goal, and the exit status.
+//! Tests of the end of a run: the causes of `--require`, the robot's goal, and the exit status.
 
 use mdle_runtime::Cause::{Completed, Fired};
 
@@ -6,7 +6,7 @@ use super::plan::ToyPlan;
 use super::toy::{Act, Run, Stage};
 use crate::Judgement;
 
-/// The lab, at once in its last atom, which ends by this cause.
+/// Returns a stage on which the plan `Lab` goes to its last atom in its first turn and then ends by this cause.
 fn ended(cause: mdle_runtime::Cause) -> Stage {
     Stage::script([Act::Senses(vec![(0, Fired(1)), (1, Fired(1))]), Act::Senses(vec![(3, cause)])])
 }

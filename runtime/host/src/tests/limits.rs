@@ -1,4 +1,4 @@
-//! Options: help, what is refused, period, timeout and turn limit.
+//! Tests of options: help, invalid options, period, timeout and turn limit.
 
 use std::time::Duration;
 
@@ -41,7 +41,7 @@ fn help_lists_all_options_and_opens_no_robot() {
     ");
 }
 
-/// The toy's outputs are of a type of its own.
+/// The outputs of the toy robot have a type of its own, without odometry.
 #[test]
 fn a_robot_without_known_odometry_has_no_views() {
     let refused = [&["--watch"][..], &["--plot", "run.svg"], &["--record", "run.svg"], &["--trail", "run.csv"]];

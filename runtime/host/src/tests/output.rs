@@ -10,7 +10,8 @@ use super::plan::ToyPlan;
 use super::toy::{Act, AsText, Run, Stage};
 use crate::{Pace, Refusal, Time};
 
-/// A tour through the plan: one interrupt, a completion in the same turn, and the end of a behavior.
+/// Returns a stage for a tour through the plan: one interrupt, a completion in the same turn, and the end of a
+/// behavior.
 fn tour() -> Stage {
     Stage::script([
         Act::Senses(vec![]),
@@ -21,7 +22,7 @@ fn tour() -> Stage {
     ])
 }
 
-/// A place for a log, at which nothing is yet.
+/// Returns a path for a log at which no file exists yet.
 fn fresh() -> PathBuf {
     static LOGS: AtomicU32 = AtomicU32::new(0);
     let name = format!("mdle-host-{}-{}.jsonl", std::process::id(), LOGS.fetch_add(1, Ordering::Relaxed));

@@ -1,11 +1,11 @@
-//! Plans by hand whose interrupts the toy robot's script fires.
+//! Handwritten plans whose interrupts fire according to the toy robot's script.
 
 use mdle_runtime::fsm::{Atom, Bracket};
 use mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Plan};
 
 use super::toy::Sensed;
 
-/// A plan by hand. The input of its atom number `a`, as written and from 0, is `a + 1`.
+/// A handwritten plan. The input of atom `a`, numbered as written from 0, is `a + 1`.
 #[derive(Debug, Clone)]
 pub(super) struct ToyPlan {
     brackets: Vec<Bracket>,
@@ -20,8 +20,8 @@ pub(super) struct ToyPlan {
 }
 
 impl ToyPlan {
-    /// `{ Lab (bumper) (Atom (atIsection 0100) go 20 0) { Turn (wait 10) (Atom (wait inf) rotate 90) (Atom (r3 < r5)
-    /// stop) } (Atom (heard "stop") null) }`, where `rotate` completes.
+    /// Returns `{ Lab (bumper) (Atom (atIsection 0100) go 20 0) { Turn (wait 10) (Atom (wait inf) rotate 90) (Atom (r3
+    /// < r5) stop) } (Atom (heard "stop") null) }`, where `rotate` completes.
     pub(super) fn lab() -> Self {
         Self {
             brackets: vec![
@@ -47,7 +47,7 @@ impl ToyPlan {
         Self { paths: vec!["hall"], ..self }
     }
 
-    /// `{ Spin (bumper) ((Atom (always) go 20 0))^inf }`: each turn is cut by the limit of transitions.
+    /// Returns `{ Spin (bumper) ((Atom (always) go 20 0))^inf }`: each turn is cut by the limit of transitions.
     pub(super) fn restless() -> Self {
         Self {
             brackets: vec![Bracket::scope(0, 0, 0, 0), Bracket::repeat(0, 0, 0, 0, 0, 0), Bracket::scope(1, 0, 0, 1)],

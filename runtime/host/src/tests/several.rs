@@ -19,7 +19,7 @@ use crate::signals::{Signal, Signals};
 use crate::turn_watch::TurnWatch;
 use crate::{Batch, Judgement, Observer};
 
-/// A robot whose run is decided by its seed: the plan's outermost interrupt fires in turn `seed`, if ever.
+/// A robot whose run depends on its seed: the plan's outermost interrupt fires in turn `seed`, if ever.
 struct Seeded {
     seed: u64,
     exchanges: u64,
@@ -79,7 +79,7 @@ struct Several {
 const FIVE: Several = Several { first: 1, runs: 5, jobs: 1, json: false, has_goal: true, require: &[] };
 
 impl Several {
-    /// The status of the batch, and its summary.
+    /// Runs the batch; returns its exit status and its summary.
     fn run(self, signals: &Signals) -> (u8, String) {
         let Self { first, runs, jobs, json, has_goal, require } = self;
         let heard = signals.share();

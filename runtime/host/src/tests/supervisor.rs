@@ -1,4 +1,5 @@
-//! Tests of supervisors: the inputs that pass them, the breaks at which they are called, and how they end a run.
+//! Tests of supervisors: the inputs that are passed to them, the breaks at which they are called, and how they end a
+//! run.
 
 use mdle_runtime::Cause::Fired;
 use mdle_runtime::Nanos;
@@ -6,7 +7,7 @@ use mdle_runtime::Nanos;
 use super::toy::{Act, Alone, Makes, Run, Sensed, Stage};
 use crate::{Break, Intervention, LimitedQuantity, Orders, Pace, RunTerms, Supervisor, Time, Verdict};
 
-/// A supervisor that halves inputs, intervenes in one turn, and ends the run at a break.
+/// A supervisor that adds 10 to each input, replaces the input by 0 in one turn, and ends the run at a break.
 #[derive(Default)]
 struct Strict {
     verdict: Option<(u64, Verdict)>,

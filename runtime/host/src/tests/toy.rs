@@ -1,4 +1,4 @@
-//! A robot that plays a script and keeps a journal, and the stage on which a run of it is watched.
+//! A robot that plays a script and keeps a journal, and the set-up in which tests run it.
 
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -25,13 +25,13 @@ use crate::{
     Supervisor, Target, Time,
 };
 
-/// An output: what fires while which atom, as written, is the current one.
+/// An output: for each atom, numbered as written, the cause by which a scope ends while the atom is the current one.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sensed(pub(super) Vec<(u32, Cause)>);
 
 impl Output for Sensed {}
 
-/// Action of the robot at one exchange; after the script it senses nothing for ever.
+/// Action of the robot at one exchange; after the end of the script, nothing fires.
 #[derive(Debug, Clone)]
 pub(super) enum Act {
     Senses(Vec<(u32, Cause)>),
@@ -40,7 +40,7 @@ pub(super) enum Act {
     Panics(&'static str),
 }
 
-/// Makes the supervisor of a run.
+/// Function that creates the supervisor of a run.
 pub(super) type Makes = fn(&RunTerms) -> Box<dyn Supervisor<Alone>>;
 
 /// The pilot of all runs.
@@ -52,7 +52,7 @@ pub(super) struct Stage {
     pub(super) script: Vec<Act>,
     pub(super) time: Time,
     pub(super) refusal: Option<Refusal>,
-    /// The signal that comes while the robot is opened.
+    /// Signal that arrives while the robot is being opened, if any.
     pub(super) interrupted: Option<Signal>,
     pub(super) stop: Act,
     pub(super) finish: Result<(), String>,
@@ -61,9 +61,9 @@ pub(super) struct Stage {
     /// `true` if the robot asks for the plan's state after each turn.
     pub(super) looks: bool,
     pub(super) plan: ToyPlan,
-    /// The name by which the program is called.
+    /// Name by which the program is called.
     pub(super) program: &'static str,
-    /// Makes the supervisor of the run, if it has one.
+    /// Function that creates the supervisor of the run, if the run has one.
     pub(super) supervisor: Option<Makes>,
 }
 
@@ -99,11 +99,11 @@ pub(super) struct Run {
 }
 
 thread_local! {
-    /// The robot that [`ToyTarget::connect`] finds: a target has no other way to a test.
+    /// The robot that [`ToyTarget::connect`] opens, because a test has no other way to pass a robot to a target.
     static READY: RefCell<Option<Ready>> = const { RefCell::new(None) };
 }
 
-/// A toy that waits to be opened.
+/// A toy robot that waits to be opened.
 struct Ready {
     time: Time,
     interrupted: Option<Signal>,
@@ -112,7 +112,7 @@ struct Ready {
 }
 
 impl Stage {
-    /// A stage with this script.
+    /// Returns a stage with this script.
     pub(super) fn script(script: impl IntoIterator<Item = Act>) -> Self {
         Self { script: script.into_iter().collect(), ..Self::default() }
     }
@@ -168,7 +168,7 @@ impl Stage {
     }
 }
 
-/// A sink whose text a test reads afterwards.
+/// A sink whose text a test can read after the run.
 pub(super) trait AsText {
     fn text(&self) -> String;
 }

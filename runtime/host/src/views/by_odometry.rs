@@ -78,7 +78,8 @@ impl ByOdometry {
         }
     }
 
-    /// Updates the views with the output after which the robot was stopped, if there is one, and restores the screen.
+    /// Restores the screen, and updates the pictures with the output after which the robot was stopped, if there is
+    /// one.
     pub(crate) fn stopped(&mut self, y: Option<&Sensed>) {
         if let Some(watch) = &mut self.watch {
             watch.leave();

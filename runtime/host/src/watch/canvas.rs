@@ -1,6 +1,6 @@
-//! A picture of dots in characters of a terminal: each character has two by four dots and one colour.
+//! Draws a picture of dots with characters of a terminal: each character has two by four dots and one colour.
 
-/// Colour of a character; a greater colour covers a lesser one.
+/// Colour of a character; a later variant covers an earlier one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(super) enum Ink {
     /// No dot is drawn.

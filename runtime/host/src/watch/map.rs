@@ -1,5 +1,4 @@
-//! The floor as dots: walls and goal are drawn once, then the growing path driven, and on top the robot with its
-//! echoes.
+//! Draws the floor as dots: first walls and goal, then the growing path driven, and on top the robot with its echoes.
 
 use mdle_runtime::{Meters, Radians};
 use mdle_simulator::{Footprint, Form, Place, Thing, World, Zone, edge};
@@ -71,12 +70,12 @@ impl Map {
         (0.0..2.0 * self.canvas.columns as f64).contains(&x) && (0.0..4.0 * self.canvas.rows as f64).contains(&y)
     }
 
-    /// Returns `true` if those of these places that are not drawn yet are on the map.
+    /// Returns `true` if all echoes that have not been drawn yet are on the map.
     pub(super) fn shows_new(&self, echoes: &[Place]) -> bool {
         echoes.iter().skip(self.echo_count).all(|place| self.shows(*place))
     }
 
-    /// Draws those places of earlier echoes that are new.
+    /// Draws the earlier echoes that have not been drawn yet.
     pub(super) fn draw_echoes(&mut self, echoes: &[Place]) {
         for place in echoes.iter().skip(self.echo_count) {
             self.dot(*place, Ink::Wall);
@@ -110,7 +109,7 @@ impl Map {
         }
     }
 
-    /// The rows of the map with the robot on it.
+    /// Returns the rows of the map with the robot on it.
     pub(super) fn rows(mut self, robot: &Footprint, touches: bool) -> Vec<String> {
         let pose = &robot.pose;
         self.body(robot);
@@ -142,7 +141,7 @@ impl Map {
         }
     }
 
-    /// Draws the edge of the body, where the robot's arrow does not cover it.
+    /// Draws the edge of the body, unless the body is so small that the robot's arrow covers it.
     fn body(&mut self, robot: &Footprint) {
         if robot.form.radius() * self.scale < BODY_LEAST {
             return;

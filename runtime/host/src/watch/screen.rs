@@ -37,7 +37,7 @@ const SIZE_MOST: (usize, usize) = (500, 200);
 /// Maximum time for restoring the terminal.
 const LEAVING: Duration = Duration::from_millis(500);
 
-/// A screen that has been taken over; dropping this restores it.
+/// The alternate screen while the live view uses it; dropping this value restores the terminal.
 #[derive(Debug)]
 pub(super) struct Screen;
 
@@ -54,7 +54,7 @@ pub(super) fn size() -> (usize, usize) {
 }
 
 impl Screen {
-    /// Takes over the screen. Keys are not echoed; Ctrl-C still sends its signal.
+    /// Switches to the alternate screen. Keys are not echoed; Ctrl-C still sends its signal.
     pub(super) fn enter() -> Self {
         static HOOK: Once = Once::new();
         // A panic tells of itself before anything is dropped: on a screen that goes away nobody would read it.
@@ -96,7 +96,7 @@ impl Drop for Screen {
     }
 }
 
-/// Restores the screen if it is taken over.
+/// Restores the terminal if the live view uses it.
 fn leave() {
     let Some(SavedSettings(settings)) = SETTINGS.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
     write_to_the_end(LEAVE);
@@ -112,7 +112,7 @@ pub(super) fn leave_at_once() {
     restore(settings);
 }
 
-/// Sets the terminal as it was found.
+/// Discards pending input, and restores the settings of the terminal.
 fn restore(settings: Option<Termios>) {
     if let Some(settings) = settings {
         // What was typed meanwhile was meant for nobody.

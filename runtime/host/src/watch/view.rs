@@ -1,4 +1,4 @@
-//! The text around the map: time and place above it, and the current atom with its enclosing scopes below it.
+//! Formats the text around the map: time and place above it, and the current atom with its enclosing scopes below it.
 
 use mdle_runtime::{Pose, Printable};
 

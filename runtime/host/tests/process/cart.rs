@@ -4,8 +4,8 @@ use std::io::{BufRead, BufReader};
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::sync::{Arc, Once};
 
-/// Gives SIGHUP its default effect in the programs that this one starts, also under `nohup`, which ignores it in all of
-/// them: a signal that is caught has its default effect again in another program.
+/// Restores the default effect of SIGHUP in the programs that this program starts, also under `nohup`, which makes all
+/// of them ignore the signal: a signal that a program catches has its default effect in the programs that it starts.
 fn catch_hang_up() {
     static CAUGHT: Once = Once::new();
     CAUGHT.call_once(|| {
@@ -13,7 +13,7 @@ fn catch_hang_up() {
     });
 }
 
-/// The example, which `cargo test` builds before it runs this.
+/// Returns the command of the example, which `cargo test` builds before it runs this test.
 pub(crate) fn cart(arguments: &[&str]) -> Command {
     catch_hang_up();
     let mut path = std::env::current_exe().unwrap();
@@ -26,7 +26,7 @@ pub(crate) fn cart(arguments: &[&str]) -> Command {
     command
 }
 
-/// Starts the cart with everything piped.
+/// Starts the cart with pipes for standard output and standard error.
 pub(crate) fn start(arguments: &[&str]) -> Child {
     cart(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
@@ -39,7 +39,7 @@ pub(crate) fn is_no_refusal(line: &str) -> bool {
     !line.starts_with("warning: turns may be late")
 }
 
-/// The lines of the cart, and those about the cart.
+/// Returns the lines on standard error, without the warning about a missing permission.
 pub(crate) fn lines(stderr: ChildStderr) -> impl Iterator<Item = String> {
     BufReader::new(stderr).lines().map(Result::unwrap).filter(|line| is_no_refusal(line))
 }
@@ -57,7 +57,7 @@ pub(crate) fn send(child: &Child, signal: &str) {
     assert!(sent.success());
 }
 
-/// Returns `true` unless the line is the last report, on how late turns were.
+/// Returns `true` unless the line begins the report of the lateness of turns.
 pub(crate) fn is_no_timing(line: &str) -> bool {
     !line.contains(" turns of ") && !line.contains(" turn of ")
 }

@@ -1,4 +1,4 @@
-//! The example `cart` as a program: real signals, closed and blocked pipes, exit statuses, panics.
+//! Tests of the example `cart` as a program: real signals, closed and blocked pipes, exit statuses, panics.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is the test")]
 
 mod cart;
@@ -58,7 +58,7 @@ fn a_panic_stops_the_cart() {
     );
 }
 
-/// Each takes ten seconds, so they do beside each other.
+/// Each of these tests takes ten seconds, so they run in parallel.
 #[test]
 fn a_program_that_hangs_ends() {
     std::thread::scope(|scope| {

@@ -1,4 +1,4 @@
-//! Signals: each of them ends the run, the second one a program that hangs.
+//! Tests of signals: each signal ends the run, and a second signal ends a program that hangs.
 
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex};
@@ -104,7 +104,7 @@ fn a_cart_that_was_suspended_is_not_driven_on() {
     assert!(after[1].starts_with("error: a fault stopped the robot: it had no command for 2."), "{after:?}");
 }
 
-/// Starts a shell with this line, in which `$@` is the cart, far away.
+/// Starts a shell that executes `line`, in which `$@` is the command of the cart with the options [`FAR`].
 fn in_a_shell(line: &str) -> Child {
     let mut command = Command::new("sh");
     command.args(["-c", line, "sh"]).arg(cart(&[]).get_program()).args(FAR);

@@ -1,5 +1,5 @@
-//! All writers of a run, whose readers are blocked, closed, full or limited: the robot drives on or stops, and waits
-//! for no reader.
+//! Tests of all writers of a run, whose readers are blocked or closed, or whose files are full or limited: the robot
+//! drives on or stops, and waits for no reader.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -29,19 +29,19 @@ struct Cart {
     folder: PathBuf,
     command: Command,
     journal: File,
-    /// The commands that the cart got so far.
+    /// Commands that the cart has received so far.
     text: String,
     /// Pipes that are never read.
     full: Vec<File>,
 }
 
-/// Makes a pipe with a name.
+/// Creates a named pipe.
 fn fifo(path: &Path) {
     mknodat(CWD, path, FileType::Fifo, Mode::RUSR | Mode::WUSR, 0).unwrap();
 }
 
 impl Cart {
-    /// Returns a cart with these options, which drives far.
+    /// Returns a cart with these options on a long track.
     fn new(test: &str, options: &[&str]) -> Self {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
         let _ = fs::remove_dir_all(&folder);
@@ -55,7 +55,7 @@ impl Cart {
         Self { folder, command, journal, text: String::new(), full: Vec::new() }
     }
 
-    /// Lets a writer of the cart write to this file.
+    /// Makes a writer of the cart write to this file.
     fn to(&mut self, writer: Writer, file: &Path) {
         let open = || fs::OpenOptions::new().write(true).create(true).truncate(false).open(file).unwrap();
         match writer {
@@ -66,7 +66,7 @@ impl Cart {
         };
     }
 
-    /// Lets a writer of the cart write to a reader that reads nothing, whose pipe is full.
+    /// Makes a writer of the cart write to a full pipe that is never read.
     fn blocked(&mut self, writer: Writer) {
         let fifo = self.folder.join(format!("{writer:?}"));
         self::fifo(&fifo);
@@ -79,7 +79,7 @@ impl Cart {
         self.to(writer, &fifo);
     }
 
-    /// Lets a writer of the cart write to a reader that has gone.
+    /// Makes a writer of the cart write to a pipe whose reader is closed.
     fn closed(&mut self, writer: Writer) {
         let (reader, end) = io::pipe().unwrap();
         match writer {
@@ -90,7 +90,7 @@ impl Cart {
         drop(reader);
     }
 
-    /// Lets a writer of the cart write to a file that may not have a byte.
+    /// Makes a writer of the cart write to a file whose size is limited to zero bytes.
     fn limited(&mut self, writer: Writer) {
         let file = self.folder.join(format!("{writer:?}"));
         self.to(writer, &file);
@@ -134,7 +134,8 @@ impl Cart {
     }
 }
 
-/// Stops a cart by a signal after a second of driving, in which it reports its timing; returns how the cart ends.
+/// Requests the timing of a driving cart, and then stops the cart by a signal; returns the status, and `true` if the
+/// cart was stopped.
 fn stopped(mut cart: Cart) -> (Option<i32>, bool) {
     let mut child = cart.moves(10);
     send(&child, "USR1");
@@ -143,7 +144,7 @@ fn stopped(mut cart: Cart) -> (Option<i32>, bool) {
     cart.end(&mut child)
 }
 
-/// Each waits for seconds, so they do beside each other.
+/// Each of these tests takes seconds, so they run in parallel.
 #[test]
 fn readers_that_do_not_read_hold_up_no_robot() {
     thread::scope(|scope| {
@@ -216,8 +217,8 @@ fn a_log_that_nobody_reads_stops_the_robot() {
     assert_eq!(cart.end(&mut child), (Some(3), true));
 }
 
-/// Returns the errors and the end of a cart whose log or path has a reader that goes away after some turns; a signal
-/// ends the cart unless that does.
+/// Returns the lines on standard error and the end of a cart whose log or path loses its reader after some turns. A
+/// signal ends the cart, unless `ends_the_run` says that the lost reader does.
 fn deserted(writer: Writer, ends_the_run: bool) -> (String, (Option<i32>, bool)) {
     let mut cart = Cart::new(&format!("deserted_{writer:?}"), &[]);
     let pipe = cart.folder.join(format!("{writer:?}"));
