@@ -1,5 +1,5 @@
-//! The board: every attribute of every module with its last value, changed only at turn breaks. When a module
-//! is loaded or unloaded, readers get their places on the board, so that no turn looks up names.
+//! The board, which contains the last value of every attribute of every module and changes only at turn breaks.
+//! Positions on the board are determined when modules are loaded or unloaded, so that no turn looks up names.
 
 use std::sync::Arc;
 
@@ -13,7 +13,8 @@ use crate::module::{About, Declared, Ports, Refusal, Source};
 #[derive(Debug, Default)]
 pub struct Board {
     posts: Vec<Post>,
-    /// Attributes whose value was NaN, and so refused, for the first time.
+    /// Attributes for which a value was refused for the first time, because it contained NaN, since they were last
+    /// taken.
     refused: Vec<AttributeName>,
 }
 
@@ -26,14 +27,14 @@ pub struct Post {
     pub about: About,
     /// The value that was published last; `None` before the first publication.
     pub reading: Option<Reading>,
-    /// Time from one exchange of its module to the next, as the module declares it.
+    /// Latency that the module declares: the time from one of its exchanges to the next.
     pub latency: Nanos,
     /// Number of values with a NaN, which were not published.
     pub refused: u64,
 }
 
-/// Places on the board from which a module's copies come; `None` for a setting, and for an attribute that no
-/// module publishes.
+/// Positions on the board of the values that a module reads, in the order of its declaration; `None` for a setting, and
+/// for an attribute that no module publishes.
 pub(crate) type Wires = Vec<Option<usize>>;
 
 impl Board {
@@ -54,13 +55,13 @@ impl Board {
         self.place(module, attribute).and_then(|place| self.posts.get(place))
     }
 
-    /// Returns the place of an attribute; `None` if it is not on the board.
+    /// Returns the position of an attribute; `None` if it is not on the board.
     pub(crate) fn place(&self, module: &str, attribute: &str) -> Option<usize> {
         self.posts.iter().position(|post| &*post.name.module == module && &*post.name.attribute == attribute)
     }
 
-    /// Returns the place of an attribute that a plan reads; for `age`, the place of the module's first
-    /// attribute.
+    /// Returns the position of an attribute that a plan reads; for `age`, the position of the module's first attribute.
+    /// Returns `None` if the attribute is not on the board.
     pub(crate) fn place_of(&self, read: &ModuleRead) -> Option<usize> {
         if read.attribute == AGE {
             return self.posts.iter().position(|post| &*post.name.module == read.module);
@@ -84,13 +85,13 @@ impl Board {
         self.posts.retain(|post| &*post.name.module != module);
     }
 
-    /// Returns the place of the first attribute of a module.
+    /// Returns the position of a module's first attribute, or the number of attributes if the module has none.
     pub(crate) fn first(&self, module: &str) -> usize {
         self.posts.iter().position(|post| &*post.name.module == module).unwrap_or(self.posts.len())
     }
 
-    /// Includes an attribute of a module that is not loaded, but is in the recorded run that is repeated, or on another
-    /// robot.
+    /// Adds an attribute of a module that is not loaded here: a module of the recorded run that is repeated, or of
+    /// another robot. An earlier attribute with this name is replaced.
     pub(crate) fn restore(&mut self, name: AttributeName, kind: AttributeKind) {
         self.forget(&name);
         let unit = kind.quantity().and_then(Kind::base_unit);
@@ -110,7 +111,7 @@ impl Board {
         self.posts.retain(|post| post.name != *name);
     }
 
-    /// Returns the places of all attributes that a module reads.
+    /// Returns the positions on the board of all values that a module reads.
     ///
     /// # Errors
     /// Fails if the module reads an attribute as another kind than the attribute has.
@@ -128,8 +129,8 @@ impl Board {
         declared.reads.iter().map(wire).collect()
     }
 
-    /// Publishes the values of a module whose attributes begin at place `first`; calls `published` with the
-    /// place of each.
+    /// Publishes the values of a module whose attributes begin at position `first`; calls `published` with the position
+    /// and the value of each.
     pub(crate) fn publish(
         &mut self,
         first: usize,
@@ -158,13 +159,12 @@ impl Board {
         }
     }
 
-    /// Returns the attributes whose value was NaN, and so refused, for the first time since the last call.
+    /// Returns the attributes for which a value that contains NaN was refused for the first time, since the last call.
     pub(crate) fn newly_refused(&mut self) -> impl Iterator<Item = AttributeName> {
         self.refused.drain(..)
     }
 
-    /// Updates a module's copies of the attributes that it reads. An attribute that has vanished has no value
-    /// any more.
+    /// Updates a module's copies of the values that it reads. An attribute that was removed no longer has a value.
     pub(crate) fn hand(&self, declared: &Declared, wires: &[Option<usize>], ports: &mut Ports) {
         for ((source, wire), copy) in declared.reads.iter().zip(wires).zip(&mut ports.ins) {
             let reading = match source {

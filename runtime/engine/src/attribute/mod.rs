@@ -56,10 +56,10 @@ attributes! {
     Arc<[u8]> => Bytes,
 }
 
-/// An attribute that a module publishes, as [`Declare::publishes`](crate::Declare::publishes) returns it.
+/// Handle of an attribute that a module publishes; [`Declare::publishes`](crate::Declare::publishes) returns it.
 pub struct Out<T>(usize, PhantomData<fn(T)>);
 
-/// An attribute that a module reads: an attribute of another module, or a setting of the module itself.
+/// Handle of a value that a module reads: an attribute of another module, or a setting of the module itself.
 pub struct In<T>(usize, PhantomData<fn() -> T>);
 
 macro_rules! places {
@@ -103,7 +103,7 @@ pub struct AttributeName {
 }
 
 impl AttributeName {
-    /// Returns the name of this attribute of this module.
+    /// Returns the name of the attribute `attribute` of the module `module`.
     #[must_use]
     pub fn new(module: &str, attribute: &str) -> Self {
         Self { module: module.into(), attribute: attribute.into() }
@@ -117,8 +117,8 @@ impl fmt::Display for AttributeName {
     }
 }
 
-/// Returns `true` if a module or an attribute may have this name. Valid names are those of MDLe: ASCII letters,
-/// digits and underscores, with no digit first.
+/// Returns `true` if a module or an attribute may have this name. A name consists of ASCII letters, digits and
+/// underscores, and does not begin with a digit, as in MDLe.
 pub(crate) fn is_name(text: &str) -> bool {
     let begins = text.starts_with(|letter: char| letter.is_ascii_alphabetic() || letter == '_');
     begins && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')

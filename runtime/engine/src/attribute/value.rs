@@ -72,7 +72,7 @@ pub enum Value {
 pub struct Reading {
     /// The value.
     pub value: Value,
-    /// Time of the turn that ended with the break.
+    /// Time at which the turn before the turn break began.
     pub at: Nanos,
 }
 
@@ -99,7 +99,7 @@ impl AttributeKind {
         (0..).zip(Self::ALL).find(|(_, kind)| *kind == self).map_or(u8::MAX, |(number, _)| number)
     }
 
-    /// Returns the kind of this number in records.
+    /// Returns the kind that has this number in records, or `None` if there is none.
     pub(crate) fn of_number(number: u8) -> Option<Self> {
         Self::ALL.get(usize::from(number)).copied()
     }
@@ -118,7 +118,7 @@ impl AttributeKind {
         }
     }
 
-    /// Returns the kind of quantity in alphabets; `None` for a kind that no plan reads as a number.
+    /// Returns the corresponding kind of an alphabet, or `None` if plans cannot read values of this kind as numbers.
     #[must_use]
     pub fn quantity(self) -> Option<Kind> {
         match self {
@@ -156,7 +156,7 @@ impl Value {
         }
     }
 
-    /// Returns the number that a plan compares, in SI units; `None` for a kind that no plan reads.
+    /// Returns the value as the number that plans read, in SI units, or `None` if plans cannot read values of its kind.
     #[must_use]
     pub fn number(&self) -> Option<f64> {
         match self {
@@ -188,8 +188,8 @@ impl Value {
         }
     }
 
-    /// Returns the value of this kind with these bits. For a kind that plans do not read, returns a value that
-    /// they do not read either.
+    /// Returns the value of kind `kind` that has these bits. For a kind that plans cannot read, returns a placeholder
+    /// that they cannot read either.
     pub(crate) fn of_bits(kind: AttributeKind, bits: u64) -> Self {
         let number = f64::from_bits(bits);
         match kind {

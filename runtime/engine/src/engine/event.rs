@@ -44,13 +44,13 @@ impl fmt::Display for Event {
     }
 }
 
-/// The part of a turn break that depends on more than computation: together with the robot's outputs, it
-/// repeats a run exactly.
+/// The inputs of a turn break that do not follow from computation. Together with the robot's outputs, they suffice to
+/// repeat a run exactly.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Arrivals {
-    /// Values from background modules, each with its place on the board, in order.
+    /// Values from background modules, in order, each with its position on the board.
     pub values: Vec<(usize, Value)>,
-    /// Background modules that have ended, each with its end.
+    /// Background modules that have ended, each with the way in which it ended.
     pub ended: Vec<(Arc<str>, End)>,
     /// Registered modules that had not finished their turn at the deadline.
     pub late: Vec<Arc<str>>,
@@ -67,7 +67,7 @@ pub enum End {
     Failed(String),
     /// The module's code panicked: the message of the panic.
     Panicked(String),
-    /// In stepped time, the module did not exchange values when its latency had passed.
+    /// In stepped time, the module did not exchange values in time, although its latency had passed.
     GivenUp,
 }
 

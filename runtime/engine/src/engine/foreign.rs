@@ -46,7 +46,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// Checks that the modules of these reads are loaded.
     ///
     /// # Errors
-    /// One of them is not.
+    /// Fails if one of them is not loaded.
     pub(super) fn check_loaded(&self, reads: &[ModuleRead]) -> Result<(), Refusal> {
         let missing = reads.iter().find(|read| !self.loaded.iter().any(|module| *module.name == *read.module));
         missing.map_or(Ok(()), |read| Err(Refusal::Unknown(read.module.to_owned())))

@@ -12,7 +12,7 @@ use crate::module::{Candidate, Declared, Form, Ports, Relevance, ThreadGate};
 pub(crate) struct Loaded<Y> {
     pub(crate) name: Arc<str>,
     pub(crate) declared: Declared,
-    /// Place of the module's first attribute on the board.
+    /// Position of the module's first attribute on the board.
     pub(crate) first: usize,
     pub(crate) wires: Wires,
     pub(crate) runs: Runs<Y>,
@@ -31,12 +31,12 @@ pub(crate) enum Runs<Y> {
     InBackground(Visit),
 }
 
-/// Exchanges of values between a background module and the turn breaks.
+/// State of the exchange of values between a background module and the turn breaks.
 pub(crate) struct Visit {
     pub(crate) gate: ThreadGate,
     /// Time at which the module's next exchange is due, in stepped time.
     pub(crate) due: Nanos,
-    /// Values of the module during a break that serves it.
+    /// Values of the module while a break serves it; `None` otherwise.
     pub(crate) ports: Option<Ports>,
 }
 
@@ -69,7 +69,8 @@ impl ModuleState {
 }
 
 impl<Y> Loaded<Y> {
-    /// Returns a module that begins at `now`. Its thread may run if `lives` is `true`; in a replay it may not.
+    /// Returns a module that is loaded at `now`. If `lives` is `true`, the thread of a background module begins to run;
+    /// in a replay it never runs.
     pub(crate) fn new(candidate: Candidate<Y>, now: Nanos, lives: bool) -> Self {
         let Candidate { name, declared, form } = candidate;
         let (runs, state) = match form {
@@ -88,7 +89,7 @@ impl<Y> Loaded<Y> {
         Self { name, declared, first: 0, wires: Wires::new(), runs, state, is_held: false, late_turns: 0 }
     }
 
-    /// Returns the seat of a module that makes turns.
+    /// Returns the seat of a registered module; `None` for a background module.
     pub(crate) fn seat(&self) -> Option<&Arc<Seat<Y>>> {
         match &self.runs {
             Runs::InTurns(seat) => Some(seat),

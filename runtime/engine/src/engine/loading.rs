@@ -1,7 +1,7 @@
-//! Modules that are created while the robot drives, each on a thread of its own, as its code may take long.
+//! Modules that are created while the robot drives, each on a separate thread, because its code may take long.
 //!
-//! The thread that starts these threads is itself started with the engine, before the control thread is
-//! scheduled in real time: threads and child processes inherit the scheduling of the thread that starts them.
+//! The thread that starts these threads is itself started with the engine, before the control thread is scheduled in
+//! real time: threads and child processes inherit the scheduling of the thread that starts them.
 
 use std::io;
 use std::sync::mpsc::{Receiver, Sender, channel};

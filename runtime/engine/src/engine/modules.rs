@@ -38,13 +38,14 @@ pub struct Modules<Y> {
     pub(super) fork: Fork<Y>,
     pub(super) service: Service,
     pub(super) janitor: Janitor,
-    /// Attributes that plans read, now or soon.
+    /// Attributes that plans, safety rules and other robots read, including those of plans that may become active.
     pub(super) plan_reads: Vec<ModuleRead>,
     /// `true` if the relevance of modules has to be determined again.
     pub(super) has_changed: bool,
     pub(super) events: Vec<Event>,
     pub(super) arrivals: Arrivals,
-    /// Arrivals at the breaks of the run that is replayed; no background module runs in a replay.
+    /// Arrivals at the remaining breaks of the run that is replayed; `None` if no run is replayed. No background module
+    /// runs in a replay.
     pub(super) replayed: Option<VecDeque<Arrivals>>,
     /// Number and time of the current turn.
     pub(super) turn: (u64, Nanos),
@@ -88,7 +89,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         &self.board
     }
 
-    /// Returns the board, so that values which another run published can be repeated on it.
+    /// Returns the board for writing, so that a replay can put the values of the recorded run on it.
     pub(super) fn board_mut(&mut self) -> &mut Board {
         &mut self.board
     }
@@ -99,7 +100,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         &self.events
     }
 
-    /// Returns the values and ends that arrived at the last break.
+    /// Returns the arrivals at the last break: values and ends of background modules, and the registered modules that
+    /// were late or skipped.
     #[must_use]
     pub fn arrivals(&self) -> &Arrivals {
         &self.arrivals
@@ -116,12 +118,11 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         self.loaded.iter().find(|module| &*module.name == name).map_or(0, |module| module.late_turns)
     }
 
-    /// Loads a module, after those that are loaded; registered modules make their first turn after the next
-    /// [`Modules::prepare`].
+    /// Loads a module, which follows all loaded modules in the order of turn breaks. A registered module makes its
+    /// first turn after the next [`Modules::prepare`].
     ///
     /// # Errors
-    /// Fails without any change if the name is taken, or if an attribute has another kind than a reader
-    /// expects.
+    /// Fails without any change if the name is taken, or if an attribute has another kind than a reader expects.
     pub fn load(&mut self, candidate: Candidate<Y>) -> Result<(), Refusal> {
         let name = Arc::clone(&candidate.name);
         let is_loaded = self.names().any(|(known, _)| known == &*name);
@@ -144,13 +145,15 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         Ok(())
     }
 
-    /// Returns for each loaded module that reads what no loaded module publishes its name, and a sentence about it.
+    /// Returns the name of each loaded module that reads attributes which no loaded module publishes, with a sentence
+    /// about these attributes.
     pub(super) fn unpublished(&self) -> impl Iterator<Item = (&str, String)> {
         let sentence = |module: &Loaded<Y>| unpublished(&module.name, &module.declared, &self.board);
         self.loaded.iter().filter_map(move |module| Some((&*module.name, sentence(module)?)))
     }
 
-    /// Unloads a module; its attributes vanish. A thread that still runs it is left to it.
+    /// Unloads a module, and removes its attributes from the board. A thread that still runs a turn of the module keeps
+    /// it until the turn ends.
     ///
     /// # Errors
     /// Fails if no module has this name.
@@ -214,7 +217,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
 }
 
 impl<Y> Drop for Modules<Y> {
-    /// Asks all threads to end before it waits for the first of them.
+    /// Asks the threads of all background modules to end, before the modules are dropped, which waits for each thread.
     fn drop(&mut self) {
         for module in &self.loaded {
             if let Runs::InBackground(visit) = &module.runs {

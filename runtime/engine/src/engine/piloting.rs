@@ -90,11 +90,11 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(engine)
     }
 
-    /// Puts the engine under safety rules that read these attributes of modules; from now on, outputs contain
-    /// the attributes.
+    /// Puts the engine under safety rules that read these attributes of modules; from now on, outputs contain the
+    /// attributes.
     ///
     /// # Errors
-    /// Fails if a module publishes such an attribute with another kind (exit status 2).
+    /// Fails if no module publishes such an attribute, or one publishes it with another kind (exit status 2).
     pub fn under_rules(self, reads: &'static [ModuleRead]) -> Result<Self, mdle_host::Refusal> {
         reads::check(reads, self.modules.board()).map_err(mdle_host::Refusal::Usage)?;
         let mut engine = Self { rules_read: Some(reads), ..self };
@@ -103,16 +103,16 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(engine)
     }
 
-    /// Repeats a recorded run. `rules_read` are the attributes of modules that safety rules read, if the run
-    /// had rules. [`Engine::repeat`] supplies the values of modules; the engine has no modules except the
-    /// module of the plans.
+    /// Lets the engine repeat a recorded run. `rules_read` are the attributes of modules that safety rules read, if the
+    /// run had rules. [`Engine::repeat`] supplies the values of modules; the engine has no modules except the module of
+    /// the plans.
     #[must_use]
     pub fn repeating(self, rules_read: Option<&'static [ModuleRead]>) -> Self {
         Self { rules_read, repeats: Some(Repeats::default()), ..self }
     }
 
-    /// Repeats a change before the next turn. The caller repeats a plan that was armed, by [`Plans::replace`], the
-    /// limits of safety rules, and paths that were recorded, which are part of outputs.
+    /// Repeats a change of the recorded run before the next turn. The caller has to repeat plans that were armed, with
+    /// [`Plans::replace`], the limits of safety rules, and recorded paths, which are part of outputs.
     pub fn repeat(&mut self, change: &Change) {
         match change {
             Change::Cancelled => self.plans.cancel(),
@@ -137,10 +137,11 @@ impl<A: EngineAlphabet> Engine<A> {
         }
     }
 
-    /// Attaches a state link, by which the robot sends its state to other robots, and plans read their states.
+    /// Attaches a state link, by which the robot sends its state to other robots, and plans read the states of other
+    /// robots.
     ///
     /// # Errors
-    /// No module is loaded whose attributes the robot is to share (exit status 2).
+    /// Fails if a module whose attributes the robot is to share is not loaded (exit status 2).
     pub fn linked(self, link: StateLink) -> Result<Self, mdle_host::Refusal> {
         let checked = self.modules.check_loaded(link.shares());
         checked.map_err(|refusal| {
@@ -157,11 +158,11 @@ impl<A: EngineAlphabet> Engine<A> {
         self.link.as_ref().map_or(&[], StateLink::recipients)
     }
 
-    /// Sends a plan to the robot `to`, by its name and text, with the moment at which it is to take over; its answer
-    /// becomes a message.
+    /// Sends a plan to the robot `to`: the name and text of the plan, and the moment at which it is to take over. The
+    /// answer of the robot becomes a message to the operator.
     ///
     /// # Errors
-    /// The plan cannot be sent: a sentence.
+    /// Returns a sentence with the reason if the plan cannot be sent.
     pub fn send_plan(&mut self, to: &str, plan: (&str, &str, When), now: Nanos) -> Result<(), String> {
         match &mut self.link {
             Some(link) => link.send_plan(to, plan, now),
@@ -169,8 +170,8 @@ impl<A: EngineAlphabet> Engine<A> {
         }
     }
 
-    /// Updates the attributes that modules are kept at work for: those that plans and rules read, and those that the
-    /// robot shares.
+    /// Updates the attributes for which modules have to make turns: those that plans and safety rules read, and those
+    /// that the robot shares with other robots.
     fn read_modules(&mut self) {
         let Self { plans, modules, rules_read, link, .. } = self;
         let shares = link.as_ref().map_or(&[][..], StateLink::shares);
@@ -255,7 +256,8 @@ impl<A: EngineAlphabet> Engine<A> {
         loaded
     }
 
-    /// Loads a module that was made while the robot drives.
+    /// Loads a module that was created while the robot drives. Reports attributes that the module reads and no module
+    /// publishes.
     fn load_made(&mut self, candidate: Candidate<A::Output>) -> Result<(), Refusal> {
         let name = candidate.name().to_owned();
         self.modules.load(candidate)?;
@@ -264,8 +266,8 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(())
     }
 
-    /// Ends the plan on trial for this reason; the plan before it goes on in the next turn at its atom, as if no time
-    /// had passed for it.
+    /// Ends the plan on trial for the reason `why`. The plan that it replaced continues at its atom in the next turn,
+    /// as if no time had passed.
     ///
     /// # Errors
     /// Fails if no plan is on trial.
@@ -275,7 +277,7 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(())
     }
 
-    /// Ends the plan on trial, as [`Engine::rollback`] does, for a reason that a replay finds again by itself.
+    /// Ends the plan on trial, as [`Engine::rollback`] does, but does not note a change for the record.
     fn go_back(&mut self, why: &str) -> Result<(), NoTrial> {
         let was_late = self.plans.is_late();
         self.plans.rollback(why)?;
@@ -286,7 +288,7 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(())
     }
 
-    /// Loads the module that makes the turns of plans, to replace a module that hangs.
+    /// Loads the module that makes the turns of plans. An earlier one, which may hang, is unloaded first.
     fn load_plan_module(&mut self) {
         let module = self.plans.module();
         let candidate = Candidate::registered(PLAN, |declare: &mut Declare| {

@@ -1,10 +1,10 @@
-//! Relevant modules: modules that always are, modules that the plan reads, and all modules that relevant
-//! modules read.
+//! Determines the relevant modules: modules that are always relevant, modules that the plan reads, and all modules that
+//! relevant modules read.
 
 use super::loaded::Loaded;
 
-/// Returns, for each module, `true` if it is relevant. `plan` yields the places on the board that the plan
-/// reads.
+/// Returns, for each module, `true` if it is relevant. `plan` yields the positions on the board of the attributes that
+/// the plan reads.
 pub(crate) fn relevant<Y>(modules: &[Loaded<Y>], plan: impl Iterator<Item = usize>) -> Vec<bool> {
     let owner = |place: usize| {
         let count = |module: &Loaded<Y>| module.declared.publishes.len();

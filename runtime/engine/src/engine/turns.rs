@@ -14,17 +14,18 @@ use crate::module::{Fault, ThreadEnd};
 
 /// Number of turns after which a late module is given up, if [`PATIENCE`] has passed as well.
 const LATE_TURNS: u64 = 10;
-/// Time after which a late module is given up, and maximum wait for a background module in stepped time.
+/// Time after which a late module is given up; also the maximum wait for a background module without a latency in
+/// stepped time.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// Maximum part of a declared latency for which a background module is waited for in stepped time besides
-/// [`PATIENCE`]: a turn may take ten seconds.
+/// Maximum part of a declared latency that is added to [`PATIENCE`] when a break in stepped time waits for a background
+/// module, because a turn may take at most ten seconds.
 const LONGEST_LATENCY: Duration = Duration::from_secs(8);
-/// Number of turns after which modules are put in order by their cost.
+/// Number of turns between two times at which the modules are sorted by cost.
 const REORDERED: u64 = 128;
 
 impl<Y: Send + Sync + 'static> Modules<Y> {
-    /// Makes turn `number` of every relevant module, with output `y`, which was taken at `now`. In real time,
-    /// modules that are not done at `deadline` are left behind.
+    /// Makes turn `number` of every relevant module, with output `y`, which was taken at `now`. In real time, the call
+    /// returns at `deadline` even if some modules are not done.
     pub fn turn(&mut self, y: Y, number: u64, now: Nanos, deadline: Option<Instant>) {
         let Self { loaded, order, fork, events, replayed, turn, .. } = self;
         *turn = (number, now);
@@ -95,7 +96,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         relevant(&self.loaded, places)
     }
 
-    /// Sets the attributes that plans read. A module that only plans need makes turns only while plans need it.
+    /// Sets the attributes that plans, safety rules and other robots read. A module that only they need makes turns
+    /// only while they need it.
     pub(crate) fn plan_reads(&mut self, reads: impl Iterator<Item = &'static ModuleRead> + Clone) {
         if !self.plan_reads.iter().eq(reads.clone()) {
             self.plan_reads.clear();
@@ -121,7 +123,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         order.sort_unstable_by_key(key);
     }
 
-    /// Takes the result of a registered module's turn.
+    /// Publishes the values of a registered module's turn, and updates the state of the module.
     fn settle_registered(&mut self, number: usize) {
         let Self { board, loaded, events, arrivals, replayed, turn, .. } = self;
         let Some(module) = loaded.get_mut(number) else { return };
@@ -168,7 +170,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         board.publish(module.first, &mut occupant.ports, turn.1, |_, _| ());
     }
 
-    /// Takes the values of a background module that waits.
+    /// Publishes the values of a background module that waits for the break, or notes that the module has ended.
     fn settle_background(&mut self, number: usize) {
         let Self { board, loaded, events, arrivals, service, turn, .. } = self;
         let Some(module) = loaded.get_mut(number) else { return };
@@ -196,7 +198,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         arrivals.ended.push((Arc::clone(&module.name), end));
     }
 
-    /// Publishes the values that arrived at this break in the run that is repeated.
+    /// Publishes the values that arrived at this break in the recorded run, and notes the modules that ended there.
     fn settle_replayed(&mut self) {
         let Self { board, loaded, events, arrivals, turn, .. } = self;
         for (place, value) in &arrivals.values {
@@ -210,7 +212,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
 }
 
 impl Arrivals {
-    /// Returns the progress of a module in a run that is repeated.
+    /// Returns the progress that a module had at this break of the recorded run.
     fn progress(&self, name: &Arc<str>) -> Progress {
         match (self.late.contains(name), self.skipped.contains(name)) {
             (true, _) => Progress::Late,
@@ -221,7 +223,8 @@ impl Arrivals {
 }
 
 impl ModuleState {
-    /// Records that a module is late at the break of this turn.
+    /// Records that a module is late at the break of this turn. Returns the event if the module was not late before, or
+    /// if it is given up now.
     fn is_late(&mut self, name: &Arc<str>, (number, now): (u64, Nanos)) -> Option<Event> {
         let Self::Late(since, at) = *self else {
             *self = Self::Late(number, now);
@@ -236,7 +239,7 @@ impl ModuleState {
 }
 
 impl<Y> Loaded<Y> {
-    /// Lets a module make turns, or stops it; returns the event, if anything has changed.
+    /// Starts or stops a module; returns the event, or `None` if nothing has changed.
     fn becomes(&mut self, is_wanted: bool) -> Option<Event> {
         let mut occupant = self.seat().and_then(|seat| seat.occupant());
         let task = occupant.as_mut().map(|occupant| &mut occupant.task);
@@ -261,7 +264,7 @@ impl<Y> Loaded<Y> {
         Some(event)
     }
 
-    /// Returns the real time for which a background module is waited for in stepped time.
+    /// Returns the real time for which a break in stepped time waits for a background module.
     fn patience(&self) -> Duration {
         PATIENCE.saturating_add(Duration::from_nanos(self.declared.latency.0).min(LONGEST_LATENCY))
     }

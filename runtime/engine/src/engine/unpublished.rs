@@ -7,7 +7,8 @@ use crate::board::Board;
 use crate::module::{Declared, Source};
 use crate::tree::listed;
 
-/// Returns a sentence about the attributes that a module reads and no loaded module publishes, if there are any.
+/// Returns a sentence about the attributes that a module reads and no loaded module publishes; `None` if there are
+/// none.
 pub(super) fn unpublished(reader: &str, declared: &Declared, board: &Board) -> Option<String> {
     let names = declared.reads.iter().filter_map(|source| match source {
         Source::Attribute(name, _) => Some(name),
@@ -22,7 +23,8 @@ pub(super) fn unpublished(reader: &str, declared: &Declared, board: &Board) -> O
     (!names.is_empty()).then(|| format!("module `{reader}` reads {}, which no module publishes{near}", listed(&paths)))
 }
 
-/// Returns the attribute whose name is the nearest: of the module that is named, or else of the nearest module.
+/// Returns the attribute with the most similar name, in the module that `name` names or, if that module publishes
+/// nothing, in the module with the most similar name. Returns `None` if no name is similar.
 fn near(name: &AttributeName, board: &Board) -> Option<AttributeName> {
     let is_loaded = board.of(&name.module).next().is_some();
     let modules = board.posts().iter().map(|post| &*post.name.module);

@@ -1,5 +1,5 @@
-//! The link between robots of one process, by which states arrive late, are lost or are duplicated, depending
-//! on a random seed. Letters arrive late only, since a sender would send them again.
+//! The link between robots in one process. States may arrive late, be lost or be duplicated, depending on a random
+//! seed. Letters may only arrive late, because a real sender would send lost letters again.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -10,13 +10,13 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use super::letter;
 use super::{Letter, Link, State};
 
-/// Maximum number of states on their way to one robot; a robot that makes no more turns reads none.
+/// Maximum number of unread states of one robot. A robot that makes no more turns reads none.
 const UNREAD: usize = 4096;
 
 /// Faults of the link between two robots.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Faults {
-    /// Minimum and maximum time that a state takes.
+    /// Minimum and maximum transmission time of a state or a letter.
     pub latency: (Nanos, Nanos),
     /// Probability that a state is lost.
     pub loss: f64,
@@ -24,10 +24,10 @@ pub struct Faults {
     pub duplication: f64,
 }
 
-/// The end of one robot of a link between the robots of one process.
+/// One robot's end of a link between robots in one process.
 ///
-/// A state arrives in a later turn than the one in which it was sent, so that the order in which robots make
-/// their turns has no effect. The faults between each two robots have a separate stream of random numbers.
+/// A state arrives in a later turn than the one in which it was sent, so that the order in which robots make their
+/// turns has no effect. The faults of the states from one robot to another have a separate stream of random numbers.
 pub struct Air {
     own: usize,
     faults: Faults,
@@ -54,7 +54,7 @@ struct Sent<T> {
 }
 
 impl Air {
-    /// Returns the ends of a link between robots of these names.
+    /// Returns the ends of a link between robots with these names, in the same order.
     #[must_use]
     pub fn new(names: &[&str], faults: Faults, seed: u64) -> Vec<Self> {
         let empty =
@@ -82,7 +82,7 @@ impl Air {
 }
 
 impl Faults {
-    /// Returns the time that a state takes.
+    /// Returns a random transmission time, in nanoseconds.
     fn delay(&self, random: &mut ChaCha8Rng) -> u64 {
         let (least, most) = (self.latency.0.0, self.latency.1.0.max(self.latency.0.0));
         least.saturating_add((unit(random) * (most - least) as f64) as u64)
@@ -98,7 +98,7 @@ fn lock<T>(sent: &Mutex<Vec<Sent<T>>>) -> MutexGuard<'_, Vec<Sent<T>>> {
     sent.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Calls `take` with all that has arrived by `now`.
+/// Calls `take` with everything that has arrived by `now`, and removes it.
 fn arrive<T: Clone>(sent: &Mutex<Vec<Sent<T>>>, now: Nanos, take: &mut dyn FnMut(T)) {
     lock(sent).retain(|sent| {
         let arrives = sent.sent < now && sent.due <= now;

@@ -1,14 +1,14 @@
-//! Names and numbers in the bytes of a frame (docs/src/reference/interfaces.md, 6.5).
+//! Reads names and numbers from the bytes of a frame, and writes names (docs/src/reference/interfaces.md, 6.5).
 
 /// Maximum length of a name, in bytes.
 pub(super) const NAME: usize = 64;
 
-/// Returns `true` if a name can be in a frame.
+/// Returns `true` if the length of a name permits it in a frame: 1 to [`NAME`] bytes.
 pub(super) fn fits(name: &str) -> bool {
     (1..=NAME).contains(&name.len())
 }
 
-/// Appends a name that [`fits`].
+/// Appends a name that satisfies [`fits`], preceded by its length.
 pub(super) fn put_name(to: &mut Vec<u8>, name: &str) {
     let bytes = name.as_bytes();
     let bytes = bytes.get(..bytes.len().min(NAME)).unwrap_or_default();
@@ -34,7 +34,7 @@ impl<'b> Bytes<'b> {
         self.0.is_empty()
     }
 
-    /// Takes all bytes that are left, as text.
+    /// Takes all remaining bytes as text; `None` if they are not UTF-8.
     pub(super) fn text(&mut self) -> Option<String> {
         String::from_utf8(std::mem::take(&mut self.0).to_vec()).ok()
     }

@@ -5,8 +5,9 @@ use rustix::time::{ClockId, Timespec, clock_gettime};
 
 /// Returns the time since the computer was started, including suspensions.
 ///
-/// Each second of it is one of the computer's quartz. NTP lets the clock of [`std::time::Instant`] run faster or slower
-/// until the time of day is right, by which the frames of a good peer would arrive ever later.
+/// The seconds of this clock are those of the computer's quartz. NTP lets the clock of [`std::time::Instant`] run
+/// faster or slower until the time of day is right, so that the frames of a good peer would seem to arrive later and
+/// later.
 pub(super) fn now() -> Nanos {
     let [raw, slewed, slewed_with_suspensions] =
         [ClockId::MonotonicRaw, ClockId::Monotonic, ClockId::Boottime].map(|clock| nanos(clock_gettime(clock)));

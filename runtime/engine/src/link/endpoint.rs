@@ -1,5 +1,5 @@
-//! The end of a link that leaves the process, whatever carries the frames: it drafts the frames of its robot, checks
-//! those that arrive, and keeps what they contain until the robot's turn.
+//! The endpoint of a link to other processes, whatever medium carries the frames. It drafts the frames of its robot,
+//! checks the frames that arrive, and keeps their contents until the robot's turn.
 
 #[cfg(test)]
 mod tests;
@@ -24,7 +24,7 @@ use super::{Letter, Posted, RefusedPlan, State, clock, lock};
 /// Maximum number of messages that wait to be shown to the operator.
 const MESSAGES: usize = 32;
 
-/// Names and keys of a link, whatever carries it.
+/// Names and keys of a link, for any medium.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinkSettings {
     /// Name of the robot.
@@ -33,11 +33,11 @@ pub struct LinkSettings {
     pub peers: Vec<String>,
     /// Key that all robots of the link have.
     pub key: String,
-    /// Name of each robot with which plans are exchanged, and the key that only both have.
+    /// Name of each robot with which plans are exchanged, with the key that only this robot and the other have.
     pub plans: Vec<(String, String)>,
 }
 
-/// The end of one robot's link. Threads that carry frames share it with the robot's turns.
+/// Endpoint of one robot's link. The threads that carry frames share it with the robot's turns.
 pub struct Endpoint {
     session: u64,
     /// Time at which the session began.
@@ -95,10 +95,11 @@ impl Endpoint {
         state_frame::written(state, times, &self.key)
     }
 
-    /// Returns a letter to a peer. An answer to it is expected until [`Endpoint::is_unsent`] is called.
+    /// Returns a letter to a peer in the form in which it is sent. If the letter is a plan, an answer is expected,
+    /// unless [`Endpoint::is_unsent`] is called.
     ///
     /// # Errors
-    /// Robot and peer have no key for letters, or the peer has not been heard: a sentence.
+    /// Returns a sentence if the robot and the peer have no key for letters, or if no state of the peer has arrived.
     pub fn letter(&self, to: &str, letter: &Letter) -> Result<Posted, String> {
         let session = lock(&self.states).session(to);
         let draft = self.letters.draft(to, letter, session, self.time(clock::now()))?;
@@ -107,7 +108,7 @@ impl Endpoint {
         Ok(Posted { to: to.to_owned(), number: letter.number, draft, is_plan, limit })
     }
 
-    /// Notes that a letter was refused before it was sent.
+    /// Notes that a letter was refused before it was sent, so that no answer to it is expected.
     pub fn is_unsent(&self, number: u64) {
         self.letters.forget(number);
     }
@@ -120,17 +121,17 @@ impl Endpoint {
         self.say(format!("warning: state link: the {what} {to} is dropped: it could not be sent for {seconds} s"));
     }
 
-    /// Returns a time as time of the robot's session.
+    /// Converts a time of the link's clock to the time since the robot's session began.
     fn time(&self, now: Nanos) -> Nanos {
         now.since(self.begun)
     }
 
-    /// Takes a frame that has arrived from a source, without its length. The first frame of a source has to be a state,
+    /// Takes a frame, without its length, that has arrived from a source. The first frame of a source must be a state,
     /// which proves the name of its robot.
     ///
     /// # Errors
-    /// The source is not to be heard any more, as it sends something other than states and letters of one peer, or too
-    /// many: the end of a sentence.
+    /// Returns the end of a sentence if no further frames of the source are to be accepted, because it sends something
+    /// other than states and letters of one peer, or too many of them.
     pub fn take(&self, source: &mut Source, frame: &[u8]) -> Result<(), String> {
         let now = clock::now();
         if is_letter(frame) {
@@ -174,13 +175,13 @@ impl Endpoint {
         lock(&self.states).take_all()
     }
 
-    /// Takes the letters that have arrived since the last call, without plans that have become too late.
+    /// Takes the letters that have arrived since the last call. Plans that are too late by now are refused.
     #[must_use]
     pub fn letters(&self) -> Vec<Letter> {
         self.letters.arrived(clock::now())
     }
 
-    /// Takes the plans that were refused since the last call, and reports them; each has to be answered.
+    /// Takes the plans that were refused since the last call, and reports them. The caller has to answer each of them.
     #[must_use]
     pub fn refused_plans(&self) -> Vec<RefusedPlan> {
         let plans = self.letters.refused();
@@ -188,7 +189,7 @@ impl Endpoint {
         plans
     }
 
-    /// Reports that something is refused, and why, unless that was reported a short while ago.
+    /// Reports that `what` was refused for a reason, unless this was reported a short while ago.
     pub fn refuse(&self, what: &str, reason: &str) {
         let warning = lock(&self.refusals).warning(what, reason, Instant::now());
         warning.into_iter().for_each(|warning| self.say(warning));

@@ -1,4 +1,5 @@
-//! Names of the attributes that other robots share: each robot has a share of the board, and modules of its own.
+//! Names of the attributes that other robots share. Each robot may share a limited number of attributes, and no two
+//! robots share a module with the same name.
 
 use mdle_runtime::Nanos;
 
@@ -10,21 +11,21 @@ use crate::attribute::{AttributeName, Reading};
 #[derive(Debug, Default)]
 pub(super) struct ForeignNames(Vec<NamesOf>);
 
-/// The names of the attributes of one robot, at most [`ATTRIBUTES`] in all.
+/// The names of the attributes that one robot shares, at most [`ATTRIBUTES`] including those that were refused.
 #[derive(Debug)]
 struct NamesOf {
     robot: String,
     /// Names on the board.
     taken: Vec<AttributeName>,
-    /// Names that were refused, each with a message.
+    /// Names that were refused; each refusal was reported.
     refused: Vec<AttributeName>,
-    /// `true` if the robot has shared more names, which was reported.
+    /// `true` once it has been reported that the robot shares too many attributes.
     has_more: bool,
 }
 
 impl ForeignNames {
-    /// Puts the attributes of a state, which arrived at time `at`, on the board; calls `say` with a message about each
-    /// name that is refused, once.
+    /// Puts the attributes of a state that arrived at time `at` on the board. Calls `say` once with a message about
+    /// each name that is refused.
     pub(super) fn put(&mut self, state: &State, at: Nanos, board: &mut dyn Foreign, say: &mut dyn FnMut(String)) {
         let robot = &state.name;
         let place = self.0.iter().position(|names| names.robot == *robot);
@@ -54,7 +55,7 @@ impl ForeignNames {
         self.0.push(own);
     }
 
-    /// Returns the robot that has put an attribute of the module of this name on the board.
+    /// Returns the robot that shares attributes of the module that `name` names; `None` if no robot does.
     fn owner(&self, name: &AttributeName) -> Option<&str> {
         let owns = |names: &&NamesOf| names.taken.iter().any(|taken| taken.module == name.module);
         self.0.iter().find(owns).map(|names| names.robot.as_str())
@@ -66,7 +67,7 @@ impl NamesOf {
         Self { robot: robot.to_owned(), taken: Vec::new(), refused: Vec::new(), has_more: false }
     }
 
-    /// Returns `true` if the robot may share one more name; the first name for which it may not is reported.
+    /// Returns `true` if the robot may share one more attribute. The first time that it may not is reported.
     fn has_room(&mut self, say: &mut dyn FnMut(String)) -> bool {
         let has_room = self.taken.len() + self.refused.len() < ATTRIBUTES;
         if !has_room && !std::mem::replace(&mut self.has_more, true) {

@@ -1,4 +1,4 @@
-//! Frames: a length, then first bytes, version, checksum, proof of the key, and a body
+//! Frames, each with its length, first bytes, version, checksum, proof of the key, and body
 //! (docs/src/reference/interfaces.md, 6.5).
 
 use std::io;
@@ -34,7 +34,7 @@ impl Key {
         Self(blake3::derive_key("mdle letters 1", text.as_bytes()))
     }
 
-    /// Returns the proof that the writer of a frame has the key, and has written the frame for this challenge.
+    /// Returns the proof that the writer of a frame has the key, and has written the frame in answer to this challenge.
     fn proof(&self, challenge: &Challenge, magic: [u8; 4], body: &[u8]) -> blake3::Hash {
         let mut hasher = blake3::Hasher::new_keyed(&self.0);
         hasher.update(&challenge.0).update(&magic).update(&[VERSION]).update(body);
@@ -43,12 +43,13 @@ impl Key {
 }
 
 /// Random bytes that the receiver of a connection sends first. The proof of each frame covers them, so that a recorded
-/// frame is worth nothing on any other connection.
+/// frame is invalid on any other connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Challenge([u8; 16]);
 
 impl Challenge {
-    /// The challenge of a medium without connections, by which the proof of a frame does not tell when it was written.
+    /// The challenge on a medium without connections. The proof of a frame does not show there when the frame was
+    /// written.
     pub const NONE: Self = Self([0; 16]);
 
     /// Returns a new challenge.
@@ -63,7 +64,7 @@ impl Challenge {
         }
     }
 
-    /// Returns the bytes by which a receiver tells a sender the challenge.
+    /// Returns the greeting, with which a receiver sends the challenge to a sender.
     pub(super) fn greeting(&self) -> [u8; GREETING_LENGTH] {
         let mut greeting = [0; GREETING_LENGTH];
         let bytes = GREETING.into_iter().chain([VERSION]).chain(self.0);
@@ -71,10 +72,10 @@ impl Challenge {
         greeting
     }
 
-    /// Reads a greeting.
+    /// Reads the challenge from a greeting.
     ///
     /// # Errors
-    /// The bytes are no greeting of this version.
+    /// Fails if the bytes are not a greeting of this version.
     pub(super) fn of_greeting(greeting: &[u8; GREETING_LENGTH]) -> Result<Self, Refused> {
         let mut bytes = Bytes::of(greeting);
         if bytes.take() != Some(GREETING) {
@@ -97,21 +98,21 @@ pub(super) enum Refused {
     Version(u8),
     /// The sender has a different key, or has written the frame for another connection.
     Key,
-    /// The pose or the velocity is one that no robot has.
+    /// The pose or the velocity is larger than that of any robot.
     Impossible,
 }
 
-/// A frame without what each connection needs anew: its proof, and the times of a state.
+/// A frame without the parts that are written anew for each connection: the proof, and the times of a state.
 #[derive(Clone)]
 pub struct Draft {
     magic: [u8; 4],
-    /// Times with which the body begins; `None` if it has none.
+    /// Times of the state, which the body begins with; `None` if the frame is not that of a state.
     times: Option<Times>,
     body: Arc<[u8]>,
     key: Key,
 }
 
-/// Times of a state, by the clock of its robot.
+/// Timestamps of a state, according to the clock of its robot.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Times {
     /// Time at which the robot's session began.
@@ -121,25 +122,26 @@ pub(super) struct Times {
 }
 
 impl Times {
-    /// Returns the numbers of a frame that is written at time `now`: the time of the session, and the age of the state.
+    /// Returns the times that a frame contains if it is written at `now`: the time since the session began, and the age
+    /// of the state.
     fn at(self, now: Nanos) -> [Nanos; 2] {
         [now.since(self.begun), now.since(self.measured)]
     }
 }
 
 impl Draft {
-    /// Returns the draft of a frame with these first bytes, and with these times if it is one of a state.
+    /// Returns the draft of a frame with these first bytes. `times` are those of a state, `None` for any other frame.
     pub(super) fn new(magic: [u8; 4], times: Option<Times>, body: Vec<u8>, key: &Key) -> Self {
         Self { magic, times, body: body.into(), key: key.clone() }
     }
 
-    /// Returns the frame, length included, as it is written now with a proof for this challenge.
+    /// Returns the frame, including its length, written now with a proof for this challenge.
     #[must_use]
     pub fn frame(&self, challenge: &Challenge) -> Vec<u8> {
         self.frame_at(challenge, clock::now())
     }
 
-    /// Returns the frame, length included, as it is written at time `now` with a proof for this challenge.
+    /// Returns the frame, including its length, written at time `now` with a proof for this challenge.
     pub(super) fn frame_at(&self, challenge: &Challenge, now: Nanos) -> Vec<u8> {
         let Self { magic, times, body, key } = self;
         let times = times.iter().flat_map(|times| times.at(now)).flat_map(|time| time.0.to_le_bytes());
@@ -166,10 +168,10 @@ fn checksum(body: &[u8]) -> [u8; 4] {
     blake3::hash(body).as_bytes().first_chunk().copied().unwrap_or_default()
 }
 
-/// Returns the body of a frame with these first bytes, once its checksum and its proof hold.
+/// Checks the first bytes, version, checksum and proof of a frame, and returns its body.
 ///
 /// # Errors
-/// The bytes are no such frame of somebody with this key, for this challenge.
+/// Fails if the bytes are not such a frame, or if its writer did not have this key and this challenge.
 pub(super) fn opened<'b>(
     magic: [u8; 4],
     frame: &'b [u8],

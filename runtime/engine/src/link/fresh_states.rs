@@ -1,4 +1,4 @@
-//! The sessions of the other robots, and the newest state of each since this robot's last turn.
+//! The sessions of the other robots, and the newest state of each robot that has arrived since this robot's last turn.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -8,7 +8,7 @@ use mdle_runtime::Nanos;
 use super::sessions::Sessions;
 use super::{State, clock};
 
-/// States of other robots. One lock has sessions and states, so that no older state takes the place of a newer one.
+/// States of other robots. Sessions and states share one lock, so that an older state never replaces a newer one.
 #[derive(Debug, Default)]
 pub(super) struct FreshStates {
     sessions: Sessions,
@@ -17,15 +17,16 @@ pub(super) struct FreshStates {
 }
 
 impl FreshStates {
-    /// Returns the current session of a robot, if a state of it has arrived.
+    /// Returns the current session of a robot; `None` before its first state has arrived.
     pub(super) fn session(&self, robot: &str) -> Option<u64> {
         self.sessions.of(robot)
     }
 
-    /// Takes a state that has arrived at time `at`, unless a newer one of its robot has arrived.
+    /// Takes a state that has arrived at time `at`, unless a newer state of its robot has arrived.
     ///
     /// # Errors
-    /// The state is of a session that is over, or of another robot with the same name: the end of a sentence.
+    /// Returns the end of a sentence if the state belongs to a session that is over, or to another robot with the same
+    /// name.
     pub(super) fn take(&mut self, state: State, at: Nanos) -> Result<(), String> {
         if self.sessions.take(&state.name, (state.session, state.number), Instant::now())? {
             self.states.insert(state.name.clone(), (state, at));
@@ -33,7 +34,8 @@ impl FreshStates {
         Ok(())
     }
 
-    /// Takes the newest state of each robot that has arrived since the last call; time here counts to its age.
+    /// Takes the newest state of each robot that has arrived since the last call. The time since its arrival is added
+    /// to its age.
     pub(super) fn take_all(&mut self) -> impl Iterator<Item = State> + use<> {
         let now = clock::now();
         std::mem::take(&mut self.states).into_values().map(move |(mut state, at)| {

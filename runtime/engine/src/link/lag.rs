@@ -1,21 +1,23 @@
-//! Lag of the frames of a source: frames on a slow line arrive ever later, though each arrives soon after the one
-//! before.
+//! Measures the lag of the frames of a source. On a slow line, frames arrive later and later, although each arrives
+//! soon after the one before.
 
 use mdle_runtime::Nanos;
 
-/// The clocks of two robots drift apart by at most this part of a second in each second: its reciprocal.
+/// Reciprocal of the maximum drift of two robots' clocks: they drift apart by at most 1/5000 of a second in each
+/// second.
 const DRIFT: i128 = 5000;
 
-/// The least time that a frame of a source was on its way, by two clocks that do not agree.
+/// Minimum transmission time of the frames of a source, measured with two clocks that do not agree.
 #[derive(Debug, Default)]
 pub(super) struct Lag {
-    /// Difference of the clocks with that time, and the time of the last arrival.
+    /// Minimum transmission time plus the difference of the clocks, in nanoseconds, and the arrival time of the last
+    /// frame; `None` before the first frame.
     least: Option<(i128, Nanos)>,
 }
 
 impl Lag {
-    /// Returns the time that a frame was on its way, beyond the least such time. The frame was sent at `sent` by the
-    /// clock of its sender, and has arrived at `arrival` by the clock of this robot.
+    /// Returns the transmission time of a frame, less the minimum of its source. The frame was sent at `sent` on the
+    /// clock of its sender, and arrived at `arrival` on the clock of this robot.
     pub(super) fn of(&mut self, sent: Nanos, arrival: Nanos) -> Nanos {
         let way = i128::from(arrival.0) - i128::from(sent.0);
         let least = self.least.map_or(way, |(least, before)| {
@@ -34,7 +36,7 @@ mod tests {
 
     const MILLISECOND: u64 = 1_000_000;
 
-    /// Returns the lags in milliseconds of frames that are sent and arrive at these times in milliseconds.
+    /// Returns the lags of frames that are sent and arrive at these times, all in milliseconds.
     fn lags(frames: impl IntoIterator<Item = (u64, u64)>) -> Vec<u64> {
         let mut lag = Lag::default();
         let of = |(sent, arrival)| lag.of(Nanos(sent * MILLISECOND), Nanos(arrival * MILLISECOND)).0 / MILLISECOND;

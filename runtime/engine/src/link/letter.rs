@@ -20,7 +20,7 @@ const SOON: Duration = Duration::from_secs(10);
 pub struct Letter {
     /// Name of the robot that has sent the letter.
     pub from: String,
-    /// Number of the letter among those of its sender, from 1.
+    /// Number of the letter; each sender counts its letters from 1.
     pub number: u64,
     /// Content of the letter.
     pub content: Content,
@@ -54,7 +54,7 @@ pub struct RefusedPlan {
     pub from: String,
     /// Number of the letter with the plan.
     pub number: u64,
-    /// Reason why the plan is refused: the end of a sentence.
+    /// Reason why the plan was refused, as the end of a sentence.
     pub reason: String,
 }
 
@@ -73,7 +73,7 @@ impl Content {
     }
 }
 
-/// Cuts a text after at most this number of bytes.
+/// Returns the beginning of a text, at most `longest` bytes of whole characters.
 pub(super) fn cut(text: &str, longest: usize) -> &str {
     text.get(..text.floor_char_boundary(longest)).unwrap_or(text)
 }

@@ -1,5 +1,5 @@
-//! A letter in binary form, with a proof of the key that sender and recipient share, and of the runs of both
-//! (docs/src/reference/interfaces.md, 6.5).
+//! Letters in binary form. The proof of a letter requires the key that sender and recipient share, and covers the
+//! sessions of both (docs/src/reference/interfaces.md, 6.5).
 
 use mdle_runtime::Nanos;
 
@@ -12,12 +12,12 @@ use crate::plans::When;
 const MAGIC: [u8; 4] = *b"MDLl";
 /// Maximum length of the frame of a letter, in bytes, without the four bytes of the length. No frame is longer.
 pub const LONGEST_LETTER: usize = LONGEST_TEXT + 1024;
-/// Numbers of the contents of letters.
+/// Numbers that identify the kind of a letter's content: a plan, or one of two answers.
 const PLAN: u8 = 0;
 const REFUSAL: u8 = 1;
 const ACCEPTANCE: u8 = 2;
 
-/// Sender, recipient and runs of a letter, which its proof covers.
+/// Sender and recipient of a letter, with their sessions; the proof of the letter covers them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Envelope {
     pub(super) from: String,
@@ -30,7 +30,7 @@ pub(super) struct Envelope {
     pub(super) sent: Nanos,
 }
 
-/// Returns `true` if a frame, without its length, is that of a letter.
+/// Returns `true` if a frame, without its length, contains a letter.
 pub(super) fn is_letter(frame: &[u8]) -> bool {
     frame.starts_with(&MAGIC)
 }
@@ -60,7 +60,7 @@ pub(super) fn written(envelope: &Envelope, letter: &Letter, key: &Key) -> Draft 
 /// Reads the frame of a letter, without its length.
 ///
 /// # Errors
-/// The bytes are no letter of somebody with this key, for this challenge.
+/// Fails if the bytes are not a letter, or if its writer did not have this key and this challenge.
 pub(super) fn read(frame: &[u8], key: &Key, challenge: &Challenge) -> Result<(Envelope, Letter), Refused> {
     letter(&mut opened(MAGIC, frame, key, challenge)?).ok_or(Refused::Garbage)
 }

@@ -1,7 +1,7 @@
-//! Letters of a link: which are sent, and which that arrive are taken.
+//! Letters of a link: drafts the letters that are sent, and decides which of those that arrive are accepted.
 //!
-//! The proof of a letter covers the sessions of both robots, which states tell, and its number: a letter that somebody
-//! has recorded and sends once more is not taken again, whatever carries it.
+//! The proof of a letter covers its number and the sessions of both robots, which their states contain. So a letter
+//! that somebody has recorded and sends again is not accepted a second time, whatever medium carries it.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -21,7 +21,7 @@ pub(super) struct Letters {
     own: String,
     /// Session of the robot.
     session: u64,
-    /// For each peer with which letters are exchanged, its name and the key that only both have.
+    /// Name of each peer with which letters are exchanged, with the key that only this robot and the peer have.
     keys: Vec<(String, Key)>,
     unread: Mutex<Unread>,
     questions: Mutex<Questions>,
@@ -43,21 +43,23 @@ struct Waiting {
     letter: Letter,
     /// Time at which the letter arrived.
     at: Nanos,
-    /// Time that the letter was late when it arrived.
+    /// Delay of the letter on its way.
     late: Nanos,
 }
 
 impl Letters {
-    /// Returns the letters of the robot of this name and session, which has these keys in common with peers.
+    /// Returns the letters of the robot `own` in this session. `keys` are the names of peers, each with the key that
+    /// the robot shares with the peer.
     pub(super) fn new(own: &str, session: u64, keys: &[(String, String)]) -> Self {
         let keys = keys.iter().map(|(name, key)| (name.clone(), Key::of_letters(key))).collect();
         Self { own: own.to_owned(), session, keys, unread: Mutex::default(), questions: Mutex::default() }
     }
 
-    /// Returns the draft of a letter to a peer, which is in this session, at time `sent` of this robot's session.
+    /// Returns the draft of a letter to the peer `to`, which is sent at time `sent` of this robot's session. `session`
+    /// is the peer's session, if it is known.
     ///
     /// # Errors
-    /// Robot and peer have no key for letters, or the peer has not been heard: a sentence.
+    /// Returns a sentence if the robot and the peer have no key for letters, or if no state of the peer has arrived.
     pub(super) fn draft(&self, to: &str, letter: &Letter, session: Option<u64>, sent: Nanos) -> Result<Draft, String> {
         let key = self.key(to).ok_or_else(|| format!("the file of the link has no key `plans` for {to}"))?;
         let meant_for = session.ok_or_else(|| {
@@ -67,7 +69,7 @@ impl Letters {
         Ok(letter_frame::written(&envelope, letter, key))
     }
 
-    /// Notes that a letter is being sent to a robot at time `now`, so that an answer to it is taken.
+    /// Notes that a letter is being sent to a robot at time `now`. If it is a plan, an answer to it is accepted.
     pub(super) fn posts(&self, to: &str, letter: &Letter, now: Instant) {
         if letter.content.is_plan() {
             lock(&self.questions).ask(to, letter.number, now);
@@ -79,17 +81,19 @@ impl Letters {
         lock(&self.questions).forget(number);
     }
 
-    /// Returns the recipients of plans that have had no answer for too long at time `now`, each plan once.
+    /// Returns the recipient of each plan that has waited too long for an answer at time `now`; each plan is reported
+    /// only once.
     pub(super) fn unanswered(&self, now: Instant) -> Vec<String> {
         lock(&self.questions).unanswered(now)
     }
 
-    /// Takes a frame that has arrived from a robot, which is in this session. A plan that is too late is refused, as is
-    /// one that waits for the turn when a newer one arrives. `late` returns how late a letter is that was posted at a
-    /// time of the robot's session.
+    /// Takes a frame that has arrived from a robot, whose current session is `session`. A plan is refused if it is too
+    /// late, if it was sent to an earlier run of this robot, or if a newer plan of its sender arrives before the next
+    /// turn. `late` returns the delay of a letter that was posted at a given time of the robot's session.
     ///
     /// # Errors
-    /// It is no letter of the robot to this robot, or an answer to no plan of this run: the end of a sentence.
+    /// Returns the end of a sentence if the frame is not a letter from this robot's current session to this robot, or
+    /// if it answers a plan that was not sent in this run.
     pub(super) fn take(
         &self,
         frame: &[u8],
@@ -130,7 +134,7 @@ impl Letters {
         Ok(())
     }
 
-    /// Takes the letters that have arrived by time `now`, without plans that have become too late.
+    /// Takes the letters that have arrived. Plans that are too late at time `now` are refused.
     pub(super) fn arrived(&self, now: Nanos) -> Vec<Letter> {
         let mut unread = lock(&self.unread);
         let waiting = std::mem::take(&mut unread.letters).into_iter();
@@ -155,7 +159,7 @@ impl Letters {
 }
 
 impl Unread {
-    /// Puts a plan in the place of an older one of its sender, unless it is too late.
+    /// Adds a plan, which replaces an older plan of its sender, or refuses it if it is too late.
     fn put(&mut self, plan: Waiting) {
         if let Some(reason) = plan.lateness(plan.at) {
             return self.refuse(&plan.letter, reason);
@@ -168,7 +172,8 @@ impl Unread {
         self.letters.push(plan);
     }
 
-    /// Notes that a plan was refused. A sender has few plans without an answer: more of them are not answered.
+    /// Notes that a plan was refused and has to be answered. If a sender has too many such plans, further ones get no
+    /// answer.
     fn refuse(&mut self, letter: &Letter, reason: String) {
         let Letter { from, number, .. } = letter;
         if self.refused.iter().filter(|plan| plan.from == *from).count() < UNREAD {
@@ -178,7 +183,8 @@ impl Unread {
 }
 
 impl Waiting {
-    /// Returns the reason to refuse a plan that is too late at time `now`. Somebody on the line may hold it back.
+    /// Returns the reason to refuse a plan that is too late at time `now`, because somebody on the line may have held
+    /// it back. Returns `None` for an answer, and for a plan in time.
     fn lateness(&self, now: Nanos) -> Option<String> {
         let limit = self.letter.content.limit();
         let late = self.late.0.saturating_add(now.since(self.at).0);

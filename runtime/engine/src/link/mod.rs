@@ -1,8 +1,8 @@
-//! The state link: robots tell each other their poses, velocities, rounds, and attributes of their modules (paper,
-//! sections III and IV-D).
+//! The state link, by which robots send each other their poses, velocities, rounds, and attributes of their modules
+//! (paper, sections III and IV-D).
 //!
-//! A [`Link`] carries states and letters: [`Air`] between robots of one process, [`Tcp`] between processes and
-//! machines. An [`Endpoint`] drafts and checks the frames of a link that leaves the process, whatever carries them.
+//! A [`Link`] carries states and letters: [`Air`] between robots in one process, [`Tcp`] between processes and
+//! machines. An [`Endpoint`] drafts and checks the frames of a link to other processes, whatever medium carries them.
 //! [`StateLink`] is the module of one robot: before a turn it writes the states that have arrived into the output, and
 //! after the turn it sends the robot's own state. It never waits.
 
@@ -48,7 +48,7 @@ pub use tcp::{Tcp, TcpSettings};
 use crate::attribute::{AttributeName, Reading};
 use crate::module::Refusal;
 
-/// A medium by which a robot sends its states to other robots, and receives theirs.
+/// A medium through which a robot sends its states to other robots, and receives their states.
 pub trait Link: Send {
     /// Sends the robot's state at time `now`, without waiting.
     fn send(&mut self, state: &State, now: Nanos);
@@ -61,7 +61,7 @@ pub trait Link: Send {
     /// Sends a letter to the robot of this name at time `now`, without waiting.
     ///
     /// # Errors
-    /// The letter cannot be sent: a sentence.
+    /// Returns a sentence with the reason if the letter cannot be sent.
     fn post(&mut self, to: &str, letter: &Letter, now: Nanos) -> Result<(), String>;
     /// Calls `take` with each letter that has arrived by `now`.
     fn letters(&mut self, now: Nanos, take: &mut dyn FnMut(Letter));
@@ -76,11 +76,12 @@ pub(crate) trait Foreign {
     /// Puts a value that another robot has published on the board.
     ///
     /// # Errors
-    /// A module of this robot has the name, or reads the attribute as another kind, or there are too many attributes.
+    /// Fails if a module of this robot has the name, if one reads the attribute as another kind, if the attribute has
+    /// changed its kind, or if there are too many attributes.
     fn put_foreign(&mut self, name: &AttributeName, reading: Reading) -> Result<(), Refusal>;
 }
 
-/// Locks a mutex, also if a thread has panicked that had locked it.
+/// Locks a mutex even if it is poisoned, that is, if a thread panicked while holding it.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

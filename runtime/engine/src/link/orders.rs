@@ -1,4 +1,5 @@
-//! Plans that other robots send, on their way to take over, and the answers to plans that this robot has sent.
+//! Plans that other robots have sent, until they take over or are refused, and the answers to plans that this robot has
+//! sent.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -11,7 +12,7 @@ use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
 /// Answer to a plan of a robot that sends plans too fast.
 const TOO_FAST: &str = "it sends more than one plan a second: send it again later";
 
-/// Number of plans that were sent whose names are kept.
+/// Maximum number of sent plans whose names are kept.
 const NAMES: usize = 64;
 
 /// The plans that are exchanged with other robots.
@@ -19,7 +20,7 @@ const NAMES: usize = 64;
 pub(super) struct Orders {
     /// Name of this robot.
     own: String,
-    /// Names of the robots whose plans are taken.
+    /// Names of the robots whose plans are accepted.
     pub(super) takes_from: Vec<String>,
     /// Names of the robots to which plans can be sent.
     pub(super) sends_to: Vec<String>,
@@ -29,34 +30,34 @@ pub(super) struct Orders {
     names: VecDeque<(u64, String)>,
     /// Plans of other robots that have neither taken over nor been refused.
     waiting: Vec<Order>,
-    /// Paces of the robots that have sent plans.
+    /// Pace of each robot that has sent plans, by its name.
     paces: BTreeMap<String, Pace>,
 }
 
 /// A plan of another robot.
 #[derive(Debug)]
 struct Order {
-    /// Number of the request to the plans of this robot.
+    /// Number of the request that compiles the plan on this robot.
     ticket: u32,
     from: String,
     /// Number of the letter with the plan.
     number: u64,
     /// Moment at which the plan takes over.
     when: When,
-    /// Warnings about the plan that no answer has; empty if there are none.
+    /// Warnings about the plan that no answer has contained yet; empty if there are none.
     warnings: String,
 }
 
 impl Orders {
-    /// Returns the orders of the robot of this name, which exchanges no plans.
+    /// Returns the orders of the robot `own`, which exchanges no plans as yet.
     pub(super) fn of(own: &str) -> Self {
         Self { own: own.to_owned(), ..Self::default() }
     }
 
-    /// Sends the text of a plan of this name, which is to take over at the robot `to`.
+    /// Sends the text of the plan `name`, which is to take over on the robot `to` at the moment `when`.
     ///
     /// # Errors
-    /// The plan cannot be sent: a sentence.
+    /// Returns a sentence with the reason if the plan cannot be sent.
     pub(super) fn send(
         &mut self,
         link: &mut dyn Link,
@@ -73,7 +74,8 @@ impl Orders {
         Ok(())
     }
 
-    /// Returns the words for the plan of the letter of this number, which this robot has sent.
+    /// Returns the name, for messages, of the plan that this robot has sent in letter `number`; "a plan" if the name is
+    /// not known any more.
     fn plan(&self, number: u64) -> String {
         let name = self.names.iter().find(|(sent, _)| *sent == number);
         name.map_or_else(|| "a plan".to_owned(), |(_, name)| format!("the plan {name}"))
@@ -86,7 +88,8 @@ impl Orders {
         Ok(())
     }
 
-    /// Begins to compile the plans that have arrived; returns messages about them, and about answers.
+    /// Begins to compile the plans that have arrived. Returns messages to the operator about refused plans, and about
+    /// answers of other robots.
     pub(super) fn take<A: EngineAlphabet>(
         &mut self,
         link: &mut dyn Link,
@@ -127,7 +130,7 @@ impl Orders {
         messages.collect()
     }
 
-    /// Answers the plans to which something has happened; returns messages about them.
+    /// Answers the plans about which there are new events; returns messages to the operator about them.
     pub(super) fn decide<A: EngineAlphabet>(
         &mut self,
         link: &mut dyn Link,
@@ -165,7 +168,7 @@ impl Orders {
 }
 
 impl Order {
-    /// Returns the answer to an event of the request; `None` if the event needs none.
+    /// Returns the answer to the sender after an event of the request; `None` if the event needs no answer.
     fn answer<A: EngineAlphabet>(&mut self, event: &PlanEvent, plans: &Plans<A>) -> Option<Result<String, String>> {
         let refused = |sentence: &str| Some(Err(sentence.to_owned()));
         match event {
@@ -190,7 +193,7 @@ impl Order {
         }
     }
 
-    /// Returns the sentence, with the warnings about the plan unless an earlier answer has them.
+    /// Returns the sentence, followed by the warnings about the plan unless an earlier answer contained them.
     fn warned(&mut self, sentence: String) -> String {
         match std::mem::take(&mut self.warnings).trim_end() {
             "" => sentence,
@@ -199,8 +202,8 @@ impl Order {
     }
 }
 
-/// Returns the text of another robot, whose control characters are escaped. Lines after the first are indented, so that
-/// none of them looks like one of this robot's report.
+/// Returns a text of another robot with its control characters escaped. Lines after the first are indented, so that
+/// none of them looks like a line of this robot's own report.
 fn printable(text: &str) -> String {
     text.lines().map(|line| Printable(line).to_string()).collect::<Vec<_>>().join("\n    ")
 }

@@ -1,4 +1,4 @@
-//! The newest state of a robot and its letters, between the robot's turns and a thread that sends them.
+//! The newest state and the letters of a robot, which the robot's turns pass to a thread that sends them.
 
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, PoisonError};
@@ -19,11 +19,11 @@ const HEARTBEAT: Duration = Duration::from_millis(500);
 pub struct Posted {
     /// Name of the robot to which the letter is sent.
     pub to: String,
-    /// Number of the letter among those of this robot.
+    /// Number of the letter; this robot counts its letters from 1.
     pub number: u64,
     /// The letter, without its proof.
     pub draft: Draft,
-    /// `true` if the letter has a plan, which is answered.
+    /// `true` if the letter contains a plan, so that an answer is expected.
     pub is_plan: bool,
     /// Time after which the letter is not sent any more.
     pub limit: Duration,
@@ -45,7 +45,7 @@ struct Waiting {
     letters: VecDeque<Waits>,
 }
 
-/// A letter that waits to be sent, or is kept since its connection may break before it arrives.
+/// A letter that waits to be sent, or that was sent and is kept because the connection may break before it arrives.
 struct Waits {
     letter: Posted,
     /// Time at which the letter was posted.
@@ -78,7 +78,7 @@ impl Outbox {
     /// Appends a letter at time `now`, without waiting.
     ///
     /// # Errors
-    /// The letter is a plan and no connection is open, or too many letters wait: a sentence.
+    /// Returns a sentence if the letter is a plan and no connection is open, or if too many letters wait.
     pub fn post(&self, letter: Posted, now: Instant) -> Result<(), String> {
         let mut waiting = lock(&self.waiting);
         if letter.is_plan && !waiting.is_open {
@@ -105,8 +105,8 @@ impl Outbox {
         self.is_new.notify_all();
     }
 
-    /// Waits half a second for a state or a letter that has not been sent; returns the state, or `None` if there is
-    /// none.
+    /// Waits at most half a second for a new state or an unsent letter; returns the state, or `None` if there is no new
+    /// one.
     #[must_use]
     pub fn next(&self) -> Option<Draft> {
         let waiting = lock(&self.waiting);
@@ -117,7 +117,8 @@ impl Outbox {
         waiting.state.take()
     }
 
-    /// Returns the first letter that has not been sent, and has not waited too long at time `now`.
+    /// Returns the first letter that has not been sent on the open connection and has not reached its limit at time
+    /// `now`.
     #[must_use]
     pub fn letter(&self, now: Instant) -> Option<Posted> {
         let waiting = lock(&self.waiting);
@@ -125,15 +126,15 @@ impl Outbox {
         Some(letter.letter.clone())
     }
 
-    /// Notes that the letter of this number has been sent. It is sent once more if the connection is made anew before
-    /// its limit, and a plan before its answer has arrived.
+    /// Notes that the letter of this number has been sent. If the connection is opened again, the letter is sent once
+    /// more, unless its limit has passed or, for a plan, its answer has arrived.
     pub fn is_sent(&self, number: u64) {
         for waits in lock(&self.waiting).letters.iter_mut().filter(|waits| waits.letter.number == number) {
             (waits.is_sent, waits.was_sent) = (true, true);
         }
     }
 
-    /// Removes the plan in the letter of this number, which has been answered.
+    /// Removes the letter of this number, whose plan has been answered.
     pub fn is_answered(&self, number: u64) {
         lock(&self.waiting).letters.retain(|waits| waits.letter.number != number);
     }

@@ -1,29 +1,29 @@
-//! The pace at which another robot may send plans: each is compiled, and recorded.
+//! The rate at which another robot may send plans. It is limited because each plan is compiled and recorded.
 
 use mdle_runtime::Nanos;
 
-/// Time between two plans, on average.
+/// Average time between two plans at the maximum rate, in nanoseconds.
 const SPACING: u64 = 1_000_000_000;
-/// Time that the plans which may come at once would take at this spacing.
+/// Maximum burst: the time, in nanoseconds, that its plans would take at this average.
 const BURST: u64 = 4 * SPACING;
 
 /// The pace of one robot.
 #[derive(Debug, Default)]
 pub(super) struct Pace {
-    /// Time from which a whole burst may come again.
+    /// Time after which a full burst is permitted again.
     rested: Nanos,
     /// `true` if the last plan came too fast.
     is_too_fast: bool,
 }
 
-/// Decision about a plan by the time at which it comes.
+/// Decision about a plan, depending on the time at which it arrives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Admission {
     /// The plan is taken.
     Taken,
     /// The plan comes too fast after one that was taken.
     TooFast,
-    /// The plan comes too fast, as the one before it did.
+    /// The plan comes too fast, as did the plan before it.
     StillTooFast,
 }
 

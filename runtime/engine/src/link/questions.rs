@@ -5,12 +5,12 @@ use std::time::{Duration, Instant};
 
 /// Time after which a plan without an answer is reported.
 const ANSWERS: Duration = Duration::from_secs(10);
-/// Maximum number of plans that are known.
+/// Maximum number of sent plans that are remembered.
 const KNOWN: usize = 64;
 /// Maximum number of answers to a plan: that it waits, that it begins, and one more.
 const MOST: u8 = 3;
 
-/// The plans that were sent last.
+/// The sent plans that are remembered, the oldest first.
 #[derive(Debug, Default)]
 pub(super) struct Questions(VecDeque<Question>);
 
@@ -21,7 +21,7 @@ struct Question {
     /// Number of the letter with the plan.
     number: u64,
     at: Instant,
-    /// Number of its answers.
+    /// Number of answers that have arrived.
     answers: u8,
     /// `true` until an answer has arrived, or its absence was reported.
     is_open: bool,
@@ -44,7 +44,7 @@ impl Questions {
     /// Notes an answer to the plan in the letter of this number.
     ///
     /// # Errors
-    /// The robot has not been sent this plan, or has answered it too often: the end of a sentence.
+    /// Returns the end of a sentence if the robot was not sent this plan, or has answered it too often.
     pub(super) fn answer(&mut self, from: &str, number: u64) -> Result<(), String> {
         let question = self.0.iter_mut().find(|question| question.to == from && question.number == number);
         let question = question.ok_or_else(|| "it answers a plan that was not sent".to_owned())?;
@@ -55,7 +55,8 @@ impl Questions {
         Ok(())
     }
 
-    /// Returns the recipients of plans that have had no answer for too long at time `now`, each plan once.
+    /// Returns the recipient of each plan that has waited too long for an answer at time `now`; each plan is reported
+    /// only once.
     pub(super) fn unanswered(&mut self, now: Instant) -> Vec<String> {
         let is_late =
             |question: &&mut Question| question.is_open && now.saturating_duration_since(question.at) >= ANSWERS;

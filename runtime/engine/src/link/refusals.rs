@@ -1,14 +1,15 @@
-//! Warnings about what is refused: somebody who tries again and again causes one in a while, not one each time.
+//! Warnings about refused connections, states and letters. A warning is repeated only after a while, however often its
+//! cause recurs.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 /// Time for which a warning is not repeated.
 const QUIET: Duration = Duration::from_secs(10);
-/// Maximum number of warnings that are known.
+/// Maximum number of warnings that are remembered.
 const KNOWN: usize = 64;
 
-/// The warnings of the last while.
+/// The recent warnings, by their texts.
 #[derive(Debug, Default)]
 pub(super) struct Refusals(BTreeMap<String, Refusal>);
 
@@ -16,13 +17,13 @@ pub(super) struct Refusals(BTreeMap<String, Refusal>);
 struct Refusal {
     /// Time at which the warning was given.
     at: Instant,
-    /// Number of its causes since then.
+    /// Number of times that the cause has recurred since then.
     count: u32,
 }
 
 impl Refusals {
-    /// Returns the warning about something that is refused at time `now`, or `None` if that was reported a short while
-    /// ago.
+    /// Returns the warning that `what` is refused at time `now`. Returns `None` if the warning was given a short while
+    /// ago, or if there are too many different ones.
     pub(super) fn warning(&mut self, what: &str, reason: &str, now: Instant) -> Option<String> {
         let warning = format!("warning: state link: {what} is refused: {reason}");
         if let Some(known) = self.0.get_mut(&warning) {

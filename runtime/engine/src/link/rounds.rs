@@ -1,5 +1,5 @@
-//! Rounds of `rendezvous`: for each other robot, the number of scopes with a `rendezvous` with it that a
-//! robot's plan has entered (docs/src/reference/semantics.md, 2.6).
+//! Rounds of `rendezvous`: for each other robot, the number of scopes that a robot's plan has entered and that have a
+//! `rendezvous` with the other robot (docs/src/reference/semantics.md, 2.6).
 
 use mdle_host::{Passes, Texts, Transitions, outwards};
 use mdle_runtime::Plan;
@@ -24,7 +24,7 @@ impl Rounds {
         self.counts.iter().find(|(name, _)| *name == robot).map_or(0, |(_, count)| *count)
     }
 
-    /// Increments the rounds for the scopes that the plan with this number has entered in a turn.
+    /// Counts the rounds of the scopes that the plan with this number has entered in a turn.
     pub(super) fn turn<P: Plan>(&mut self, number: u64, plan: &P, transitions: &Transitions) {
         if plan.meetings().is_empty() {
             return;
@@ -46,7 +46,7 @@ impl Rounds {
     }
 }
 
-/// Increments the counts for a scope that was entered.
+/// Counts a round with each robot with which the entered scope `scope` has a `rendezvous`.
 fn count<P: Plan>(counts: &mut Vec<(&'static str, u64)>, plan: &P, scope: u32) {
     for meeting in plan.meetings().iter().filter(|meeting| meeting.scope == scope) {
         match counts.iter_mut().find(|(robot, _)| *robot == meeting.robot) {

@@ -1,12 +1,13 @@
-//! Sessions of the other robots: each run of a robot's program has a random number, and states that count from 1.
+//! Sessions of the other robots. Each run of a robot's program is a session with a random number, and counts its states
+//! from 1.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
-/// Time after the last frame of a session until which no other session of the robot begins. A robot repeats its state
-/// every half second, however long its turns are.
+/// Time after the last state of a session before which no other session of the robot is accepted. A robot repeats its
+/// state every half second, however long its turns are.
 const LIVES: Duration = Duration::from_secs(2);
-/// Maximum number of sessions of a robot that are known to be over.
+/// Maximum number of ended sessions of a robot that are remembered.
 const OVER: usize = 256;
 
 /// The sessions of all other robots.
@@ -19,23 +20,24 @@ struct Session {
     session: u64,
     /// Number of the newest state.
     number: u64,
-    /// Time at which a state arrived last, the newest one or a repeated one.
+    /// Time at which a state last arrived, whether new or repeated.
     at: Instant,
     /// Sessions of the robot that are over.
     over: VecDeque<u64>,
 }
 
 impl Sessions {
-    /// Returns the current session of a robot, if a state of it has arrived.
+    /// Returns the current session of a robot; `None` before its first state has arrived.
     pub(super) fn of(&self, robot: &str) -> Option<u64> {
         self.0.get(robot).map(|known| known.session)
     }
 
     /// Takes the session and the number of a robot's state that has arrived at time `now`; returns `true` if the state
-    /// is newer than all others of the robot.
+    /// is newer than all earlier ones of the robot.
     ///
     /// # Errors
-    /// The state is of a session that is over, or of another robot with the same name: the end of a sentence.
+    /// Returns the end of a sentence if the state belongs to a session that is over, or to another robot with the same
+    /// name.
     pub(super) fn take(&mut self, robot: &str, (session, number): (u64, u64), now: Instant) -> Result<bool, String> {
         let Some(known) = self.0.get_mut(robot) else {
             self.0.insert(robot.to_owned(), Session { session, number, at: now, over: VecDeque::new() });

@@ -1,4 +1,4 @@
-//! A source of frames, as a connection, and its limits.
+//! A source of frames, such as a connection, and the limits on its frames.
 
 use std::time::{Duration, Instant};
 
@@ -7,15 +7,15 @@ use super::lag::Lag;
 
 /// Maximum number of states that a source may send in a second: twice as many as a sender sends.
 const STATES: u32 = 2000;
-/// Maximum number of letters that a source may send in a second: more than a sender keeps, and sends at once on a new
-/// connection.
+/// Maximum number of letters that a source may send in a second. A sender keeps fewer letters, all of which it may send
+/// at once on a new connection.
 const LETTERS: u32 = 40;
 
-/// A source of frames: its robot, and the number of its frames in the current second.
+/// A source of frames: its robot, and the number of states and letters that it has sent in the current second.
 #[derive(Debug)]
 pub struct Source {
     pub(super) challenge: Challenge,
-    /// Name of the robot that a frame has proved.
+    /// Name of the robot; `None` until a frame has proved it.
     pub(super) robot: Option<String>,
     pub(super) lag: Lag,
     second: Instant,
@@ -24,20 +24,20 @@ pub struct Source {
 }
 
 impl Source {
-    /// Returns a connection whose frames are proved for this challenge.
+    /// Returns a new connection, whose frames must have a proof for this challenge.
     pub(super) fn of_connection(challenge: Challenge) -> Self {
         Self { challenge, robot: None, lag: Lag::default(), second: Instant::now(), states: 0, letters: 0 }
     }
 
-    /// Returns a source of frames of the robot of this name on a medium without connections. Frames that were recorded
-    /// before this run are accepted from it, unless the robot has been heard in a newer session; who repeats the frames
-    /// of a session keeps it up.
+    /// Returns the source of the frames of a robot on a medium without connections. The source also accepts frames that
+    /// were recorded before this run, unless a newer session of the robot is known; repeating the frames of a session
+    /// keeps the session alive.
     #[must_use]
     pub fn without_connection(robot: &str) -> Self {
         Self { robot: Some(robot.to_owned()), ..Self::of_connection(Challenge::NONE) }
     }
 
-    /// Returns the name of the robot, once a frame has proved it.
+    /// Returns the name of the robot; `None` until a frame has proved it.
     #[must_use]
     pub fn robot(&self) -> Option<&str> {
         self.robot.as_deref()
@@ -46,7 +46,7 @@ impl Source {
     /// Counts a state that has arrived at time `now`.
     ///
     /// # Errors
-    /// The source sends too many: the end of a sentence.
+    /// Returns the end of a sentence if the source sends too many states.
     pub(super) fn count_state(&mut self, now: Instant) -> Result<(), String> {
         self.tick(now);
         self.states = self.states.saturating_add(1);
@@ -56,14 +56,14 @@ impl Source {
     /// Counts a letter that has arrived at time `now`.
     ///
     /// # Errors
-    /// The source sends too many: the end of a sentence.
+    /// Returns the end of a sentence if the source sends too many letters.
     pub(super) fn count_letter(&mut self, now: Instant) -> Result<(), String> {
         self.tick(now);
         self.letters = self.letters.saturating_add(1);
         if self.letters > LETTERS { Err(format!("it sends more than {LETTERS} letters a second")) } else { Ok(()) }
     }
 
-    /// Begins to count anew once a second is over.
+    /// Resets the counts once a second has passed.
     fn tick(&mut self, now: Instant) {
         if now.saturating_duration_since(self.second) >= Duration::from_secs(1) {
             (self.second, self.states, self.letters) = (now, 0, 0);

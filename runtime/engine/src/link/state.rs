@@ -13,16 +13,16 @@ pub struct State {
     pub name: String,
     /// Session of the robot: a random number for its run, 0 if all robots run in one process.
     pub session: u64,
-    /// Number of the state, from 1: of two states of a session, that with the higher number was sent later.
+    /// Number of the state, from 1: of two states of a session, the one with the higher number was sent later.
     pub number: u64,
-    /// Time since the state was measured when it is received, without the least time that a frame of its source was on
-    /// its way.
+    /// Age of the state when it is received, without the minimum transmission time of its source, which is not known.
     pub age: Nanos,
     /// Pose by odometry, in the axes that all robots share.
     pub pose: Pose,
     /// Measured velocities.
     pub velocity: Twist,
-    /// Number of scopes with a `rendezvous` with each other robot that the robot's plan has entered.
+    /// For each other robot, the number of scopes that the robot's plan has entered and that have a `rendezvous` with
+    /// the other robot.
     pub rounds: Vec<(String, u64)>,
     /// Number of the atom that the robot's plan runs, as in [`PeerState::atom`](mdle_runtime::PeerState::atom).
     pub atom: u64,
@@ -37,12 +37,13 @@ pub struct SharedValue {
     pub name: AttributeName,
     /// The value, of a kind that plans read as a number.
     pub value: Value,
-    /// Time since the value was published, when the state was measured.
+    /// Age of the value when the state was measured.
     pub age: Nanos,
 }
 
 impl SharedValue {
-    /// Returns the name that the attribute has on other robots: that of its module begins with the robot's name.
+    /// Returns the name that the attribute has on other robots, where the name of its module is preceded by the name of
+    /// the robot that shares it.
     #[must_use]
     pub fn name_from(&self, robot: &str) -> AttributeName {
         let AttributeName { module, attribute } = &self.name;
@@ -67,13 +68,13 @@ impl State {
         }
     }
 
-    /// Returns `true` if this state replaces one of the same robot that arrived before.
+    /// Returns `true` if this state is newer than `known`, a state of the same robot that arrived before.
     pub(super) fn replaces(&self, known: &Self) -> bool {
         // A program that was started again counts from 1.
         self.session != known.session || self.number > known.number
     }
 
-    /// Returns the number of entered scopes with a `rendezvous` with this robot.
+    /// Returns the number of scopes that the plan has entered and that have a `rendezvous` with the robot `robot`.
     #[must_use]
     pub fn rounds_with(&self, robot: &str) -> u64 {
         self.rounds.iter().find(|(name, _)| name == robot).map_or(0, |(_, count)| *count)

@@ -50,8 +50,8 @@ pub(super) fn has_fitting_name(SharedValue { name, .. }: &SharedValue) -> bool {
     fits(&name.module) && fits(&name.attribute)
 }
 
-/// Reads the frame of a state, without its length; returns the state with its age when the frame was written, and the
-/// time of the sender's session at which that was.
+/// Reads the frame of a state, without its length. Returns the state, with its age when the frame was written, and the
+/// time of the sender's session at which the frame was written.
 ///
 /// # Errors
 /// Fails if the bytes are not a frame of a robot with this key, for this challenge.
@@ -83,7 +83,7 @@ fn state(from: &mut Bytes<'_>) -> Option<(State, Nanos)> {
     from.is_empty().then_some((state, written))
 }
 
-/// Reads the value of an attribute, which is a number and not NaN.
+/// Reads the value of an attribute; `None` if it is not a number or is NaN.
 fn attribute(from: &mut Bytes<'_>) -> Option<SharedValue> {
     let name = AttributeName::new(&from.name()?, &from.name()?);
     let [kind] = from.take()?;

@@ -1,4 +1,4 @@
-//! The state link of one robot: what it knows of the other robots, and what it sends them.
+//! The state link of one robot, which collects the states of other robots and sends the robot's own.
 
 use mdle_host::Transitions;
 use mdle_runtime::{Links, Machine, Meters, ModuleRead, Nanos, Output, Peer, PeerState, Plan, Pose, Radians};
@@ -23,7 +23,7 @@ pub struct StateLink {
     /// The newest state of each other robot.
     known: Vec<Known>,
     rounds: Rounds,
-    /// Modules whose attributes the robot shares, each as a read of its `age`.
+    /// Modules whose attributes the robot shares, each given as a read of its `age`.
     shares: &'static [ModuleRead],
     /// Names of the attributes of other robots.
     foreign: ForeignNames,
@@ -56,7 +56,7 @@ impl StateLink {
         }
     }
 
-    /// Shares the attributes of the modules of these names with the other robots: their numbers and quantities.
+    /// Shares the attributes of these modules with the other robots, as far as plans can read them as numbers.
     #[must_use]
     pub fn sharing(self, modules: &[String]) -> Self {
         // As the names of plans, they last as long as the program.
@@ -65,7 +65,7 @@ impl StateLink {
         Self { shares: shares.leak(), ..self }
     }
 
-    /// Takes plans as text from the robots of some names, and lets plans be sent to others.
+    /// Accepts plans as text from the robots `takes_from`, and permits sending plans to the robots `sends_to`.
     #[must_use]
     pub fn exchanging_plans(mut self, takes_from: Vec<String>, sends_to: Vec<String>) -> Self {
         (self.orders.takes_from, self.orders.sends_to) = (takes_from, sends_to);
@@ -77,31 +77,32 @@ impl StateLink {
         &self.orders.sends_to
     }
 
-    /// Sends the text of a plan of this name, which is to take over at the robot `to`.
+    /// Sends a plan, given by its name, its text and the moment at which it is to take over, to the robot `to`.
     ///
     /// # Errors
-    /// The plan cannot be sent: a sentence.
+    /// Returns a sentence with the reason if the plan cannot be sent.
     pub(crate) fn send_plan(&mut self, to: &str, plan: (&str, &str, When), now: Nanos) -> Result<(), String> {
         self.orders.send(&mut *self.link, to, plan, now)
     }
 
-    /// Begins to compile the plans that have arrived; returns messages about them, and about answers.
+    /// Begins to compile the plans that have arrived. Returns messages to the operator about refused plans, and about
+    /// answers of other robots.
     pub(crate) fn take_plans<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>, now: Nanos) -> Vec<String> {
         self.orders.take(&mut *self.link, plans, now)
     }
 
-    /// Answers the plans about which has been decided; returns messages about them.
+    /// Answers the plans about which there are new events; returns messages to the operator about them.
     pub(crate) fn answer_plans<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>, now: Nanos) -> Vec<String> {
         self.orders.decide(&mut *self.link, plans, now)
     }
 
-    /// Returns the modules whose attributes the robot shares, each as a read of its `age`.
+    /// Returns the modules whose attributes the robot shares, each given as a read of its `age`.
     pub(crate) fn shares(&self) -> &'static [ModuleRead] {
         self.shares
     }
 
-    /// Takes the states that have arrived by time `now`, and puts the attributes that they share on the board; returns
-    /// messages about attributes that are refused, each once.
+    /// Takes the states that have arrived by time `now`, and puts the attributes that they contain on the board.
+    /// Returns a message, only once, about each attribute that is refused.
     pub(crate) fn receive(&mut self, now: Nanos, board: &mut dyn Foreign) -> Vec<String> {
         let Self { link, known, name, foreign, .. } = self;
         link.receive(now, &mut |state| match known.iter_mut().find(|known| known.state.name == state.name) {
@@ -119,7 +120,7 @@ impl StateLink {
         messages
     }
 
-    /// Returns what is known of the robots of these names in the turn at time `now`.
+    /// Returns the known states of the robots with these names, in the turn at time `now`.
     pub(crate) fn sense(&self, robots: impl Iterator<Item = &'static str>, now: Nanos) -> Links {
         let mut links = Links::NONE;
         for name in robots {
@@ -198,7 +199,7 @@ fn outward(start: &Pose, own: &Pose) -> Pose {
     }
 }
 
-/// Converts a pose in the shared axes to those of the robot's own odometry.
+/// Converts a pose in the shared axes to the axes of the robot's own odometry.
 fn inward(start: &Pose, shared: &Pose) -> Pose {
     let (sin, cos) = (libm::sin(start.theta.0), libm::cos(start.theta.0));
     let (x, y) = (shared.x.0 - start.x.0, shared.y.0 - start.y.0);

@@ -1,9 +1,9 @@
-//! The link over TCP between processes and machines. The robot's turn only hands over a state and takes states
-//! that have arrived; threads do all work that may wait.
+//! The link over TCP between processes and machines. The robot's turn only hands over a state and takes states that
+//! have arrived; threads do all work that may wait.
 //!
-//! A robot connects to each of its peers to send, and listens to receive. Each connection has a sender that
-//! writes only the newest state, and each letter, so a peer that reads slowly or never does not delay the others. The
-//! receiver of a connection writes its challenge first, for which each frame is proved.
+//! A robot connects to each of its peers to send, and listens to receive. Each peer has a sender of its own, which
+//! writes only the newest state, but every letter. So a peer that reads slowly or never does not delay the others. The
+//! receiver of a connection first writes a challenge, for which each frame must have a proof.
 
 #[cfg(test)]
 mod answer_tests;
@@ -41,7 +41,7 @@ pub struct TcpSettings {
     pub addresses: Vec<SocketAddr>,
 }
 
-/// The end of one robot on a state link over TCP.
+/// One robot's end of a state link over TCP.
 pub struct Tcp {
     endpoint: Arc<Endpoint>,
     /// Name of each peer, with the newest state and the letters for it.

@@ -9,7 +9,7 @@ use mdle_runtime::Nanos;
 use super::{Fault, Ports};
 use crate::attribute::{Attribute, In, Out, Reading, Value};
 
-/// Number of times that a break looks for an offer before it gives a module up.
+/// Number of equal parts into which a break divides its maximum wait for the values of a module.
 const LOOKS: u32 = 50;
 
 /// A module that runs in the background.
@@ -25,7 +25,7 @@ pub trait Background: Send + 'static {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stopped;
 
-/// Meeting point of a background module and the turn breaks.
+/// Access of a background module to the turn breaks, at which it exchanges values.
 #[derive(Debug)]
 pub struct Exchange {
     gate: Arc<Gate>,
@@ -37,8 +37,8 @@ impl Exchange {
         Self { gate, ports }
     }
 
-    /// Publishes, at the next break, the values that `fill` publishes, and waits for that break. The values
-    /// that the module reads are then as of that break.
+    /// Calls `fill`, which offers values, and waits for the break that publishes them. Afterwards, the values that the
+    /// module reads are as of that break.
     ///
     /// # Errors
     /// Fails if the module is to end.
@@ -74,13 +74,15 @@ impl Offer<'_> {
         self.0.now
     }
 
-    /// Returns the value of an attribute as of the last exchange, or the value of a setting.
+    /// Returns the value of an attribute as of the last exchange, or the value of a setting; `None` while no module has
+    /// published the attribute, and once its module is unloaded.
     #[must_use]
     pub fn get<T: Attribute>(&self, attribute: In<T>) -> Option<T> {
         self.0.get(attribute)
     }
 
-    /// Returns the value with the time at which it was published.
+    /// Returns the value that [`Offer::get`] returns, with the time at which it was published; a setting has the time
+    /// at which it was changed.
     #[must_use]
     pub fn reading<T>(&self, attribute: In<T>) -> Option<&Reading> {
         self.0.reading(attribute)
@@ -100,7 +102,7 @@ impl Offer<'_> {
     }
 }
 
-/// Exchange of values between a background thread and the breaks. It is locked only for moments.
+/// Exchange of values between the thread of a background module and the turn breaks. Its lock is held only briefly.
 #[derive(Debug, Default)]
 pub(crate) struct Gate {
     meeting: Mutex<Meeting>,
@@ -113,7 +115,7 @@ struct Meeting {
     has_begun: bool,
     /// Values of a module that waits for a break; `None` while none waits.
     offered: Option<Ports>,
-    /// Values that a break has returned to the module.
+    /// Values that a break has returned to the module; `None` once the module has taken them.
     returned: Option<Ports>,
     is_stopped: bool,
     /// End of the module's thread, once it has ended and until a break has taken it.
@@ -122,7 +124,7 @@ struct Meeting {
     has_ended: bool,
 }
 
-/// End of the thread of a background module.
+/// Way in which the thread of a background module ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum ThreadEnd {
     /// The module's code returned: the module was to end, or has nothing left to do.
@@ -188,8 +190,8 @@ impl Gate {
         self.changed.notify_all();
     }
 
-    /// Takes, at a break, the values of a module that waits. Never waits itself: a module that holds the lock
-    /// at this moment is served at the next break.
+    /// Takes the values of a module that waits for a break; `None` if it does not wait. The call does not block: a
+    /// module that holds the lock is served at the next break.
     pub(crate) fn take_offer(&self) -> Option<Ports> {
         self.meeting.try_lock().ok()?.offered.take()
     }
@@ -200,9 +202,9 @@ impl Gate {
         self.changed.notify_all();
     }
 
-    /// Waits until the module waits for a break, or has ended; returns `false` if neither happens within this
-    /// time. Each of the [`LOOKS`] checks counts as an equal part of the time, however late this thread
-    /// continues, so that no module is given up because the process was stopped or the machine was busy.
+    /// Waits until the module waits for a break or has ended; returns `false` if neither happens within `patience`.
+    /// Each of the [`LOOKS`] checks counts as an equal part of this time, even if this thread is delayed, so that no
+    /// module is given up because the process was stopped or the machine was busy.
     pub(crate) fn wait_for_offer(&self, patience: Duration) -> bool {
         let mut meeting = self.lock();
         for _ in 0..LOOKS {
@@ -215,8 +217,8 @@ impl Gate {
         false
     }
 
-    /// Returns the end of the module's thread once; `None` before it has ended, in later calls, and while the module
-    /// holds the lock.
+    /// Returns, only once, the way in which the module's thread ended. Returns `None` before the thread has ended, in
+    /// later calls, and while the module holds the lock.
     pub(crate) fn take_end(&self) -> Option<ThreadEnd> {
         self.meeting.try_lock().ok()?.ended.take()
     }

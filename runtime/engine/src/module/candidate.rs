@@ -13,7 +13,7 @@ use crate::attribute::{AttributeKind, AttributeName, is_name};
 
 /// Name of the module that makes the turns of plans; no other module may have it.
 pub const PLAN: &str = "mdle";
-/// Name of the robot in the tree of attributes, in the place of a module's name; no module may have it.
+/// Name under which the robot is in the tree of attributes, beside the modules; no module may have this name.
 pub(crate) const ROBOT: &str = "robot";
 
 /// A module that has been created and not yet loaded. The robot's turns do not wait while it is being created.
@@ -31,7 +31,8 @@ pub(crate) enum Form<Y> {
     Background(ThreadGate),
 }
 
-/// Gate of a module's thread, which is asked to end when the gate is dropped, and the maximum wait for its end.
+/// Gate of a background module's thread, and the maximum wait for the end of the thread. Dropping the gate asks the
+/// thread to end, and waits for this.
 #[derive(Debug)]
 pub(crate) struct ThreadGate(Arc<Gate>, Duration);
 
@@ -112,11 +113,10 @@ impl<Y> Candidate<Y> {
         Ok(Self { name: name.into(), declared, form: Form::Registered(Box::new(module), ports) })
     }
 
-    /// Creates a background module of this name. Its thread waits until it is loaded.
+    /// Creates a background module of this name. Its thread waits until the module is loaded.
     ///
     /// # Errors
-    /// Fails if the name or the declaration is invalid, if `make` panicked, or if the system cannot create the
-    /// thread.
+    /// Fails if the name or the declaration is invalid, if `make` panicked, or if the system cannot create the thread.
     pub fn background<M: Background>(name: &str, make: impl FnOnce(&mut Declare) -> M) -> Result<Self, Refusal> {
         let (module, Declare { declared, ports, .. }) = made(name, make)?;
         let gate = Arc::new(Gate::default());

@@ -1,5 +1,4 @@
-//! Declaration of a module: the attributes that it publishes and reads, its settings, and its place among other
-//! modules.
+//! Declaration of a module: the attributes that it publishes and reads, its settings, and when it makes turns.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -14,7 +13,7 @@ use crate::attribute::{AGE, Attribute, AttributeKind, AttributeName, In, Out, Re
 pub struct Declare {
     pub(crate) declared: Declared,
     pub(crate) ports: Ports,
-    /// First fault of the declaration, as a sentence.
+    /// First fault of the declaration, as a sentence; `None` if there is none.
     pub(crate) fault: Option<String>,
 }
 
@@ -30,7 +29,7 @@ pub(crate) struct Declared {
     pub(crate) latency: Nanos,
     /// `true` if the first exchange is due at the first break, whatever the latency.
     pub(crate) begins_at_once: bool,
-    /// Time for which the engine waits at most for the end of the module's thread.
+    /// Maximum time that the engine waits for the module's thread to end.
     pub(crate) farewell: Duration,
 }
 
@@ -62,8 +61,8 @@ pub enum Relevance {
     /// The module makes every turn.
     #[default]
     Always,
-    /// The module makes turns while it is read by the plan's current atom, by an atom that can follow, or by a
-    /// module that makes turns.
+    /// The module makes turns while it is read by the active plan, by a plan that may become active, by a safety rule,
+    /// by another robot, or by a module that makes turns.
     WhenRead,
 }
 
@@ -170,19 +169,20 @@ impl Declare {
         self.declared.relevance = relevance;
     }
 
-    /// Sets the time that a background module needs from one exchange to the next, 0 by default. In stepped time its
-    /// next exchange is at the first break after this much of the engine's time, however fast this computer is. A plan
-    /// that reads the module waits for its first values as much longer.
+    /// Sets the time that a background module needs from one exchange to the next, 0 by default. In stepped time, the
+    /// module's next exchange is at the first break after this time has passed on the engine's clock, however fast the
+    /// computer is. A plan that reads the module waits for its first values longer by this time.
     pub fn latency(&mut self, latency: Nanos) {
         self.declared.latency = latency;
     }
 
-    /// Lets the first exchange be due at the first break: it publishes nothing, and takes what the module reads.
+    /// Makes the first exchange due at the first break, whatever the latency. This exchange publishes nothing, and
+    /// supplies the values that the module reads.
     pub(crate) fn begins_at_once(&mut self) {
         self.declared.begins_at_once = true;
     }
 
-    /// Sets the time for which the engine waits at most for the end of the module's thread, 0 by default.
+    /// Sets the maximum time that the engine waits for the module's thread to end, 0 by default.
     pub(crate) fn farewell(&mut self, farewell: Duration) {
         self.declared.farewell = farewell;
     }

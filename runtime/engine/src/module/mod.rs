@@ -31,7 +31,7 @@ pub trait Module<Y>: Send {
     /// Called before the first turn, and before the first turn after [`Module::stop`].
     fn start(&mut self) {}
 
-    /// Called after the last turn before a stop: a person has stopped the module, or nothing reads it at
+    /// Called after the module's last turn before it is stopped, because a person has stopped it or nothing reads it at
     /// present.
     fn stop(&mut self) {}
 }
@@ -54,7 +54,7 @@ impl<Y> Module<Y> for Box<dyn Module<Y>> {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault(pub String);
 
-/// A turn, as a module sees it.
+/// A turn of the engine, as it is passed to a module.
 #[derive(Debug)]
 pub struct Turn<'t, Y> {
     /// Number of the turn, from 0.
@@ -74,8 +74,8 @@ impl<Y> Turn<'_, Y> {
         self.ports.get(attribute)
     }
 
-    /// Returns the value with the time at which it was published; a setting has the time at which it was
-    /// changed.
+    /// Returns the value that [`Turn::get`] returns, with the time at which it was published; a setting has the time at
+    /// which it was changed.
     #[must_use]
     pub fn reading<T>(&self, attribute: In<T>) -> Option<&Reading> {
         self.ports.reading(attribute)

@@ -166,7 +166,7 @@ impl<A: EngineAlphabet> Engine<A> {
         }
     }
 
-    /// Rolls back, and reports the reason to the operator.
+    /// Ends the plan on trial, and reports the reason to the operator.
     fn ends_trial(&mut self, why: &str) -> Result<(), NoTrial> {
         let name = self.plans.name().to_owned();
         self.go_back(why)?;
@@ -174,7 +174,11 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(())
     }
 
-    /// Makes the part of the turn break that follows from the turn.
+    /// Reports faults of modules to the operator. A plan that has been given up because it hangs is rolled back if it
+    /// is on trial.
+    ///
+    /// # Errors
+    /// Fails if such a plan is not on trial.
     fn turn_break(&mut self) -> Result<(), PilotFault> {
         let mut is_given_up = false;
         for event in self.modules.events() {

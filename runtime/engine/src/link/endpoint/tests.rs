@@ -1,4 +1,4 @@
-//! Tests of endpoints without a medium: frames are handed from one to the other.
+//! Tests of endpoints without a medium: frames are passed directly from one endpoint to another.
 
 use super::*;
 use crate::link::frame::Challenge;

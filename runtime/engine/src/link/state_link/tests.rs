@@ -114,7 +114,7 @@ impl Foreign for Full {
     }
 }
 
-/// A state of this robot with these attributes.
+/// Returns a state of this robot with these attributes.
 fn sharing(robot: &str, number: u64, names: impl Iterator<Item = (String, String)>) -> State {
     let shared = |(module, attribute): (String, String)| SharedValue {
         name: AttributeName::new(&module, &attribute),

@@ -1,4 +1,4 @@
-//! The connection of a peer whose name is proved: its frames are read until it ends.
+//! Reads the frames of a connection whose peer has proved its name, until the connection ends.
 
 use std::io::{ErrorKind, Read as _};
 use std::net::TcpStream;
@@ -11,7 +11,7 @@ use crate::link::letter_frame::{LONGEST_LETTER, is_letter};
 use crate::link::source::Source;
 use crate::link::state_frame::LONGEST;
 
-/// Maximum wait for bytes, before the end of the run is looked at.
+/// Maximum wait for bytes between two checks whether the run has ended.
 pub(super) const LOOK: Duration = Duration::from_millis(20);
 /// Time without a byte after which a connection is closed.
 const SILENT: Duration = Duration::from_secs(2);
@@ -37,7 +37,8 @@ impl Connection {
     /// Takes frames until the connection ends.
     ///
     /// # Errors
-    /// Fails with the end of a sentence if anything but states and letters of the peer arrives.
+    /// Fails with the end of a sentence if anything but states and letters of the peer arrives, or if nothing arrives
+    /// for a while.
     fn frames(&mut self) -> Result<(), String> {
         let set = self.stream.set_nonblocking(false).and_then(|()| self.stream.set_read_timeout(Some(LOOK)));
         set.map_err(|error| error.to_string())?;
@@ -47,7 +48,7 @@ impl Connection {
         Ok(())
     }
 
-    /// Reads a frame; returns `None` if the connection or the run has ended before a frame began.
+    /// Reads a frame; returns `None` if the connection breaks, if it is replaced, or if the run has ended.
     fn next(&mut self) -> Result<Option<Vec<u8>>, String> {
         let mut length = [0; 4];
         if !self.fill(&mut length)? {

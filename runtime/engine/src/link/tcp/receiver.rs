@@ -13,7 +13,7 @@ use super::connection::{Connection, LOOK};
 use super::strangers::{Proved, Strangers};
 use crate::link::endpoint::Endpoint;
 
-/// Maximum number of connections that are accepted before those that are open are looked at.
+/// Maximum number of connections that are accepted before the open ones are checked.
 const AT_ONCE: usize = 16;
 
 /// Starts the thread that accepts connections. Peers are expected to connect from these addresses.
@@ -59,14 +59,14 @@ fn accept(listener: &TcpListener, endpoint: &Arc<Endpoint>, peers: Vec<IpAddr>) 
     }
 }
 
-/// Accepts a connection; returns `None` if none waits.
+/// Accepts a connection; returns `None` if no connection is waiting.
 fn accept_one(listener: &TcpListener) -> Option<io::Result<(TcpStream, SocketAddr)>> {
     let connection = listener.accept();
     let is_none = |error: &io::Error| matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted);
     (!connection.as_ref().is_err_and(is_none)).then_some(connection)
 }
 
-/// Waits a while for a connection, or for bytes of a stranger.
+/// Waits a short time for a new connection, or for bytes on a connection that has not proved its name.
 fn wait(listener: &TcpListener, strangers: &Strangers) {
     let mut files: Vec<_> = strangers.streams().map(|stream| PollFd::new(stream, PollFlags::IN)).collect();
     files.push(PollFd::new(listener, PollFlags::IN));

@@ -1,4 +1,4 @@
-//! The sender to one peer, which connects, and writes only the newest state, and each letter.
+//! The sender to one peer, which connects to the peer and writes only the newest state, but every letter.
 
 use std::io::{self, Read as _, Write as _};
 use std::net::{SocketAddr, TcpStream};
@@ -18,14 +18,14 @@ const CONNECTS: Duration = Duration::from_millis(500);
 const GREETS: Duration = Duration::from_secs(1);
 /// Time between two attempts to connect.
 const AGAIN: Duration = Duration::from_millis(200);
-/// Time after which the connection to a peer that acknowledges nothing, or reads nothing, is closed and made again.
-/// Without it the system would send what was lost again at ever longer intervals, also once the line is good.
+/// Time after which the connection to a peer that acknowledges or reads nothing is closed and opened again. Otherwise
+/// the system would retransmit lost data at longer and longer intervals, even after the line has recovered.
 pub(super) const WRITES: Duration = Duration::from_secs(2);
-/// Time after which a connection counts as one that lasts.
+/// Time after which a connection is considered to be stable.
 const LASTS: Duration = Duration::from_secs(1);
-/// Minimum time between two states: only the newest counts, and a receiver takes 2000 a second.
+/// Minimum time between two states. Only the newest state matters, and a receiver accepts at most 2000 in a second.
 const SPACING: Duration = Duration::from_millis(1);
-/// Size of the system's buffer, in bytes: what is in it is not replaced by newer states.
+/// Size of the system's send buffer, in bytes. States in this buffer are not replaced by newer ones.
 const BUFFER: usize = 16_384;
 
 /// Begins to send to the peer of this name.
@@ -40,7 +40,7 @@ pub(super) fn begin(name: String, address: SocketAddr, endpoint: &Arc<Endpoint>)
 }
 
 /// Connects and sends until the run is over. A peer that cannot be reached is reported only once, until a connection to
-/// it has lasted.
+/// it has been stable.
 fn keep_sending(name: &str, address: SocketAddr, outbox: &Outbox, endpoint: &Endpoint) {
     let mut sender = Sender { name, outbox, endpoint, last: None, is_known_as_down: false };
     while !endpoint.is_over() {
@@ -71,7 +71,7 @@ fn keep_sending(name: &str, address: SocketAddr, outbox: &Outbox, endpoint: &End
 /// Connects to a peer, and reads its challenge.
 ///
 /// # Errors
-/// The peer cannot be reached, or has another version of the link: the end of a sentence.
+/// Returns the end of a sentence if the peer cannot be reached, or has another version of the link.
 fn connect(address: SocketAddr) -> Result<(TcpStream, Challenge), String> {
     let mut greeting = [0; GREETING_LENGTH];
     let connected = (|| {
@@ -98,15 +98,15 @@ struct Sender<'l> {
     name: &'l str,
     outbox: &'l Outbox,
     endpoint: &'l Endpoint,
-    /// The last state that was taken, with which every connection begins: a letter is taken only from a robot whose
-    /// state has arrived.
+    /// The last state that was taken; `None` before the first. Every connection begins with it, because a letter is
+    /// accepted only from a robot whose state has arrived.
     last: Option<Draft>,
     /// `true` once it has been reported that the peer cannot be reached.
     is_known_as_down: bool,
 }
 
 impl Sender<'_> {
-    /// Sends states and letters until that fails; returns the error.
+    /// Sends states and letters until an error occurs or the run is over; returns the error.
     fn send(&mut self, (mut stream, challenge): (TcpStream, Challenge)) -> io::Error {
         let begun = Instant::now();
         while !self.endpoint.is_over() {

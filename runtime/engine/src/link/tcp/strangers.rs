@@ -1,5 +1,5 @@
-//! Connections that have not proved the name of a robot. They have few places, which new ones take from old ones, so
-//! that those who hold connections open shut no peer out.
+//! Connections whose peers have not proved their names, called strangers. Their number is limited, and a new connection
+//! replaces an old one, so that nobody can shut out peers by keeping connections open.
 
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::net::{IpAddr, TcpStream};
@@ -10,19 +10,19 @@ use crate::link::frame::Challenge;
 use crate::link::source::Source;
 use crate::link::state_frame::LONGEST;
 
-/// Maximum number of strangers.
+/// Maximum number of connections that have not proved a name.
 const PLACES: usize = 64;
 /// Time within which the first state has to arrive.
 const PROVES: Duration = Duration::from_secs(1);
 
-/// The connections that have proved nothing, in the order in which they were made.
+/// The connections that have not proved a name, in the order in which they were made.
 pub(super) struct Strangers {
     /// Addresses of the peers.
     peers: Vec<IpAddr>,
     strangers: Vec<Stranger>,
 }
 
-/// A connection that has proved nothing.
+/// A connection that has not proved a name.
 struct Stranger {
     stream: TcpStream,
     from: IpAddr,
@@ -51,7 +51,7 @@ enum Progress {
 }
 
 impl Strangers {
-    /// Returns no strangers, for a robot whose peers have these addresses.
+    /// Returns an empty list of strangers, for a robot whose peers have these addresses.
     pub(super) fn new(peers: Vec<IpAddr>) -> Self {
         Self { peers: peers.iter().map(IpAddr::to_canonical).collect(), strangers: Vec::new() }
     }
@@ -79,7 +79,7 @@ impl Strangers {
         self.strangers.push(stranger);
     }
 
-    /// Reads what strangers have sent; returns those that are strangers no more.
+    /// Reads the bytes that strangers have sent; returns the connections that have proved a name.
     pub(super) fn look(&mut self, endpoint: &Endpoint) -> Vec<Proved> {
         let mut proved = Vec::new();
         for mut stranger in std::mem::take(&mut self.strangers) {
@@ -98,18 +98,18 @@ impl Strangers {
     }
 }
 
-/// Returns which of the strangers at these addresses makes place for a new one: the oldest that is not at the address
-/// of a peer, or else the oldest of all, if the new one is at the address of a peer.
+/// Returns the index of the stranger that a new connection from the address `new` replaces: the oldest that is not at
+/// the address of a peer. If all are, it is the oldest of all if `new` is the address of a peer, and `None` otherwise.
 fn place_for(new: IpAddr, strangers: &[IpAddr], peers: &[IpAddr]) -> Option<usize> {
     let is_elsewhere = |from: &IpAddr| !peers.contains(from);
     strangers.iter().position(is_elsewhere).or_else(|| peers.contains(&new).then_some(0))
 }
 
 impl Stranger {
-    /// Greets a connection.
+    /// Sends a challenge on a new connection.
     ///
     /// # Errors
-    /// The connection has ended, or the system has no random numbers.
+    /// Fails if the connection has ended, or if the system has no random numbers.
     fn greeted(mut stream: TcpStream, from: IpAddr) -> std::io::Result<Self> {
         stream.set_nonblocking(true)?;
         let challenge = Challenge::random()?;
@@ -119,7 +119,7 @@ impl Stranger {
         Ok(Self { stream, from, since: Instant::now(), source, bytes: Vec::new() })
     }
 
-    /// Reads what has arrived of the first frame.
+    /// Reads the available bytes of the first frame, and checks the frame once it is complete.
     fn look(&mut self, endpoint: &Endpoint) -> Progress {
         loop {
             let missing = match self.bytes.split_first_chunk() {
