@@ -1,4 +1,4 @@
-//! The modules of a program: functions that create the modules anew for each run.
+//! The modules of a program, as functions that create them for each run.
 
 use std::fmt;
 use std::sync::Arc;

@@ -15,16 +15,16 @@ use rustix::thread::futex;
 use rustix::time::Timespec;
 pub(crate) use seat::{Progress, Seat, Task};
 
-/// Maximum expected work of a round that a single worker makes: it takes longer to wake a second worker.
+/// Maximum expected duration of a round that a single worker runs, because waking a second worker would take longer.
 const SMALL: Duration = Duration::from_micros(50);
-/// Maximum time for which the control thread polls for the end of a small round before it sleeps; waking up
-/// would take as long.
+/// Maximum time for which the control thread polls for the end of a small round before it sleeps. Waking it up would
+/// take as long.
 const LOOKS: Duration = Duration::from_micros(200);
 
 /// Threads on which modules make their turns.
 #[derive(Debug, Clone, Copy)]
 pub enum Threads {
-    /// The control thread itself runs the modules, one after the other, without a deadline.
+    /// The control thread itself runs the modules one after the other, without a deadline.
     Sequential,
     /// The number of workers, at least one, and a function that each calls first, for example to set its
     /// priority.
@@ -34,8 +34,8 @@ pub enum Threads {
 /// Threads that make turns.
 pub(crate) struct Fork<Y> {
     crew: Option<Crew<Y>>,
-    /// The rounds, which are used in turn. A worker may hold the previous round a moment longer, and a module
-    /// that hangs holds its round for ever.
+    /// Rounds that are reused. Several exist, because a worker may still have the previous round for a short time, and
+    /// a module that hangs keeps its round for ever.
     rounds: Vec<Arc<Round<Y>>>,
 }
 
@@ -45,24 +45,24 @@ struct Round<Y> {
     number: u64,
     now: Nanos,
     seats: Vec<Arc<Seat<Y>>>,
-    /// Time that the modules took in recent rounds.
+    /// Expected time of the round: the sum of the mean times of the modules' turns.
     cost: Duration,
     /// Position of the next module to be taken.
     next: AtomicUsize,
-    /// Number of modules that are not done; the control thread waits for zero.
+    /// Number of modules that are not done; the control thread waits until it is zero.
     left: AtomicU32,
 }
 
-/// Workers, with the round that they are to make.
+/// The workers, and the data that they share with the control thread.
 struct Crew<Y> {
     call: Arc<Call<Y>>,
     workers: usize,
-    /// `true` if workers run while the control thread does.
+    /// `true` if the machine has several cores, so that workers and the control thread can run at the same time.
     is_parallel: bool,
     prepare: fn(),
 }
 
-/// Meeting point of the control thread and the workers.
+/// Data by which the control thread gives rounds to the workers.
 struct Call<Y> {
     round: Mutex<Option<Arc<Round<Y>>>>,
     /// Number of rounds so far; workers wait until it changes.
@@ -83,7 +83,7 @@ impl<Y: Send + Sync + 'static> Fork<Y> {
         Ok(Self { crew, rounds: Vec::new() })
     }
 
-    /// Makes the turn of these modules, which threads take in this order. Modules that are not done at the
+    /// Makes a turn of these modules. Threads take the modules in this order, and those that are not done at the
     /// deadline are late or skipped.
     pub(crate) fn turn<'s>(
         &mut self,
@@ -110,7 +110,7 @@ impl<Y: Send + Sync + 'static> Fork<Y> {
         self.rounds.push(round);
     }
 
-    /// Prepares a round. Does not allocate if a former round is free and large enough.
+    /// Prepares a round. Does not allocate if an earlier round is no longer in use and large enough.
     fn round<'s>(
         &mut self,
         y: Y,
@@ -156,8 +156,8 @@ impl<Y> Default for Round<Y> {
 }
 
 impl<Y> Round<Y> {
-    /// Takes modules and runs them until none is left; returns `false` if a module was late, so that another
-    /// thread has replaced this one.
+    /// Takes modules and runs them until none is left; returns `false` if a module was late, because another thread
+    /// then replaces this one.
     fn work(&self) -> bool {
         let Some(y) = &self.y else { return true };
         while let Some(seat) = self.seats.get(self.next.fetch_add(1, Ordering::AcqRel)) {
@@ -214,8 +214,8 @@ impl<Y: Send + Sync + 'static> Crew<Y> {
         thread::Builder::new().name("mdle worker".to_owned()).spawn(worker).map(|_| ())
     }
 
-    /// Starts a worker for each worker that a late module holds. If the system cannot create a thread, the
-    /// others continue without it.
+    /// Starts a worker for each worker that is still running a late module. If the system cannot create a thread, the
+    /// other workers continue without it.
     fn replace(&self, late: usize) {
         (0..late).for_each(|_| _ = self.hire());
     }
@@ -243,7 +243,7 @@ impl<Y: Send + Sync + 'static> Crew<Y> {
 }
 
 impl<Y> Call<Y> {
-    /// Makes rounds on a worker, until it is to quit or has been replaced.
+    /// Runs rounds on a worker, until it is to quit or has been replaced.
     fn answer(&self, mut seen: u32) {
         loop {
             wait(&self.epoch, seen, None);

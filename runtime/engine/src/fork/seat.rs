@@ -10,7 +10,7 @@ use mdle_runtime::Nanos;
 
 use crate::module::{Fault, Module, Ports, Turn, panicked};
 
-/// Place of a module among those that make turns.
+/// A registered module as the threads of a turn share it, with its progress and its cost.
 pub(crate) struct Seat<Y> {
     /// Name of the module.
     name: Arc<str>,
@@ -20,13 +20,13 @@ pub(crate) struct Seat<Y> {
     occupant: Mutex<Occupant<Y>>,
 }
 
-/// A module with its values. The thread that runs the module locks them; between turns, the engine does.
+/// A registered module with its values. The thread that runs the module locks it; between turns, the engine does.
 pub(crate) struct Occupant<Y> {
     module: Box<dyn Module<Y>>,
     pub(crate) ports: Ports,
     /// Work of the module in the next round.
     pub(crate) task: Task,
-    /// Reason why the module cannot continue.
+    /// Reason why the module cannot continue; `None` if it can.
     pub(crate) fault: Option<Fault>,
 }
 

@@ -1,4 +1,4 @@
-//! Changes of plans between turns, as records keep them.
+//! Changes of plans between turns, in the form in which a record stores them.
 
 use std::collections::BTreeMap;
 
@@ -9,13 +9,15 @@ use super::event::When;
 /// The changes of plans since the last turn.
 #[derive(Debug, Default)]
 pub(crate) struct PlanChanges {
-    /// Numbers of the files of plans that the record contains, by their hashes: a run may have any number of plans.
+    /// Number of each set of files of a plan that the record contains, by the hash of the files. Only hashes are kept,
+    /// because a run may have any number of plans.
     files: BTreeMap<[u8; 32], u32>,
     changes: Vec<Change>,
 }
 
 impl PlanChanges {
-    /// Records that a plan of these files is to take over.
+    /// Records that the plan `plan` of these files is to take over. Files that the record contains already are not
+    /// recorded again.
     pub(crate) fn armed(&mut self, files: &[(String, String)], plan: &str, when: When) {
         let next = u32::try_from(self.files.len()).unwrap_or(u32::MAX);
         let number = *self.files.entry(hash(files)).or_insert_with(|| {

@@ -1,4 +1,5 @@
-//! The thread that compiles plans while turns are made, one order after the other, those of the operator first.
+//! Compiles plans on a separate thread while turns are made. Orders are carried out one after the other, those of the
+//! operator first.
 
 use std::collections::VecDeque;
 use std::io;
@@ -15,7 +16,8 @@ const WAITING: usize = 16;
 pub(crate) enum Compiler<A: EngineAlphabet> {
     /// A thread, which ends when this value is dropped.
     Thread(CompilerThread<A>),
-    /// A function that an order waits for, so that every run with the same inputs is the same; and the outcomes.
+    /// A function that carries out each order at once, so that every run with the same inputs is the same, and the
+    /// outcomes.
     AtOnce(Box<Compile<A>>, VecDeque<Outcome<A>>),
 }
 
@@ -25,7 +27,7 @@ type Waiting<A> = [Option<Order<A>>; 2];
 /// The compiler's thread, which ends when this value is dropped.
 pub(crate) struct CompilerThread<A: EngineAlphabet>(Arc<Counter<A>>);
 
-/// Meeting point of the control thread and the compiler.
+/// Data that the control thread and the compiler's thread share.
 struct Counter<A: EngineAlphabet> {
     state: Mutex<State<A>>,
     changed: Condvar,
@@ -34,15 +36,15 @@ struct Counter<A: EngineAlphabet> {
 struct State<A: EngineAlphabet> {
     /// Orders of the operator.
     waiting: VecDeque<Order<A>>,
-    /// The newest order of another robot, which no order of the operator waits for.
+    /// The newest order of another robot, which is carried out after all orders of the operator.
     sent: Option<Order<A>>,
     done: VecDeque<Outcome<A>>,
     quits: bool,
 }
 
 impl<A: EngineAlphabet> Compiler<A> {
-    /// Gives an order. If a plan is to take over, earlier orders of this kind that still wait are cancelled and
-    /// returned; another robot cancels no order of the operator.
+    /// Gives an order to the compiler. An order for a plan to take over cancels earlier ones that still wait, and
+    /// returns them; an order of another robot cancels no order of the operator.
     ///
     /// # Errors
     /// Fails with a sentence if too many orders wait.
@@ -56,7 +58,7 @@ impl<A: EngineAlphabet> Compiler<A> {
         }
     }
 
-    /// Takes back the waiting orders for plans to take over.
+    /// Removes and returns the waiting orders for plans to take over.
     pub(crate) fn take_back(&self) -> Waiting<A> {
         match self {
             Self::Thread(thread) => thread.0.lock().take_back(),
@@ -64,7 +66,7 @@ impl<A: EngineAlphabet> Compiler<A> {
         }
     }
 
-    /// Takes back the waiting order of another robot.
+    /// Removes and returns the waiting order of another robot; `None` if there is none.
     pub(crate) fn take_back_sent(&self) -> Option<Order<A>> {
         match self {
             Self::Thread(thread) => thread.0.lock().sent.take(),
@@ -128,7 +130,7 @@ impl<A: EngineAlphabet> State<A> {
         [self.take_back_own(), self.sent.take()]
     }
 
-    /// Takes back the waiting order of the operator for a plan to take over.
+    /// Removes and returns the waiting order of the operator for a plan to take over; `None` if there is none.
     fn take_back_own(&mut self) -> Option<Order<A>> {
         let place = self.waiting.iter().position(|order| order.task.takes_over())?;
         self.waiting.remove(place)

@@ -19,13 +19,13 @@ impl When {
     /// Every moment, with its name in commands.
     pub const ALL: [(&'static str, Self); 3] = [("now", Self::Now), ("atom", Self::AtomEnds), ("plan", Self::PlanEnds)];
 
-    /// Returns the number of the moment in records: its place in [`When::ALL`].
+    /// Returns the number of the moment in records: its index in [`When::ALL`].
     #[must_use]
     pub fn number(self) -> u8 {
         (0..).zip(Self::ALL).find(|(_, (_, when))| *when == self).map_or(u8::MAX, |(number, _)| number)
     }
 
-    /// Returns the moment of this number in records.
+    /// Returns the moment with this number in records, or `None` if there is none.
     #[must_use]
     pub fn of_number(number: u8) -> Option<Self> {
         Self::ALL.get(usize::from(number)).map(|(_, when)| *when)
@@ -61,13 +61,13 @@ pub enum PlanEvent {
     Cancelled(u32),
     /// The plan has taken over, and made its first turn.
     Began(u32),
-    /// The trial of the plan is over, and the plan before it is dropped.
+    /// The trial of the plan is over, and the plan that it replaced is dropped.
     Accepted(u32),
-    /// The plan on trial was ended, and the plan before it continues.
+    /// The plan on trial was ended, and the plan that it replaced continues.
     RolledBack {
-        /// Number of the plan that was ended.
+        /// Number of the request for the plan that was ended.
         from: u32,
-        /// Number of the plan that continues.
+        /// Number of the request for the plan that continues.
         to: u32,
         /// Reason, as a sentence.
         why: String,
@@ -75,7 +75,7 @@ pub enum PlanEvent {
 }
 
 impl PlanEvent {
-    /// Returns the number of the request; the plan that continues has another.
+    /// Returns the number of the request; for a rollback, that of the plan that was ended.
     pub(crate) fn request(&self) -> u32 {
         match self {
             Self::Refused(ticket, _)
@@ -91,7 +91,8 @@ impl PlanEvent {
         }
     }
 
-    /// Returns `true` if the request is decided with this event: its plan has begun, or never does.
+    /// Returns `true` if this event decides the request: its plan has begun or will never begin, or its plans are
+    /// stored.
     pub(crate) fn is_decision(&self) -> bool {
         !matches!(self, Self::Warned(..) | Self::Armed(_))
     }

@@ -15,11 +15,11 @@ pub(crate) struct Flight<A: Alphabet> {
     pub(crate) current: Running<A>,
     /// The plan that takes over in this turn, if its moment comes.
     pub(crate) next: Option<(Running<A>, When)>,
-    /// The numbers of modules that the next plan reads.
+    /// Values that the next plan reads from modules.
     pub(crate) published: Published,
     /// Transitions of the current plan.
     pub(crate) transitions: Transitions,
-    /// Result of the turn.
+    /// Result of the turn; `None` before the turn is made.
     pub(crate) turn: Option<Turn<A::Input>>,
     /// Time of the turn.
     pub(crate) at: Nanos,
@@ -31,9 +31,9 @@ pub(crate) struct Desk<A: Alphabet>(Mutex<OnDesk<A>>);
 
 struct OnDesk<A: Alphabet> {
     flight: Option<Box<Flight<A>>>,
-    /// The plan that was replaced in this turn.
+    /// The plan that was replaced in this turn; `None` if none was.
     replaced: Option<Running<A>>,
-    /// Message of a panic in this turn.
+    /// Message of a panic in this turn; `None` if there was no panic.
     panic: Option<String>,
 }
 
@@ -68,7 +68,7 @@ impl<A: Alphabet> Desk<A> {
 }
 
 impl<A: EngineAlphabet> Flight<A> {
-    /// Returns the turns of a plan, before the first.
+    /// Returns the data of a plan's turns, before the first turn.
     pub(crate) fn new(current: Running<A>) -> Box<Self> {
         let transitions = Transitions::default();
         Box::new(Self { current, next: None, published: Published::NONE, transitions, turn: None, at: Nanos::ZERO })

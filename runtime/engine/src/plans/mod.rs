@@ -43,13 +43,15 @@ const OPERATOR_FIRST: &str = "a plan of the operator waits to take over: send th
 
 /// The plans of one robot.
 pub struct Plans<A: EngineAlphabet> {
-    /// The active plan; `None` before the first plan, and while the plan's turn is late.
+    /// The active plan; `None` while its turn is being made or is late, and after it has panicked.
     current: Option<Box<Flight<A>>>,
-    /// The plan that is to take over, and its moment.
+    /// The armed plan, and the moment at which it is to take over; `None` if no plan is armed.
     armed: Option<(Running<A>, When)>,
-    /// The plan that the plan on trial has replaced, with the time of the turn in which it was suspended.
+    /// The plan that the plan on trial has replaced, with the time of the turn in which it was suspended; `None` if no
+    /// plan is on trial.
     suspended: Option<(Running<A>, Nanos)>,
-    /// Time since which the plan that continues in the next turn has been suspended.
+    /// Time at which the plan that continues in the next turn was suspended; `None` if the next turn continues no
+    /// suspended plan.
     resumes: Option<Nanos>,
     trial: Nanos,
     trial_ends: Nanos,
@@ -62,9 +64,9 @@ pub struct Plans<A: EngineAlphabet> {
     last: u32,
     /// Number of the last plan that has begun.
     begun: u32,
-    /// Number of the last request before a safety rule replaced the plan; 0 if no rule has.
+    /// Number of the last request before a safety rule replaced the plan; 0 if no rule has replaced it.
     overruled: u32,
-    /// Number of the request of the plan that may take over in the turn that is being made.
+    /// Number of the request for the plan that may take over in the turn that is being made; `None` if no plan may.
     aloft: Option<u32>,
     peers: PeerRequests,
     driving: Driving,
@@ -172,20 +174,21 @@ impl<A: EngineAlphabet> Plans<A> {
         &self.paths
     }
 
-    /// Returns the name of the plan of this request if it is active or armed.
+    /// Returns the name of the plan of this request; `None` if the plan is neither active nor armed.
     pub(crate) fn name_of(&self, ticket: u32) -> Option<&str> {
         let armed = self.armed.iter().map(|(plan, _)| (plan.ticket, &*plan.name));
         let plans = armed.chain([(self.driving.ticket, &*self.driving.name)]);
         plans.into_iter().find_map(|(number, name)| (number == ticket).then_some(name))
     }
 
-    /// Returns the name of the armed plan, and the moment at which it takes over.
+    /// Returns the name of the armed plan, and the moment at which it takes over; `None` if no plan is armed.
     #[must_use]
     pub fn armed(&self) -> Option<(&str, When)> {
         self.armed.as_ref().map(|(plan, when)| (&*plan.name, *when))
     }
 
-    /// Returns the reason why the plan of this request must not take over at present, if another robot has sent it.
+    /// Returns the reason why the plan of this request must not take over at present; `None` if it may. Only plans of
+    /// other robots are refused.
     fn refuses(&self, ticket: u32) -> Option<&'static str> {
         let mut waiting = self.armed.iter().map(|(plan, _)| plan.ticket).chain(self.aloft);
         let waits = |waiting: u32| !self.peers.has(waiting);
@@ -199,8 +202,8 @@ impl<A: EngineAlphabet> Plans<A> {
         self.suspended.as_ref().map(|_| self.trial_ends)
     }
 
-    /// Returns the reason why the active plan has replaced another plan; empty for the first plan, and if a
-    /// supervisor has replaced it.
+    /// Returns the reason why the active plan has replaced another plan; empty for the first plan, and for a plan of a
+    /// safety rule.
     pub(crate) fn reason(&self) -> &str {
         &self.reason
     }

@@ -46,8 +46,8 @@ pub(crate) struct Order<A: EngineAlphabet> {
 }
 
 pub(crate) enum Task<A: EngineAlphabet> {
-    /// Compile plans, which are then stored, except those of another robot. If a moment is given, the plan takes over
-    /// at that moment, provided that the text has only one plan.
+    /// Compile plans, which are then stored unless another robot has sent them. If a moment is given, the plan takes
+    /// over at that moment; the text must then have only one plan.
     Compile(PlanSource, Option<When>),
     /// Prepare a stored plan to take over at this moment.
     Begin(StoredPlan<A>, When),
@@ -60,7 +60,7 @@ pub(crate) struct Outcome<A: EngineAlphabet> {
     pub(crate) product: Result<Product<A>, String>,
 }
 
-/// The plans that an order has made.
+/// The plans that result from an order.
 pub(crate) struct Product<A: EngineAlphabet> {
     /// Plans to be stored, and their warnings.
     pub(crate) compiled: CompiledPlans<A>,

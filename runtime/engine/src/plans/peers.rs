@@ -1,4 +1,4 @@
-//! Requests of other robots for plans to take over. None of them undoes what a safety rule has done.
+//! Requests of other robots for plans to take over. They are refused after a safety rule has replaced or ended a plan.
 
 use super::PlanEvent;
 
@@ -9,24 +9,25 @@ pub(crate) const REPLACED: &str = "a safety rule has replaced the plan; the robo
 pub(crate) const ENDED: &str = "a safety rule has ended a plan; the robot takes plans again once its operator lets one \
                                 take over in `mdle shell`, or begins a new run";
 
-/// The requests of other robots, and the bar that a safety rule has set to them.
+/// The requests of other robots, and the bar that a safety rule has set against them.
 #[derive(Debug, Default)]
 pub(super) struct PeerRequests {
     /// Numbers of the requests whose plans have neither begun nor been refused.
     open: Vec<u32>,
-    /// Events of these requests since they were taken, besides those that a session takes.
+    /// Events of these requests that have not been taken. They are also among the events that a session takes.
     events: Vec<PlanEvent>,
     bar: Option<Bar>,
 }
 
-/// A bar to plans of other robots.
+/// A bar against plans of other robots.
 #[derive(Debug)]
 struct Bar {
     /// Number of the last request before the bar.
     last: u32,
     /// Reason, as a sentence.
     reason: &'static str,
-    /// `true` if a later plan of the operator has begun: requests after the bar pass.
+    /// `true` once a plan that the operator requested after the bar has begun, so that other robots' requests after the
+    /// bar are permitted again.
     is_lifted: bool,
 }
 
@@ -36,7 +37,7 @@ impl PeerRequests {
         self.open.push(ticket);
     }
 
-    /// Returns `true` if another robot has made the request of this number, which is not decided.
+    /// Returns `true` if another robot has made the request of this number, and it is not decided yet.
     pub(super) fn has(&self, ticket: u32) -> bool {
         self.open.contains(&ticket)
     }
@@ -55,26 +56,27 @@ impl PeerRequests {
         std::mem::take(&mut self.events)
     }
 
-    /// Bars the requests up to this number, and those that follow, for this reason.
+    /// Bars the requests of other robots for this reason: requests up to number `last` for ever, later ones until the
+    /// bar is lifted.
     pub(super) fn bar(&mut self, last: u32, reason: &'static str) {
         self.bar = Some(Bar { last, reason, is_lifted: false });
     }
 
-    /// Lifts the bar, since the plan of a request of this number, which no robot has made, has begun.
+    /// Lifts the bar because a plan has begun that no other robot requested, if its request `ticket` was made after the
+    /// bar.
     pub(super) fn lift(&mut self, ticket: u32) {
         if let Some(bar) = self.bar.as_mut().filter(|bar| ticket > bar.last) {
             bar.is_lifted = true;
         }
     }
 
-    /// Returns the reason why the plan of this request must not take over, if another robot has made the request and it
-    /// is barred.
+    /// Returns the reason for the bar if another robot has made this request and it is barred; `None` otherwise.
     pub(super) fn barred(&self, ticket: u32) -> Option<&'static str> {
         let bar = self.bar.as_ref().filter(|bar| !bar.is_lifted || ticket <= bar.last)?;
         self.has(ticket).then_some(bar.reason)
     }
 
-    /// Returns the event of a request that is taken back.
+    /// Returns the event of a request that is cancelled: a refusal if the request is barred.
     pub(super) fn cancelled(&self, ticket: u32) -> PlanEvent {
         match self.barred(ticket) {
             Some(reason) => PlanEvent::Refused(ticket, reason.to_owned()),

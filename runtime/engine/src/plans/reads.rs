@@ -1,5 +1,5 @@
-//! Attributes of modules that a plan reads: their numbers for a turn, and those that are missing before the
-//! plan can begin (docs/src/reference/semantics.md, 2.5).
+//! Attributes of modules that a plan reads: their values in a turn, and those that are missing before the plan can
+//! begin (docs/src/reference/semantics.md, 2.5).
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_runtime::{ModuleRead, Nanos, PUBLISHED, Published, PublishedNumber};
@@ -8,7 +8,7 @@ use crate::attribute::{AGE, AttributeName, Reading};
 use crate::board::{Board, Post};
 use crate::tree::listed;
 
-/// Time for which a plan waits for what it reads, besides the latency that a module declares.
+/// Time for which a plan waits for the attributes that it reads, in addition to the latency that a module declares.
 const PATIENCE: Nanos = Nanos(2_000_000_000);
 
 /// Reason why a plan cannot begin in this turn.
@@ -20,10 +20,10 @@ pub(super) enum Unready {
     OtherKind(String),
 }
 
-/// Returns the numbers that a plan reads at time `now`.
+/// Returns the values that a plan reads from modules at time `now`.
 ///
 /// # Errors
-/// Fails if not all of them have been published, or if an attribute has another kind.
+/// Fails if some of them have not been published, or if an attribute has another kind.
 pub(super) fn published(reads: &'static [ModuleRead], board: &Board, now: Nanos) -> Result<Published, Unready> {
     let mut numbers = Published::new(reads);
     let mut missing = Vec::new();
@@ -46,7 +46,7 @@ pub(super) fn patience(missing: &[&ModuleRead], board: &Board) -> Nanos {
     Nanos(PATIENCE.0.saturating_add(longest.0))
 }
 
-/// Returns the sentence about a plan that reads attributes which have not been published in time.
+/// Returns the error message about a plan that reads attributes which were not published in time.
 pub(super) fn in_vain(missing: &[&ModuleRead], board: &Board) -> String {
     let seconds = patience(missing, board).seconds();
     let is_other = |read: &&&ModuleRead| read.attribute != AGE || others(read.module, missing).next().is_none();
@@ -83,7 +83,8 @@ fn publishers(read: &ModuleRead, board: &Board) -> String {
     format!("{near}\nhelp: no module `{module}` is loaded: `mdle run PLAN --module {module}=COMMAND` loads one{others}")
 }
 
-/// Returns the numbers that a running plan reads at time `now`. A module may have vanished meanwhile.
+/// Returns the values that a running plan reads from modules at time `now`. Attributes of modules that were unloaded
+/// have no value.
 pub(crate) fn current(reads: &'static [ModuleRead], board: &Board, now: Nanos) -> Published {
     let mut numbers = Published::new(reads);
     for (place, read) in reads.iter().enumerate().take(PUBLISHED) {
@@ -106,7 +107,7 @@ pub(crate) fn check_kinds<'r>(reads: impl IntoIterator<Item = &'r ModuleRead>, b
     })
 }
 
-/// Checks that modules publish the attributes that safety rules read, and in the kinds in which they are read.
+/// Checks that modules publish the attributes that safety rules read, with the kinds that the rules expect.
 ///
 /// # Errors
 /// Fails with a sentence if they do not.
@@ -151,8 +152,8 @@ fn check_kind(read: &ModuleRead, post: &Post) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the number for `read` at time `now`; `None` if it has not been published. `reads` are all reads of
-/// the plan, including `read`.
+/// Returns the value of the attribute `read` at time `now`; `None` if it has not been published. `reads` are all reads
+/// of the plan, including `read`.
 fn number(read: &ModuleRead, reads: &[ModuleRead], board: &Board, now: Nanos) -> Option<PublishedNumber> {
     if read.attribute == AGE {
         let at = oldest_of(read.module, reads, board)?;
@@ -162,8 +163,8 @@ fn number(read: &ModuleRead, reads: &[ModuleRead], board: &Board, now: Nanos) ->
     value.number().map(|value| PublishedNumber { value, at: *at, age: now.since(*at) })
 }
 
-/// Returns the publication time of the module's oldest value that is read; if only the module's age is read, of
-/// its newest value.
+/// Returns the publication time of the oldest value of the module that is read or, if only the module's age is read, of
+/// its newest value. Returns `None` if a value has not been published.
 fn oldest_of(module: &str, reads: &[ModuleRead], board: &Board) -> Option<Nanos> {
     let mut attributes = others(module, reads).peekable();
     if attributes.peek().is_none() {
@@ -173,7 +174,7 @@ fn oldest_of(module: &str, reads: &[ModuleRead], board: &Board) -> Option<Nanos>
     attributes.try_fold(Nanos(u64::MAX), |oldest, attribute| Some(oldest.min(published_at(module, attribute, board)?)))
 }
 
-/// Returns those of `reads` that are attributes of this module, without its age.
+/// Returns the names of the attributes of this module among `reads`, except its age.
 fn others<'r, R: std::borrow::Borrow<ModuleRead>>(
     module: &'r str,
     reads: &'r [R],

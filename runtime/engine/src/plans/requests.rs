@@ -16,7 +16,7 @@ use super::stored::{MOST_STORED, StoredPlan};
 use super::{Plans, Spent};
 
 impl<A: EngineAlphabet> Plans<A> {
-    /// Enables plans to be loaded and replaced as texts, which `compile` compiles on a thread of its own.
+    /// Permits requests with plans as texts. `compile` compiles the texts on a separate thread.
     ///
     /// # Errors
     /// Fails if the system cannot create the thread.
@@ -25,7 +25,7 @@ impl<A: EngineAlphabet> Plans<A> {
         Ok(())
     }
 
-    /// Enables plans to be loaded and replaced as texts, for which turns wait, in simulated time.
+    /// Permits requests with plans as texts in simulated time. Turns wait while `compile` compiles the texts.
     pub fn compile_at_once_with(&mut self, compile: Box<Compile<A>>) {
         self.compiler = Some(Compiler::AtOnce(compile, std::collections::VecDeque::new()));
     }
@@ -35,8 +35,8 @@ impl<A: EngineAlphabet> Plans<A> {
         self.peers.take_events()
     }
 
-    /// Stores a plan under its name; an earlier plan of this name is replaced, and continues if it is active.
-    /// At most [`MOST_STORED`] plans are stored.
+    /// Stores a plan under its name, and replaces an earlier one of this name. An active plan continues. At most
+    /// [`MOST_STORED`] plans are stored.
     ///
     /// # Errors
     /// Fails with a sentence if there are too many.
@@ -73,11 +73,11 @@ impl<A: EngineAlphabet> Plans<A> {
         self.order(Task::Compile(source, None))
     }
 
-    /// Requests that the plan of a text be stored, unless another robot has sent it, and take over; returns the
-    /// number of the request. The answer is [`PlanEvent::Refused`] or [`PlanEvent::Armed`] at a later break, and then
-    /// [`PlanEvent::Began`]. A request that is not compiled when the next one comes is superseded; a plan that is armed
-    /// and has not begun is replaced. A plan of another robot does neither to one of the operator: it is refused while
-    /// a plan of the operator is armed.
+    /// Requests that the plan of a text take over; returns the number of the request. The plan is also stored, unless
+    /// another robot has sent it. The answer at a later break is [`PlanEvent::Refused`], or [`PlanEvent::Armed`] and
+    /// then [`PlanEvent::Began`]. A later request supersedes this one if it is not compiled yet, and replaces its plan
+    /// if that is armed and has not begun. Requests of other robots do neither to requests of the operator: they are
+    /// refused while a plan of the operator is armed.
     pub fn swap(&mut self, source: PlanSource, when: When) -> u32 {
         self.order(Task::Compile(source, Some(when)))
     }
@@ -115,8 +115,8 @@ impl<A: EngineAlphabet> Plans<A> {
         }
     }
 
-    /// Cancels the request that waits for the compiler, and the plan that is armed. A text that is being compiled is
-    /// not cancelled.
+    /// Cancels the requests for plans to take over that wait for the compiler, and the armed plan. A text that is being
+    /// compiled is not cancelled.
     pub fn cancel(&mut self) {
         if self.armed.is_some() {
             self.note(Change::Cancelled);
@@ -124,7 +124,7 @@ impl<A: EngineAlphabet> Plans<A> {
         self.take_back();
     }
 
-    /// Cancels the plan that is to take over: see [`Plans::cancel`].
+    /// Cancels the plans that are to take over, as [`Plans::cancel`] does, but does not note a change for the record.
     pub(super) fn take_back(&mut self) {
         let waiting = self.compiler.as_ref().map_or([None, None], Compiler::take_back);
         for order in waiting.into_iter().flatten() {
@@ -144,8 +144,8 @@ impl<A: EngineAlphabet> Plans<A> {
         format!("no plan `{name}` is stored{near}")
     }
 
-    /// Gives an order to the compiler; returns the number of the request. The compiler gets no plan of another robot
-    /// that must not take over.
+    /// Gives an order to the compiler; returns the number of the request. A plan of another robot that must not take
+    /// over is refused instead.
     fn order(&mut self, task: Task<A>) -> u32 {
         self.last = self.last.saturating_add(1);
         let ticket = self.last;
@@ -196,7 +196,7 @@ impl<A: EngineAlphabet> Plans<A> {
         self.tell(PlanEvent::Armed(ticket));
     }
 
-    /// Reports that another plan is armed in the place of this one, and drops it.
+    /// Reports that another plan is armed instead of this one, and drops this one.
     pub(super) fn replaced(&mut self, plan: Running<A>) {
         self.tell(PlanEvent::Replaced(plan.ticket, Arc::clone(&plan.name)));
         self.discard(plan);

@@ -38,16 +38,16 @@ pub(crate) struct Running<A: Alphabet> {
     /// Number of the plan among those that have begun, from 1; 0 before it begins.
     pub(crate) number: u32,
     pub(crate) name: Arc<str>,
-    /// The plan before its first turn.
+    /// The plan before its first turn; `None` afterwards.
     ready: Option<LoadedPlan<A>>,
     pub(crate) machine: Option<Machine<LoadedPlan<A>>>,
     /// Time, on the engine's clock, at which the plan began, plus the time for which it was suspended.
     pub(crate) zero: Nanos,
     /// Attributes of modules that the plan reads.
     pub(crate) reads: &'static [ModuleRead],
-    /// Names of other robots that the plan names.
+    /// Names of the other robots that the plan refers to.
     pub(crate) robots: Box<[&'static str]>,
-    /// Time since which the plan waits for the attributes that it reads.
+    /// Time at which the plan began to wait for the attributes that it reads; `None` if it has not begun to wait.
     waits_since: Option<Nanos>,
     /// `true` if the plan was suspended before this turn.
     is_back: bool,
@@ -72,7 +72,7 @@ impl<A: Alphabet> Running<A> {
         }
     }
 
-    /// Returns the numbers of modules that the plan reads in the turn at `now`; `None` if it cannot begin yet.
+    /// Returns the values that the plan reads from modules in the turn at `now`; `None` if the plan cannot begin yet.
     ///
     /// # Errors
     /// Fails with a sentence that says why the plan never begins.
@@ -103,15 +103,15 @@ impl<A: Alphabet> Running<A> {
         machine.turn(y, t, watch)
     }
 
-    /// Suspends the plan at this output, which followed its last input.
+    /// Suspends the plan. `y` is the output that followed the plan's last input.
     pub(crate) fn suspend(&mut self, y: &A::Output) {
         if let Some(machine) = &mut self.machine {
             machine.suspend(y);
         }
     }
 
-    /// Continues the plan at `now` as if no time had passed since it was suspended. The law of its atom begins
-    /// anew, as the robot is somewhere else.
+    /// Continues the plan at `now` as if no time had passed since it was suspended. The law of its atom restarts,
+    /// because the robot may have moved.
     pub(crate) fn resume(&mut self, suspended: Nanos, now: Nanos) {
         self.zero = Nanos(self.zero.0.saturating_add(now.since(suspended).0));
         self.is_back = true;

@@ -45,10 +45,10 @@ impl<A: EngineAlphabet> Default for Store<A> {
 }
 
 impl<A: EngineAlphabet> Store<A> {
-    /// Stores plans; returns the earlier plans that had their names.
+    /// Stores plans; returns the earlier plans that they replace.
     ///
     /// # Errors
-    /// Returns the plans without any change if there would be more than [`MOST_STORED`].
+    /// Returns the plans, without any change, if there would be more than [`MOST_STORED`].
     pub(crate) fn put(&mut self, plans: Vec<StoredPlan<A>>) -> Result<Vec<StoredPlan<A>>, Vec<StoredPlan<A>>> {
         let new = plans.iter().filter(|plan| !self.0.contains_key(&plan.name)).count();
         if self.0.len().saturating_add(new) > MOST_STORED {

@@ -1,4 +1,4 @@
-//! The turns of plans: the plan that makes the turn, and the consequences of its result.
+//! The turns of plans: decides which plan makes a turn, and applies the result.
 
 use std::sync::Arc;
 
@@ -28,8 +28,8 @@ pub(crate) enum PlanTurn<U> {
 }
 
 impl<A: EngineAlphabet> Plans<A> {
-    /// Puts the plan's turn, with output `y` at time `now`, on the desk of its module; returns the numbers of
-    /// modules that the plan reads. A plan that cannot begin yet makes no turn.
+    /// Puts the plan's turn, with output `y` at time `now`, on the desk of its module; returns the values that the plan
+    /// reads from modules. A plan that cannot begin yet makes no turn, and `None` is returned.
     ///
     /// # Errors
     /// Fails with a sentence that says why the first plan never begins.
@@ -61,7 +61,8 @@ impl<A: EngineAlphabet> Plans<A> {
         published
     }
 
-    /// Takes the armed plan, if it can begin in the turn at `now`, and the numbers of modules that it reads.
+    /// Takes the armed plan if it can begin in the turn at `now`; returns it with its moment and the values that it
+    /// reads from modules.
     fn ready_to_follow(&mut self, now: Nanos, board: &Board) -> Option<(Running<A>, When, Published)> {
         let (mut next, when) = self.armed.take_if(|_| self.current.is_some())?;
         match next.published(board, now) {
@@ -75,7 +76,8 @@ impl<A: EngineAlphabet> Plans<A> {
         None
     }
 
-    /// Takes the plan's turn at time `now` from the desk; `transitions` receives those of the active plan.
+    /// Takes the plan's turn at time `now` from the desk, and puts the transitions of the active plan into
+    /// `transitions`.
     pub(crate) fn land(&mut self, now: Nanos, transitions: &mut Transitions) -> PlanTurn<A::Input> {
         let Landed { flight, replaced, panic } = self.desk.take();
         if let Some(message) = panic {
@@ -139,8 +141,8 @@ impl<A: EngineAlphabet> Plans<A> {
         }
     }
 
-    /// Ends the plan on trial for this reason; the plan before it continues in the next turn at its atom, as if
-    /// no time had passed for it.
+    /// Ends the plan on trial for this reason. The plan that it replaced continues at its atom in the next turn, as if
+    /// no time had passed.
     ///
     /// # Errors
     /// Fails if no plan is on trial.
@@ -154,8 +156,8 @@ impl<A: EngineAlphabet> Plans<A> {
         Ok(())
     }
 
-    /// Replaces the active plan at once and without a trial, for a supervisor. Plans that were to take over are
-    /// cancelled, also those that are being compiled, and plans of other robots are barred.
+    /// Replaces the active plan at once and without a trial, for a supervisor. All plans that were to take over are
+    /// cancelled, including those that are being compiled, and plans of other robots are barred.
     pub(crate) fn divert(&mut self, plan: LoadedPlan<A>) {
         self.peers.bar(self.last, REPLACED);
         self.take_back();
@@ -172,8 +174,8 @@ impl<A: EngineAlphabet> Plans<A> {
         self.tell(PlanEvent::Began(self.last));
     }
 
-    /// Refuses the plans of other robots for this reason until a plan begins that the operator requests after this
-    /// call. Returns `true` if such a plan was armed.
+    /// Refuses plans of other robots for this reason, until a plan that the operator requests after this call has
+    /// begun. Returns `true` if a plan of another robot was armed.
     pub(crate) fn bar_peers(&mut self, reason: &'static str) -> bool {
         self.peers.bar(self.last, reason);
         if let Some(order) = self.compiler.as_ref().and_then(Compiler::take_back_sent) {
@@ -200,7 +202,7 @@ impl<A: EngineAlphabet> Plans<A> {
         current.chain(armed).chain(suspended).flatten()
     }
 
-    /// Returns the other robots that the active and the next plan name.
+    /// Returns the names of the other robots that the active and the armed plan refer to.
     pub(crate) fn robots(&self) -> impl Iterator<Item = &'static str> {
         let current = self.current.iter().map(|flight| &flight.current);
         let plans = current.chain(self.armed.iter().map(|(armed, _)| armed));
@@ -231,8 +233,8 @@ impl<A: EngineAlphabet> Plans<A> {
         self.begun
     }
 
-    /// Records that a plan is active from now on, for this reason; returns the number of the request of the
-    /// plan before it.
+    /// Records that a plan is active from now on, for this reason; returns the request number of the plan that was
+    /// active before.
     fn drives(&mut self, plan: &Running<A>, reason: String) -> u32 {
         let driving = Driving { number: plan.number, ticket: plan.ticket, name: Arc::clone(&plan.name) };
         self.reason = reason;

@@ -18,7 +18,7 @@ use super::shown;
 const LONGEST: usize = 65_536;
 /// Time for which a child may continue after the end of its input, and again after SIGTERM.
 const FAREWELL: Duration = Duration::from_millis(300);
-/// Maximum duration of the end of a child.
+/// Maximum time that ending a child takes.
 pub(super) const LONGEST_FAREWELL: Duration = Duration::from_secs(2);
 /// Time between two checks for the end of a wait.
 const LOOK: Duration = Duration::from_millis(10);
@@ -30,10 +30,10 @@ const SHELL: &str = "/bin/sh";
 #[derive(Debug)]
 pub(super) struct Child {
     process: process::Child,
-    /// The child's input, until it is closed.
+    /// The child's input; `None` once it is closed.
     stdin: Option<ChildStdin>,
     stdout: ChildStdout,
-    /// The guarding shell, until the group is killed.
+    /// The guarding shell; `None` once the group is killed.
     guard: Option<process::Child>,
     /// Bytes that were read after the last line.
     unread: Vec<u8>,
@@ -44,7 +44,7 @@ pub(super) struct Child {
 pub(super) enum Silence {
     /// The line is no longer needed.
     Over,
-    /// The maximum wait has passed.
+    /// The child did not send the line within the maximum wait.
     Late,
     /// The child cannot continue: the reason, as a sentence.
     Fault(String),
@@ -76,14 +76,13 @@ impl Child {
         Ok(child)
     }
 
-    /// Returns the next line, without its line break. Fails if `is_over` becomes true before, or after
-    /// `patience`.
+    /// Returns the next line, without its line break. Fails if `is_over` returns `true` first, or after `patience`.
     pub(super) fn line(&mut self, patience: Duration, is_over: impl Fn() -> bool) -> Result<Vec<u8>, Silence> {
         self.exchange(&[], patience, is_over)
     }
 
-    /// Sends a line, and returns the answer as [`Child::line`] does. A child that has printed something before
-    /// the line is refused, as it would answer each line before it arrives.
+    /// Sends a line, and returns the answer as [`Child::line`] does. A child that has printed something before the line
+    /// is sent is refused, because it would answer every line too early.
     pub(super) fn ask(
         &mut self,
         line: &[u8],
@@ -131,7 +130,7 @@ impl Child {
         }
     }
 
-    /// Waits a moment until there is data to read, or room to write.
+    /// Waits briefly until there is data to read or, if `writes` is `true`, room to write.
     fn wait(&self, writes: bool) {
         let stdin = self.stdin.as_ref().filter(|_| writes);
         let mut fds = vec![PollFd::new(&self.stdout, PollFlags::IN)];
@@ -142,7 +141,7 @@ impl Child {
         }
     }
 
-    /// Writes as much as there is room for; returns the rest.
+    /// Writes as much as the pipe accepts; returns the rest.
     fn write<'l>(&mut self, line: &'l [u8]) -> io::Result<&'l [u8]> {
         let Some(stdin) = &mut self.stdin else { return Ok(line) };
         if line.is_empty() {

@@ -17,7 +17,7 @@ const KEYS: [&str; 3] = ["publishes", "reads", "latency"];
 pub(super) struct Declaration {
     publishes: Vec<(String, Form)>,
     reads: Vec<(AttributeName, Form)>,
-    /// Time from a line to its answer, in stepped time.
+    /// Time, on the clock of stepped time, from sending a line to the child until its answer.
     latency: Nanos,
 }
 
@@ -72,7 +72,7 @@ impl Declaration {
         Json::Object(object).to_string() + "\n"
     }
 
-    /// Returns the values in an answer of the child, each with its place in the declaration.
+    /// Returns the values in an answer of the child, each with the position of its attribute in the declaration.
     ///
     /// # Errors
     /// Fails with a sentence if the line is no answer.
@@ -93,7 +93,7 @@ impl Declaration {
     }
 }
 
-/// Returns the names and forms of a table of a declaration, which may be missing.
+/// Returns the names and forms in the table `key` of a declaration; none if there is no such table.
 fn forms(object: &Map<String, Json>, key: &str, example: &str) -> Result<Vec<(String, Form)>, String> {
     let Some(table) = object.get(key) else { return Ok(Vec::new()) };
     let table =

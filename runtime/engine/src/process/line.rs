@@ -35,7 +35,7 @@ pub(super) struct Form {
 }
 
 impl Form {
-    /// Returns the form with this word: a unit, or the name of a kind without units.
+    /// Returns the form with this word: a unit, or the name of a kind without units; `None` for any other word.
     pub(super) fn from_word(word: &str) -> Option<Self> {
         if let Some((_, kind)) = WORDS.into_iter().find(|(name, _)| *name == word) {
             return Some(Self { kind, unit: None });
@@ -45,7 +45,7 @@ impl Form {
         Some(Self { kind, unit: Some(unit) })
     }
 
-    /// Returns all words for forms.
+    /// Returns the words of all forms, separated by commas.
     pub(super) fn words() -> String {
         let units = Unit::ALL.iter().map(|unit| unit.name).filter(|name| Self::from_word(name).is_some());
         let words: Vec<_> = units.chain(WORDS.map(|(word, _)| word)).collect();
@@ -118,7 +118,8 @@ impl Form {
     }
 }
 
-/// Returns a number of a line. JSON has no infinite numbers and no NaN, so these are texts.
+/// Returns a number from a line; `None` if the value is not a number. Infinite numbers and NaN, which JSON does not
+/// have, are texts here.
 fn number(json: &Json) -> Option<f64> {
     match json.as_str() {
         Some("NaN") => Some(f64::NAN),
@@ -129,7 +130,7 @@ fn number(json: &Json) -> Option<f64> {
     }
 }
 
-/// Converts seconds to a time.
+/// Converts seconds to a time; `None` if they are negative, not finite or too many.
 pub(super) fn nanos(seconds: f64) -> Option<Nanos> {
     let time = std::time::Duration::try_from_secs_f64(seconds).ok()?;
     u64::try_from(time.as_nanos()).ok().map(Nanos)
@@ -140,7 +141,7 @@ fn pose(numbers: &[f64]) -> Option<Pose> {
     Some(Pose { x: Meters(*x), y: Meters(*y), theta: Radians(*theta) })
 }
 
-/// Reads a line that is a JSON object. Python prints `NaN` and `Infinity`, which JSON does not have.
+/// Reads a line that is a JSON object. Accepts `NaN` and `Infinity`, which JSON does not have, but Python prints.
 ///
 /// # Errors
 /// Fails with a sentence if the line is no JSON object.

@@ -1,5 +1,5 @@
-//! The causes of an engine's turns besides the robot's outputs, while it drives: values that plans and safety rules
-//! read of modules, knowledge of other robots, recorded paths, and changes of plans.
+//! Collects the inputs of an engine's turns besides the robot's outputs: values of modules that plans and safety rules
+//! read, states of other robots, recorded paths, and changes of plans.
 
 use mdle_record::Change;
 use mdle_runtime::{Links, ModuleRead, Nanos, Peer, StoredPath};
@@ -10,7 +10,7 @@ use crate::board::{Board, Post};
 /// The changes that a record of the run needs.
 #[derive(Debug, Default)]
 pub(crate) struct History {
-    /// The attributes that the record contains, by their numbers; `None` for attributes that have vanished.
+    /// The attributes that the record contains, by their numbers; `None` for attributes that were removed.
     known: Vec<Option<Known>>,
     /// Changes of the current turn.
     changes: Vec<Change>,
@@ -21,12 +21,13 @@ pub(crate) struct History {
 struct Known {
     name: AttributeName,
     kind: AttributeKind,
-    /// Time and bits of the value that was recorded last.
+    /// Time and bits of the value that was recorded last; `None` before the first.
     reading: Option<(Nanos, u64)>,
 }
 
 impl History {
-    /// Begins a turn, after these changes of plans; `reads` are the attributes that plans and rules read, now or soon.
+    /// Begins a turn with the changes of plans since the last turn. `reads` are the attributes that plans and safety
+    /// rules read, or may read in later turns.
     pub(crate) fn begin(
         &mut self,
         plans: Vec<Change>,
@@ -48,12 +49,12 @@ impl History {
         posts.into_iter().for_each(|post| self.see(post));
     }
 
-    /// Records a cause of the current turn.
+    /// Records a change of the current turn.
     pub(crate) fn note(&mut self, change: Change) {
         self.changes.push(change);
     }
 
-    /// Notes what the state link knows of other robots in the turn that is made.
+    /// Records the states of other robots that are known in the current turn.
     pub(crate) fn heard(&mut self, links: &Links) {
         let peers = links.peers().map(|Peer { name, rounds, state }| Change::Peer {
             name: (*name).to_owned(),
@@ -63,7 +64,7 @@ impl History {
         self.changes.extend(peers);
     }
 
-    /// Records that a recorded path has replaced the path of its name.
+    /// Records that a newly recorded path has replaced the path with its name.
     pub(crate) fn replaced(&mut self, StoredPath { name, setpoints }: &StoredPath) {
         self.changes.push(Change::Path { name: (*name).to_owned(), setpoints: setpoints.to_vec() });
     }
@@ -73,7 +74,7 @@ impl History {
         std::mem::take(&mut self.changes)
     }
 
-    /// Records which attributes have vanished.
+    /// Records which attributes were removed from the board, including those that were added again since.
     fn forget(&mut self, board: &Board) {
         for (number, known) in (0..).zip(&mut self.known) {
             let has_gone = |known: &mut Known| {

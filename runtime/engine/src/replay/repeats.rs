@@ -12,7 +12,7 @@ use crate::board::Board;
 pub(crate) struct Repeats {
     /// The attributes of the record, by their numbers.
     attributes: Vec<(AttributeName, AttributeKind)>,
-    /// The other robots as they were known in the turn, by their names.
+    /// Name, rounds and known state of each other robot in the current turn.
     peers: Vec<(String, u64, Option<PeerState>)>,
     progress: PlanProgress,
 }
@@ -34,7 +34,8 @@ enum PlanProgress {
 }
 
 impl Repeats {
-    /// Repeats the publication of a module, or the progress of the plan's turn; ignores other changes.
+    /// Repeats a change of an attribute, of another robot, or of the progress of the plan's turn; ignores other
+    /// changes.
     pub(crate) fn repeat(&mut self, change: &Change, board: &mut Board) {
         match change {
             Change::Attribute { module, name, kind } => {
@@ -67,7 +68,7 @@ impl Repeats {
         }
     }
 
-    /// Returns the links to the robots of these names, with the states that had arrived by the turn.
+    /// Returns the links to the robots with these names, with the states that were known in the recorded turn.
     pub(crate) fn links(&self, robots: impl Iterator<Item = &'static str>) -> Links {
         let mut links = Links::NONE;
         for name in robots {
@@ -79,17 +80,17 @@ impl Repeats {
         links
     }
 
-    /// Returns `true` if the plan makes its turn now.
+    /// Returns `true` if the plan has to make a turn in the current turn.
     pub(crate) fn makes_turn(&self) -> bool {
         matches!(self.progress, PlanProgress::Made | PlanProgress::Late)
     }
 
-    /// Returns `true` if the turn on the plan's desk is taken in this turn.
+    /// Returns `true` if the result of the plan's turn is taken from the desk in the current turn.
     pub(crate) fn lands(&self) -> bool {
         !matches!(self.progress, PlanProgress::Late | PlanProgress::Away)
     }
 
-    /// Ends the turn.
+    /// Ends the current turn.
     pub(crate) fn end_turn(&mut self) {
         self.peers.clear();
         self.progress = match self.progress {

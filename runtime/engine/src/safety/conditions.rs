@@ -22,7 +22,7 @@ pub struct Conditions<A: runtime::Alphabet> {
     warnings: Vec<Diagnostic>,
 }
 
-/// The conditions in a run.
+/// The conditions of the guards as they are evaluated in a run.
 pub struct Watched<A: runtime::Alphabet> {
     loaded: Vec<Arc<Loaded<A>>>,
     /// For each condition, a plan that never leaves its first atom; empty before the first output.
@@ -30,12 +30,13 @@ pub struct Watched<A: runtime::Alphabet> {
     fired: Vec<bool>,
 }
 
-/// Reason why a guard cannot be watched.
+/// Reason why the condition of a guard cannot be used.
 #[derive(Debug)]
 pub enum GuardError {
-    /// The condition has errors, whose spans are in the sources.
+    /// The condition has errors, given as diagnostics with spans in the sources.
     Faulty(Vec<Diagnostic>),
-    /// The condition depends on more than the output: the line in the safety file, and a sentence.
+    /// A guard may not have this condition, for example because it depends on more than the output: the line in the
+    /// safety file, and a sentence.
     Unfit(usize, String),
     /// The condition cannot be loaded, for this reason.
     Load(LoadError),
@@ -58,7 +59,8 @@ impl<A: runtime::Alphabet> Conditions<A> {
     /// files are among `sources`.
     ///
     /// # Errors
-    /// Fails if a condition has errors, or depends on more than the output of one turn.
+    /// Fails if a condition has errors, depends on more than the output of one turn or cannot be loaded, or if the
+    /// guards read too many attributes of modules.
     pub fn compile(
         (name, text): (&str, &str),
         guards: &[Guard],
@@ -84,13 +86,13 @@ impl<A: runtime::Alphabet> Conditions<A> {
         Ok(Self { loaded, reads: Vec::from_iter(reads).leak(), warnings })
     }
 
-    /// Returns the warnings about the conditions, whose places are in the sources.
+    /// Returns the warnings about the conditions, with spans in the sources.
     #[must_use]
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.warnings
     }
 
-    /// Returns the conditions of a run before its first output.
+    /// Returns the conditions for a run, before its first output.
     #[must_use]
     pub fn watch(&self) -> Watched<A> {
         Watched { loaded: self.loaded.clone(), machines: Vec::new(), fired: Vec::new() }
@@ -116,8 +118,8 @@ impl<A: runtime::Alphabet> Watched<A> {
     }
 }
 
-/// Compiles a condition of the safety file `file`, as the interrupt of a plan that stands still; returns its warnings
-/// as well.
+/// Compiles a condition of the safety file `file`, as the interrupt of a plan that only stops the robot; returns it
+/// with its warnings.
 fn compiled<A: runtime::Alphabet>(
     file: SourceId,
     condition: &Condition,
@@ -148,10 +150,10 @@ fn compiled<A: runtime::Alphabet>(
     Ok((Arc::new(loaded), warnings))
 }
 
-/// Text before a condition in its plan.
+/// Text that precedes a condition in the plan that is made for it.
 const BEFORE: &str = "{ Guard (";
 
-/// A condition in its plan and in its safety file.
+/// A condition, with the plan that is made for it and the safety file that contains it.
 struct Placed<'c> {
     file: SourceId,
     plan: SourceId,
@@ -160,7 +162,8 @@ struct Placed<'c> {
 }
 
 impl Placed<'_> {
-    /// Returns a diagnostic about the plan as one about the file; `None` for a warning that is not about the condition.
+    /// Converts a diagnostic about the plan to one about the safety file. Returns `None` for a warning that is not
+    /// about the condition.
     fn moved(&self, mut diagnostic: Diagnostic) -> Option<Diagnostic> {
         let span = diagnostic.span()?;
         let end = BEFORE.len() + self.condition.text.len();
@@ -179,7 +182,7 @@ impl Placed<'_> {
         Some(diagnostic)
     }
 
-    /// Returns the place in the safety file of a place in the plan.
+    /// Converts a span in the plan to the corresponding span in the safety file.
     fn in_file(&self, span: Span) -> Span {
         let Condition { text, bytes, .. } = self.condition;
         let (source, Range { start, end }) = self.sources.range(span);
@@ -194,7 +197,7 @@ impl Placed<'_> {
     }
 }
 
-/// Returns the word for an operand that depends on more than the output; `None` for any other operand.
+/// Returns the keyword of an operand that depends on more than the output; `None` for any other operand.
 fn memory<I>(operand: &runtime::Condition<I>) -> Option<&'static str> {
     match operand {
         runtime::Condition::Null

@@ -1,5 +1,5 @@
-//! The envelope, which decides by the rules which input is sent to a robot. It reads no clock and no file, so
-//! that the same run has the same decisions again.
+//! The envelope, which applies the safety rules to decide which input is sent to a robot. It reads no clock and no
+//! file, so that a repeated run has the same decisions.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use mdle_runtime::{MetersPerSecond, Nanos, RadiansPerSecond, Twist};
 
 use super::{Fence, Measure, Rules, Then};
 
-/// The speed below which a fence counts as a hold, in metres per second: 1 cm/s.
+/// Speed, in metres per second, below which a robot that a fence has slowed down counts as held: 1 cm/s.
 const CREEP: f64 = 0.01;
 /// The number of turn rates that are tried at a fence, from the plan's turn rate to the robot's current turn
 /// rate.
@@ -25,22 +25,22 @@ pub struct Envelope {
     last: Twist,
     /// Time of the last decision; `None` before the first decision.
     at: Option<Nanos>,
-    /// The number of late turns in a row.
+    /// The number of consecutive late turns.
     late: u64,
-    /// The rules that have diverted the run to another plan, and are off from then on.
+    /// The rules that have diverted the run to another plan, and have been off since then.
     spent: Vec<RuleId>,
-    /// Verdict of the last turn, and the rule that decided.
+    /// Verdict of the last turn, and the rule that decided; `None` if no rule changed the input.
     verdict: Option<(Verdict, RuleId)>,
-    /// The quantity that the last turn limited.
+    /// The quantity that the last turn limited; `None` if it limited none.
     limited: Option<LimitedQuantity>,
-    /// Number of turns in which each rule has decided, in the order of [`Envelope::names`].
+    /// Number of turns in which each rule has decided, in the order of `Envelope::ids`.
     counts: Vec<(RuleId, u64)>,
 }
 
 /// A safety rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RuleId {
-    /// The rule that every input is a number.
+    /// The rule that every input consists of finite numbers.
     Finite,
     /// The rule `output` of `[stale]`.
     Stale,
@@ -113,15 +113,15 @@ impl Envelope {
         sent
     }
 
-    /// Counts turns that begin late: more than half a period after their time.
+    /// Counts consecutive turns that begin late: more than one and a half periods after the turn before.
     fn observe(&mut self, now: Nanos) {
         let is_late = self.at.is_some_and(|at| now.since(at).seconds() > 1.5 * self.period);
         self.late = if is_late { self.late.saturating_add(1) } else { 0 };
         self.at = Some(now);
     }
 
-    /// Returns the strictest demand of the rules that depend on the output, with its rule; the first of equally
-    /// strict demands.
+    /// Returns the strictest consequence that the rules other than limits and fences demand, with its rule; the first
+    /// one if several are equally strict. Returns `None` if no rule demands any.
     fn demand<Y>(&self, asked: Twist, y: &Y, now: Nanos, fired: &[bool]) -> Option<(Then, RuleId)>
     where
         Y: Bumpers + SonarRing,
@@ -141,7 +141,8 @@ impl Envelope {
         demands.reduce(|strictest, other| if other.0 > strictest.0 { other } else { strictest })
     }
 
-    /// Returns the input within limits and fences, and the rule that changed it last.
+    /// Returns the input within limits and fences, with the verdict and the rule that changed the input last; `None` if
+    /// no rule changed it.
     fn within_limits<Y: Odometry + DiffDrive>(&mut self, asked: Twist, y: &Y) -> (Twist, Option<(Verdict, RuleId)>) {
         let limits = self.rules.limits;
         let mut input = Limited { v: asked.v.0, omega: asked.omega.0, by: None };
@@ -199,7 +200,8 @@ impl Envelope {
         &self.rules
     }
 
-    /// Returns the rules for a change that applies from the next turn on. Guards and fences keep their numbers.
+    /// Returns the rules for writing; a change applies from the next turn on. Guards and fences must keep their
+    /// numbers.
     pub fn rules_mut(&mut self) -> &mut Rules {
         &mut self.rules
     }
@@ -271,7 +273,7 @@ impl Limited {
     }
 }
 
-/// Returns this quantity of the input that a plan demanded, and of the input within limits.
+/// Returns the quantity `measure` of the input `asked`, which a plan demanded, and of the input within limits.
 fn of_measure(measure: Measure, asked: Twist, input: &Limited) -> LimitedQuantity {
     let (asked, sent) = match measure {
         Measure::TurnRate => (asked.omega.0, input.omega),
@@ -281,7 +283,7 @@ fn of_measure(measure: Measure, asked: Twist, input: &Limited) -> LimitedQuantit
     LimitedQuantity { name: measure.key(), unit, asked: measure.in_its_unit(asked), sent: measure.in_its_unit(sent) }
 }
 
-/// Returns the value, or the nearest value that is at most `most` away from 0.
+/// Limits a value to the range from -`most` to `most`.
 fn within(value: f64, most: f64) -> f64 {
     if value.abs() > most { most.copysign(value) } else { value }
 }

@@ -39,8 +39,9 @@ impl Fence {
         self.deceleration * (libm::sqrt(late * late + 2.0 * room / self.deceleration) - late)
     }
 
-    /// Returns the distance from a place outside, through the fence, to where it is left again; 0 if the robot
-    /// does not come nearer to the fence in all directions from `heading` to `heading + turned`.
+    /// Returns the distance that a robot outside the fence may drive: through the fence, until it reaches the margin
+    /// where it would leave the fence again. Returns 0 if the robot does not approach the fence in all directions from
+    /// `heading` to `heading + turned`.
     fn way_in(&self, here: Point, heading: f64, turned: f64) -> f64 {
         let to_fence = self.edges().map(|edge| between(here, nearest(here, edge)));
         let [x, y] = to_fence
@@ -56,7 +57,7 @@ impl Fence {
         if exit.is_finite() { (exit - self.margin).max(0.0) } else { 0.0 }
     }
 
-    /// Returns the distance to where the robot comes within the margin of the fence, in the directions from `heading`
+    /// Returns the distance after which the robot comes within the margin of an edge, in the directions from `heading`
     /// to `heading + turned`.
     fn room(&self, here: Point, heading: f64, turned: f64) -> f64 {
         let (from, to) = if turned < 0.0 { (heading + turned, heading) } else { (heading, heading + turned) };
@@ -167,7 +168,7 @@ mod tests {
         assert_eq!(hall().fastest(&at(2.1, 0.0, 100.0), 0.3, 0.0, 0.1), 0.0, "past the fence");
     }
 
-    /// A notch between two arms: who leaves one of them may not drive on to the other.
+    /// A notch between two arms: a robot that leaves one arm must not drive on to the other.
     #[test]
     fn a_notch_is_not_crossed() {
         let corners =

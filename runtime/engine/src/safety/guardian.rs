@@ -21,7 +21,7 @@ pub struct Guardian<A: Alphabet> {
 }
 
 impl<A: Alphabet> Guardian<A> {
-    /// Returns the guardian of a run with this period; the conditions belong to the rules' guards.
+    /// Returns the guardian of a run with this period; `conditions` are those of the guards in `rules`.
     #[must_use]
     pub fn new(rules: Rules, conditions: &Conditions<A>, period: Duration) -> Self {
         let (envelope, conditions) = (Envelope::new(rules, period), conditions.watch());

@@ -18,9 +18,10 @@ pub struct Rules {
     pub contact: Option<Then>,
     /// Age of the measurements in an output from which it is stale, and the consequence.
     pub stale: Option<(Nanos, Then)>,
-    /// Age from which the value of a module that the plan or a guard reads is stale, and the consequence.
+    /// Maximum age of a module's value that the plan or a guard reads, and the consequence if it is older; `None`
+    /// without this rule.
     pub stale_module: Option<(Nanos, Then)>,
-    /// Number of consecutive turns that begin late, and the consequence.
+    /// Number of consecutive late turns, and the consequence; `None` without this rule.
     pub overrun: Option<(u64, Then)>,
     /// Guards, whose conditions are in the plan language, in the order of the file.
     pub guards: Vec<Guard>,
@@ -33,7 +34,7 @@ pub struct Rules {
 pub struct PlanEntry {
     /// File of the plan, as the safety file names it.
     pub file: String,
-    /// Line of the safety file that names it first, from 1.
+    /// Line of the safety file that first names the plan, from 1.
     pub line: usize,
 }
 
@@ -72,7 +73,8 @@ pub struct Condition {
     pub text: String,
     /// Line of the text, from 1.
     pub line: usize,
-    /// Bytes of the text in the safety file; those of the whole value if the file has it with escapes.
+    /// Byte range of the text in the safety file; the range of the whole value if the file writes the text with
+    /// escapes.
     pub bytes: Range<usize>,
 }
 

@@ -24,7 +24,7 @@ pub(super) struct Section<'t, 'i> {
     /// Name of the table, as in `[limits]`; empty for the file itself.
     pub(super) name: &'t str,
     table: &'t DeTable<'i>,
-    /// Place of the table.
+    /// Byte offset of the table in the file.
     place: usize,
 }
 
@@ -61,7 +61,7 @@ impl<'t, 'i> Section<'t, 'i> {
         self.table.get(key)
     }
 
-    /// Returns the value of a required key; `example` shows an example.
+    /// Returns the value of a required key; `example` is a value for the error message.
     pub(super) fn needed(self, key: &str, example: &str) -> Result<&'t Value<'i>, RulesError> {
         let missing = || RulesError {
             line: line(self.text, self.place),
@@ -70,7 +70,7 @@ impl<'t, 'i> Section<'t, 'i> {
         self.get(key).ok_or_else(missing)
     }
 
-    /// Returns a value that must be a table, under the name `name`.
+    /// Returns the value of the key `name`, which must be a table.
     pub(super) fn table(self, name: &'t str, value: &'t Value<'i>) -> Result<Section<'t, 'i>, RulesError> {
         let found = value.get_ref();
         let within = if self.name.is_empty() { String::new() } else { format!("{}.", self.name) };
@@ -80,7 +80,7 @@ impl<'t, 'i> Section<'t, 'i> {
         Ok(Section { name, table, place: value.span().start, ..self })
     }
 
-    /// Returns a value that must be text; `example` shows an example.
+    /// Returns a value that must be text; `example` is a value for the error message.
     pub(super) fn text(self, key: &str, value: &'t Value<'i>, example: &str) -> Result<&'t str, RulesError> {
         let found = value.get_ref();
         let message = || format!("`{key}` has to be text, as in `{key} = {example}`; found: {}", kind(found));
@@ -145,7 +145,8 @@ impl<'t, 'i> Section<'t, 'i> {
         RulesError { line: line(self.text, place.span().start), message }
     }
 
-    /// Returns the line of a value, from 1, and the bytes of its text: those of the value if it has escapes.
+    /// Returns the line of a value, from 1, and the byte range of its text; the range of the whole value if it is
+    /// written with escapes.
     pub(super) fn place(self, span: &Range<usize>, text: &str) -> (usize, Range<usize>) {
         let start = self.text.get(span.clone()).and_then(|value| value.find(text)).map(|before| span.start + before);
         let bytes = start.map_or_else(|| span.clone(), |start| start..start + text.len());

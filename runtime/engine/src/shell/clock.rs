@@ -15,14 +15,15 @@ const SECONDS: Kind = Kind::Quantity(Quantity::Time, "s");
 #[derive(Debug)]
 pub(super) struct SessionClock {
     period: Duration,
-    /// The requested pace; `None` if time is the wall clock's.
+    /// The requested pace of stepped time; `None` in real time.
     pace: Option<Pace>,
-    /// A requested pace that the run has not adopted yet.
+    /// A requested pace that the run has not adopted yet; `None` if there is none.
     pub(super) ordered: Option<Pace>,
     pub(super) is_paused: bool,
-    /// The number of turns until the clock stops again, and the reply to send then.
+    /// Number of turns of the run after which the clock is paused again, and the reply to send then; `None` if no
+    /// request for single turns waits.
     steps: Option<(u64, Reply)>,
-    /// Requests that wait for a time or for the end of the plan, with `true` if the clock stops then.
+    /// Requests that wait for a time or for the end of the plan, with `true` if the clock is paused again then.
     waits: Vec<(Nanos, bool, Reply)>,
     /// Number of turns and time of the last turn, as answers show them.
     now: String,
@@ -38,7 +39,7 @@ impl SessionClock {
         Self { period, pace, ordered: None, is_paused, steps: None, waits: Vec::new(), now: String::new() }
     }
 
-    /// Replies to requests whose turn or time has come.
+    /// Answers the requests whose turn or time has come.
     pub(super) fn made<B: Pilot>(&mut self, moment: &Break<'_, B>) {
         let now = said(moment);
         if let Some((_, reply)) = self.steps.take_if(|(turns, _)| moment.turns >= *turns || moment.is_over) {
@@ -124,10 +125,10 @@ impl SessionClock {
     }
 }
 
-/// Refusal of a request to change a clock that is the wall clock.
+/// Answer to a request to change the clock in real time.
 const REAL: &str = "the time of a real robot goes on by itself";
 
-/// Returns the time of a break, for an answer.
+/// Returns the time of a break and the number of turns, as the text of an answer.
 fn said<B: Pilot>(moment: &Break<'_, B>) -> String {
     let (turns, t) = (moment.turns, Value::Quantity(moment.t.seconds(), "s"));
     let word = if turns == 1 { "turn" } else { "turns" };

@@ -11,15 +11,15 @@ pub(super) enum Command {
     Ask(String, Operation),
     /// Change the folder at which relative paths begin.
     Enter(String),
-    /// Print that folder.
+    /// Print the folder at which relative paths begin.
     Here,
     /// Print the commands, or the description of a node.
     Help(Option<String>),
-    /// Prints a command, with its arguments and what it does.
+    /// Print a command, with its arguments and its description.
     Explain((&'static str, &'static str, &'static str)),
-    /// Lets the stored plan of this name take over at the moment that these words name.
+    /// Let the stored plan of this name take over at the moment that these arguments name.
     Swap(String, Vec<String>),
-    /// Ends the session, as the end of the commands does.
+    /// End the session, as after the last command.
     Quit,
 }
 

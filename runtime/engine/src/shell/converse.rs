@@ -164,12 +164,12 @@ impl Asker<'_> {
     }
 }
 
-/// A line about a command.
+/// Returns a line about a command.
 fn summary((name, arguments, does): (&str, &str, &str)) -> String {
     format!("{:28} {does}", format!("{name} {arguments}"))
 }
 
-/// A line about a node.
+/// Returns a line about a node.
 fn described(path: &str, node: &Node) -> String {
     let kind = match node.kind {
         Kind::Flag => "true or false".to_owned(),

@@ -26,7 +26,7 @@ const OWN: [(&str, Node); 5] = [
     (".unload", Node::method(Role::Admin, "unloads the module; its attributes vanish")),
 ];
 
-/// Name, in `/lib`, for child processes; a module of the library with this name has priority.
+/// Name of the node in `/lib` that loads child processes; a module of the library with this name has priority.
 const PROCESS: &str = "process";
 
 /// The modules, with the unanswered requests to load modules.
@@ -178,7 +178,7 @@ fn state_text(state: ModuleState) -> &'static str {
     }
 }
 
-/// Returns the kind of an attribute as people see it; a quantity has the unit of its description.
+/// Returns the kind of an attribute in the tree; a quantity has the unit of its description.
 fn kind(about: &About) -> Kind {
     let quantity = about.unit.and_then(|unit| Some((Quantity::of_unit(unit.name)?.0, unit.name)));
     match (about.kind, quantity) {
@@ -202,7 +202,7 @@ fn kind(about: &About) -> Kind {
     }
 }
 
-/// Returns a value as people see it.
+/// Converts the value of an attribute to a value of the tree.
 fn shown(about: &About, value: &attribute::Value) -> Value {
     use attribute::Value as Of;
     let number = |number: f64| match about.unit {
@@ -226,7 +226,7 @@ fn shown(about: &About, value: &attribute::Value) -> Value {
     }
 }
 
-/// Returns the value of an attribute that people have typed as `value`.
+/// Converts a value that a user has typed to the value of an attribute.
 fn taken(about: &About, value: Value) -> Result<attribute::Value, String> {
     use attribute::Value as Of;
     let si = match value {

@@ -12,7 +12,7 @@ use crate::Engine;
 use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
-/// Answer to a request whose plan was armed, and is replaced before it takes over.
+/// Answer to a request whose plan was armed, but was replaced before it took over.
 const TAKEN: &str = "another plan takes its place";
 const SECONDS: Kind = Kind::Quantity(Quantity::Time, "s");
 
@@ -40,7 +40,7 @@ const OWN: [(&str, Node); 13] = [
 #[derive(Debug, Default)]
 pub(super) struct PlansPart {
     waiting: Vec<Waiting>,
-    /// Number of the request of each plan that is armed, and the name of the plan.
+    /// Number of the request, and name, of each plan of this session that is armed.
     armed: Vec<(u32, String)>,
 }
 
@@ -110,7 +110,7 @@ impl PlansPart {
         messages
     }
 
-    /// Returns the name of the plan of this request, which is armed no longer; `None` if it was not armed.
+    /// Removes the plan of this request from the armed plans and returns its name; `None` if it is not among them.
     fn disarmed(&mut self, ticket: u32) -> Option<String> {
         let place = self.armed.iter().position(|(armed, _)| *armed == ticket)?;
         Some(self.armed.swap_remove(place).1)
@@ -239,7 +239,7 @@ fn set_trial<A: EngineAlphabet>(plans: &mut Plans<A>, text: &str) -> Result<(), 
     Ok(())
 }
 
-/// Returns the values that describe the position in a plan that began this time ago.
+/// Returns the values that describe the position in a plan; `t` is the time since the plan began.
 fn standing(place: &PlanPosition<'_>, t: Nanos) -> [Value; 6] {
     let conditions: Vec<_> = place.scopes.iter().map(|scope| scope.condition).collect();
     [

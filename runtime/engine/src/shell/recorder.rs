@@ -71,8 +71,8 @@ enum Order {
 }
 
 impl RecorderPart {
-    /// Returns the recorder of a run with these terms on this target. It must be created before the thread of
-    /// the turns is scheduled in real time, as its thread would inherit that scheduling.
+    /// Returns the recorder of a run with these terms on this target. It must be created before the thread of the turns
+    /// is scheduled in real time, because the recorder's thread would inherit this scheduling.
     pub(super) fn new(terms: &RunTerms, target: &str) -> Self {
         let ((orders, waiting), (sender, opened)) = (sync_channel(WAITING), channel());
         let progress = Arc::<Progress>::default();
@@ -101,7 +101,7 @@ impl RecorderPart {
         }
     }
 
-    /// Writes the turn that was made.
+    /// Passes the turn that was made to the thread that writes the record, if there is a record.
     pub(super) fn made<A>(&mut self, moment: &Break<'_, Engine<A>>)
     where
         A: EngineAlphabet<Input = Twist>,
@@ -143,8 +143,7 @@ impl RecorderPart {
         }
     }
 
-    /// Replies to the request that waits for the file; returns a message if the record could not be written any
-    /// further.
+    /// Answers the request that waits for the file to be opened; returns a message if writing the record has failed.
     pub(super) fn proceed(&mut self) -> Option<String> {
         if let Ok(opened) = self.opened.try_recv()
             && let Some(reply) = self.opening.take()
@@ -246,7 +245,7 @@ fn created(path: &Path) -> Result<File, String> {
     })
 }
 
-/// A file whose bytes are counted.
+/// A file that counts the bytes written to it.
 struct CountingFile {
     file: File,
     progress: Arc<Progress>,

@@ -18,7 +18,7 @@ use crate::plans::EngineAlphabet;
 use crate::safety::{Guardian, Limits};
 use crate::tree::{Desk, Served};
 
-/// Maximum wait for a request while the clock stands, between two checks of the signals.
+/// Maximum wait for a request while the clock is paused, between two checks whether the run is to stop.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// The supervisor of a run with a shell: it serves requests at breaks, and applies the safety rules, if there are any.
@@ -27,7 +27,7 @@ pub struct Session<A: Alphabet> {
     desk: Desk,
     parts: Parts<A>,
     request: StopRequest,
-    /// The limits of the safety rules as recorded.
+    /// The limits of the safety rules as last recorded; `None` if the run has no record or no rules.
     recorded: Option<Limits>,
 }
 
@@ -134,7 +134,7 @@ where
     A: EngineAlphabet<Input = Twist>,
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
 {
-    /// Serves requests; waits at most `wait` for a request, if it is given.
+    /// Serves requests; waits at most `wait` for a request, or not at all if it is `None`.
     fn serve(&mut self, moment: &mut Break<'_, Engine<A>>, wait: Option<Duration>) {
         let Self { desk, parts, .. } = self;
         let has_changed = match wait {

@@ -30,7 +30,7 @@ fn turn(modules: &mut Modules<f64>, number: u64) {
     modules.prepare();
 }
 
-/// Returns the number of an attribute, and the turn in which it was published.
+/// Returns the value of an attribute, and the turn in which it was published.
 fn number(modules: &Modules<f64>, module: &str, attribute: &str) -> Option<(f64, u64)> {
     let Reading { value, at } = modules.board().post(module, attribute)?.reading.as_ref()?;
     let Value::Number(number) = value else { panic!("{value:?}") };

@@ -29,7 +29,7 @@ impl Reply {
     }
 }
 
-/// A part of the engine that has nodes in the tree. `M` is the type of the moment that it sees at a break.
+/// A part of the engine that has nodes in the tree. `M` is the type of the data that the part gets at a break.
 pub trait Served<M: ?Sized> {
     /// Returns the nodes of the part with their paths, in a fixed order.
     fn nodes(&self, moment: &M) -> Vec<(String, Node)>;
@@ -38,12 +38,12 @@ pub trait Served<M: ?Sized> {
     /// has no value.
     fn values(&self, moment: &M, to: &mut Vec<Option<Value>>);
 
-    /// Carries out a change of one of the part's nodes, which the node's kind, access and role permit. The part
-    /// may keep `reply`, to answer at a later break.
+    /// Carries out a change of one of the part's nodes. The change agrees with the node's kind, access and role. The
+    /// part may keep `reply`, to answer at a later break.
     fn change(&mut self, path: &str, change: &Change, moment: &mut M, reply: Reply);
 }
 
-/// The desk, which serves requests at breaks. It waits only if it is asked to.
+/// The desk, which serves requests at breaks. Only [`Desk::wait`] waits.
 #[derive(Debug)]
 pub struct Desk {
     shared: Arc<Shared>,

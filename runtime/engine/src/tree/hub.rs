@@ -135,7 +135,7 @@ impl Hub {
         paths.collect::<BTreeSet<_>>().into_iter().collect()
     }
 
-    /// Returns the node of this path, from the last snapshot.
+    /// Returns the node with this path in the last snapshot; `None` if there is none.
     #[must_use]
     pub fn node(&self, path: &str) -> Option<Node> {
         self.lock().tree.get(path).copied()
@@ -164,8 +164,8 @@ impl Hub {
         }
     }
 
-    /// Returns a snapshot that was taken after the call; the last one if the robot makes no turn or the run has
-    /// ended; `None` if there is none.
+    /// Returns a snapshot that was taken after the call. If the robot makes no turn within [`PATIENCE`], or the run has
+    /// ended, returns the last snapshot, or `None` if there is none.
     fn snapshot(&self) -> Option<Arc<Snapshot>> {
         let mut kept = self.lock();
         let before = kept.number;
@@ -183,7 +183,8 @@ impl Hub {
     }
 }
 
-/// Returns the answer about a path that does not exist.
+/// Returns the answer about a path that does not exist, or that is a folder instead of a node or a node instead of a
+/// folder.
 fn nothing(tree: &Tree, path: &str) -> Answer {
     if !names(tree, path).is_empty() {
         return Answer::Refused(format!("`{path}` is a folder: `ls {path}` lists it"));
@@ -196,7 +197,7 @@ fn nothing(tree: &Tree, path: &str) -> Answer {
     Answer::Refused(format!("there is nothing at `{path}`{proposal}"))
 }
 
-/// Returns the reason why a node refuses a change, as far as the node itself decides it; `None` if it does not.
+/// Returns the reason why a change does not agree with the access, role or kind of a node; `None` if it does.
 fn refusal(path: &str, node: &Node, change: &Change, request: &Request) -> Option<String> {
     match (change, node.access) {
         (Change::Set(_), Access::Read) => return Some(format!("`{path}` is read-only")),

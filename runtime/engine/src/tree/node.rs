@@ -52,7 +52,7 @@ pub enum Kind {
     Quantity(Quantity, &'static str),
     /// Text.
     Text,
-    /// A place and a heading in the plane: two lengths and an angle.
+    /// A position and a heading in the plane: two lengths and an angle.
     Pose,
     /// Numbers without a unit.
     Numbers,

@@ -1,4 +1,4 @@
-//! Attributes that a front end watches. Each is reported when its value has changed, but not more often than
+//! Attributes that a front end watches. Each is reported when its value has changed, but at most at a rate at which
 //! people can read.
 
 use std::sync::mpsc::SyncSender;
@@ -22,9 +22,9 @@ pub(super) struct Watches {
 #[derive(Debug)]
 struct Watched {
     path: String,
-    /// The value that was reported last.
+    /// The value that was reported last; `None` before the first report.
     reported: Option<String>,
-    /// Time from which the attribute may be reported again.
+    /// Earliest time at which the attribute may be reported again.
     next: Nanos,
 }
 
