@@ -80,7 +80,7 @@ pub(crate) struct Run {
     pub(crate) safety: Option<PathBuf>,
     /// File of the link to other robots.
     pub(crate) link: Option<PathBuf>,
-    /// Name of the path that is replaced by the way back from each `path` and `Follow`.
+    /// Name of the path that the way back from each `path` and `Follow` replaces; `None` if no path is recorded.
     pub(crate) records: Option<String>,
     /// Child processes to load as modules: the name of each, and its command line.
     pub(crate) modules: Vec<(String, String)>,
@@ -207,11 +207,11 @@ fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: O
     }))
 }
 
-/// Separates the options of the run, which come after the plan, from the arguments that `mdle` parses itself.
-/// The plan is the last of `missing` words.
+/// Separates the options of the run from the arguments that `mdle` parses itself. The options of the run follow the
+/// first `missing` words after the command: the plan, or the graph and the landmarks of a route.
 ///
 /// # Errors
-/// Fails if an option of the run comes before the plan.
+/// Fails if an option of the run comes before these words, or if an option does not apply to a route.
 fn apart(arguments: Vec<OsString>, mut missing: usize) -> Result<(Vec<OsString>, Vec<OsString>), Failure> {
     let (mut own, mut options) = (Vec::new(), Vec::new());
     // The program's own name and that of the command.

@@ -5,8 +5,8 @@ use mdle_compiler::compile;
 use mdle_compiler::fsm::{Element, Machine};
 use mdle_files::Target;
 
-/// Returns the atoms and scopes that a text names: the atoms with this law, in any units; without such atoms,
-/// those with a law of this name; without these, the behaviors of this name.
+/// Returns the atoms and scopes that a text names: the atoms with this law, in any units. If there are none, returns
+/// the atoms whose law has this name; if there are none either, the behaviors of this name.
 ///
 /// # Errors
 /// Fails with a sentence and a help text if the plan has none of them.
@@ -28,12 +28,12 @@ pub(crate) fn elements_named(machine: &Machine, target: &Target, text: &str) -> 
     Err(unnamed(machine, text))
 }
 
-/// Returns the text of the law of an atom.
+/// Returns the text of the law of an atom; `None` for a scope.
 fn law_of(element: Element<'_>) -> Option<&str> {
     element.atom().map(|atom| atom.law().text.as_str())
 }
 
-/// Returns the sentence and the help text about a text that names no element.
+/// Returns the error sentence and the help text about a text that names no element.
 fn unnamed(machine: &Machine, text: &str) -> (String, String) {
     let once = |names: Vec<&'_ str>| {
         let mut known: Vec<String> = Vec::new();
@@ -53,7 +53,8 @@ fn unnamed(machine: &Machine, text: &str) -> (String, String) {
     (format!("the plan has no atom `{text}`{near}"), format!("the laws of its atoms are {}{scopes}", listed(&laws)))
 }
 
-/// Returns the text of a law as in a plan, whatever its units and spaces; `None` if it is not a law.
+/// Returns the text of a law in the form that a compiled plan has, for any units and spaces; `None` if the text is not
+/// a law.
 fn law(target: &Target, text: &str) -> Option<String> {
     let plan = format!("{{ Law (Atom (null) ({text})) }}");
     let mut sources = target.sources();

@@ -25,9 +25,10 @@ const DIFFERS: u8 = 1;
 /// A recorded run whose turns are repeated and examined.
 pub(crate) struct ExaminedRun {
     run: Box<dyn RecordedRun>,
-    /// `true` if inputs and the texts of transitions have to match the record, which does not contain the plan.
+    /// `true` if the record does not contain the plan, so that inputs and the texts of transitions have to match the
+    /// record.
     is_compared: bool,
-    /// Text of the safety rule that acts, and of its effect; empty if none acts.
+    /// Text about the safety rule that acts, and about its effect; empty if no rule acts.
     safety: String,
     /// The guards of the safety rules with their conditions.
     guards: Vec<Guard>,
@@ -60,7 +61,7 @@ pub(crate) struct ExaminedTurn {
     pub(crate) asked: Twist,
     /// Reason why the plan replaced another plan; empty for the first plan.
     pub(crate) reason: String,
-    /// Text of the safety rule that acts in the turn, and of its effect; empty if none acts.
+    /// Text about the safety rule that acts in the turn, and about its effect; empty if no rule acts.
     pub(crate) safety: String,
     /// Cause of the end of the record, if the record ends with this turn.
     pub(crate) end: Option<String>,
@@ -73,7 +74,7 @@ pub(crate) struct ExaminedTurn {
 pub(crate) enum Stop {
     /// The record cannot be read.
     Unread(ReadError),
-    /// A plan that took over cannot be compiled.
+    /// A plan that replaced another plan during the run cannot be compiled.
     Failed(Failure),
     /// The turn of this number does not match the record: the difference in words.
     Differs(u64, String),
@@ -136,14 +137,14 @@ impl ExaminedRun {
         }
     }
 
-    /// Returns the safety rule that caused a plan to take over in a turn with these messages; empty if none
+    /// Returns the text about the safety rule that replaced the plan in a turn with these messages; empty if no rule
     /// did.
     fn diversion(&self, messages: &[Message]) -> String {
         let taken = event(messages, "plan").and_then(|text| text.split_once(": ").map(|(_, why)| why.to_owned()));
         taken.map_or_else(String::new, |why| self.with_condition(why))
     }
 
-    /// Returns the plan of this number, if it has been active.
+    /// Returns plan `number`, or `None` if it has not been active.
     pub(crate) fn plan_of(&self, number: u64) -> Option<&Rc<ExaminedPlan>> {
         self.plans.get(&number)
     }
@@ -175,7 +176,7 @@ impl ExaminedRun {
     }
 }
 
-/// Returns the text of the last event of this kind among the messages of a turn.
+/// Returns the text of the last event of this kind among the messages of a turn; `None` if there is none.
 fn event(messages: &[Message], kind: &str) -> Option<String> {
     let events = messages.iter().rev().filter(|message| message.kind == MessageKind::Event);
     let mut events = events.filter_map(|message| serde_json::from_str::<serde_json::Value>(&message.json).ok());
@@ -203,7 +204,7 @@ fn other_text(plan: &dyn Texts, turn: &ReplayedTurn) -> Option<String> {
 }
 
 impl Stop {
-    /// Returns the reason as a sentence; empty for a failure, which has its own message.
+    /// Returns the reason as a sentence.
     pub(crate) fn sentence(&self) -> String {
         match self {
             Self::Unread(error) => error.to_string(),
@@ -212,8 +213,8 @@ impl Stop {
         }
     }
 
-    /// Prints why the turns of the record of this name cannot be repeated, with the plan in the file `plan` or
-    /// the plan in the record.
+    /// Prints the reason why the turns of the record `name` cannot be repeated; returns the exit status. `plan` is the
+    /// file of the plan, or `None` for the plan in the record.
     ///
     /// # Errors
     /// Fails if the record cannot be read, or if one of its plans cannot be compiled.

@@ -115,7 +115,7 @@ pub(crate) fn unprinted(error: &io::Error) -> Failure {
     Failure::Usage(format!("standard output cannot be written: {error}"))
 }
 
-/// Returns the failure for a file that exists.
+/// Returns the failure for a file that exists already.
 pub(crate) fn exists(path: &Path) -> Failure {
     Failure::Usage(format!("{} exists already\nhelp: remove it, or name another file", path.display()))
 }

@@ -68,7 +68,8 @@ pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
     main_as(add, None)
 }
 
-/// Runs the command line of this process, as [`main_with`] does, with links by a router, which `open_router` opens.
+/// Runs the command line of this process, as [`main_with`] does. Links between robots may use a router; `open_router`
+/// opens such a link.
 #[must_use]
 pub fn main_with_router(add: impl FnOnce(&mut Library<Sensed>), open_router: OpenRouter) -> ExitCode {
     main_as(add, Some(open_router))

@@ -17,10 +17,10 @@ use crate::link_text::LinkText;
 
 /// Maximum size of the file, in bytes.
 const LARGEST: u64 = 1_000_000;
-/// Permissions of a file that users other than its owner have.
+/// Permission bits of a file for users other than its owner.
 const OTHERS: u32 = 0o077;
 
-/// Sentence about a router in a program without links by routers.
+/// Error message about a link file that names a router, in a program that cannot open links by routers.
 const NO_ROUTERS: &str = "this `mdle` has no links by a router\nhelp: the one that `cargo build --release` makes in the folder \
                           `runtime/fleet` of a checkout has them";
 
@@ -60,7 +60,8 @@ pub(crate) struct LinkFile {
 }
 
 impl LinkFile {
-    /// Reads the file, which may name a router if a function opens links by one, and prints warnings about its keys.
+    /// Reads a link file, and prints warnings about its keys. The file may name a router only if `open_router` is
+    /// given.
     ///
     /// # Errors
     /// Fails if the file cannot be read, or is no link file.
@@ -96,10 +97,10 @@ impl LinkFile {
         &self.path
     }
 
-    /// Returns the name of the plan that this robot runs of the plan of a group.
+    /// Returns the name of this robot's part of a group's plan.
     ///
     /// # Errors
-    /// The robot is not in the group.
+    /// Fails if the robot is not in the group.
     pub(crate) fn part(&self, group: &Group) -> Result<String, Failure> {
         let own = &self.link().name;
         group.plan_of(own).ok_or_else(|| {
@@ -112,10 +113,10 @@ impl LinkFile {
         })
     }
 
-    /// Checks that the link knows the robots that a plan names.
+    /// Checks that the link contains the robots that a plan names.
     ///
     /// # Errors
-    /// Fails if the link does not know a robot.
+    /// Fails if the link does not contain one of them.
     pub(crate) fn check(&self, robots: &[&str]) -> Result<(), Failure> {
         let names: Vec<&str> = self.link().peers.iter().map(String::as_str).collect();
         let Some(unknown) = robots.iter().find(|robot| !names.contains(*robot)) else { return Ok(()) };
@@ -132,7 +133,7 @@ impl LinkFile {
         self.link().peers.clone()
     }
 
-    /// Returns `true` if the robot takes plans of another robot.
+    /// Returns `true` if the robot accepts plans of another robot.
     pub(crate) fn takes_plans(&self) -> bool {
         !self.link().plans.is_empty()
     }
@@ -156,7 +157,7 @@ impl LinkFile {
     }
 }
 
-/// Returns the refusal of a plan that names robots without a link.
+/// Returns the failure for a plan that names another robot, in a run without a link.
 pub(crate) fn missing(robot: &str) -> Failure {
     Failure::Usage(format!(
         "the plan names the robot `{robot}`, and there is no link to it\nhelp: `--link FILE.toml` names the robots and their \

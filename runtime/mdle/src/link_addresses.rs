@@ -1,26 +1,26 @@
-//! Addresses in a link file: those of the robots, or that of a router (docs/src/many_robots.md).
+//! Addresses in a link file: the addresses of the robots, or the address of a router (docs/src/many_robots.md).
 
 use std::net::SocketAddr;
 
-/// Sentence about a file without an address.
+/// Error message about a link file without an address.
 const NO_ADDRESS: &str = "the address at which the robot listens is missing: write `listen = \"192.168.1.7:7400\"`, or \
                           `router = \"tcp/192.168.1.5:7447\"` for a link by a router";
 
 /// Addresses in a link file.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Addresses {
-    /// The robot's own address, and those of its peers in their order.
+    /// The robot's own address, and the addresses of its peers in the order of the peers.
     Tcp { listen: SocketAddr, addresses: Vec<SocketAddr> },
     /// The router's address.
     Router(SocketAddr),
 }
 
 impl Addresses {
-    /// Reads the address at which the robot listens, or that of a router; `robots` has the name and the address of each
-    /// other robot.
+    /// Reads the address at which the robot listens, or the address of a router; `robots` are the names and the
+    /// addresses of the other robots.
     ///
     /// # Errors
-    /// Fails with a sentence if an address is missing, is none, or is one too many.
+    /// Fails with a sentence if an address is missing, invalid or superfluous.
     pub(crate) fn read(
         listen: Option<&str>,
         router: Option<&str>,
@@ -47,7 +47,7 @@ impl Addresses {
     }
 }
 
-/// Reads a literal address. A host name is refused, as its lookup may take long.
+/// Reads a literal address. Refuses host names, because their lookup may take long.
 fn address(text: &str) -> Result<SocketAddr, String> {
     text.parse().map_err(|_| format!("`{text}` is no address: write numbers and a port, as in `192.168.1.7:7400`"))
 }

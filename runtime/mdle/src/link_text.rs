@@ -10,7 +10,7 @@ use serde::Deserialize;
 use crate::link_addresses::Addresses;
 use crate::robot_name::{FORM, is_robot_name};
 
-/// Minimum length of a key, in bytes, that nobody finds by trying.
+/// Minimum length, in bytes, of a key that is hard to guess.
 const SHORTEST: usize = 16;
 
 /// A link file, as written.
@@ -33,7 +33,7 @@ struct WrittenLink {
 struct WrittenPeer {
     name: String,
     address: Option<String>,
-    /// Key that only the two robots have, with which they send each other plans.
+    /// Key that only the two robots have, for sending each other plans; `None` if they send none.
     plans: Option<String>,
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct LinkText {
     pub(crate) start: Pose,
     /// Names of the modules whose attributes the robot shares.
     pub(crate) shares: Vec<String>,
-    /// Sentences about keys that are easy to find.
+    /// Warnings about keys that are easy to guess.
     pub(crate) warnings: Vec<String>,
 }
 
@@ -78,13 +78,13 @@ impl LinkText {
     }
 }
 
-/// Sentence about a key that nobody finds.
+/// Help text about a command that makes a key that is hard to guess.
 const GOOD_KEY: &str = "`openssl rand -hex 16` writes a good one";
 
 /// Checks the names of a robot and of the other robots.
 ///
 /// # Errors
-/// A name is none, or two robots have it: a sentence.
+/// Fails with a sentence if a name is invalid, or if two robots have the same name.
 fn check_names(own: &str, robots: &[WrittenPeer]) -> Result<(), String> {
     let mut names = BTreeSet::new();
     for name in robots.iter().map(|robot| robot.name.as_str()).chain([own]) {
@@ -98,10 +98,10 @@ fn check_names(own: &str, robots: &[WrittenPeer]) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the name of each robot with which plans are exchanged, and the key of the two.
+/// Returns the name of each robot with which plans are exchanged, and the key that it shares with this robot.
 ///
 /// # Errors
-/// A key is known to a third robot: a sentence.
+/// Fails with a sentence if a key is empty, or is known to a third robot.
 fn plans(robots: &[WrittenPeer], key: &str) -> Result<Vec<(String, String)>, String> {
     let mut plans: Vec<(String, String)> = Vec::new();
     for WrittenPeer { name, plans: own, .. } in robots {
@@ -119,7 +119,8 @@ fn plans(robots: &[WrittenPeer], key: &str) -> Result<Vec<(String, String)>, Str
     Ok(plans)
 }
 
-/// Returns a sentence about a text that is no link file, without any text of the file, as that may be a key.
+/// Returns the error message about a text that is no link file. The message quotes nothing from the file, because that
+/// may be a key.
 fn refused(text: &str, error: &toml::de::Error) -> String {
     let before = text.get(..error.span().map_or(0, |span| span.start)).unwrap_or_default();
     let line = before.matches('\n').count() + 1;

@@ -17,7 +17,7 @@ pub(crate) fn completions(shell: Shell) -> Result<ExitCode, Failure> {
     print(&script)
 }
 
-/// Prints the manual page of mdle, or of the command of these words.
+/// Prints the manual page of `mdle`, or of the command that these words name.
 pub(crate) fn man(words: &[String]) -> Result<ExitCode, Failure> {
     let mut mdle = command();
     mdle.build();

@@ -38,7 +38,7 @@ const FILES: [(&str, &str); 5] = [
 pub(crate) struct NewModule {
     /// Name of the module and of its folder.
     pub(crate) name: String,
-    /// Checkout of mdle.
+    /// Folder of a checkout of mdle; `None` for `../mdle` of the new folder.
     pub(crate) checkout: Option<PathBuf>,
 }
 
@@ -69,7 +69,7 @@ pub(crate) fn new_module(arguments: &NewModule) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns the failure of a name that a file or a folder has.
+/// Returns the failure for a name that a file or a folder already has.
 fn exists(name: &str) -> Failure {
     Failure::Usage(format!("`{name}` exists already\nhelp: take another name, or go to another folder"))
 }
@@ -116,7 +116,7 @@ fn sources(checkout: Option<&Path>) -> Result<PathBuf, Failure> {
     })
 }
 
-/// Fails if the name conflicts with a package, another module or a word of Rust.
+/// Fails if the name conflicts with a package, another module or a keyword of Rust.
 fn must_be_free(name: &str) -> Result<(), Failure> {
     let refused = |sentence: &str, near: String| {
         Err(Failure::Usage(format!("`{name}` {sentence}\nhelp: `mdle new-module {near}`")))

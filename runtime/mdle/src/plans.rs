@@ -18,14 +18,16 @@ use mdle_host::Refusal;
 
 /// Name of a text that was typed, in diagnostics.
 const TYPED: &str = "main";
-/// Bounds on a plan that another robot sends. Plans that use plans multiply: a short text may need much memory.
+/// Bounds on a plan that another robot sends. They are needed because a short text whose plans use other plans may
+/// require much memory.
 const SENT: Bounds = Bounds { brackets: 10_000, operands: 10_000, text: 1_000_000, is_written_free: false };
 
-/// Number of bytes of names of modules that the plans of another robot may bring into the process, which keeps them.
+/// Maximum total length, in bytes, of the new names of modules in the plans of one robot. The process keeps these names
+/// until it ends.
 const NEW_NAMES: usize = 10_000;
 
-/// Stores the first plan of a run, and enables further plans of this target to be loaded, and plans that name these
-/// robots to be sent.
+/// Stores the first plan of a run, and permits further plans for this target to be loaded. Other robots may send plans
+/// that name only these robots.
 ///
 /// # Errors
 /// Fails if the system cannot create the compiler's thread.
@@ -41,14 +43,15 @@ pub(crate) fn begin<A: EngineAlphabet>(
     plans.store(first).map_err(Refusal::Fault)
 }
 
-/// Enables other robots to send plans for this target that name these robots. In simulated time, turns wait for them.
+/// Permits other robots to send plans for this target that name only these robots, in simulated time, in which turns
+/// wait until such a plan is compiled.
 pub(crate) fn begin_at_once<A: EngineAlphabet>(plans: &mut Plans<A>, target: &Arc<Target>, robots: Vec<String>) {
     let (target, known) = (Arc::clone(target), Known::of(plans, robots));
     plans.compile_at_once_with(Box::new(move |source| compiled(source, &target, &known)));
 }
 
-/// Compiles and loads the plans of a text that no other plan of the text uses. A plan of another robot names only what
-/// is `known`.
+/// Compiles and loads the plans of a text that no other plan of the text uses. A plan of another robot may use only the
+/// names in `known`.
 ///
 /// # Errors
 /// Fails with a sentence and the diagnostics, as `mdlec check` prints them.
@@ -98,25 +101,25 @@ fn compiled<A: EngineAlphabet>(
     Ok(CompiledPlans { plans: plans.collect::<Result<_, String>>()?, warnings })
 }
 
-/// The names that plans of other robots may have.
+/// The names that plans of other robots may use.
 struct Known {
     robots: Vec<String>,
     /// Names of the paths of the run's first plan.
     paths: Vec<&'static str>,
-    /// For each sender, what is left for new names, which the process keeps.
+    /// For each sender, the remaining budget for new names, which the process keeps.
     budgets: RefCell<BTreeMap<String, NameBudget>>,
 }
 
 impl Known {
-    /// Returns the names of these robots, and of the paths of these plans.
+    /// Returns these names of robots, and the names of the paths that these plans may replay.
     fn of<A: EngineAlphabet>(plans: &Plans<A>, robots: Vec<String>) -> Self {
         Self { robots, paths: plans.paths().to_vec(), budgets: RefCell::default() }
     }
 
-    /// Loads the plan that another robot has sent, after a check of the names that would be kept.
+    /// Loads the plan that another robot has sent, after checking the names that the process would keep.
     ///
     /// # Errors
-    /// The plan has unknown names, too many new ones, or cannot be loaded: a sentence.
+    /// Fails with a sentence if the plan has unknown names, too many new ones, or cannot be loaded.
     fn load<A: EngineAlphabet>(
         &self,
         sender: &str,
@@ -154,10 +157,10 @@ impl Known {
     }
 }
 
-/// Refuses several plans of another robot before they are compiled.
+/// Checks, before they are compiled, that another robot has not sent several plans.
 ///
 /// # Errors
-/// The names are those of several plans: a sentence.
+/// Fails with a sentence if these are the names of several plans.
 fn one_of(names: &[String]) -> Result<(), String> {
     match names {
         [] | [_] => Ok(()),

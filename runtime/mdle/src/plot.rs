@@ -63,9 +63,9 @@ impl Picture {
 /// State of the run up to a turn.
 #[derive(Default)]
 struct Pictured {
-    /// Number of the current atom among the atoms of all plans, and the time at which it began.
+    /// Number of the current atom among the atoms of all plans, and the time at which it began; `None` if no atom runs.
     atom: Option<(usize, Nanos)>,
-    /// Number of the current atom in its plan.
+    /// Number of the current atom in its plan; `None` if no atom runs.
     entered: Option<u32>,
     /// For each plan that has been active, by its number, the number of its first atom among the atoms of all
     /// plans.
@@ -213,7 +213,7 @@ impl Signal {
         }
     }
 
-    /// Returns the value of the signal in its unit; infinite where a sonar had no echo.
+    /// Returns the value of the signal in its unit; infinite for a sonar without an echo or without a ping.
     fn value(self, y: &Sensed) -> f64 {
         match self {
             Self::Speed => y.velocity.v.0 * 100.0,

@@ -2,11 +2,11 @@
 
 use mdle_runtime::{PathStore, Sensed, Setpoint, StoredPath};
 
-/// The paths that were recorded so far. They stay until the program ends, as those of a run do.
+/// The paths that were recorded so far. They stay in memory until the program ends, as the paths of a run do.
 #[derive(Debug, Default)]
 pub(crate) struct RecordedPaths {
     recorded: Vec<StoredPath>,
-    /// All paths of the robot; `None` if they have changed since.
+    /// All paths of the robot, including the recorded ones; `None` after a recording, until they are needed.
     store: Option<PathStore>,
 }
 
@@ -21,7 +21,7 @@ impl RecordedPaths {
         }
     }
 
-    /// Gives an output the paths that were recorded.
+    /// Replaces paths of an output by the paths that were recorded.
     pub(crate) fn complete(&mut self, y: &mut Sensed) {
         if self.recorded.is_empty() {
             return;

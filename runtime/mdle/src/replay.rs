@@ -154,8 +154,8 @@ pub(crate) fn plan(wanted: &WantedPlan<'_>, target: &Target) -> Result<(Machine,
     Ok((machine, input.sources))
 }
 
-/// Returns the first place at which the texts of a plan differ from the texts in the record; `None` if there is
-/// none.
+/// Returns a description of the first difference between the texts of a plan and the texts in the record; `None` if
+/// there is none.
 fn difference(input: &Input, begin: &Begin) -> Option<String> {
     if begin.files.is_empty() {
         return None;
@@ -193,7 +193,7 @@ fn tell(outcome: &Outcome, plan: &str) -> io::Result<()> {
     }
 }
 
-/// Returns the transitions from the first different turn on, with those of the record beside those of the other
+/// Returns a table of the transitions from the first different turn on: those of the record beside those of the other
 /// plan; empty if there are none.
 fn side_by_side(after: &[Parting], plan: &str) -> String {
     if after.is_empty() {

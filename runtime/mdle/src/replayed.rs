@@ -59,7 +59,7 @@ pub(crate) struct ReplayTerms {
 /// Repeats the turns of a record, and compares them with the record.
 ///
 /// # Errors
-/// Fails if a plan that took over in the record cannot be compiled.
+/// Fails if a plan that replaced another plan during the run cannot be compiled.
 pub(crate) fn replayed(replay: &mut dyn RecordedRun, terms: ReplayTerms) -> Result<Outcome, Failure> {
     let (mut turns, mut difference) = (0, None::<Difference>);
     while let Some(turn) = replay.turn() {
@@ -94,7 +94,8 @@ pub(crate) fn replayed(replay: &mut dyn RecordedRun, terms: ReplayTerms) -> Resu
     Ok(difference.map_or(Outcome::Same { turns, is_whole: replay.is_whole() }, Outcome::Differs))
 }
 
-/// Returns the law that began with a transition of the record.
+/// Returns the law that began with a transition of the record, or [`OVER`] for the end of the plan; `None` for any
+/// other message.
 fn law_of(message: &Message) -> Option<String> {
     let transition: serde_json::Value = serde_json::from_str(&message.json).ok()?;
     (message.kind == MessageKind::Transition)

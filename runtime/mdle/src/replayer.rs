@@ -68,11 +68,11 @@ pub(crate) struct ReplayedTurn {
 pub(crate) enum Stop {
     /// The record cannot be read.
     Unread(ReadError),
-    /// A plan that took over cannot be compiled.
+    /// A plan that replaced another plan during the run cannot be compiled.
     Failed(Failure),
 }
 
-/// Returns the run of a record whose first plan is that of `machine`; plans are observed if `looks` is `true`.
+/// Returns the run of a record whose first plan has the machine `machine`; plans are observed if `looks` is `true`.
 ///
 /// # Errors
 /// Fails if the plan or a safety rule cannot be loaded.
@@ -132,11 +132,11 @@ struct ReplayOf<A: EngineAlphabet<Output = Sensed, Input = Twist>> {
     helm: Helm<'static, Engine<A>>,
     record: TurnsWithMessages<RecordSource>,
     target: Arc<Target>,
-    /// The files of plans that took over, by their numbers in the record.
+    /// The files of the plans that replaced other plans, by their numbers in the record.
     files: Vec<Vec<(String, String)>>,
     /// The paths that were recorded.
     paths: RecordedPaths,
-    /// `true` if plans are looked at.
+    /// `true` if plans are observed.
     looks: bool,
 }
 
@@ -201,7 +201,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
         Ok(())
     }
 
-    /// Compiles a plan that took over.
+    /// Compiles a plan that replaced another plan.
     fn plan(&self, files: u32, name: &str) -> Result<LoadedPlan<A>, Failure> {
         let files = self.files.get(files as usize).map_or(&[][..], Vec::as_slice);
         let (machine, sources) = recorded_files::compiled(files, Some(name), &self.target)?;

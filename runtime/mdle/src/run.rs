@@ -120,12 +120,12 @@ fn no_call() -> Call {
 }
 
 impl Run {
-    /// Returns `true` if no module `heading` is loaded before a run without a session, which may load one.
+    /// Returns `true` if the run has no module `heading`; `false` in a session, which may load one later.
     fn lacks_heading(&self, library: &Library<Sensed>) -> bool {
         self.ears.is_none() && self.session.is_none() && library.admits(HEADING).is_ok()
     }
 
-    /// Opens the sound of `--ears`.
+    /// Opens the sound of `--ears`; returns `None` without this option.
     fn hearing(&self) -> Result<Option<SoundInput>, Failure> {
         let Some(ears) = &self.ears else { return Ok(None) };
         let source = AudioSource::open(ears).map_err(Failure::Usage)?;
@@ -133,7 +133,8 @@ impl Run {
     }
 }
 
-/// Returns the safety file that the settings name, unless the arguments name one.
+/// Returns the entry of the settings for a safety file; `None` if there is none, or if the arguments name a safety
+/// file.
 fn safety_entry(arguments: &Run, settings: &Settings) -> Option<SafetyEntry> {
     settings.safety().filter(|_| arguments.safety.is_none())
 }
@@ -146,7 +147,8 @@ fn safety_file(arguments: &Run, settings: &Settings) -> Result<Option<SafetyFile
     arguments.safety.as_deref().map(|file| SafetyFile::read(file, "")).transpose()
 }
 
-/// Returns the words that settings give a run with these arguments on the target of this name, besides its options.
+/// Returns the arguments that the settings add to a run with these arguments on the target of this name, besides the
+/// options of the run.
 fn determining(arguments: &Run, settings: &Settings, target: &str) -> Vec<String> {
     let target = arguments.target.is_none().then(|| ["--target".to_owned(), target.to_owned()]);
     let modules = modules::only_of_settings(settings, arguments);
@@ -156,7 +158,7 @@ fn determining(arguments: &Run, settings: &Settings, target: &str) -> Vec<String
     target.into_iter().flatten().chain(modules).chain(safety.into_iter().flatten()).collect()
 }
 
-/// Names the causes of inputs besides the plan and the robot's outputs; empty if there are none.
+/// Lists the inputs of a run besides the plan and the robot's outputs; empty if there are none.
 fn beside(arguments: &Run, ready: &dyn Ready) -> String {
     let parts: [(bool, &str); 5] = [
         (ready.safety().is_some(), "safety rules"),
@@ -168,7 +170,8 @@ fn beside(arguments: &Run, ready: &dyn Ready) -> String {
     parts.into_iter().filter_map(|(is_there, words)| is_there.then_some(words)).collect::<Vec<_>>().join(" and ")
 }
 
-/// Compiles and loads the only plan to run; returns it with its name. Messages go to standard error.
+/// Compiles and loads the plan `wanted`, or the only plan; returns its name and the plan. Messages go to standard
+/// error.
 fn compiled(
     arguments: &Run,
     wanted: Option<&str>,

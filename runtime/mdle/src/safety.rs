@@ -36,8 +36,8 @@ pub(crate) struct Guarded<A: Alphabet> {
 }
 
 impl SafetyFile {
-    /// Reads the file. `named` is the beginning of the message that there is no such file: empty, or the place of its
-    /// name.
+    /// Reads the file. `named` is the beginning of the error message if the file cannot be read: the place where a file
+    /// names it, or empty.
     ///
     /// # Errors
     /// Fails if the file cannot be read, or is no safety file.
@@ -117,14 +117,14 @@ type Diversion<A> = (Arc<Loaded<A>>, Vec<(String, String)>);
 
 /// A plan to which a rule diverts.
 struct NamedPlan {
-    /// Place of its name in the safety file, as in `rules.toml:3`.
+    /// Place where the safety file names the plan, as in `rules.toml:3`.
     place: String,
     /// The plan's file.
     file: PathBuf,
 }
 
 impl NamedPlan {
-    /// Returns an error of the plan's file with the place of its name.
+    /// Returns an error about the plan's file with the place where the safety file names the plan.
     fn refused(&self, error: InputError) -> InputError {
         InputError::NamedAt { place: self.place.clone(), error: Box::new(error) }
     }
@@ -184,7 +184,7 @@ impl<A: Alphabet> Guarded<A> {
         self.conditions.reads()
     }
 
-    /// Returns the plan of this number to which a rule diverts.
+    /// Returns the plan of this number to which a rule diverts; `None` if there is no such plan.
     pub(crate) fn diversion(&self, number: usize) -> Option<load::LoadedPlan<A>> {
         self.diversions.get(number).map(Loaded::plan)
     }

@@ -63,8 +63,8 @@ pub(crate) fn held(
     Ok(if !is_well && status == ExitCode::SUCCESS { ExitCode::from(REFUSED) } else { status })
 }
 
-/// Starts the front end on a thread of its own, at a terminal if it has one for `printing`; it sends `true` when every
-/// command was carried out.
+/// Starts the front end on a separate thread: at the terminal if `printing` is given, otherwise for the commands of a
+/// file or of standard input. The returned channel gets `true` at the end if every command was carried out.
 fn front_end(
     options: &SessionOptions,
     plan: &Path,

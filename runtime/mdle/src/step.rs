@@ -54,10 +54,12 @@ struct Turns<'r> {
     plan: Option<u64>,
 }
 
-/// Steps through a record by these commands, which a person types if `is_typed`; prints the turns on standard output.
+/// Steps through a record by these commands, and prints the turns on standard output. `is_typed` is `true` if a person
+/// types the commands.
 ///
 /// # Errors
-/// Fails if a plan that took over cannot be compiled, or if standard output cannot be written.
+/// Fails if a plan that replaced another plan during the run cannot be compiled, or if standard output cannot be
+/// written.
 pub(crate) fn step(
     replay: &mut dyn RecordedRun,
     until: Option<Nanos>,
@@ -249,7 +251,7 @@ fn text(ReplayedTurn { recorded, messages, parts, laws, law, .. }: &ReplayedTurn
     text
 }
 
-/// Returns the words of a message of the record.
+/// Returns the text of a message of the record, in two parts; `None` if the message cannot be read.
 fn words(message: &Message) -> Option<(String, String)> {
     let json: serde_json::Value = serde_json::from_str(&message.json).ok()?;
     let field = |name: &str| json.get(name).and_then(serde_json::Value::as_str);

@@ -33,13 +33,13 @@ use crate::way_recorder::WayRecorder;
 pub(crate) struct LinkedTarget {
     /// Name of the target.
     pub(crate) name: &'static str,
-    /// Loads a plan.
+    /// Function that loads a plan.
     pub(crate) load: Load,
-    /// Runs a plan on the outputs of a record.
+    /// Function that runs a plan on the outputs of a record.
     pub(crate) replay: ReplayRecord,
-    /// Drives a route.
+    /// Function that drives a route.
     pub(crate) navigate: DriveRoute,
-    /// Returns the message if a run does not accept these options.
+    /// Function that checks the options of a run, and fails with a message if the run does not accept them.
     pub(crate) check: fn(Program<'_>, &Call) -> Result<(), String>,
 }
 
@@ -50,7 +50,7 @@ type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Bo
 /// is `true`.
 type ReplayRecord = fn(Machine, &Sources, &Arc<Target>, &Begin, Record, bool) -> Result<Box<dyn RecordedRun>, Failure>;
 
-/// Drives a route, with these modules.
+/// Function that drives a route with these modules.
 type DriveRoute = fn(&Route, &Arc<Target>, Call, &Library<Sensed>) -> Result<ExitCode, Failure>;
 
 /// A plan that is ready to run.
@@ -61,16 +61,16 @@ pub(crate) trait Ready {
     /// Returns `true` if the plan reads an attribute of the module of this name.
     fn reads(&self, module: &str) -> bool;
 
-    /// Returns the texts of the safety rules.
+    /// Returns the texts of the safety rules; `None` if there are no rules.
     fn safety(&self) -> Option<&SafetyTexts>;
 
     /// Links runs of the plan with other robots.
     ///
     /// # Errors
-    /// Fails if the plan names a robot that the link does not know.
+    /// Fails if the plan names a robot that the link does not contain.
     fn link(&mut self, link: Option<LinkFile>) -> Result<(), Failure>;
 
-    /// Makes runs of the plan replace the path of this name by the way back from each `path` and `Follow`.
+    /// Lets the way back from each `path` and `Follow` replace the path of this name in runs of the plan.
     ///
     /// # Errors
     /// Fails if the plan replays no such path.
@@ -149,17 +149,17 @@ struct PlanFor<T, A: Alphabet> {
     known: Arc<Target>,
     safety: Option<Guarded<A>>,
     link: Option<LinkFile>,
-    /// Sound for the module `heading`.
+    /// Sound for the module `heading`; `None` without `--ears`.
     hearing: Option<SoundInput>,
-    /// Name of the path that is replaced by the way back from `path` and `Follow`, with the maximum speeds of a
-    /// path.
+    /// Name of the path that the way back from each `path` and `Follow` replaces, with the maximum speeds of a path;
+    /// `None` if no path is recorded.
     records: Option<(&'static str, Twist)>,
     target: std::marker::PhantomData<fn() -> T>,
 }
 
 impl<T, A: EngineAlphabet<Output = Sensed>> PlanFor<T, A> {
-    /// Creates the engine of a run of the plan of this name, which takes plans of other robots if its link does, and of
-    /// a session if it `is_session`.
+    /// Creates the engine for a run of the plan `name`. Further plans are accepted if `is_session` is `true`, or if the
+    /// link accepts plans of other robots.
     fn loading(
         &self,
         name: &str,

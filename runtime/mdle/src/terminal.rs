@@ -12,24 +12,24 @@ use rustix::termios::{OptionalActions, Termios, tcgetattr, tcsetattr};
 
 /// Line that marks the end of a run's reports.
 const END: &[u8] = b"\0\n";
-/// Line that changes nothing on the screen; once it has been taken, all lines before it have been printed.
+/// Line that changes nothing on the screen. Once it has been accepted, all lines before it have been printed.
 const NOTHING: &str = "\x1b[A\n";
 /// Maximum wait for the last report to be printed.
 const LAST: Duration = Duration::from_millis(500);
-/// Maximum wait for a report of a watched attribute, between two checks for the end of the run.
+/// Interval between two checks whether the run has ended, while waiting for a report of a watched attribute.
 const LOOK: Duration = Duration::from_millis(200);
 
 /// A terminal that a session uses.
 #[derive(Debug)]
 pub(crate) struct HeldTerminal {
-    /// Settings of the terminal before the session.
+    /// Settings of the terminal before the session; `None` if they could not be read.
     before: Option<Termios>,
     /// Stream to which the run reports.
     reports: PipeWriter,
     printed: std::sync::mpsc::Receiver<()>,
 }
 
-/// The side of the terminal that prints.
+/// The part of a session's terminal that prints reports.
 #[derive(Debug)]
 pub(crate) struct Printing {
     reports: PipeReader,

@@ -4,18 +4,19 @@ use std::fmt::Write as _;
 
 use mdle_runtime::{Pose, Radians};
 
-/// Minimum distance between two recorded places, in metres; closer places mean that the robot stands still.
+/// Minimum distance between two recorded places, in metres. While the robot is closer to the last place, it counts as
+/// standing still.
 const APART: f64 = 0.01;
-/// Number of places on either side of a place over which the place is averaged.
+/// Maximum number of places on either side of a place that are averaged with it.
 const SMOOTHED: usize = 2;
 /// Speed of the way back, in m/s.
 const SPEED: f64 = 0.5;
-/// Acceleration at the start of the way back, in m/s²: a path that began at full speed would lead beyond its
-/// end.
+/// Acceleration at the start of the way back, in m/s². If the path began at full speed, the robot would drive beyond
+/// its end.
 const RAMP: f64 = 1.0;
 /// Time between two rows, in seconds.
 const ROW: f64 = 0.1;
-/// Distance on either side of a place, in metres, of the two places that determine the heading.
+/// Distance along the line, in metres, from a place to each of the two places that determine its heading.
 const AHEAD: f64 = 0.05;
 /// Length, in metres, below which a path is too short to be recorded.
 const SHORTEST: f64 = 0.2;
@@ -51,8 +52,8 @@ fn distance(one: &Place, other: &Place) -> f64 {
     libm::hypot(one[0] - other[0], one[1] - other[1])
 }
 
-/// Returns each place as the mean of the places around it, the same number on either side, so that the ends do
-/// not move.
+/// Returns each place as the mean of the places around it. The number of places on either side is the same, so that the
+/// ends do not move.
 fn smoothed(places: &[Place]) -> Vec<Place> {
     let mean = |number: usize| {
         let beside = SMOOTHED.min(number).min(places.len() - 1 - number);
@@ -85,7 +86,7 @@ impl Line {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
-    /// Returns the place after this length of the path; the nearer end of the path if the length is outside of it.
+    /// Returns the place at this length along the line; the nearer end of the line if the length is beyond it.
     fn at(&self, length: f64) -> Place {
         let next = self.lengths.partition_point(|other| *other <= length).clamp(1, self.places.len().max(2) - 1);
         let place = |number: usize| self.places.get(number).copied().unwrap_or_default();

@@ -18,11 +18,11 @@ pub(crate) struct WayRecorder {
     fastest: Twist,
     /// The path driven under the current law; `None` if this law is not recorded.
     way: Option<Way>,
-    /// Frame of the plan.
+    /// Frame of the plan; `None` before the first turn.
     frame: Option<Frame>,
     /// The robot's paths after the first recording; `None` before.
     store: Option<PathStore>,
-    /// The path that was replaced last, until it is taken.
+    /// The newly recorded path, until [`Recorder::take_replaced`] takes it.
     replaced: Option<StoredPath>,
     /// Number of setpoints that were recorded.
     recorded: usize,
@@ -34,7 +34,7 @@ pub(crate) struct RecordedTurn<'t> {
     pub(crate) here: &'t Pose,
     /// The robot's paths.
     pub(crate) paths: PathStore,
-    /// Text of the law that runs after the turn.
+    /// Text of the law that runs after the turn; `None` if no law does.
     pub(crate) law: Option<&'t str>,
     /// `true` if the plan made transitions.
     pub(crate) has_changed: bool,

@@ -15,8 +15,8 @@ pub(crate) enum Log {
     Export {
         /// The record.
         log: PathBuf,
-        /// `Some` to write a script instead of a table; it contains the file of the plan, unless the plan is in the
-        /// record.
+        /// `Some` to write a script instead of a table, with the file of the plan if the record does not contain the
+        /// plan.
         script: Option<Option<PathBuf>>,
         /// File to write; `None` for standard output.
         file: Option<PathBuf>,

@@ -45,7 +45,8 @@ pub(super) fn with_map(command: Command) -> Command {
     command.args([map, at])
 }
 
-/// Returns words without these options: a command that repeats a run saves no map again.
+/// Removes these options from the words of a command, because a command that repeats a run is not to save the map
+/// again.
 pub(super) fn without_map(words: Vec<OsString>) -> Vec<OsString> {
     let mut words = words.into_iter();
     let mut kept = Vec::new();

@@ -7,11 +7,11 @@ pub(super) const CELLS: usize = 150;
 pub(crate) const CELL: f64 = 0.0254;
 /// Distance from the middle of the grid to its edges, in metres.
 pub(crate) const HALF: f64 = CELL * CELLS as f64 / 2.0;
-/// Maximum log-odds to either side.
+/// Maximum absolute value of log-odds.
 const MOST: f64 = 5.0;
 /// Half the angle of a sonar's cone, in radians.
 const CONE: f64 = 12.5 * std::f64::consts::PI / 180.0;
-/// Tangent of half the angle of a cone that contains a sonar's with certainty, also in rounded numbers.
+/// Tangent of half the angle of a wider cone, which contains a sonar's cone in spite of rounding.
 const WIDER: f64 = 0.25;
 /// Half the depth of an echo's arc, in metres.
 const DEPTH: f64 = 0.05;
@@ -38,17 +38,17 @@ pub(crate) struct GridPing {
 /// A square grid around the origin of its axes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct EvidenceGrid {
-    /// Log-odds, by rows along the second axis.
+    /// Log-odds of the cells, row by row; the rows follow each other along the second axis.
     odds: Vec<f64>,
 }
 
 impl EvidenceGrid {
-    /// Returns a grid that knows nothing.
+    /// Returns a grid without evidence, in which all log-odds are 0.
     pub(crate) fn new() -> Self {
         Self { odds: vec![0.0; CELLS * CELLS] }
     }
 
-    /// Takes a ping.
+    /// Adds the evidence of a ping.
     pub(crate) fn take(&mut self, ping: &GridPing) {
         let reach = ping.range.map_or(SILENT, |range| range.min(FARTHEST) + DEPTH);
         let (columns, rows) = (near(ping.x, reach), near(ping.y, reach));
@@ -62,7 +62,7 @@ impl EvidenceGrid {
         }
     }
 
-    /// Returns a grid with these probabilities, by rows along the second axis.
+    /// Returns a grid with these probabilities, which are given row by row along the second axis.
     pub(super) fn of(probabilities: impl Iterator<Item = f64>) -> Self {
         let odds = |p: f64| libm::log(p / (1.0 - p)).clamp(-MOST, MOST);
         Self { odds: probabilities.map(odds).collect() }
@@ -73,7 +73,7 @@ impl EvidenceGrid {
         cell_at(x, y).and_then(|cell| self.odds.get(cell)).copied().unwrap_or_default()
     }
 
-    /// Returns the log-odds of all cells, by rows along the second axis.
+    /// Returns the log-odds of all cells, row by row along the second axis.
     pub(super) fn odds(&self) -> impl Iterator<Item = f64> {
         self.odds.iter().copied()
     }
@@ -86,27 +86,27 @@ impl EvidenceGrid {
     }
 }
 
-/// Returns the number of the cell at a position, by rows along the second axis; `None` outside the grid.
+/// Returns the index of the cell at a position, counted row by row along the second axis; `None` outside the grid.
 pub(super) fn cell_at(x: f64, y: f64) -> Option<usize> {
     let [column, row] = [x, y].map(|at| libm::floor((at + HALF) / CELL));
     let inside = 0.0..CELLS as f64;
     (inside.contains(&column) && inside.contains(&row)).then_some(row as usize * CELLS + column as usize)
 }
 
-/// Returns the position of the middle of a cell along an axis, in metres.
+/// Returns the position of the centre of a cell along an axis, in metres.
 pub(super) fn middle(cell: usize) -> f64 {
     (cell as f64 + 0.5) * CELL - HALF
 }
 
-/// Returns the cells along an axis whose middles may lie within `reach` of a position.
+/// Returns the indices, along an axis, of the cells whose centres may lie within `reach` of a position.
 fn near(position: f64, reach: f64) -> std::ops::Range<usize> {
     // A conversion takes what lies outside to the nearest number.
     let cell = |at: f64| (libm::floor((at + HALF) / CELL).max(0.0) as usize).min(CELLS);
     cell(position - reach)..cell(position + reach + CELL)
 }
 
-/// Returns the change of the log-odds of a cell at this distance from the transducer along both axes, with the sine and
-/// the cosine of the transducer's direction.
+/// Returns the change of the log-odds of a cell by a ping. `x` and `y` are the distances of the cell from the
+/// transducer along the axes, in metres; `sin` and `cos` are those of the transducer's direction.
 fn evidence(x: f64, y: f64, (sin, cos): (f64, f64), ping: &GridPing) -> f64 {
     let (ahead, aside) = (x * cos + y * sin, y * cos - x * sin);
     // Nine cells of ten need no angle: they are beside a wider cone, or behind.

@@ -19,11 +19,12 @@ pub(crate) struct MapFiles {
 }
 
 impl MapFiles {
-    /// Returns the YAML file at a path, with its image beside it, and the image as the PNG `picture`, if it is given.
+    /// Returns the files of a map: the YAML file `yaml`, its image beside it and, if it is given, the PNG `picture` of
+    /// the image.
     ///
     /// # Errors
-    /// Fails if the name of the file does not end in `.yaml` or `.yml`, if one of the files exists already, or if none
-    /// can be written there.
+    /// Fails if the name of the file does not end in `.yaml` or `.yml`, if one of the files exists already, or if one
+    /// cannot be written there.
     pub(crate) fn new(yaml: &Path, picture: Option<&Path>) -> Result<Self, Failure> {
         let files = Self { yaml: yaml.to_owned(), image: image(yaml)?, picture: picture.map(Path::to_owned) };
         // None is written if another is in the way.
@@ -42,7 +43,7 @@ impl MapFiles {
         [Some(&self.yaml), Some(&self.image), self.picture.as_ref()].into_iter().flatten().map(PathBuf::as_path)
     }
 
-    /// Saves a map, in place of one that was saved before. Each file is written completely or not at all.
+    /// Saves a map, and replaces one that was saved before. Each file is written completely or not at all.
     ///
     /// # Errors
     /// Fails with a sentence if a file cannot be written.

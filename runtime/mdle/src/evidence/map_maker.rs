@@ -1,4 +1,4 @@
-//! A map in the making: the evidence of all pings so far, and how well their echoes fit it.
+//! Makes a map from pings, and a score that tells how well their own echoes fit it.
 
 use super::grid::{CELLS, EvidenceGrid, GridPing, cell_at};
 use super::matching::{BEFORE_WEIGHT, Echo};
@@ -15,12 +15,12 @@ pub(crate) struct MapMaker {
 }
 
 impl MapMaker {
-    /// Returns a map that knows nothing.
+    /// Returns a map without any ping.
     pub(crate) fn new() -> Self {
         Self { grid: EvidenceGrid::new(), weights: vec![0.0; CELLS * CELLS], echoes: 0, pings: 0 }
     }
 
-    /// Takes a ping.
+    /// Adds a ping to the map.
     pub(crate) fn take(&mut self, ping: &GridPing) {
         self.pings = self.pings.saturating_add(1);
         self.grid.take(ping);

@@ -1,4 +1,4 @@
-//! Finds the pose of a robot in an evidence grid at which the echoes of one turn fit the grid best
+//! Finds the pose of a robot in an evidence grid at which the echoes from one turn on the spot fit the grid best
 //! (docs/src/navigation.md).
 
 use mdle_runtime::{Meters, Pose, Radians};
@@ -15,23 +15,25 @@ const COARSE: (f64, f64) = (0.10, 3.0 * DEGREE);
 const COARSE_ANGLES: i16 = 8;
 /// Steps of the searches around the best pose so far.
 const FINE: [(f64, f64); 3] = [(0.05, 1.5 * DEGREE), (0.025, 0.75 * DEGREE), (0.0125, 0.5 * DEGREE)];
-/// Distance from an edge of the search, in metres or radians, within which sums of steps are at the edge.
+/// Tolerance, in metres or radians, with which a pose counts as at the edge of the search, because steps are added with
+/// rounding errors.
 const ROUNDING: f64 = 1e-9;
 /// A degree, in radians.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// A pose in a grid, and the quality of the fit of echoes at it.
+/// A pose in a grid, and how well the echoes fit the grid at this pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fit {
     /// Pose at which the robot's odometry was zero, in the axes of the grid.
     pub(crate) origin: Pose,
     /// Mean evidence for each echo.
     pub(crate) score: f64,
-    /// `true` if no pose further inside the search is as good: the best pose may lie outside.
+    /// `true` if the pose is at the edge of the search, so that the best pose may lie outside.
     pub(crate) is_at_edge: bool,
 }
 
-/// An echo in the axes of odometry: its place, and a place that the sound has passed on the way there.
+/// An echo in the axes of its ping: its position, and a position between the transducer and the echo, which should be
+/// free.
 pub(super) struct Echo {
     pub(super) at: (f64, f64),
     pub(super) before: (f64, f64),
@@ -46,8 +48,9 @@ impl Echo {
     }
 }
 
-/// Returns the best pose near `near`: up to `ways` times 10 cm along each axis and 24° off it. The pings are in the
-/// axes of odometry, and a search turns them around the origin of these axes. `None` if no ping has an echo.
+/// Finds the pose at which the echoes of `pings` fit the grid best, up to `ways` times 10 cm from `near` along each
+/// axis and up to 24° from its heading. The pings are in the axes of odometry; the search rotates them about the origin
+/// of these axes. Returns `None` if no ping has an echo.
 pub(crate) fn fit(grid: &EvidenceGrid, pings: &[GridPing], near: Pose, ways: i16) -> Option<Fit> {
     let echoes: Vec<Echo> = pings.iter().filter_map(Echo::of).collect();
     if echoes.is_empty() {

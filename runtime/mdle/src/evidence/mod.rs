@@ -1,4 +1,5 @@
-//! Evidence grids of landmarks, and the pose of a robot in one by the pings of a turn (docs/src/navigation.md).
+//! Evidence grids of landmarks, and the search for the pose of a robot in a grid, given the pings from one turn on the
+//! spot (docs/src/navigation.md).
 
 mod grid;
 mod map_files;

@@ -4,22 +4,23 @@ use mdle_runtime::{Nanos, Pings, Pose, SONARS, Sensed, SonarId};
 
 use super::grid::GridPing;
 
-/// The pings of a run that were taken so far.
+/// State from which the pings of a run are taken in order, each once.
 #[derive(Debug)]
 pub(crate) struct PingOrder {
-    /// Pose of the robot in the axes of the grid where its odometry was zero.
+    /// Pose, in the axes of the grid, at which the robot's odometry was zero.
     origin: Pose,
     /// Time of the last ping taken from each sonar.
     last: [Option<Nanos>; SONARS],
 }
 
 impl PingOrder {
-    /// Returns the order of a run that began at this pose.
+    /// Returns the order of the pings of a run, before the first ping. `origin` is the pose in the grid at which the
+    /// robot's odometry is zero.
     pub(crate) fn new(origin: Pose) -> Self {
         Self { origin, last: [None; SONARS] }
     }
 
-    /// Returns the pings of an output that no output before it had.
+    /// Returns the pings of an output that no earlier output contained.
     pub(crate) fn take(&mut self, y: &Sensed) -> Vec<GridPing> {
         let radius = y.shape.ring_radius;
         let mut new = Vec::new();

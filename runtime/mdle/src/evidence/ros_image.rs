@@ -7,17 +7,17 @@ use png::{BitDepth, ColorType, Encoder, EncodingError};
 use super::grid::{CELLS, EvidenceGrid};
 use crate::failure::Failure;
 
-/// Grey of what is free.
+/// Grey value of a free cell.
 const WHITE: f64 = 255.0;
 
-/// Returns the image: its first row has the greatest second coordinate.
+/// Returns the image as the bytes of a PGM file. The first row of the image has the greatest second coordinate.
 pub(super) fn pixels(grid: &EvidenceGrid) -> Vec<u8> {
     let mut bytes = head().into_bytes();
     bytes.extend(greys(grid));
     bytes
 }
 
-/// Returns the same image as PNG.
+/// Returns the image as the bytes of a PNG file.
 ///
 /// # Errors
 /// Fails if the image cannot be encoded.
@@ -32,13 +32,13 @@ pub(super) fn png_pixels(grid: &EvidenceGrid) -> Result<Vec<u8>, EncodingError> 
     Ok(file)
 }
 
-/// Returns the grey of each cell, by rows, the row with the greatest second coordinate first.
+/// Returns the grey value of each cell, row by row, beginning with the row that has the greatest second coordinate.
 fn greys(grid: &EvidenceGrid) -> Vec<u8> {
     let cells = (0..CELLS).rev().flat_map(|row| (0..CELLS).map(move |column| (column, row)));
     cells.map(|(column, row)| libm::round(WHITE * (1.0 - grid.probability(column, row))) as u8).collect()
 }
 
-/// Returns the image of the map in a YAML file.
+/// Returns the path of the image that belongs to the YAML file of a map.
 ///
 /// # Errors
 /// Fails if the name does not end in `.yaml` or `.yml`.

@@ -12,13 +12,14 @@ use crate::failure::Failure;
 
 /// Maximum size of a file, in bytes.
 const LARGEST: u64 = 1_000_000;
-/// Pose in the axes of a map, in metres and degrees, from which a robot makes it and at which it is looked for.
+/// Default pose in the axes of a map, in metres and degrees: a robot begins at this pose to make the map, and is later
+/// searched near it.
 pub(crate) const USUAL_POSE: &str = "-0.75,0,0";
 /// Key of the least score in the YAML file.
 const KEY: &str = "least_score";
-/// Least score at a map whose file does not have the key.
+/// Least score of a map whose file does not have the key.
 const USUAL: f64 = 1.7;
-/// Fraction of the score of a map's own echoes that a robot at the landmark has at least.
+/// Least score of a map, as a fraction of the score of the echoes from which the map was made.
 const FRACTION: f64 = 0.7;
 
 /// Reads the pose that is the value of an option.
@@ -31,7 +32,7 @@ pub(crate) fn pose(option: &str, text: &str) -> Result<Pose, Failure> {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SavedMap {
     pub(crate) grid: EvidenceGrid,
-    /// Score that a robot at the landmark has at least.
+    /// Minimum score of a robot that is at the landmark.
     pub(crate) least: f64,
 }
 

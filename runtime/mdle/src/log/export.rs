@@ -115,7 +115,7 @@ fn line(turn: &RecordedTurn, messages: &[Message]) -> String {
     line
 }
 
-/// Returns the cause of a transition, with values and place.
+/// Returns the cause of a transition, with values and place; `None` for any other message.
 fn cause(message: &Message) -> Option<String> {
     let transition: serde_json::Value = serde_json::from_str(&message.json).ok()?;
     transition.get("cause")?.as_str().map(str::to_owned)

@@ -35,7 +35,7 @@ pub(crate) fn log(arguments: &Log) -> Result<ExitCode, Failure> {
 /// Creates a file that does not exist yet.
 ///
 /// # Errors
-/// Fails if the file exists, or with the system's error.
+/// Fails if the file exists, or if the system cannot create it.
 pub(crate) fn created(path: &Path) -> Result<File, Failure> {
     File::create_new(path).map_err(|error| {
         if error.kind() == io::ErrorKind::AlreadyExists {

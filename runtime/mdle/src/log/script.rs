@@ -50,7 +50,7 @@ pub(super) fn script(log: &Path, plan: Option<&Path>, file: Option<&Path>) -> Re
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns the line of a turn; fails with a text that is both true and false in the turn.
+/// Returns the line of a turn. Fails with the text of a condition that is both true and false in the turn.
 fn line(machine: &Machine, turn: &ExaminedTurn, way: Nanometers) -> Result<String, String> {
     let (mut fired, mut completed) = (BTreeMap::new(), BTreeMap::new());
     for moment in &turn.moments {
@@ -81,8 +81,8 @@ fn interrupts<'m>(machine: &'m Machine, moment: &Moment, fired: &mut BTreeMap<&'
     Ok(())
 }
 
-/// Records the values of the quarks of a condition, whose parts come in the order in which they were examined;
-/// `stuck` is one part.
+/// Records the values of the quarks of a condition. `examined` yields the parts of the condition in the order in which
+/// they were examined; `stuck` is one part.
 fn parts<'m>(
     machine: &'m Machine,
     condition: &'m Condition,
@@ -99,7 +99,8 @@ fn parts<'m>(
     condition.children().iter().try_for_each(|operand| parts(machine, operand, examined, fired))
 }
 
-/// Records that a text is true or false in the turn; fails if the opposite was recorded before.
+/// Records the value of the condition `text` in the turn. Returns the text as an error if the opposite value was
+/// recorded before.
 fn note<'m>(known: &mut BTreeMap<&'m str, bool>, text: &'m str, is_so: bool) -> Result<(), String> {
     match known.insert(text, is_so) {
         Some(before) if before != is_so => Err(text.to_owned()),

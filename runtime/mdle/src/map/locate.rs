@@ -9,13 +9,14 @@ use crate::arguments::Locate;
 use crate::evidence::{Fit, SavedMap, fit, pose};
 use crate::failure::{self, Failure};
 
-/// Steps of 10 cm to either side in which the pose is searched.
+/// Number of steps of 10 cm, to either side of the expected pose, in which the pose is searched.
 const WAYS: i16 = 4;
 
 /// Exit status if the robot is at none of the landmarks.
 const NOWHERE: u8 = 1;
 
-/// Prints how well a record fits each map: first those at whose landmarks the robot may be, the best first.
+/// Prints how well a record fits each map. The maps of landmarks at which the robot may be come first, the best fit
+/// first.
 ///
 /// # Errors
 /// Fails if the record or a map cannot be read, or if the record has no echo.

@@ -19,7 +19,7 @@ const TURNS: usize = 200;
 /// Time from the middle of a window to its end, in nanoseconds.
 const HALF_A_WINDOW: u64 = WINDOW as u64 * 500_000_000 / RATE as u64;
 
-/// Publishes the bearing of a sound.
+/// Module that publishes the bearing of a sound.
 pub(super) struct EarsModule {
     audio: Audio,
     localizer: Localizer,

@@ -3,7 +3,7 @@
 use mdle_engine::{Declare, Fault, In, Module, Out, Relevance, Turn};
 use mdle_runtime::{Meters, Radians, Sensed};
 
-/// Publishes the direction and the distance to a point.
+/// Module that publishes the direction and the distance to a point.
 pub(super) struct Heading {
     x: In<Meters>,
     y: In<Meters>,

@@ -1,9 +1,9 @@
-//! The modules `pings` and `map` of a run with `--map`: the evidence grid of the place in which the robot drives,
-//! while it drives (docs/src/navigation.md).
+//! The modules `pings` and `map` of a run with `--map`, which make an evidence grid while the robot drives
+//! (docs/src/navigation.md).
 //!
-//! `pings` makes its turn in every turn, and keeps the pings of the robot's output. `map` puts them into the grid in
-//! the background, as far as the last break: so what it publishes does not depend on the speed of its thread. What is
-//! left at the end of the run is taken by [`MapRun::save`].
+//! `pings` makes its turn in every turn, and keeps the pings of the robot's output. `map` adds these pings to the grid
+//! in the background, up to the last break, so that its published values do not depend on the speed of its thread. At
+//! the end of the run, [`MapRun::save`] adds the remaining pings.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -14,7 +14,7 @@ use mdle_runtime::{Nanos, Pose, Sensed};
 use crate::evidence::{GridPing, MapFiles, MapMaker, PingOrder};
 use crate::failure;
 
-/// Name of the module that publishes about the map.
+/// Name of the module that makes the map.
 const MAP: &str = "map";
 /// Name of the module that keeps the pings for the map.
 const PINGS: &str = "pings";
@@ -50,7 +50,7 @@ pub(crate) enum Saved {
     NoTurn,
 }
 
-/// A map in the making.
+/// The map that is being made.
 #[derive(Debug)]
 struct Making {
     maker: MapMaker,
@@ -77,7 +77,7 @@ impl MapRun {
         library.background(MAP, move |declare| MapModule::declare(declare, map.clone()));
     }
 
-    /// Takes the pings of the turns up to this time into the map.
+    /// Adds the pings of the turns up to this time to the map; returns the map, locked.
     fn take(&self, until: Nanos) -> MutexGuard<'_, Making> {
         let mut making = locked(&self.making);
         // The turns wait only while a ping is removed.
@@ -109,7 +109,8 @@ impl MapRun {
         })
     }
 
-    /// Saves a map, which stays locked: files are written one after the other.
+    /// Saves a map; returns `false` if the run is over or the map has no ping, so that nothing is saved. The map stays
+    /// locked, so that two threads never write its files at the same time.
     fn save_made(&self, making: &Making) -> Result<bool, String> {
         if making.is_over || making.maker.pings() == 0 {
             return Ok(false);
@@ -118,7 +119,7 @@ impl MapRun {
     }
 }
 
-/// Keeps the pings of the robot.
+/// Module that keeps the pings of the robot.
 struct PingsModule {
     run: MapRun,
     count: Out<i64>,
@@ -145,14 +146,14 @@ impl Module<Sensed> for PingsModule {
     }
 }
 
-/// Makes the map, and saves it on command.
+/// Module that makes the map, and saves it on command.
 struct MapModule {
     run: MapRun,
     save: In<bool>,
     pings: Out<i64>,
     cells: Out<i64>,
     saved: Out<i64>,
-    /// Time of the last command to save the map.
+    /// Time of the last command to save the map; `None` before the first.
     commanded: Option<Nanos>,
     times: i64,
 }
@@ -176,7 +177,7 @@ impl MapModule {
         module
     }
 
-    /// Takes the pings up to the last break, and carries out a command.
+    /// Adds the pings up to the last break to the map, and carries out a command to save it.
     fn turn(&mut self, offer: &mut Offer<'_>) {
         let command = offer.reading(self.save).map(|reading| reading.at);
         if offer.get(self.save) == Some(true) && command != self.commanded {

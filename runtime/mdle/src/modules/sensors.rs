@@ -7,7 +7,7 @@ use mdle_runtime::{Meters, MetersPerSecond, Radians, RadiansPerSecond, Sensed, S
 /// Number of sonars.
 const SONARS: u8 = 16;
 
-/// Publishes the readings of the robot.
+/// Module that publishes the readings of the robot.
 pub(super) struct Sensors {
     x: Out<Meters>,
     y: Out<Meters>,

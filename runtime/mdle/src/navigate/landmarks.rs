@@ -33,18 +33,19 @@ struct Landmark {
     axis: Spanned<String>,
     /// Place on the floor of a robot that is at the landmark.
     place: Option<Spanned<String>>,
-    /// File of its map, relative to the folder of this file.
+    /// File of the landmark's map, relative to the folder of this file; `None` if it has no map.
     map: Option<PathBuf>,
-    /// Pose in the axes of the map of a robot that is at the landmark and heads along its first axis.
+    /// Pose, in the axes of the map, of a robot that is at the landmark and heads along its first axis; `None` for the
+    /// default pose.
     at: Option<Spanned<String>>,
 }
 
 impl Landmarks {
-    /// Reads the file. The default file may be missing.
+    /// Reads the file. Unless `is_named` is `true`, the file may be missing.
     ///
     /// # Errors
-    /// Fails with a sentence if the file cannot be read, has errors, or names a landmark that the graph does
-    /// not contain.
+    /// Fails with a sentence if the file cannot be read, has errors, or names a landmark that the graph does not
+    /// contain.
     pub(super) fn read(file: &Path, is_named: bool, known: &[&str]) -> Result<Self, String> {
         let shown = file.display();
         let bytes = match mdle_host::read_file(file, LARGEST) {
@@ -56,7 +57,7 @@ impl Landmarks {
         Self::parse(&text, known).map_err(|(line, sentence)| format!("{shown}:{line}: {sentence}"))
     }
 
-    /// Reads the text of the file; an error has its line.
+    /// Reads the text of the file; an error contains the number of its line.
     fn parse(text: &str, known: &[&str]) -> Result<Self, (usize, String)> {
         let line = |place: usize| text.get(..place).unwrap_or_default().matches('\n').count() + 1;
         let read: Result<Self, _> = toml::from_str(text);
@@ -92,8 +93,8 @@ impl Landmarks {
         Ok(landmarks)
     }
 
-    /// Reads the maps of the landmarks, for a route that begins at a landmark with this axis. `file` is that of the
-    /// landmarks.
+    /// Reads the maps of the landmarks. `file` is the file of landmarks; `begins` is the direction of the axis, in
+    /// degrees, of the landmark at which the route begins.
     ///
     /// # Errors
     /// Fails if a map cannot be read.

@@ -77,7 +77,7 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
     (linked.navigate)(&route, &target, Call { recorded, read, ..call(&arguments, options) }, library)
 }
 
-/// Returns a warning if only one landmark has a map.
+/// Returns a warning if only one landmark has a map; `None` otherwise.
 fn lonely(maps: &[LandmarkMap]) -> Option<String> {
     let [LandmarkMap { name, .. }] = maps else { return None };
     let (name, help) = (Printable(name), "name a `map` of each landmark that a robot may mistake for it");

@@ -37,8 +37,8 @@ impl LandmarkGraph {
         names
     }
 
-    /// Returns a route with the fewest edges; of several, the one whose edges come first in the file. `None` if
-    /// there is no route.
+    /// Returns a route with the fewest edges; if there are several, the one whose edges come first in the file. Returns
+    /// `None` if there is no route.
     pub(crate) fn route(&self, from: &str, to: &str) -> Option<Vec<&Edge>> {
         let mut came_by: BTreeMap<&str, Option<&Edge>> = BTreeMap::from([(from, None)]);
         let mut waiting = VecDeque::from([from]);

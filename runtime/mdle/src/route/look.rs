@@ -1,5 +1,5 @@
-//! The look around at a landmark: a robot turns once on the spot, names the landmark by the evidence grids of all, and
-//! measures where the axes of the landmark are (docs/src/navigation.md).
+//! The look around at a landmark: a robot turns once on the spot, recognizes the landmark by the evidence grids of all
+//! landmarks, and measures the position of the landmark's axes (docs/src/navigation.md).
 
 use std::path::Path;
 
@@ -13,9 +13,10 @@ use crate::failure::{self, Failure};
 
 /// Name of the plan of a look around.
 pub(super) const LOOK: &str = "LookAround";
-/// Steps of 10 cm to either side in which a robot that has arrived is searched.
+/// Number of steps of 10 cm, to either side of the expected pose, in which a robot that has arrived is searched.
 const WAYS: i16 = 6;
-/// Score by which another landmark has to fit better than the expected one, so that the robot is refused to be there.
+/// Margin by which the score of another landmark has to exceed that of the expected one to refute that the robot is
+/// there.
 const MARGIN: f64 = 0.6;
 
 /// The map of a landmark.
@@ -29,7 +30,7 @@ pub(crate) struct LandmarkMap {
     pub(crate) map: SavedMap,
 }
 
-/// The plan of a look around, compiled, and the maps by which landmarks are named.
+/// The compiled plan of a look around, and the maps by which landmarks are recognized.
 pub(crate) struct Look {
     pub(crate) machine: Machine,
     pub(crate) input: Input,
@@ -59,7 +60,7 @@ impl Look {
 pub(super) struct Heard {
     /// Name of the landmark at which the robot should be.
     expected: String,
-    /// `true` if the robot has driven there, `false` if it was put there along the landmark's first axis.
+    /// `true` if the robot has driven to the landmark; `false` if it was placed there, along the landmark's first axis.
     has_driven: bool,
     order: PingOrder,
     pings: Vec<GridPing>,
@@ -67,17 +68,18 @@ pub(super) struct Heard {
     here: Pose,
 }
 
-/// The place of a robot at a landmark.
+/// The position of a robot at a landmark.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stand {
-    /// Distance from where the landmark's map has the robot, along the axes of the map.
+    /// Offset of the robot from its expected pose in the landmark's map, along the axes of the map.
     pub(super) off: (Meters, Meters),
     /// Angle by which odometry has turned the axes of the floor since the route began.
     pub(super) drift: Radians,
 }
 
 impl Heard {
-    /// Returns a look around by a robot that should be at a landmark, with its first output if it has driven there.
+    /// Begins the look around of a robot that should be at the landmark `expected`. `driven` is the output with which
+    /// the robot arrived there, or `None` if it was placed there.
     pub(super) fn at(expected: &str, driven: Option<&Sensed>) -> Self {
         let mut order = PingOrder::new(Pose::ORIGIN);
         if let Some(y) = driven {
@@ -104,7 +106,8 @@ impl Heard {
         self.pings.extend(self.order.take(y));
     }
 
-    /// Returns how the robot stands at the landmark, after odometry has turned by about `drift`.
+    /// Returns the position of the robot at the landmark. `drift` is the approximate angle by which odometry has turned
+    /// the axes of the floor.
     ///
     /// # Errors
     /// Fails with a sentence if the robot is not at the landmark, or if no sonar heard anything.
@@ -136,13 +139,13 @@ impl Heard {
         Ok(Stand { off, drift: Radians(axis - Radians::from_degrees(*turned).0).wrapped() })
     }
 
-    /// Returns a ping with its place measured from the robot, around which a search turns.
+    /// Returns a ping with its position relative to the robot, about which a search rotates.
     fn around_the_robot(&self, ping: &GridPing) -> GridPing {
         GridPing { x: ping.x - self.here.x.0, y: ping.y - self.here.y.0, ..*ping }
     }
 }
 
-/// Returns the best fit to a landmark at which the robot may be.
+/// Returns the best fit among the landmarks at which the robot may be; `None` if there is none.
 fn best<'f>(fits: &'f [(&'f LandmarkMap, Fit)]) -> Option<&'f (&'f LandmarkMap, Fit)> {
     let fits = fits.iter().filter(|(landmark, fit)| landmark.map.objection(fit).is_none());
     fits.reduce(|best, other| if other.1.score > best.1.score { other } else { best })

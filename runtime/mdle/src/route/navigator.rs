@@ -41,10 +41,10 @@ struct Navigator<'l, A: EngineAlphabet> {
     /// The current leg, and the legs after it.
     legs: VecDeque<&'l ReadyLeg<A>>,
     look: Option<&'l ReadyLook<'l, A>>,
-    /// The echoes of the robot that looks around.
+    /// Echoes of the current look around; `None` if the robot does not look around.
     heard: Option<Heard>,
     reckoning: Reckoning<'l>,
-    /// Angle by which odometry has turned the axes of the floor, as far as landmarks have shown.
+    /// Angle by which odometry has turned the axes of the floor, as measured at the last landmark with a map.
     drift: Radians,
     /// Continuation of the run after the last turn, if a plan has ended in it.
     after: AfterPlan,
@@ -99,8 +99,8 @@ fn ready<A: EngineAlphabet>(leg: &Leg, target: &Arc<Target>) -> Result<ReadyLeg<
 
 impl<A: EngineAlphabet> ReadyLeg<A> {
     /// Returns the plan of the leg for a robot with this heading by odometry, which has turned the axes of the floor by
-    /// `drift`: direction 0 of a plan that begins during a run is the heading with which it begins. The texts are those
-    /// that were read before the run.
+    /// `drift`. The plan is compiled for this heading, because direction 0 of a plan that begins during a run is the
+    /// heading with which it begins. Its texts are those that were read before the run.
     fn plan_at(&self, heading: Radians, drift: Radians) -> Result<StoredPlan<A>, String> {
         let turned = libm::round((self.turned + drift.degrees() - heading.degrees()) * 100.0) / 100.0;
         let name = &self.plan.name;
@@ -133,7 +133,8 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         navigator
     }
 
-    /// Says at which landmark the robot is, or begins to look around if the landmark has a map; returns its plan.
+    /// Begins a look around if the landmark has a map, and returns the plan of the look around. Otherwise reports that
+    /// the robot is at the landmark, and returns `None`.
     fn stands(&mut self, landmark: &str, driven: Option<&Sensed>) -> Option<&'l StoredPlan<A>> {
         let Some(look) = self.look.filter(|look| look.knows(landmark)) else {
             self.reckoning.is_at(landmark, driven.map_or(Pose::ORIGIN, |y| y.odometry));
@@ -179,7 +180,10 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Ok(self.stands(to, Some(y)))
     }
 
-    /// Judges a look around: the robot has to be where it should be, and its frame is set by the landmark.
+    /// Evaluates a look around: checks that the robot is where it should be, and updates the drift of its odometry.
+    ///
+    /// # Errors
+    /// Fails with a sentence if the look around was interrupted, or if the robot is not at the landmark.
     fn has_looked(&mut self, heard: &Heard, transitions: &Transitions) -> Result<(), String> {
         let landmark = Printable(heard.expected());
         if let Some(cause) = self.cut_short(LOOK, transitions) {
@@ -198,8 +202,8 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Ok(())
     }
 
-    /// Returns the operands by which the plan of an edge ended, if they are of the plan's own condition and its last
-    /// element did not end it.
+    /// Returns the operands of the plan's own condition that ended the plan of an edge early; `None` if its last
+    /// element ended it.
     fn cut_short(&self, edge: &str, transitions: &Transitions) -> Option<String> {
         let (last, operands) = transitions.iter().last()?;
         let plan = self.engine.machine()?.plan();

@@ -17,7 +17,7 @@ const MDLE: &str = "mdle run SCENARIO.toml";
 pub(super) struct Options {
     pub(super) seed: Option<u64>,
     pub(super) timeout: Option<Duration>,
-    /// File of the log. If its name is that of a record, the names of the robots' records are derived from it.
+    /// File of the log. If its name is the name of a record, the names of the robots' records are derived from it.
     pub(super) log: Option<PathBuf>,
     /// The command that repeats the run, without the files that it writes.
     pub(super) command: String,
@@ -29,7 +29,7 @@ pub(super) struct Options {
     pub(super) trips: Option<PathBuf>,
     /// Folder of the paths that robots record.
     pub(super) recorded_paths: Option<PathBuf>,
-    /// Number of threads for a crowd.
+    /// Number of threads for a crowd; `None` for one thread per processor.
     pub(super) threads: Option<usize>,
 }
 

@@ -16,7 +16,8 @@ use crate::arguments::{Asked, parse};
 use crate::failure::Failure;
 use crate::modules;
 
-/// Returns the names and contents of all files that the scenario in the file at `path` reads, that file first.
+/// Returns the names and contents of all files that the scenario in the file at `path` reads, the scenario's own file
+/// first.
 ///
 /// # Errors
 /// Fails if the scenario cannot be run, or if the name of a file is not UTF-8; prints the error and returns the exit

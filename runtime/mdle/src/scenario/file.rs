@@ -34,7 +34,7 @@ pub(super) struct ScenarioText {
     /// Plans that robots send each other.
     #[serde(default)]
     pub(super) sent_plan: Vec<SentPlanText>,
-    /// A crowd in place of robots with names.
+    /// A crowd, which replaces robots with names; `None` if the scenario has none.
     pub(super) crowd: Option<CrowdText>,
 }
 
@@ -57,7 +57,7 @@ pub(super) struct CrowdText {
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct LinkText {
-    /// Time that a state takes, as written, or its minimum and maximum with `..` between them.
+    /// Transmission time of a state, as written: a time, or a minimum and a maximum with `..` between them.
     pub(super) latency: Option<At<String>>,
     /// Probability that a state is lost.
     pub(super) loss: Option<At<f64>>,
@@ -80,7 +80,7 @@ pub(super) struct RobotText {
     pub(super) seed: Option<At<u64>>,
     /// Folder of the paths that the plan replays, relative to the folder of the scenario.
     pub(super) paths: Option<At<PathBuf>>,
-    /// Name of the path that is replaced by the way back from each `path` and `Follow`.
+    /// Name of the path that the way back from each `path` and `Follow` replaces.
     pub(super) records: Option<At<String>>,
     /// Time at which the robot's program is killed.
     pub(super) killed: Option<At<String>>,
@@ -89,7 +89,7 @@ pub(super) struct RobotText {
     /// Names of the modules whose attributes the robot shares with the others.
     #[serde(default)]
     pub(super) shares: Vec<String>,
-    /// Names of the robots whose plans the robot takes.
+    /// Names of the robots whose plans the robot accepts.
     #[serde(default)]
     pub(super) plans_from: Vec<At<String>>,
 }

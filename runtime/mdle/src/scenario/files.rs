@@ -81,7 +81,7 @@ impl Files {
         if self.are_inside { target(Some(SIM)) } else { Settings::beside(path)?.target(Some(SIM)) }
     }
 
-    /// Returns the plan in the file at `path`, which is compiled by [`Files::compiled`].
+    /// Returns the plan in the file at `path`. After compiling it, the caller passes the result to [`Files::compiled`].
     ///
     /// # Errors
     /// Fails if the file cannot be read or is not text.
@@ -96,8 +96,8 @@ impl Files {
         Ok(plan(path, own, target)?.with_unsaved(self.texts.get_or_init(all).clone()))
     }
 
-    /// Keeps the files of a plan that has been compiled, and prints its diagnostics. For a plan inside an executable,
-    /// the build did so.
+    /// Keeps the files of a plan that has been compiled, and prints its diagnostics. Does neither for a plan inside an
+    /// executable, because the build has done so.
     pub(super) fn compiled(&self, input: &Input, diagnostics: &[Diagnostic]) {
         if !self.are_inside {
             let files = input.files().map(Path::to_owned).zip(input.texts().map(|text| text.as_bytes().to_vec()));

@@ -22,7 +22,8 @@ const FAR: f64 = 100.0;
 pub(super) struct Fleet {
     runners: Vec<Runner>,
     period: Duration,
-    /// Minimum gap between two robots in any turn, in metres, with the numbers of the two robots.
+    /// Minimum gap between two robots in any turn, in metres, with the numbers of the two robots; `None` if no two
+    /// robots were closer than [`FAR`].
     nearest: Option<(f64, usize, usize)>,
 }
 

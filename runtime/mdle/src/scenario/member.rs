@@ -34,9 +34,10 @@ pub(super) struct Runner {
     plan_number: u64,
     killed: Option<Nanos>,
     recorder: Option<WayRecorder>,
-    /// The path that was replaced in the previous turn.
+    /// The path that was recorded in the previous turn, in place of an earlier one; `None` if none was.
     replaced: Option<StoredPath>,
-    /// Ears of the robot, and the microphones through which the module `heading` gets their samples.
+    /// Ears of the robot, and the microphones through which the module `heading` gets their samples; `None` for a robot
+    /// without ears.
     ears: Option<(RobotEars, Microphones)>,
     /// Plans that the robot has not sent yet.
     sends: VecDeque<SentPlan>,
@@ -61,13 +62,13 @@ pub(super) struct MemberTurn {
     pub(super) lines: Vec<String>,
     /// Number of the atom's state, and its law; `None` if no law was applied.
     pub(super) law: Option<(u64, String)>,
-    /// Name and text of the path that was recorded in this turn.
+    /// Name and text of the path that was recorded in this turn; `None` if none was.
     pub(super) path: Option<(&'static str, String)>,
     /// `true` if a plan has replaced another one in this turn.
     pub(super) begins: bool,
     /// Source of the input; `None` if the robot was not driven.
     pub(super) kind: Option<Turn<()>>,
-    /// Causes of the turn besides its output, if the robot is recorded.
+    /// Changes in this turn that a record needs in addition to the robot's output.
     pub(super) changes: Vec<Change>,
 }
 
@@ -243,7 +244,8 @@ impl Runner {
         made.law = machine.atom().map(|atom| (machine.state(), plan.law(atom).to_owned()));
     }
 
-    /// Records the path driven under `path` and `Follow`; returns the name and the text of the path that was replaced.
+    /// Records the path driven under `path` and `Follow`. If the way back has replaced a path, returns the name and the
+    /// new text of this path.
     fn records(&mut self, y: &Sensed, law: Option<&str>, lines: &mut Vec<String>) -> Option<(&'static str, String)> {
         let recorder = self.recorder.as_mut()?;
         let has_changed = !self.transitions.is_empty();

@@ -125,7 +125,8 @@ impl Output {
         }
     }
 
-    /// Records the end of the run at time `t` with the output `y`, at which a robot still runs this law.
+    /// Records that the run ends at time `t` with the output `y`. `law` is the law that the robot still runs; `None` if
+    /// no law runs.
     pub(super) fn ends(&mut self, runner: &Runner, (y, t): (&Sensed, Nanos), law: Option<&str>) {
         self.line(t, &runner.name, &runner.standing.words(law));
         if let Some(records) = &mut self.records {

@@ -21,18 +21,18 @@ struct MemberRecord {
     /// Name of the robot.
     robot: String,
     path: PathBuf,
-    /// `None` once the record is complete.
+    /// The open record; `None` once it is complete.
     record: Option<RobotRecord>,
     /// Number of the last turn.
     turn: u64,
 }
 
 impl Records {
-    /// Creates the records of a scenario that this command repeats: `run.mcap` becomes `run.ada.mcap` for the robot
-    /// `ada`.
+    /// Creates the records of a scenario: `run.mcap` becomes `run.ada.mcap` for the robot `ada`. `command` is the
+    /// command that repeats the run.
     ///
     /// # Errors
-    /// Fails with a sentence if a record cannot be written; the records before it are removed.
+    /// Fails with a sentence if a record cannot be written; in this case, the records that were created are removed.
     pub(super) fn create(log: &Path, scenario: &Scenario, command: &str) -> Result<Self, String> {
         let mut created = Self(Vec::new());
         for member in &scenario.members {
@@ -90,7 +90,7 @@ impl Records {
     }
 }
 
-/// Removes the file of a record that holds no run.
+/// Removes the file of a record that contains no run.
 pub(super) fn remove(path: &Path) {
     // The error that is reported is the one that kept the run from beginning.
     let _ = fs::remove_file(path);
@@ -115,7 +115,7 @@ fn of_member(member: &Member, scenario: &Scenario, command: &str) -> Begin {
     Begin { beside: beside.join(" and "), ..begin(&plan, files, command, period) }
 }
 
-/// Returns the first entry of a robot's record, in a run that this command repeats.
+/// Returns the first entry of a robot's record. `command` is the command that repeats the run.
 pub(super) fn begin(plan: &LoadedPlan<SimAlphabet>, files: &[(String, String)], command: &str, period: Nanos) -> Begin {
     Begin {
         version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -25,7 +25,7 @@ pub(super) struct SentPlan {
 /// Returns the plans that the robot of this name sends, in the order of their times.
 ///
 /// # Errors
-/// A value is invalid, or a file cannot be read.
+/// Fails if a value is invalid, or if a file cannot be read.
 pub(super) fn sent_by(own: &str, file: &ScenarioText, files: &Files) -> Result<Vec<SentPlan>, ScenarioError> {
     let names: Vec<&str> = file.robot.iter().map(|robot| robot.name.get_ref().as_str()).collect();
     let mut plans = Vec::new();

@@ -59,11 +59,11 @@ pub(super) struct Member {
     pub(super) records: Option<&'static str>,
     /// Time at which the robot's program is killed.
     pub(super) killed: Option<Nanos>,
-    /// Ears of the robot, and the radius of the head between them, in metres.
+    /// Ears of the robot, and the radius of the head between them, in metres; `None` for a robot without ears.
     pub(super) ears: Option<(RobotEars, f64)>,
     /// Names of the modules whose attributes the robot shares.
     pub(super) shares: Vec<String>,
-    /// Names of the robots whose plans the robot takes.
+    /// Names of the robots whose plans the robot accepts.
     pub(super) plans_from: Vec<String>,
     /// Plans that the robot sends, in the order of their times.
     pub(super) sends: Vec<SentPlan>,
@@ -186,8 +186,8 @@ impl Scenario {
 /// A plan with the names and the texts of its files, the plan's own file first.
 pub(super) type PlanWithFiles = (Arc<Loaded<SimAlphabet>>, Vec<(String, String)>);
 
-/// Compiles and loads the plan of a robot, or the robot's part of a group's plan. `robot` has the robot and the names
-/// of all robots of the scenario.
+/// Compiles and loads the plan of a robot, or the robot's part of a group's plan. `robot` is the robot with the names
+/// of all robots of the scenario; `None` for a crowd.
 pub(super) fn plan(
     file: &At<PathBuf>,
     plan_name: Option<&At<String>>,
@@ -250,7 +250,7 @@ fn part(text: &RobotText, names: &[&str], group: &Group) -> Result<String, Scena
     }
 }
 
-/// Returns the error for a name that is that of no other robot of the scenario.
+/// Returns the error for a name that no other robot of the scenario has.
 fn no_other_robot(other: &At<String>, own: &str, names: &[&str]) -> ScenarioError {
     let others: Vec<&str> = names.iter().copied().filter(|name| *name != own).collect();
     let near = did_you_mean(other.get_ref(), &others);
@@ -322,7 +322,7 @@ fn faults(text: &LinkText) -> Result<Faults, ScenarioError> {
     Ok(Faults { latency, loss: share(&text.loss)?, duplication: share(&text.duplication)? })
 }
 
-/// Reads a time, or the minimum and maximum with `..` between them.
+/// Reads a time, or a minimum and a maximum with `..` between them.
 fn latency(text: &At<String>) -> Result<(Nanos, Nanos), ScenarioError> {
     let (least, most) = text.get_ref().split_once("..").unwrap_or((text.get_ref(), text.get_ref()));
     let time = |part: &str| {

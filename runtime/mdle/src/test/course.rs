@@ -7,7 +7,7 @@ use mdle_runtime::{Cause, Nanos, Pose, Transition, Words};
 /// The course of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Course {
-    /// The atoms whose law was applied, each when it began.
+    /// The beginnings of atoms, each when its law was first applied.
     pub(super) began: Vec<Began>,
     /// All transitions.
     pub(super) steps: Vec<Step>,
@@ -16,7 +16,7 @@ pub(super) struct Course {
     /// Time of the last turn.
     pub(super) t: Nanos,
     pub(super) ending: Ending,
-    /// The true pose at the end, for a simulated robot.
+    /// The true pose of a simulated robot at the end of the run; `None` for a script.
     pub(super) pose: Option<Pose>,
     /// The violations of `expect.never`.
     pub(super) breaches: Vec<Breach>,
@@ -67,9 +67,9 @@ pub(super) struct Breach {
     pub(super) number: usize,
     pub(super) turn: u64,
     pub(super) t: Nanos,
-    /// Number of the atom in that turn.
+    /// Number of the atom that ran in that turn; `None` if none did.
     pub(super) atom: Option<u32>,
-    /// A measured distance, in metres.
+    /// The distance that was too short, in metres; `None` for any other state.
     pub(super) gap: Option<f64>,
 }
 
@@ -78,7 +78,7 @@ pub(super) struct Breach {
 pub(super) struct Recorder<'m> {
     machine: &'m Machine,
     pub(super) course: Course,
-    /// Number of the current atom.
+    /// Number of the current atom; `None` before the plan begins, and once it is over.
     atom: Option<u32>,
 }
 
@@ -145,7 +145,7 @@ impl<'m> Recorder<'m> {
 }
 
 impl Course {
-    /// Returns the transition that ended the plan.
+    /// Returns the transition that ended the plan; `None` if the plan was not over.
     pub(super) fn last(&self) -> Option<&Step> {
         self.steps.last().filter(|step| step.to.is_none())
     }

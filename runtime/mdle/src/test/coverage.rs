@@ -21,7 +21,7 @@ pub(super) struct Coverage {
     /// For each element, `true` if a single operand can fire its interrupt, so that all operands are false
     /// while the element runs.
     is_any: Vec<bool>,
-    /// Number of the current atom.
+    /// Number of the current atom; `None` before the plan begins, and once it is over.
     atom: Option<u32>,
     /// Buffer for the operands that have fired.
     fired_now: Vec<u32>,

@@ -17,7 +17,8 @@ pub(super) struct CoverageTable {
     plan: String,
     /// Number of atoms that began, and number of all atoms.
     atoms: [usize; 2],
-    /// Number of ends of elements that occurred, by their interrupts and by completion, and number of all ends.
+    /// Number of ways in which an element can end, by its interrupt or by completion, that occurred, and number of all
+    /// such ways.
     ends: [usize; 2],
     /// Number of operands that were both true and false, and number of all operands.
     operands: [usize; 2],

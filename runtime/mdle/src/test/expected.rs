@@ -17,7 +17,7 @@ const LONGEST: Duration = Duration::from_secs(1_000_000_000);
 /// Maximum distance in a test, in metres.
 const FURTHEST: f64 = 1000.0;
 
-/// Place of an expectation in the test file.
+/// Byte range of an expectation in the test file.
 pub(super) type Place = Range<usize>;
 
 /// The expectations of a test.
@@ -46,7 +46,7 @@ pub(super) struct AtomsNamed {
 #[derive(Clone)]
 pub(super) struct ExpectedTransition {
     pub(super) from: Option<AtomsNamed>,
-    /// The atoms of which one must be entered; `Some(None)` for the end of the plan.
+    /// The atoms of which one must be entered: `Some(None)` for the end of the plan, `None` for any.
     pub(super) to: Option<Option<AtomsNamed>>,
     pub(super) by: Option<(String, Cause)>,
     pub(super) after: Option<Nanos>,
@@ -61,7 +61,7 @@ pub(super) enum Never {
     While { words: String, atoms: Option<AtomsNamed>, condition: Option<Box<TestCondition>> },
 }
 
-/// The end of a run.
+/// The expected end of a run.
 pub(super) enum End {
     /// The plan is over by this cause.
     By(String, Cause),
@@ -104,7 +104,8 @@ impl AtomsNamed {
 }
 
 impl Expected {
-    /// Reads the expectations of a test of the plan `subject`; `is_script` for a test without a simulated robot.
+    /// Reads the expectations of a test of the plan `subject`; `is_script` is `true` for a test without a simulated
+    /// robot.
     ///
     /// # Errors
     /// Fails with a sentence and a place if no run can meet an expectation.

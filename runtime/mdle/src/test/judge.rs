@@ -52,7 +52,7 @@ impl Judge<'_> {
         Failure { place: place.clone(), message, expected, got, atom: self.last_atom(), t: self.course.t }
     }
 
-    /// Returns the last atom of the run, with a text about its end.
+    /// Returns the number of the last atom of the run, with a text about its end; `None` if no atom began.
     fn last_atom(&self) -> Option<(u32, String)> {
         let last = self.course.began.last()?;
         let words = match self.course.ending {
@@ -169,7 +169,8 @@ impl Judge<'_> {
         Some(Failure { atom, t: step.t, ..failure })
     }
 
-    /// Returns the first of the transitions that meet the largest number of these conditions.
+    /// Returns the first of the transitions that meet the largest number of these conditions; `None` if there were no
+    /// transitions.
     fn nearest(&self, conditions: &[&dyn Fn(&Step) -> bool]) -> Option<&Step> {
         let met = |step: &Step| conditions.iter().filter(|condition| condition(step)).count();
         let most = self.course.steps.iter().map(met).max()?;

@@ -1,5 +1,5 @@
-//! The transitions that a plan can make, from its text alone; expectations that no run can meet are refused
-//! before any run.
+//! Determines the transitions that a plan can make from its text alone, so that expectations that no run can meet are
+//! refused before any run.
 
 use std::collections::BTreeSet;
 

@@ -30,7 +30,7 @@ struct RunEntry {
     turns: u64,
     seconds: f64,
     end: &'static str,
-    /// The fault that ended the run, or the reason why it could not be made.
+    /// The fault that ended the run, or the reason why the run could not be made; `None` if there was neither.
     #[serde(skip_serializing_if = "Option::is_none")]
     fault: Option<String>,
     failures: Vec<FailureEntry>,

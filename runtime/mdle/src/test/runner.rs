@@ -117,8 +117,9 @@ fn taken<'j>(next: &AtomicUsize, jobs: &'j [Job]) -> Option<(usize, &'j Job)> {
     jobs.get(number).map(|job| (number, job))
 }
 
-/// Makes a run. A panic fails only this run; a module that is refused is not loaded again in the other runs of its
-/// suite, since a process may take long to be refused: `refused` has the sentence for each suite.
+/// Makes a run. A panic fails only this run. `refused` contains, for each suite, the sentence about a module that was
+/// refused: such a module is not loaded again in other runs of the suite, because it may take long until a process is
+/// refused.
 fn one(
     suites: &[Suite],
     job: Job,

@@ -11,7 +11,7 @@ use super::expected::{Expected, Never};
 use super::file::{At, ScriptTurn, TestFileError};
 use super::subject::{Subject, TestCondition};
 
-/// Reads the script of a test, in the words of its plan.
+/// Reads the script of a test, and converts its conditions and laws to the texts that the plan has for them.
 ///
 /// # Errors
 /// Fails with a sentence if the script has no turns, or an impossible turn.

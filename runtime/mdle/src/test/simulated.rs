@@ -36,10 +36,10 @@ pub(super) struct Simulation {
     pub(super) timeout: Duration,
 }
 
-/// Reason why a run could not be made: a sentence.
+/// Reason, as a sentence, why a run could not be made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum RunError {
-    /// A module is refused, as it is in every run of the plan.
+    /// A module is refused, which happens in every run of the plan.
     Module(String),
     /// The robot of this run could not be made, or the code panicked.
     Own(String),
@@ -251,7 +251,8 @@ fn watched(never: &Never, y: &Sensed, t: Nanos) -> Option<Machine<LoadedPlan<Sim
     loaded.as_ref().map(|loaded| Machine::begin(loaded.plan(), y, t))
 }
 
-/// Returns an option of a test as an argument. A world that is a file is relative to the folder of the test.
+/// Returns an option of a test as an argument. A file of a world or a folder of paths is relative to the folder of the
+/// test.
 fn word(name: &str, value: &str, path: &Path) -> String {
     let file = path.with_file_name(value);
     if ["world", "paths"].contains(&name) && !value.is_empty() && file.exists() {

@@ -21,8 +21,8 @@ const POSE: [&str; 2] = ["10cm", "5"];
 /// A replacement of a range of a text.
 type Edit = (Range<usize>, String);
 
-/// Returns the text of a test file in which the expectations of atoms, of the end, of the pose and of numbers are those
-/// of the first run of each test; `None` if nothing changes.
+/// Returns the text of a test file in which the expectations of atoms, of the end, of the pose and of numbers are
+/// replaced by the results of the first run of each test; `None` if nothing changes.
 pub(super) fn updated(text: &str, tests: &[Tested<'_>]) -> Option<String> {
     let mut edits: Vec<Edit> = tests.iter().flat_map(|test| edits(text, test)).collect();
     if edits.is_empty() {
@@ -119,7 +119,7 @@ fn atoms_text(machine: &Machine, course: &Course) -> String {
     if line.chars().count() < 100 { line } else { format!("[\n    {},\n]", laws.join(",\n    ")) }
 }
 
-/// Returns the end of a run, as a test names it.
+/// Returns the end of a run in the words of a test; `None` if there are no words for it.
 fn end_text(subject: &Subject, course: &Course) -> Option<String> {
     use mdle_runtime::Words as _;
 

@@ -29,7 +29,7 @@ pub(crate) struct Ended {
     pub(crate) is_skipped: bool,
     /// The cause, with its values and its place.
     pub(crate) cause: String,
-    /// `true` if the law of the atom was done as well, though an interrupt ended its scope.
+    /// `true` if the law of the atom had completed as well, although an interrupt ended its scope.
     pub(crate) was_done: bool,
     /// The scopes that enclose the atom, the plan first.
     pub(crate) scopes: Vec<Scope>,
@@ -54,14 +54,14 @@ pub(crate) struct Runs {
     pub(crate) scopes: Vec<Scope>,
 }
 
-/// The atom that ran when another plan took over.
+/// The atom that ran when another plan replaced its plan.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Replaced {
     /// The atom.
     pub(crate) atom: AtomWords,
     /// Time for which the atom had run.
     pub(crate) since: Nanos,
-    /// Reason why the other plan took over.
+    /// Reason why the other plan replaced it.
     pub(crate) cause: String,
 }
 
@@ -102,7 +102,7 @@ pub(crate) struct Explainer {
     courses: BTreeMap<u64, Course>,
     /// Number of the active plan; `None` before the first turn.
     number: Option<u64>,
-    /// Number of the plan that was replaced in the last turn.
+    /// Number of the plan that was replaced in the last turn; `None` if none was.
     replaced: Option<u64>,
 }
 
@@ -113,9 +113,9 @@ struct Course {
     passes: Passes,
     /// Cause of the transition to the current atom, or reason why the plan replaced another plan.
     began: String,
-    /// The atom that ran last.
+    /// The atom that ran last; `None` before the first.
     latest: Option<Latest>,
-    /// Time during which other plans were active since that atom was entered.
+    /// Time during which other plans were active since the last atom was entered.
     paused: Nanos,
 }
 
@@ -142,7 +142,7 @@ impl Explainer {
         is_other
     }
 
-    /// Returns the number of the plan that was replaced in the last turn.
+    /// Returns the number of the plan that was replaced in the last turn; `None` if none was.
     pub(crate) fn replaced(&self) -> Option<u64> {
         self.replaced
     }
@@ -164,7 +164,7 @@ impl Explainer {
         course.latest = Some(Latest { atom: moment.atom, since, t });
     }
 
-    /// Returns the atom of the plan that was replaced in this turn.
+    /// Returns the atom that ran last in the plan that was replaced in this turn; `None` if no atom had run.
     fn replaced_atom(&mut self, turn: &ExaminedTurn, plan: &ExaminedPlan) -> Option<Replaced> {
         let cause = self.began();
         let now = self.number;
@@ -191,7 +191,7 @@ impl Explainer {
         self.course().began.clone()
     }
 
-    /// Follows a turn that has begun and is not explained.
+    /// Follows the transitions of a turn that has begun with [`Explainer::begin`] and is not explained.
     pub(crate) fn pass(&mut self, turn: &ExaminedTurn, plan: &dyn Texts) {
         for (transition, operands) in turn.transitions.iter() {
             let began = CauseText { plan, transition, operands }.to_string();
@@ -305,8 +305,8 @@ fn cut(turn: &ExaminedTurn, plan: Option<&ExaminedPlan>) -> Option<&'static str>
     }
 }
 
-/// Returns `true` if the law of the atom was done when the interrupt of its scope, or of an enclosing scope,
-/// ended it.
+/// Returns `true` if the law of the atom had completed when the interrupt of its scope, or of an enclosing scope, ended
+/// it.
 fn was_done(moment: &Moment, transition: &Transition) -> bool {
     moment.is_completed && matches!(transition.cause, Cause::Fired(_))
 }

@@ -1,4 +1,4 @@
-//! The time or the value that an operand lacks to fire, or for which it still holds, in words.
+//! Describes, in words, the time or the value that an operand lacks to fire, or for which it still holds.
 
 use mdle_compiler::plan::Condition;
 use mdle_host::rounded;
@@ -15,7 +15,8 @@ pub(crate) struct Values<'v> {
     pub(crate) stalled: Option<Nanos>,
     /// `true` if the atom was entered in this turn.
     pub(crate) is_new: bool,
-    /// Unit in which the operand's first value is shown, and its SI value.
+    /// Unit in which the operand's first value is shown, and the SI value of this unit; `None` if the operand has no
+    /// value.
     pub(crate) unit: Option<(&'v str, f64)>,
     /// `true` if the first value is the range of a sonar.
     pub(crate) is_range: bool,
@@ -83,10 +84,11 @@ pub(crate) fn lack(
     }
 }
 
-/// The time of a `rendezvous`, which fires in the turn after its scope was entered at the earliest.
+/// Time, in nanoseconds, by which a `rendezvous` is recognized: it fires at the earliest in the turn after its scope
+/// was entered.
 const MEETING: u64 = 1;
 
-/// Returns what a `rendezvous` lacks.
+/// Returns, in words, the reason why a `rendezvous` has not fired; empty if it has fired.
 fn meeting(part: Examined, since: Nanos) -> String {
     match (part.fired, since) {
         (true, _) => String::new(),
@@ -95,7 +97,7 @@ fn meeting(part: Examined, since: Nanos) -> String {
     }
 }
 
-/// Returns for how long, or by how much, an operand that has fired holds; empty if that is not known.
+/// Returns, in words, the time or the margin for which an operand that has fired still holds; empty if it is not known.
 pub(crate) fn held(condition: &Condition, part: Examined, values: &Values<'_>) -> String {
     let Values { since, way, .. } = *values;
     match condition {

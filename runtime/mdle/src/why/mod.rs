@@ -130,7 +130,8 @@ fn at(asked: &Asked<'_>, time: &str, run: &mut ExaminedRun) -> Result<Result<Ans
     Ok(Ok(Answer { explanation, asked: time, next, safety }))
 }
 
-/// Repeats the turns up to the end of the record; returns the reason if the plan is not that of the record.
+/// Repeats the turns up to the end of the record. Returns the reason if a turn does not match the record, or if a plan
+/// of the record cannot be compiled.
 fn differing(run: &mut ExaminedRun) -> Option<Stop> {
     loop {
         match run.turn()? {

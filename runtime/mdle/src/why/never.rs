@@ -1,5 +1,5 @@
-//! `mdle why --not`: the chances of an atom or a scope to begin since its last beginning, and the reasons why
-//! it did not.
+//! `mdle why --not`: finds the chances that an atom or a scope had to begin since it last began, and the reasons why it
+//! did not begin.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -18,7 +18,7 @@ use crate::examined::{ExaminedPlan, ExaminedRun, ExaminedTurn, Moment, Stop};
 /// A turn: its number and its time.
 pub(crate) type Turned = (u64, Nanos);
 
-/// The answer why an atom or a scope did not begin.
+/// The answer to the question why an atom or a scope did not begin.
 #[derive(Debug)]
 pub(crate) struct Never {
     /// The atom or the scope as named in the question.
@@ -35,7 +35,7 @@ pub(crate) struct Never {
     pub(crate) follows: Vec<String>,
     /// Name of the plan that contains the element; empty unless several plans were active.
     pub(crate) plan: String,
-    /// The last turn of that plan.
+    /// Last turn in which the plan that contains the element was active.
     pub(crate) end: Turned,
     /// `true` if another plan was active at the end of the record.
     pub(crate) is_replaced: bool,
@@ -78,7 +78,7 @@ pub(crate) struct Chance {
     pub(crate) begins: Option<String>,
     /// Number of periods of consecutive such turns; in a loop, one for each pass.
     pub(crate) times: u64,
-    /// Positions, in the list of scopes, of the scopes of which one had to end in the first turn.
+    /// Indices, in the list of scopes, of the scopes of which one had to end in the first turn.
     pub(crate) scopes: Vec<usize>,
     /// The first of these turns.
     pub(crate) first: Stay,
@@ -93,7 +93,7 @@ struct Door {
     first: Stay,
     /// Level of the outermost scope whose end would lead to the atom.
     level: u16,
-    /// The last turn of a period that is over; `None` before.
+    /// Last turn of the latest period; `None` while the period continues.
     last: Option<Stay>,
     /// The last turn in which there was a chance, and its moment.
     latest: (FactsOfTurn, Moment),
@@ -106,10 +106,11 @@ struct FactsOfTurn {
     facts: Facts,
 }
 
-/// Answers why the atom or the scope of this text did not begin, in the last plan of the record that has it.
+/// Answers the question why the atom or the scope that `text` names did not begin, for the last plan of the record that
+/// contains it.
 ///
 /// # Errors
-/// Fails with a sentence if no plan of the record has such an atom.
+/// Fails with a sentence if no plan of the record contains such an atom or scope.
 pub(crate) fn never(target: &Target, text: &str, run: &mut ExaminedRun) -> Result<Result<Never, Stop>, String> {
     let mut searches: BTreeMap<u64, Option<Search>> = BTreeMap::new();
     let (mut explainer, mut unknown, mut number) = (Explainer::default(), Vec::new(), 0);
@@ -343,8 +344,8 @@ impl Search {
     }
 }
 
-/// Returns the last atoms of the elements that an element can follow: of the element before it, and of a loop
-/// whose first element it is.
+/// Returns the last atoms of the elements after which an element can begin: of the element before it, and of each loop
+/// that begins with it.
 fn before(element: Element<'_>) -> Vec<u32> {
     let mut before = Vec::new();
     for inner in element.outwards() {

@@ -1,4 +1,4 @@
-//! The answer why an atom or a scope did not begin, for people.
+//! Writes, for people, the answer to the question why an atom or a scope did not begin.
 
 use std::fmt::Write as _;
 

@@ -133,7 +133,8 @@ impl<'c> Node<'c> {
         }
     }
 
-    /// Returns the value that the condition would have if the value of the part of this number were inverted.
+    /// Returns the value of the condition with the operand `other` inverted, or with no operand inverted if `other` is
+    /// `None`.
     fn value(&self, other: Option<u32>) -> bool {
         match self.condition {
             _ if self.number.is_some() => self.part.fired != (self.number == other),
@@ -150,7 +151,7 @@ impl<'c> Node<'c> {
         }
     }
 
-    /// Returns the texts of the missing parts, joined by `and` and `or`.
+    /// Returns the texts of the parts that have not fired, joined by `and` and `or`.
     fn missing<'w>(&self, name: &impl Fn(u32) -> &'w str, around: Join) -> String {
         if let Some(number) = self.number {
             return name(number).to_owned();
@@ -252,7 +253,7 @@ impl Explaining<'_> {
     }
 }
 
-/// Returns the words about a part that has fired and has to end.
+/// Returns the words about an operand that has fired, in a condition that needs it not to fire.
 fn still(condition: &Condition, held: &str) -> String {
     let is_whole = held.is_empty() || matches!(condition, Condition::Wait { .. });
     if is_whole { held.to_owned() } else { format!("holds {held}") }

@@ -1,5 +1,5 @@
-//! The text of an operand inside NOT or RISING, with the places of its values and with units: the plan's words have the
-//! whole operand only.
+//! The text of an operand inside NOT or RISING, with units and with the positions of its values. The words of the plan
+//! contain only the whole operand.
 
 use mdle_compiler::alphabet::Unit;
 use mdle_compiler::fsm::Machine;
@@ -45,7 +45,8 @@ fn value(after: usize, unit: Unit) -> ValueWords<'static> {
     ValueWords { after: u32::try_from(after).unwrap_or(u32::MAX), unit: unit.name, scale: unit.to_si(1.0) }
 }
 
-/// Returns the quark of the comparison that a condition is, or that it negates.
+/// Returns the quark of a condition that is a quark or a comparison, also inside NOT and RISING; `None` for any other
+/// condition.
 fn compared(condition: &Condition) -> Option<QuarkId> {
     match condition {
         Condition::Quark(id) | Condition::Elapsed { quark: id, .. } | Condition::Driven { quark: id, .. } => Some(*id),

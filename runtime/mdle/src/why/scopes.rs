@@ -10,7 +10,7 @@ use crate::examined::{ExaminedPlan, Moment, ScopeMoment};
 pub(crate) enum Part {
     /// The scope's interrupt has fired and ended it.
     Ended,
-    /// The law of the scope, which is an atom, is done and ended it.
+    /// The scope is an atom whose law has completed, which ended it.
     Completed,
     /// The scope's interrupt has fired as well, but an enclosing scope ended first.
     Shadowed,

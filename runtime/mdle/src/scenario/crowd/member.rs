@@ -86,7 +86,7 @@ impl Member {
         }
     }
 
-    /// Ends the plan; the robot stays where it is from now on.
+    /// Ends the plan; from now on, the robot does not move.
     fn ends(&mut self) {
         self.is_over = true;
         self.input = Twist::default();

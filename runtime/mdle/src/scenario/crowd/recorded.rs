@@ -13,13 +13,13 @@ use super::super::records::{remove, unwritten};
 /// A record that is being written.
 pub(super) struct RecordedMember {
     path: PathBuf,
-    /// `None` once the record is complete, or cannot be written.
+    /// The open record; `None` once it is complete, or cannot be written.
     record: Option<RobotRecord>,
     /// Transitions of the turn.
     pub(super) transitions: Transitions,
     /// Number of the next turn.
     next: u64,
-    /// Sentence about the error that ended the record.
+    /// Sentence about the error that ended the record; `None` if there was no error.
     fault: Option<String>,
 }
 

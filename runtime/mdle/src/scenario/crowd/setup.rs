@@ -22,7 +22,7 @@ use super::recorded::RecordedMember;
 const ROBOTS_MOST: u64 = 100_000;
 /// Maximum number of robots that are recorded: each record is an open file.
 const RECORDED_MOST: usize = 250;
-/// Distance between two robots at the start, in metres: a robot on 4 m².
+/// Default distance between two robots at the start, in metres, which gives each robot 4 m².
 const SPACING: f64 = 2.0;
 
 /// A crowd.
@@ -71,11 +71,12 @@ impl CrowdSetup {
         })
     }
 
-    /// Creates a record for each robot of a crowd that this command repeats, named after its number from 1.
+    /// Creates a record for each robot of the crowd, named after its number from 1. `command` is the command that
+    /// repeats the run.
     ///
     /// # Errors
-    /// Fails with a sentence if there are too many robots, or if a record cannot be written; the records before it are
-    /// removed.
+    /// Fails with a sentence if there are too many robots, or if a record cannot be written; in this case, the records
+    /// that were created are removed.
     pub(super) fn records(&self, log: &Path, command: &str) -> Result<Vec<RecordedMember>, String> {
         let count = self.robots.len();
         if count > RECORDED_MOST {

@@ -1,9 +1,9 @@
-//! The turns of a crowd on several threads, with results that do not depend on their number.
+//! Runs the turns of a crowd on several threads. The results do not depend on the number of threads.
 //!
-//! In each turn, robots that may touch each other form a group. One thread handles a group: its robots move one
-//! after the other in their order, each among the current poses of the others in the group, and then make the
-//! turns of their plans. Sonars hear all other robots at their poses at the beginning of the turn. No result
-//! therefore depends on the order of groups.
+//! In each turn, robots that may touch each other form a group, which one thread handles. The thread moves the robots
+//! of the group one after the other, each among the current poses of the others in the group, and then makes the turns
+//! of their plans. Sonars detect all other robots at their poses at the beginning of the turn. So no result depends on
+//! the order of groups.
 
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -21,7 +21,7 @@ use super::setup::CrowdSetup;
 
 /// Number of groups that a thread takes at a time.
 const TAKES: usize = 16;
-/// Number of robots from which an additional thread in each turn saves time.
+/// Number of robots for each thread below which an additional thread would not save time.
 const FOR_A_THREAD: usize = 100;
 
 /// The robots of a crowd.
@@ -30,7 +30,7 @@ pub(super) struct Turns {
     members: Vec<Mutex<Member>>,
     plan: Arc<Loaded<SimAlphabet>>,
     threads: usize,
-    /// Distance between centres, in metres, within which a robot hears another.
+    /// Distance between the centres of two robots, in metres, within which one may detect the other with its sonars.
     hears: f64,
     /// Distance between the centres of two robots that may touch in a turn, in metres.
     touches: f64,
@@ -162,13 +162,13 @@ impl Shared<'_> {
         self.turns.members.get(number as usize).map(lock)
     }
 
-    /// Collects the other robots that robot `number` hears, where they were when the turn began.
+    /// Collects the robots that robot `number` may detect with its sonars, at their poses at the beginning of the turn.
     fn hear(&self, number: u32, Others { heard, .. }: &mut Others) {
         heard.clear();
         self.near(number, self.turns.hears, |_, body| heard.push(*body));
     }
 
-    /// Collects the robots of the group that robot `number` may touch, where they are now.
+    /// Collects the robots of the group that robot `number` may touch, at their current poses.
     fn touch(&self, number: u32, group: &[u32], now: &[Footprint], Others { touched, .. }: &mut Others) {
         touched.clear();
         // Most robots are alone.
@@ -180,8 +180,8 @@ impl Shared<'_> {
         }
     }
 
-    /// Calls `take` with the number and the place of each other robot that was within `reach` metres of robot `number`
-    /// when the turn began.
+    /// Calls `take` with the number and the footprint of each other robot that was within `reach` metres of robot
+    /// `number` when the turn began.
     fn near(&self, number: u32, reach: f64, mut take: impl FnMut(usize, &Footprint)) {
         let Some(own) = self.crowd.bodies().get(number as usize) else { return };
         self.crowd.near(own.at(), reach, |other, body| {
