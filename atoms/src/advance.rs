@@ -1,12 +1,13 @@
-//! `advance D v`: drives this distance straight ahead, or back; a law of this project, beside the paper's `goAvoid`
-//! (section IV-A).
+//! `advance D v`: drives the distance `D` straight ahead, or backwards if it is negative. The law is an addition of
+//! this project to the paper's `goAvoid` (section IV-A).
 
 use mdle_runtime::capability::{DiffDrive, Odometry};
 use mdle_runtime::{Begin, Completes, Control, Law, Meters, MetersPerSecond, Nanos, Pose, Radians, Twist};
 
 use crate::heading::turning;
 
-/// Speed, in m/s, per metre that is left: a body at full speed begins to brake early enough not to overshoot.
+/// Speed, in m/s, per metre of the remaining distance, so that a body at full speed begins to brake early enough not to
+/// overshoot.
 const GAIN: f64 = 1.0;
 /// Maximum fraction of the remaining distance to drive before the law runs again. An input takes effect a turn
 /// later, so with a larger fraction the robot would oscillate.
@@ -33,8 +34,8 @@ impl Advance {
     }
 }
 
-/// The law of [`Advance`], which is done within 1 cm of its distance along the heading at which it began, and
-/// at rest.
+/// The law of [`Advance`], which is done when the robot is at rest within 1 cm of its distance, measured along the
+/// heading at which the atom began.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Advancing {
     quark: Advance,

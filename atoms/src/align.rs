@@ -12,13 +12,13 @@ use crate::gains::{Gains, fire_in_turn};
 
 /// Minimum turn rate, in rad/s; a lower rate does not move the wheels.
 const SLOWEST: f64 = 0.08;
-/// Maximum distance, in metres, between two differences of opposite sign with equal ranges between them. If
-/// they are further apart, one of the sonars points past an edge, or has measured a wrong range.
+/// Maximum distance, in metres, between two consecutive differences of opposite sign that implies equal ranges at a
+/// heading between them. If the differences are further apart, one of the sonars points past an edge, or has measured a
+/// wrong range.
 const CONTINUOUS: f64 = 0.1;
-/// Number of sign changes of the difference without equal ranges, after which no heading with equal ranges is
-/// expected.
+/// Number of sign changes of the difference after which the law no longer expects to find a heading with equal ranges.
 const CHANGES: u8 = 5;
-/// Duration of a full circle at the slowest turn, in seconds, after which every heading has been tried.
+/// Duration of a full circle at the minimum turn rate, in seconds, after which the robot has tried every heading.
 const LONGEST: f64 = TAU / SLOWEST;
 /// Maximum angle to the final heading at which the robot is brought to rest.
 const NEAR: Radians = Radians::from_degrees(1.0);
@@ -52,10 +52,10 @@ impl Align {
 pub struct Aligning {
     sonars: Align,
     began: Nanos,
-    /// Time at which both sonars last heard an echo.
+    /// Time at which both sonars last heard an echo; `None` before that.
     heard: Option<Nanos>,
     last: Option<Sample>,
-    /// Last sample with the least difference.
+    /// Sample with the least difference so far, the last one if several are equal; `None` before the first sample.
     best: Option<Sample>,
     /// Number of times that the sign of the difference has changed.
     changes: u8,
@@ -65,7 +65,7 @@ pub struct Aligning {
 /// The difference of the ranges of both sonars, and the heading to which it belongs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sample {
-    /// Range of the first sonar minus that of the second, in metres.
+    /// Range of the first sonar minus the range of the second, in metres.
     difference: f64,
     /// Mean of the headings at which the sonars pinged. Where the ranges change evenly, the difference belongs
     /// to this heading.
@@ -76,7 +76,7 @@ struct Sample {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct End {
     heading: Radians,
-    /// `true` if the law's last input stopped the robot at this heading.
+    /// `true` if the last input of the law stopped the robot at this heading.
     stands: bool,
 }
 
@@ -94,7 +94,7 @@ impl Aligning {
         self.sample(y).filter(|sample| sample.difference.abs() <= Gains::of(y).align_equal)
     }
 
-    /// Takes a sample. If the robot has just passed equal ranges, the law ends at the heading with these.
+    /// Takes a sample. If the robot has just passed a heading with equal ranges, the law will end at this heading.
     ///
     /// Pings of sonars that fire in turn belong to headings that are degrees apart, and their ranges may be wrong by an
     /// inch, so a change of sign alone does not mean equal ranges.
@@ -150,7 +150,8 @@ impl Aligning {
     }
 }
 
-/// Returns the ping with the smallest range among those that confirm each other, and its range in metres.
+/// Returns the ping with the smallest range among those that confirm each other, and its range in metres; `None` if
+/// none of these pings has an echo.
 fn nearest<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<(&Ping, f64)> {
     let pings = y.pings(sonar).newest_first().take(y.confirmation());
     let heard = pings.filter_map(|ping| ping.range.map(|range| (ping, range.0)));

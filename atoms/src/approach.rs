@@ -5,28 +5,30 @@ use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
 
 /// Maximum angle between a sonar's axis and the driving direction at which the sonar is used to detect people.
 const AHEAD: Radians = Radians::from_degrees(14.0);
-/// Minimum time between two compared echoes, at which the difference of their ranges exceeds their errors.
+/// Minimum time between two compared echoes. In a shorter time, the range of an approaching person decreases by less
+/// than the error of the ranges.
 const APART: Nanos = Nanos(200_000_000);
-/// Minimum speed of a person who approaches, in m/s; the robot avoids anything slower as a fixed obstacle.
+/// Minimum speed of an approaching person, in m/s; the robot avoids anything slower as it avoids a fixed obstacle.
 const SLOWEST: f64 = 0.3;
 /// Maximum speed of a person, in m/s; faster echoes belong to two different objects.
 const FASTEST: f64 = 2.0;
-/// Minimum decrease, in metres, of the range of an approaching object; a smaller decrease may be the error of a
-/// fixed obstacle's ranges, which is 1.5 cm and a step of an inch.
+/// Minimum decrease, in metres, of the range of an approaching object. A smaller decrease may be the error of the
+/// ranges of a fixed obstacle, which is 1.5 cm plus rounding to an inch.
 const NEARER: f64 = 0.1;
 
-/// Number of echoes kept.
+/// Number of echoes that are kept.
 const KEPT: usize = 5;
 /// Minimum number of consecutive echoes that get nearer.
 const AGREE: usize = 3;
-/// Minimum time for which echoes get nearer, for sonars that fire in turn. Their wide cones hear different
-/// rough walls beside the way alternately, and three such ranges may be in descending order by chance.
+/// Minimum time, on a robot whose sonars fire in turn, for which the echoes must get nearer. The wide cones of its
+/// sonars hear different rough walls beside the way alternately, and three such ranges may happen to be in descending
+/// order.
 const LASTS: Nanos = Nanos(1_400_000_000);
 /// Maximum lateral distance, in metres, between two echoes of the same object.
 const ACROSS: f64 = 0.25;
 
-/// Maximum turn rate of the robot, in rad/s, between compared echoes: a wall that the edge of a cone just
-/// touches appears and disappears as the robot turns.
+/// Maximum turn rate of the robot, in rad/s, between compared echoes. As the robot turns, a wall that the edge of a
+/// cone just touches appears and disappears.
 const TURNS: f64 = 0.02;
 
 /// An echo: its place in the odometry's axes, and its time.
@@ -99,7 +101,7 @@ impl Approach {
     }
 }
 
-/// Returns the sonar that faces in this direction, given in the odometry's axes; `None` if there is none.
+/// Returns the sonar whose axis is nearest to the direction `way` in the odometry's axes.
 fn looking(here: Pose, way: Radians) -> Option<SonarId> {
     let off = |sonar: SonarId| Radians(here.theta.0 + sonar.bearing().0 - way.0).wrapped().0.abs();
     let sonars = (0..SONARS as u8).map(SonarId::new).map(|sonar| (sonar, off(sonar)));
@@ -112,8 +114,9 @@ mod tests {
     use crate::trial::Sensed;
     use mdle_runtime::Twist;
 
-    /// Returns the seconds until a person arrives who is heard at these ranges, one second apart, by a robot that
-    /// drives at `v` m/s and turns at `omega` rad/s.
+    /// Returns the time, in seconds, until an approaching person reaches a robot that drives at `v` m/s and turns at
+    /// `omega` rad/s, and that hears the person at these ranges, one second apart; `None` if the robot detects no
+    /// approaching person.
     fn seconds(ranges: &[Option<f64>], v: f64, omega: f64) -> Option<f64> {
         let (mut y, mut approach) = (Sensed::default(), Approach::default());
         for (second, range) in (0..).zip(ranges) {
@@ -146,8 +149,8 @@ mod tests {
         assert_eq!(seconds(&[Some(4.0), Some(3.8), Some(2.6)], 0.2, 0.0), None);
     }
 
-    /// Returns `true` if a robot at rest whose sonars fire in turn avoids a person who comes at 1 m/s and is heard this
-    /// many times, 0.36 s apart.
+    /// Returns `true` if a robot at rest whose sonars fire in turn detects a person who approaches at 1 m/s after
+    /// `echoes` echoes, 0.36 s apart.
     fn avoids(echoes: u64) -> bool {
         let (mut y, mut approach) = (Sensed::default(), Approach::default());
         for echo in 0..echoes {

@@ -10,26 +10,27 @@ use crate::directions::{CONE, DIRECTIONS, after, newest, off, towards};
 const ALSO_FACES: f64 = 1.5;
 /// Difference, in metres, below which ranges count as equal.
 const ALIKE: f64 = 0.06;
-/// Minimum angle between a diagonal and the axis of a ping that distinguishes a wall there from an edge.
+/// Minimum angle from a diagonal of the pings that distinguish a wall that faces the diagonal from an edge.
 const BESIDE: Radians = Radians::from_degrees(16.0);
-/// Maximum distance, in metres, of an echo beyond the line of a wall that faces a diagonal. Beside the edge of a
-/// passage, rough walls that run away from the edge are heard further away.
+/// Maximum distance, in metres, between an echo and the line of a wall that faces a diagonal. At the edge of a passage,
+/// echoes of the rough walls that lead away from the edge are further beyond this line.
 const OF_LINE: f64 = 0.04;
 
-/// Angles, in degrees, from one of the four directions to a smooth wall to which the robot is askew.
+/// Angles, in degrees counter-clockwise from one of the four directions, of the normals of smooth walls that are looked
+/// for.
 const SMOOTH_AT: [f64; 7] = [26.0, 31.0, 38.0, 45.0, 52.0, 59.0, 64.0];
 /// Angle from the normal of a smooth wall up to which the wall is heard.
 const WIDTH: Radians = Radians::from_degrees(31.0);
 /// Angle from the normal of a wall up to which the range equals the distance of the wall.
 const MIDDLE: Radians = Radians::from_degrees(14.0);
-/// Angles from the normal of a smooth wall between which the wall is not heard.
+/// Range of angles from the normal of a smooth wall at which the wall is not heard.
 const BEYOND: [Radians; 2] = [Radians::from_degrees(44.0), Radians::from_degrees(66.0)];
 /// Age from which a ping is no longer considered for a smooth wall.
 const LATELY: Nanos = Nanos(2_200_000_000);
-/// Number of pings that hear the wall per ping that may have missed it or measured a wrong range.
+/// Minimum number of pings that must hear the wall for each ping that may have missed it or measured a wrong range.
 const FEW: usize = 3;
 
-/// Returns `true` if a wall faces between two of the four directions.
+/// Returns `true` if a wall faces the robot between two of the four directions.
 pub(crate) fn is_askew<Y: SonarRing>(y: &Y) -> bool {
     DIRECTIONS.iter().any(|direction| {
         let is_smooth_at = |degrees: &f64| is_smooth_wall(y, after_by(*direction, *degrees));
@@ -70,11 +71,11 @@ fn runs_off<Y: SonarRing>(y: &Y, diagonal: SonarId, range: Meters, beside: Sonar
     pings[1].is_some() && pings.into_iter().flatten().all(is_beyond)
 }
 
-/// A ping as seen from the normal of a wall.
+/// A ping relative to the normal of a wall.
 struct Look {
-    /// Angle of the ping's axis from the normal.
+    /// Angle between the ping's axis and the normal.
     off: Radians,
-    /// Distance, in metres, by which the robot was nearer to the wall at that time.
+    /// Distance, in metres, by which the robot was nearer to the wall at the time of the ping than it is now.
     nearer: f64,
     range: Option<Meters>,
 }

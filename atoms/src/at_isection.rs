@@ -8,12 +8,12 @@ use crate::askew::is_askew;
 use crate::directions::{DIRECTIONS, towards};
 use crate::gains::fire_in_turn;
 
-/// The interrupt `atIsection`, which fires while all four directions match the bits: 1 for a near obstacle, 0
-/// for a free direction.
+/// The interrupt `atIsection`, which fires while all four directions match the bits: 1 for a near obstacle, 0 for a
+/// free direction.
 ///
-/// On a robot whose sonars fire in turn, as on real robots, walls must also lie in the four directions and not
-/// between them: a wall is heard only by the sonars that it faces, so a robot that is turned between two
-/// directions hears nothing, and a blocked direction seems free.
+/// On a robot whose sonars fire in turn, as on real robots, the interrupt also requires that walls face the robot in
+/// the four directions and not between them. A wall is heard only by the sonars that it faces, so a robot that is
+/// turned between two directions hears nothing, and a blocked direction seems free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AtIsection {
     pattern: Bits<4>,
@@ -39,20 +39,21 @@ impl<Y: SonarRing> Interrupt<Y> for AtIsection {
     }
 }
 
-/// Returns `Some(true)` if an obstacle is near in the direction of this one sonar; `None` before its first ping.
+/// Returns `Some(true)` if this one sonar hears a near obstacle, and `Some(false)` if its direction is free; `None`
+/// before its first ping.
 ///
-/// The smallest of the last ranges decides, so "blocked" counts at once and "free" only if all pings agree: a
-/// missed echo does not free a direction. Only the sonar in that direction is considered, since its neighbours
-/// hear the walls along a corridor.
+/// The smallest of the last ranges decides: one near echo blocks the direction, and it is free again only when all last
+/// pings agree, so that a missed echo does not free it. Only the sonar in that direction is considered, since its
+/// neighbours hear the walls along a corridor.
 fn blocked<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
     let pings = y.pings(sonar);
     pings.newest_first().next()?;
     Some(pings.nearest(y.confirmation()).is_some_and(|range| range < y.blocked_within()))
 }
 
-/// Returns `Some(true)` if an obstacle is near in the direction of `sonar`, on a robot whose sonars fire in
-/// turn. The pings of any sonar that faced in that direction of the room count, since a turning robot's last
-/// pings of one sonar were in other directions.
+/// Returns `Some(true)` if an obstacle is near in the direction of `sonar`, and `Some(false)` if the direction is free,
+/// on a robot whose sonars fire in turn; `None` after too few pings. The pings of any sonar that faced in that
+/// direction of the room count, because the last pings of a single sonar of a turning robot were in other directions.
 fn blocked_in_turn<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
     let near = towards(y, sonar)?;
     Some(near < y.blocked_within())
@@ -123,8 +124,8 @@ mod tests {
         assert!(!fires("1000", &y));
     }
 
-    /// Returns `true` if the left seems free, and `true` if it seems blocked, after `pings` of its sonar and
-    /// the last two pings of both neighbours, `beside`, all oldest first.
+    /// Returns two verdicts after the `pings` of the left sonar and the last two pings of both neighbours, `beside`,
+    /// all oldest first: `true` if the left seems free, and `true` if it seems blocked.
     fn left(pings: [Option<f64>; 3], beside: [[Option<f64>; 2]; 2]) -> (bool, bool) {
         let mut y = in_turn([9.0; 16]);
         let [before, after] = &beside;

@@ -4,18 +4,18 @@
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
 
-/// Minimum and maximum speed, in m/s, of a person who crosses: anything slower counts as fixed, and faster
-/// echoes belong to different objects.
+/// Minimum and maximum speed, in m/s, of a person who crosses the way. A slower object counts as fixed, and echoes that
+/// move faster belong to different objects.
 const SPEEDS: [f64; 2] = [0.25, 2.0];
 /// Maximum turn rate of the robot, in rad/s, between compared echoes: as the robot turns, the echo of a wall
 /// moves along the wall.
 const TURNS: f64 = 0.02;
-/// Minimum distance, in metres, by which the echoes of a crossing person get nearer; a smaller decrease may be
-/// the error of ranges.
+/// Minimum decrease, in metres, of the distance of a crossing person between echoes. A smaller decrease may be an error
+/// of the ranges.
 const NEARER: f64 = 0.075;
 /// The radius of a person, in metres.
 const PERSON: f64 = 0.25;
-/// Minimum distance, in metres, to the side of the way; a person nearer to the way is an obstacle, or walks
+/// Minimum distance, in metres, of a crossing person from the way. A person nearer to the way is an obstacle, or walks
 /// along the way.
 const ASIDE: f64 = 0.45;
 /// Maximum time, in seconds, in which a person reaches the way.
@@ -28,14 +28,15 @@ struct Echo {
     across: f64,
 }
 
-/// Returns the time, in seconds, until a person who comes from a side has passed; `None` if no such person comes. The
-/// person would pass ahead of the robot if it stood still, but may meet it if it drove on at `speed`, in m/s.
+/// Returns the time, in seconds, until a person who comes from a side has crossed the way; `None` if no such person
+/// comes. The person would pass ahead of the robot if it stood still, but may meet it if it drove on at `speed`, in
+/// m/s.
 pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, here: Pose, speed: f64) -> Option<f64> {
     (0..SONARS as u8).map(SonarId::new).filter_map(|sonar| comes(y, sonar, here, speed)).reduce(f64::max)
 }
 
-/// Returns the time, in seconds, until a person has passed whom this sonar has heard in all its kept pings, as
-/// [`crosses`] does; `None` if it hears no such person.
+/// Returns the time, in seconds, until a person has crossed the way whom this sonar has heard in all its kept pings;
+/// `None` if it hears no such person. The conditions are those of [`crosses`].
 fn comes<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, speed: f64) -> Option<f64> {
     const { assert!(PINGS_KEPT == 3) };
     if sonar.bearing().wrapped().0.abs() > core::f64::consts::FRAC_PI_2 {
@@ -87,8 +88,8 @@ mod tests {
     use crate::trial::Sensed;
     use mdle_runtime::Nanos;
 
-    /// Returns the seconds for which a robot at rest waits for a person whom its sonar 3 hears at these ranges, one
-    /// second apart.
+    /// Returns the time, in seconds, for which a robot at rest waits for a person whom its sonar 3 hears at these
+    /// ranges, one second apart; `None` if it does not wait.
     fn seconds(ranges: [f64; 3]) -> Option<f64> {
         let mut y = Sensed::default();
         for (second, range) in (0..).zip(ranges) {

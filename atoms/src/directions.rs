@@ -1,4 +1,4 @@
-//! The echoes that a robot's sonars have heard in its four directions, no matter which sonar faced there.
+//! Finds the echoes that a robot's sonars have heard in its four directions, no matter which sonar faced there.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Ping, Radians, SONARS, SonarId};
@@ -6,25 +6,26 @@ use mdle_runtime::{Meters, Ping, Radians, SONARS, SonarId};
 /// The sonars front, left, back and right, in the order in which the bits are written.
 pub(crate) const DIRECTIONS: [SonarId; 4] = [SonarId::new(0), SonarId::new(4), SonarId::new(8), SonarId::new(12)];
 
-/// Maximum angle between a ping's axis and a direction at which the ping counts there: half the angle between
-/// two sonars and a little more, so that a slowly turning robot always has a sonar in each direction.
+/// Maximum angle between a direction and the axis of a ping that counts for it. It is a little more than half the angle
+/// between two sonars, so that a slowly turning robot always has a sonar in each direction.
 const WITHIN: Radians = Radians::from_degrees(14.0);
-/// Difference, in metres, below which two ranges of one sonar belong to the same object and are not random.
+/// Difference, in metres, below which two ranges of one sonar are taken for echoes of the same object, and not for
+/// random errors.
 const SAME: f64 = 0.1;
 
 /// Half the angle of the cone in which a sonar hears a rough wall.
 pub(crate) const CONE: Radians = Radians::from_degrees(12.5);
-/// Maximum distance, in metres, from the edge of a cone to the wall that it reaches.
+/// Maximum distance, in metres, between a wall and the point where the edge of a cone is taken to reach it.
 const OF_WALL: f64 = 0.08;
 /// Factor and offset, in metres, by which the ranges of a sonar's neighbours may exceed its own range along a
 /// straight wall; an echo from beyond an opening is further away.
 const SLANT: (f64, f64) = (1.08, 0.02);
 
-/// Returns the minimum range of the two newest pings in the present direction of a sonar; infinite if both heard
-/// nothing.
+/// Returns the minimum range of the two newest pings in the present direction of a sonar; infinite if neither had an
+/// echo.
 ///
-/// `None` if there were too few pings there: a single ping with a near echo counts, but a single ping without
-/// one does not free the direction.
+/// `None` if there were too few pings in that direction: a single ping with a near echo is enough, but a single ping
+/// without one does not free the direction.
 pub(crate) fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters> {
     let newest = newest(y, direction, |sonar, ping| !is_of_side(y, direction, sonar, ping));
     let nearest = nearest(newest);
@@ -56,8 +57,8 @@ pub(crate) fn newest<Y: SonarRing>(
     newest
 }
 
-/// Returns `true` if this ping of `sonar` was in the direction in which `direction` looks now, and its echo, if it had
-/// one, still lies in that direction: a jamb that the robot has passed no longer does.
+/// Returns `true` if this ping of `sonar` was in the present direction of the sonar `direction`, and its echo, if it
+/// had one, still lies in that direction. The echo of a jamb that the robot has passed no longer does.
 fn looked_there<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Ping) -> bool {
     let here = y.here();
     let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
@@ -67,14 +68,14 @@ fn looked_there<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &
     is_within(axis.0) && is_within(libm::atan2(place.y.0 - here.y.0, place.x.0 - here.x.0))
 }
 
-/// Returns the angle from the direction of a sonar now to the axis of this ping of `sonar`.
+/// Returns the angle from the present direction of the sonar `direction` to the axis of this ping of `sonar`.
 pub(crate) fn off<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Ping) -> Radians {
     Radians(ping.pose.theta.0 + sonar.bearing().0 - y.here().theta.0 - direction.bearing().0).wrapped()
 }
 
-/// Returns `true` if the near echo of this ping may be of a wall along the way in `direction`: the ping looked to the
-/// side of that wall, and the edge of its cone reaches it. A rough wall along the way causes such echoes without
-/// blocking the way.
+/// Returns `true` if the near echo of this ping may come from a wall that runs along the way in `direction`: the ping
+/// faced to the side of that wall, and the edge of its cone reaches the wall. A rough wall along the way causes such
+/// echoes without blocking the way.
 fn is_of_side<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Ping) -> bool {
     let Some(range) = ping.range.filter(|range| *range < y.blocked_within()) else { return false };
     let (Radians(off), here) = (off(y, direction, sonar, ping), y.here());
@@ -88,7 +89,7 @@ fn is_of_side<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Pi
     to_side > y.ring_radius().0 + wall.0 - OF_WALL
 }
 
-/// Returns the sonar this many places counter-clockwise after another.
+/// Returns the sonar that is `further` positions counter-clockwise of `sonar` on the ring.
 pub(crate) fn after(sonar: SonarId, further: usize) -> SonarId {
     SonarId::new(((sonar.number() + further) % SONARS) as u8)
 }
@@ -99,9 +100,9 @@ fn nearest(pings: [Option<(SonarId, &Ping)>; 2]) -> Option<Meters> {
     heard.reduce(|one, other| if other < one { other } else { one })
 }
 
-/// Returns the range of a wall that the third-last ping of a sonar heard and its two last pings did not: they returned
-/// no echo or a wrong range, or the sonar has turned past the wall. Both neighbours of the sonar must have heard the
-/// wall lately, and nothing further away.
+/// Returns the range of a wall that the third-last ping of a sonar heard and its last two pings did not. The last two
+/// returned no echo or a wrong range, or the sonar has turned past the wall. The wall counts only if both neighbours of
+/// the sonar have heard it lately, and nothing further away.
 fn overheard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<Meters> {
     let [new, old, before] = [0, 1, 2].map(|number| y.pings(sonar).newest_first().nth(number)?.range);
     let before = before.filter(|range| *range < y.blocked_within())?;

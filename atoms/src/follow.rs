@@ -5,24 +5,25 @@ use mdle_runtime::{
     Begin, Completes, Control, Law, MetersPerSecond, Nanos, PeerState, Pose, Radians, RadiansPerSecond, Twist,
 };
 
-/// Distance to keep between the centres, in metres; a larger distance shortens the path more with each trip.
+/// Distance to keep between the centres of the robots, in metres; a larger distance shortens the path more with each
+/// trip.
 const GAP: f64 = 0.90;
 /// Maximum forward speed, in m/s.
 const SPEED: f64 = 0.5;
-/// Turn rate, in rad/s, per radian by which the leader is not straight ahead.
+/// Turn rate, in rad/s, per radian between the heading and the direction of the leader.
 const TURNS: f64 = 3.0;
 /// Maximum turn rate, in rad/s.
 const FASTEST: f64 = 1.5;
-/// Speed in addition to the leader's, in m/s, per metre by which the gap is too large.
+/// Speed, in m/s, that is added to the leader's speed per metre by which the gap is too large.
 const CLOSES: f64 = 1.0;
 /// Distance beyond [`GAP`], in metres, at which the follower has arrived.
 const NEAR: f64 = 0.05;
 /// Speed below which the leader counts as at rest, in m/s.
 const AT_REST: f64 = 0.02;
 
-/// `u_f = v_leader + k_v (ρ − d)`, at most `v` and less while the leader is not ahead; `u_θ = k(φ − θ)`, with the
-/// leader at the distance `ρ` in the direction `φ`. The paper's `u_f` is the constant `v`: with it the follower runs
-/// into a leader that stops.
+/// The control `Follow`: `u_f = v_leader + k_v (ρ − d)`, at most `v` and less while the leader is not ahead, and `u_θ =
+/// k(φ − θ)`, with the leader at the distance `ρ` in the direction `φ`. In the paper, `u_f` is the constant `v`, with
+/// which the follower runs into a leader that stops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Follow(&'static str);
 
@@ -34,8 +35,8 @@ impl Follow {
     }
 }
 
-/// The law of [`Follow`], which is done when the leader is at rest nearby, after one of the two has moved. The
-/// robot stands still while the leader's state is stale.
+/// The law of [`Follow`], which is done when the leader is at rest nearby, and the leader has moved since the law began
+/// or the robot has driven at least 0.9 m. The robot stands still while the leader's state is stale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pursuing {
     robot: &'static str,
@@ -97,7 +98,7 @@ mod tests {
     use super::*;
     use crate::trial::{PERIOD, Sensed, begun};
 
-    /// Sets the leader's state: its place, its speed, and the age of the state.
+    /// Sets the state of the leader: its position, its speed, and the age of the state.
     fn see(y: &mut Sensed, (x, side): (f64, f64), v: f64, age: u64) {
         let pose = Pose { x: Meters(x), y: Meters(side), theta: Radians(0.0) };
         let velocity = Twist { v: MetersPerSecond(v), ..Twist::default() };
@@ -105,7 +106,7 @@ mod tests {
         y.link(Peer { name: "ada", rounds: 0, state: Some(state) });
     }
 
-    /// Returns the input of the first turn with such a leader.
+    /// Returns the input of the first turn with a leader at this position and speed, whose state has this age.
     fn asked(place: (f64, f64), v: f64, age: u64) -> [f64; 2] {
         let mut y = Sensed::default();
         see(&mut y, place, v, age);

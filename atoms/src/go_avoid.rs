@@ -1,5 +1,5 @@
-//! `goAvoid ψ r v`: drives to a point given by bearing and range, round obstacles (paper, section IV-A), out of the way
-//! of a person who approaches the robot, and not before a person who is about to cross its way.
+//! `goAvoid ψ r v`: drives round obstacles to a point given by bearing and range (paper, section IV-A). The robot gives
+//! way to a person who approaches it, and waits for a person who is about to cross its way.
 
 use mdle_runtime::capability::{DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{
@@ -17,47 +17,49 @@ use crate::winding::Winding;
 
 /// Distance from the goal below which the goal is reached.
 const ARRIVED: Meters = Meters(0.12);
-/// Distance between the body and the goal, in metres, below which the robot is near enough if an obstacle keeps
-/// it from coming nearer: odometry drifts, so a goal near a wall may end up inside the wall.
+/// Distance between the body and the goal, in metres, below which the robot is near enough if an obstacle keeps it from
+/// coming nearer. Odometry drifts, so a goal near a wall may end up inside the wall.
 const NEAR: f64 = 0.1;
-/// Time for which an obstacle must have kept the robot from coming nearer.
+/// Time for which an obstacle must keep the robot, near the goal, from coming nearer before the law is done.
 const KEPT_OFF: Nanos = Nanos(1_000_000_000);
 /// Maximum turn rate, in rad/s.
 const FASTEST: f64 = 0.9;
-/// Angle off the chosen direction from which the robot turns on the spot.
+/// Angle between the heading and the chosen direction from which the robot turns on the spot.
 const ON_THE_SPOT: Radians = Radians::from_degrees(50.0);
-/// Angle between a detour and the goal's direction above which the detour is kept up.
+/// Angle between the chosen direction and the goal's direction above which a detour begins.
 const DETOUR: Radians = Radians::from_degrees(60.0);
-/// Time after which a detour follows its obstacle: the goal's direction would lead back to where the detour
-/// began.
+/// Time after which a detour follows its obstacle instead of aiming at the goal, whose direction would lead back to
+/// where the detour began.
 const ALONG_AFTER: Nanos = Nanos(8_000_000_000);
-/// Angle by which a detour is turned towards the obstacle that it follows.
+/// Angle from the heading towards the obstacle at which a robot aims while its detour follows the obstacle.
 const ALONG: Radians = Radians::from_degrees(40.0);
-/// Distance that the robot must have gained towards the goal before a detour is over; `DETOUR_LEAST` must have
-/// passed as well.
+/// Distance by which the robot must have come nearer to the goal before a detour ends; `DETOUR_LEAST` must have passed
+/// as well.
 const GAINED: Meters = Meters(0.1);
 /// Minimum duration of a detour.
 const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
-/// Duration of a detour to a goal that is renewed: its distance need not be known, so the gain cannot be
-/// measured.
+/// Minimum duration of a detour to a goal that another goal has replaced. The distance of such a goal need not be
+/// known, so the gain cannot be measured.
 const DETOUR_RENEWED: Nanos = Nanos(4_000_000_000);
 /// Angle from the goal's direction at which the robot gives way to an approaching person.
 const ASIDE: Radians = Radians::from_degrees(60.0);
-/// Time without progress for which the robot follows ways on its map, which is too small to show a way out of a large
-/// corner, and for which it then goes round obstacles without the map, in turns.
+/// Durations of two phases that alternate while the robot makes no progress. For the duration `SQUEEZES` it follows
+/// ways on its map; then, for the duration `GOES_ROUND`, it goes round obstacles without the map, which is too small to
+/// show a way out of a large corner.
 const SQUEEZES: Nanos = Nanos(30_000_000_000);
 const GOES_ROUND: Nanos = Nanos(60_000_000_000);
 /// Time without progress after which the robot follows ways on its map.
 const HELD_UP: Nanos = Nanos(1_200_000_000);
-/// Time without progress after which the robot counts as kept from coming nearer, whatever it hears, and is near enough
-/// by what odometry may have drifted.
+/// Time without progress after which the robot counts as kept from coming nearer even if it hears no obstacle, and the
+/// distance at which it is near enough grows by the possible drift of odometry.
 const DRIFTS_AFTER: Nanos = Nanos(10_000_000_000);
-/// Drift of odometry as a part of the way driven, and its maximum in metres. The way of a robot that searches grows
-/// without end: without a maximum it would be done anywhere in the end.
+/// Possible drift of odometry, as a fraction of the distance driven, and its maximum, `DRIFTS_MOST`, in metres. A robot
+/// that searches drives without end, so without a maximum its law would eventually be done at any distance from the
+/// goal.
 const DRIFTS: f64 = 0.02;
 const DRIFTS_MOST: f64 = 0.2;
 
-/// The control `goAvoid`, which drives to the point at a bearing and range from where the atom begins.
+/// The control `goAvoid`, which drives to the point at a bearing and range from the pose at which the atom begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoAvoid {
     bearing: Radians,
@@ -74,12 +76,12 @@ impl GoAvoid {
     }
 }
 
-/// The law of [`GoAvoid`]: done within 0.12 m of the goal, or with its body within 0.1 m where something keeps it off
-/// (docs/src/reference/language.md, 4).
+/// The law of [`GoAvoid`], which is done when the robot is within 0.12 m of the goal, or its body is within 0.1 m of
+/// the goal and something keeps it from coming nearer (docs/src/reference/language.md, 4).
 ///
-/// Wheels that slip when they turn leave odometry a heading that is off, and the goal off with it. A robot that knows
-/// the drift of its heading by walls ([`Odometry::drift`]) therefore turns the goal by what the drift changes, around
-/// the place where it was measured before: walls are taken to run along the axes of the frame.
+/// Wheels that slip in turns make the heading by odometry wrong, and so the position of the goal. A robot that measures
+/// the drift of its heading at walls ([`Odometry::drift`]) therefore turns the goal by each change of the drift, around
+/// the place of the previous change. The law assumes that walls run along the axes of the frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoingRound {
     goal: Pose,
@@ -88,28 +90,29 @@ pub struct GoingRound {
     progress: Progress,
     /// The direction of the frame's first axis.
     axis: Radians,
-    /// The drift of the heading by which the goal is turned, and the pose where the drift was last measured.
+    /// The drift of the heading for which the goal has been turned, and the pose at which the drift last changed.
     drift: (Radians, Pose),
     speed: MetersPerSecond,
     look_ahead: Meters,
     /// Distance from the goal at which the robot is near enough.
     near: Meters,
-    /// Length of the way driven, in metres, and the last place.
+    /// Distance driven, in metres, and the pose in the last turn.
     driven: (f64, Pose),
     winding: Winding,
     previous: Option<Radians>,
-    /// Time at which the robot first headed in the direction that it had chosen, after the turn with which it begins.
+    /// Time at which the robot first faced the direction that it had chosen, after its initial turn; `None` before that
+    /// time.
     headed: Option<Nanos>,
     detour: Option<Detour>,
-    /// Time at which something in the way began to keep the robot, already near the goal, from coming nearer.
+    /// Time from which something has kept the robot, already near the goal, from coming nearer; `None` if nothing does.
     kept_off: Option<Nanos>,
     passers: Passers,
     memory: Memory,
     narrow: Narrow,
 }
 
-/// A way round something that leads far off the goal's direction: kept on one side until it has helped, or the robot
-/// would turn to and fro in front of it.
+/// A way round an obstacle that leads far off the goal's direction. The robot keeps to one side of the obstacle until
+/// the detour has helped; otherwise it would turn to and fro in front of the obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Detour {
     side: Side,
@@ -119,15 +122,14 @@ struct Detour {
 }
 
 impl GoingRound {
-    /// Returns this law, on its way to the goal of another law, which is created at this place.
+    /// Returns this law with the goal of `other`, a law that has just been created at `here`.
     pub(crate) fn with_goal_of(self, other: &Self, here: Pose) -> Self {
         // A goal that moves off with the robot takes away nothing of the progress towards it.
         let progress = self.progress.moved(Meters(here.distance(&other.goal).0 - here.distance(&self.goal).0));
         Self { goal: other.goal, is_renewed: true, progress, axis: other.axis, drift: other.drift, ..self }
     }
 
-    /// Turns the goal by the change of the drift since its last measurement, around the place of that
-    /// measurement.
+    /// Turns the goal by the change of the drift, around the place at which the drift last changed.
     fn turn_goal(&mut self, drift: Radians, here: Pose) {
         let (before, at) = self.drift;
         if drift == before {
@@ -145,7 +147,7 @@ impl GoingRound {
         Radians(libm::atan2(self.goal.y.0 - here.y.0, self.goal.x.0 - here.x.0))
     }
 
-    /// Returns `true` if the robot has come no nearer to the goal for so long that its odometry is in doubt.
+    /// Returns `true` if the robot has made no progress towards the goal for so long that its odometry is in doubt.
     fn is_lost(&self, here: Pose, t: Nanos) -> bool {
         self.progress.stalled(here, &self.goal, t) > DRIFTS_AFTER
     }
@@ -156,7 +158,7 @@ impl GoingRound {
         Meters(self.near.0 + drifted)
     }
 
-    /// Notes whether something keeps the robot, which is near the goal, from coming nearer.
+    /// Updates `kept_off`, depending on whether the robot is near the goal and something keeps it from coming nearer.
     fn notice(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) {
         let Meters(distance) = here.distance(&self.goal);
         let is_in_the_way = obstacles.free(self.direction(here)).0 < distance - ARRIVED.0 || self.narrow.stands();
@@ -165,13 +167,13 @@ impl GoingRound {
         self.kept_off = self.kept_off.or(Some(t)).filter(|_| is_kept_off);
     }
 
-    /// Returns `true` if the detour has lasted long enough to go along its obstacle.
+    /// Returns `true` if the detour has lasted long enough to follow its obstacle.
     fn goes_along(&self, t: Nanos) -> bool {
         self.detour.is_some_and(|detour| t.since(detour.since) > ALONG_AFTER)
     }
 
-    /// Returns the direction in which to give way, which runs along the wall on that side once the robot is
-    /// there.
+    /// Returns the direction in which the robot gives way to this side. Once the robot has reached the wall on that
+    /// side, the direction runs along the wall.
     fn aside(&mut self, side: Side, goal: Radians, obstacles: &Obstacles, look_ahead: Meters) -> Radians {
         let aside = match side {
             Side::Left => Radians(goal.0 + ASIDE.0),
@@ -220,7 +222,7 @@ impl GoingRound {
     }
 }
 
-/// The direction that the tangent rule has chosen, and the free lengths of ways.
+/// The direction that the tangent rule has chosen, and the free lengths of the ways ahead and to the goal.
 struct Chosen {
     direction: Radians,
     /// Free length of the way in the robot's heading.

@@ -1,4 +1,4 @@
-//! Turning to a heading, as `rotate` and `turn` do: `u_θ = k(α − θ)` (paper, section IV-A).
+//! Turns to a heading, for the laws `rotate` and `turn`: `u_θ = k(α − θ)` (paper, section IV-A).
 
 use mdle_runtime::capability::{DiffDrive, Odometry};
 use mdle_runtime::{Nanos, Radians, RadiansPerSecond, Twist};
@@ -12,8 +12,8 @@ const NEAR: Radians = Radians::from_degrees(2.0);
 /// Difference of the wheels' speeds, in m/s, below which the robot no longer turns.
 const AT_REST: f64 = 0.02;
 
-/// Returns the input that turns on the spot by the remaining angle `left` with the gain `gain`, which is `k`;
-/// `before` is the time of the law's previous input.
+/// Returns the input that turns on the spot by the remaining angle `left` with the gain `gain`, the `k` of the formula.
+/// `before` is the time of the law's previous input; `None` for the first input.
 pub(crate) fn turning(left: Radians, gain: f64, before: Option<Nanos>, t: Nanos) -> Twist {
     let period = before.map_or(0.0, |before| t.since(before).seconds());
     let gain = if gain * period > AT_ONCE { AT_ONCE / period } else { gain };

@@ -9,17 +9,17 @@ use mdle_runtime::{
 
 use crate::go_avoid::{GoAvoid, GoingRound};
 
-/// Room that the group keeps beside the body of its outermost robot, in metres: the robots drift apart on the way.
+/// Additional room beside the outermost robot of the group, in metres, because the robots drift apart on the way.
 const DRIFTS: f64 = 0.1;
-/// Distance from another robot, in metres, within which an echo is from that robot.
+/// Maximum distance, in metres, between an echo and the position of another robot that is taken to have caused it.
 const MEMBER: f64 = 0.3;
-/// Half of the angle within which a sonar hears.
+/// Half of the angle of the cone in which a sonar hears.
 const CONE: Radians = Radians::from_degrees(15.0);
-/// Maximum turn rate, in rad/s: the outermost robots go on a larger circle.
+/// Maximum turn rate, in rad/s, since the outermost robots drive on a larger circle.
 const FASTEST: f64 = 0.3;
 
-/// The control `lead`: `goAvoid` for a body that is wider to both sides, which ignores echoes of the other
-/// robots that the plan names.
+/// The control `lead`: `goAvoid` for a body that is wider on both sides. It ignores echoes of the other robots that the
+/// plan names.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lead {
     width: Meters,
@@ -38,9 +38,9 @@ impl Lead {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Leading {
     width: Meters,
-    /// The pings that were not echoes of other robots when they were taken.
+    /// The pings, without those that were echoes of other robots when they arrived.
     heard: [Pings; SONARS],
-    /// Time of the last turn.
+    /// Time of the previous turn.
     before: Nanos,
     law: GoingRound,
 }
@@ -109,7 +109,7 @@ impl<Y: SonarRing> SonarRing for Group<'_, Y> {
     }
 }
 
-/// Returns `true` if a ping is the echo of a robot at `place`.
+/// Returns `true` if the ping is an echo of another robot at `place`.
 fn is_of(ping: &Ping, sonar: SonarId, ring: Meters, place: &Pose) -> bool {
     let Some(range) = ping.range else { return false };
     let axis = ping.axis(sonar);
@@ -119,7 +119,7 @@ fn is_of(ping: &Ping, sonar: SonarId, ring: Meters, place: &Pose) -> bool {
     transducer.towards(Radians(axis.theta.0 + off), range).distance(place).0 < MEMBER
 }
 
-/// Collects the pings since the previous turn, except echoes of other robots.
+/// Adds to `heard` the pings after the time `since`, or all pings if it is `None`, except echoes of other robots.
 fn take<Y: SonarRing + StateLink>(heard: &mut [Pings; SONARS], y: &Y, since: Option<Nanos>) {
     let ring = y.ring_radius();
     for (sonar, heard) in (0..SONARS as u8).map(SonarId::new).zip(heard) {
@@ -181,8 +181,8 @@ mod tests {
         Lead::new(Meters(width), Radians(0.0), Meters(5.0), MetersPerSecond(0.2))
     }
 
-    /// Returns a robot at the origin whose front sonar measures this range, and that knows another robot at
-    /// this place.
+    /// Returns the output of a robot at the origin whose front sonar measures this range, and which has the state of
+    /// another robot at this place.
     fn beside(range: f64, (x, side): (f64, f64)) -> Sensed {
         let mut y = Sensed::default();
         (0..3).for_each(|_| y.ping(SonarId::new(0), Some(range)));

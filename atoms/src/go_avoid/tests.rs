@@ -1,4 +1,4 @@
-//! Ends, goals and turns of `goAvoid`.
+//! Tests of `goAvoid`: when the law ends, how it treats its goal, and on which side it turns.
 
 use super::*;
 use crate::trial::{Sensed, begun, framed, sized, until_completed};
@@ -63,7 +63,8 @@ fn the_goal_turns_round_where_the_drift_was_measured_before() {
     assert!(law.goal.distance(&at(4.0, 1.0)).0 < 1e-12, "{:?}", law.goal);
 }
 
-/// Returns the time at which a law ends for a robot that does not move, after it has driven this far.
+/// Returns the time at which the law ends for a robot that does not move, after it has driven `driven` metres; `None`
+/// if the law does not end within 30 s.
 fn ends(y: &Sensed, range: f64, driven: f64) -> Option<Nanos> {
     let mut law = quark(0.0, range).begin(y, begun());
     law.driven.0 = driven;
@@ -73,8 +74,8 @@ fn ends(y: &Sensed, range: f64, driven: f64) -> Option<Nanos> {
     })
 }
 
-/// After 9 m by odometry, a goal may be 18 cm off: one in a wall is reached where the wall ends the way, but not
-/// before the robot has tried for a while.
+/// After 9 m by odometry, a goal may be 18 cm off. A goal inside a wall counts as reached in front of the wall, but
+/// only after the robot has tried for a while.
 #[test]
 fn a_goal_that_has_drifted_into_a_wall_is_reached() {
     let mut y = Sensed::default();
@@ -83,7 +84,7 @@ fn a_goal_that_has_drifted_into_a_wall_is_reached() {
     assert!(ends(&y, 0.48, 9.0).is_some_and(|t| t > DRIFTS_AFTER));
 }
 
-/// A robot that has searched for 100 m is not done a metre off.
+/// A robot that has searched for 100 m is not done further than half a metre from its goal.
 #[test]
 fn a_long_way_is_no_arrival() {
     let mut y = Sensed::default();
@@ -94,7 +95,7 @@ fn a_long_way_is_no_arrival() {
     }
 }
 
-/// An ATRV-mini 17 cm from its goal has no room to turn to it, but hears nothing on the way there.
+/// An ATRV-mini 17 cm from its goal has no room to turn towards the goal, but hears no obstacle on the way to it.
 #[test]
 fn a_robot_that_comes_no_nearer_is_done_beside_its_goal() {
     let y = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
@@ -102,7 +103,8 @@ fn a_robot_that_comes_no_nearer_is_done_beside_its_goal() {
     assert_eq!(ends(&y, 0.55, 0.0), None);
 }
 
-/// A goal behind, a little to the left, is turned to on the left; after three quarters of a circle on the right.
+/// The robot turns left to a goal that is behind it, a little to the left. After three quarters of a circle to the
+/// left, it turns right instead.
 #[test]
 fn an_atrv_mini_turns_back_after_a_circle() {
     let turns = |y: &mut Sensed, quarters: u32| {
@@ -121,7 +123,8 @@ fn an_atrv_mini_turns_back_after_a_circle() {
     assert_eq!(turns(&mut Sensed::default(), 3), FASTEST);
 }
 
-/// An ATRV-mini between two walls begins with a turn of 170 degrees; no way on the map leads elsewhere meanwhile.
+/// An ATRV-mini between two walls begins with a turn of 170 degrees, and does not interrupt it to follow a way on its
+/// map.
 #[test]
 fn the_turn_at_the_beginning_is_no_delay() {
     let mut y = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
