@@ -1,5 +1,5 @@
-//! A map of what the sonars have heard around the robot: for each cell of a square, how often an echo came from it and
-//! how often a ping passed it (an occupancy grid). The map moves with the robot.
+//! A map of the robot's surroundings as the sonars have heard them (an occupancy grid). For each cell of a square, it
+//! records how often an echo came from the cell and how often a ping passed it. The map moves with the robot.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
@@ -24,23 +24,23 @@ const HIT: u8 = 4;
 const MOST: u8 = 13;
 /// Evidence that a passing ping removes.
 const MISS: u8 = 2;
-/// Angles off a sonar's axis, in degrees, of the places of an echo.
+/// Angles from a sonar's axis, in degrees, of the points that represent an echo.
 const ARC: [f64; 9] = [-12.0, -9.0, -6.0, -3.0, 0.0, 3.0, 6.0, 9.0, 12.0];
-/// Rays along which a ping marks cells as free: angle off the axis, in degrees, and distance from the transducer, in
-/// metres, at which the marking begins. Nearer cells belong to another ray.
+/// Rays along which a ping marks cells as free: the angle from the sonar's axis, in degrees, and the distance from the
+/// transducer, in metres, at which the marking begins. Nearer cells belong to another ray.
 const RAYS: [(f64, f64); 5] = [(0.0, 0.0), (-11.0, 0.26), (11.0, 0.26), (-5.5, 0.52), (5.5, 0.52)];
 /// Distance from the transducer, in metres, up to which a ping changes the map.
 const WITHIN: f64 = 1.6;
-/// Range, in metres, that replaces a range below the minimum: the obstacle may be anywhere nearer.
+/// Range, in metres, that replaces a range below the minimum, at which the obstacle may be anywhere nearer.
 const INSTEAD: f64 = 0.1;
-/// Maximum number of a cell: differences of two numbers do not overflow.
+/// Maximum absolute number of a cell, so that the difference of two numbers does not overflow.
 const FURTHEST: f64 = 1e8;
 /// Number of turns in which each sonar is read once, on a robot whose sonars all ping in every turn.
 const THIRDS: usize = 3;
 /// Distance before an echo, in metres, from which a cell is not marked as free.
 const BEFORE: f64 = 0.08;
 
-/// The cell of a place in the odometry's axes: its numbers along both axes.
+/// The cell of a place in the odometry's axes, given by its numbers along both axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Cell {
     pub(crate) x: i32,
@@ -60,9 +60,9 @@ impl Cell {
     }
 }
 
-/// Returns the largest whole number that is at most `number`, whose size is at most [`FURTHEST`]. A ping passes many
-/// cells, so `floor` of `libm`, or a conversion that looks for numbers that do not fit, would take most of the turn's
-/// time.
+/// Returns the largest whole number that is at most `number`. The absolute value of `number` is at most [`FURTHEST`]. A
+/// ping passes many cells, so `floor` of `libm`, or a conversion that checks for overflow, would take most of the
+/// turn's time.
 fn below(number: f64) -> i32 {
     // In a sum of this size the last bit counts ones, so that the low bits are the nearest whole number.
     const ROUNDS: f64 = 6_755_399_441_055_744.0;
@@ -175,7 +175,7 @@ impl Map {
         byte.map_or(UNKNOWN, |byte| byte >> shift & 15)
     }
 
-    /// Changes cells; a cell that is repeated in a row is changed only once.
+    /// Applies `to` to the evidence of cells; a cell that is repeated in succession is changed only once.
     fn once(&mut self, cells: impl Iterator<Item = Cell>, to: impl Fn(u8) -> u8) {
         let mut last = None;
         for cell in cells {
@@ -186,7 +186,7 @@ impl Map {
         }
     }
 
-    /// Moves the map so that the robot is in its middle, and forgets the cells that are no longer on the map.
+    /// Moves the map so that the robot is in its middle, and resets the cells that have come onto the map to unknown.
     fn move_to(&mut self, here: Pose) {
         let Cell { x, y } = Cell::of(here.x.0, here.y.0);
         let corner = Cell { x: x - CELLS / 2, y: y - CELLS / 2 };
@@ -270,13 +270,13 @@ impl Map {
     }
 }
 
-/// Returns `true` if this is the evidence of a cell of which nothing is known.
+/// Returns `true` if this is the evidence of an unknown cell.
 pub(crate) fn is_unknown(evidence: u8) -> bool {
     evidence == UNKNOWN
 }
 
-/// Returns the row and the byte of a cell's evidence, which stay the same while the map moves, and the number of bits
-/// by which it is shifted there.
+/// Returns the row and the byte in which a cell's evidence is stored, and the number of bits by which the evidence is
+/// shifted in this byte. They do not change when the map moves.
 #[inline]
 fn place(Cell { x, y }: Cell) -> (usize, usize, u8) {
     const { assert!(ROWS.is_power_of_two()) };

@@ -1,5 +1,5 @@
-//! The places of echoes in the last seconds, since the sonars do not hear all of a corner at once on a detour
-//! out of it.
+//! Keeps the places of the echoes of the last seconds, because on a detour out of a corner the sonars do not hear all
+//! of the corner at once.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
@@ -46,8 +46,8 @@ impl Memory {
         }
     }
 
-    /// Stores an echo: updates the time of a stored place within 10 cm, otherwise uses a free entry, otherwise replaces
-    /// the oldest entry.
+    /// Stores an echo. If a stored place is within 10 cm of it, only the time of that place is updated. Otherwise the
+    /// echo takes a free entry, or replaces the oldest one.
     fn keep(&mut self, heard: Echo) {
         let same = |place: &Echo| {
             let (x, y) = (place.x - heard.x, place.y - heard.y);

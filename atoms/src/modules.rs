@@ -9,7 +9,7 @@ use crate::go_avoid::{GoAvoid, GoingRound};
 const BEARING: &str = "bearing";
 /// Attribute of a module with the distance to a point, in metres.
 const RANGE: &str = "range";
-/// Number that every module has: the time since it published the attributes that the plan reads, in seconds.
+/// Number that every module offers: the time, in seconds, since it published the attributes that the plan reads.
 const AGE: &str = "age";
 /// Age from which a direction is stale.
 const STALE: Nanos = Nanos(2_000_000_000);
@@ -57,7 +57,8 @@ signals! {
 pub struct GoAvoid2(&'static str);
 
 impl GoAvoid2 {
-    /// Returns the quark `goAvoid target`, for the module of this name, which publishes `bearing` and `range`.
+    /// Returns the quark `goAvoid target`, where `target` names a module that publishes `bearing` and, optionally,
+    /// `range`.
     #[must_use]
     pub const fn new(target: &'static str) -> Self {
         Self(target)
@@ -70,7 +71,7 @@ impl GoAvoid2 {
 pub struct Following {
     module: &'static str,
     begin: Begin,
-    /// The law that drives to the goal, and the time at which the goal was published.
+    /// The law that drives to the goal, and the time at which the goal was published; `None` before a goal is known.
     towards: Option<(Nanos, GoingRound)>,
 }
 

@@ -1,5 +1,5 @@
-//! The movements of `goAvoid` in narrow places: along the shortest way on a map of echoes, by movements in
-//! which the body, a disc or a rectangle, touches nothing on the map.
+//! Moves `goAvoid` through narrow places: along the shortest way on a map of echoes, with movements in which the body,
+//! a disc or a rectangle, touches nothing on the map.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, Twist};
@@ -15,14 +15,15 @@ const ROOM: f64 = 0.1;
 const LEAVES: Meters = Meters(0.4);
 /// Time between two searches for a way.
 const SEARCHES: Nanos = Nanos(500_000_000);
-/// Time for which the last way remains valid when the searches find none, since single pings close and open gaps on the
+/// Time for which the last way remains valid if the searches find no way, since single pings close and open gaps on the
 /// map.
 const COUNTS: Nanos = Nanos(2_000_000_000);
 /// Maximum speed, in m/s.
 const FASTEST: f64 = 0.12;
 /// Distance, in metres, of the place to which a rectangle drives if there is no way on the map.
 const AHEAD: Meters = Meters(0.4);
-/// Maximum time for which the robot stands and turns; then it continues with less room, as cells are coarse.
+/// Maximum time for which the robot only turns on the spot. After this time it drives with less room, since the cells
+/// of the map are coarse.
 const STANDS: Nanos = Nanos(4_000_000_000);
 
 /// The map, and the way on it.
@@ -33,9 +34,9 @@ pub(crate) struct Narrow {
     way: Option<Next>,
     /// Time of the last search.
     searched: Nanos,
-    /// Time of the last search that found a way.
+    /// Time of the last search that replaced the way.
     found: Nanos,
-    /// Time since which the robot has stood still.
+    /// Time since which the robot has not driven but only turned on the spot; `None` while it drives.
     stands: Option<Nanos>,
 }
 
@@ -48,7 +49,7 @@ impl Narrow {
         self.map.take(y, here);
     }
 
-    /// Returns `true` if the robot stands still, since no movement brings it nearer.
+    /// Returns `true` if the robot does not drive but only turns on the spot.
     pub(crate) fn stands(&self) -> bool {
         self.stands.is_some()
     }
@@ -58,13 +59,13 @@ impl Narrow {
         self.way.is_some()
     }
 
-    /// Forgets the way, for a robot that gives way to a person.
+    /// Forgets the way on the map, and the time at which the robot stopped driving.
     pub(crate) fn leave(&mut self) {
         (self.way, self.stands) = (None, None);
     }
 
-    /// Returns the input that keeps a robot away from obstacles that it no longer hears, as it drives around
-    /// them in this direction; `None` if there is enough room.
+    /// Returns the input that keeps the robot away from obstacles that it no longer hears, as it drives around them in
+    /// the direction `chosen`; `None` if there is enough room.
     pub(crate) fn round<Y: DiffDrive>(
         &self,
         y: &Y,
@@ -107,10 +108,10 @@ impl Narrow {
         Some(twist)
     }
 
-    /// Returns the input that brings the body nearest to a place; `None` if every movement would touch.
+    /// Returns the input that brings the body nearest to a place; `None` if every movement would touch something.
     ///
-    /// The function is not inlined, like [`Self::has_room`], so that the surroundings are not on the stack
-    /// together with the map of [`way`].
+    /// The function is not inlined, like [`Self::has_room`], so that the surroundings are not on the stack together
+    /// with the map of [`way`].
     #[inline(never)]
     fn towards<Y: DiffDrive>(
         &self,

@@ -1,5 +1,5 @@
-//! The people whom a robot hears on its way: it gives way to an approaching person, and stops for a crossing
-//! person.
+//! Decides how a robot reacts to the people whom it hears on its way: it gives way to a person who approaches, and
+//! stops for a person who crosses the way.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians};
@@ -9,32 +9,32 @@ use crate::crossing::crosses;
 use crate::gains::fire_in_turn;
 use crate::tangent::{Obstacles, Side};
 
-/// Room on its right with which the robot gives way to the right, as people do; with less it gives way to the side with
-/// more room.
+/// Minimum room on the robot's right with which it gives way to the right, as people do. With less room, it gives way
+/// to the side with more room.
 const ROOM: Meters = Meters(0.4);
 /// Time, in seconds, for which the robot keeps out of the way after a person should have passed.
 const PASSES: f64 = 1.0;
-/// Maximum time, in seconds, for which the robot avoids a person who no longer approaches.
+/// Maximum time, in seconds, for which the robot keeps out of the way of a person whom it no longer hears approach.
 const PASSES_MOST: f64 = 8.0;
-/// Number of consecutive turns in which a person must be heard; the edge of a cone that touches a wall is heard
-/// in fewer.
+/// Number of consecutive turns in which the robot must hear a crossing person. A wall that the edge of a cone touches
+/// is heard in fewer turns.
 const SURE: u32 = 5;
-/// Minimum time, in seconds, for which the robot stands for a person who is about to cross its way; it stands until
-/// that person should have passed.
+/// Minimum time, in seconds, for which the robot stands still for a person who is about to cross its way; it stands
+/// until the person should have passed.
 const STANDS: f64 = 2.5;
 
-/// The people on the way to a goal.
+/// The people on the way to a goal, and the robot's reaction to them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Passers {
     approach: Approach,
     gives_way: Option<GivesWay>,
     /// Number of turns in a row in which a person was about to cross the way.
     crossed: u32,
-    /// Time until which the robot stands, since a person crosses its way.
+    /// Time until which the robot stands still, because a person crosses its way.
     stands_until: Nanos,
 }
 
-/// The side and the end of giving way to a person who approaches the robot.
+/// The side to which the robot gives way to an approaching person, and the time until which it does so.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct GivesWay {
     side: Side,
@@ -83,12 +83,12 @@ impl Passers {
         };
     }
 
-    /// Returns the side on which the robot gives way; `None` while no person approaches.
+    /// Returns the side to which the robot gives way; `None` if it gives way to nobody.
     pub(crate) fn gives_way(&self) -> Option<Side> {
         self.gives_way.map(|gives_way| gives_way.side)
     }
 
-    /// Returns `true` if the robot stands at this time, because a person crosses its way.
+    /// Returns `true` if the robot stands still at this time, because a person crosses its way.
     pub(crate) fn stops(&self, t: Nanos) -> bool {
         t < self.stands_until
     }
@@ -99,7 +99,7 @@ fn after(t: Nanos, seconds: f64) -> Nanos {
     Nanos(t.0.saturating_add((seconds * 1e9) as u64))
 }
 
-/// Returns the side to which to give way.
+/// Returns the side to which the robot gives way, given the room on both sides.
 fn freer(obstacles: &Obstacles, goal: Radians) -> Side {
     let [left, right] = [90.0, -90.0].map(|side| obstacles.free(Radians(goal.0 + Radians::from_degrees(side).0)));
     if right >= ROOM || right >= left { Side::Right } else { Side::Left }

@@ -1,8 +1,8 @@
 //! `path file`: replays the headings and forward speeds of a file (paper, section IV-A).
 //!
-//! Between two setpoints, heading and speed are interpolated linearly, the heading along the shorter turn. So the
-//! replay depends neither on the period of the turns that recorded the path nor on that of the turns that replay it. If
-//! the setpoints were held, heading and speed would lag by half a row, and the heading would change in steps.
+//! Between two setpoints, heading and speed are interpolated linearly, the heading along the shorter turn. The replay
+//! is therefore independent of the period of the recording and of the period of the replay. Without interpolation,
+//! heading and speed would lag by half a row, and the heading would change in steps.
 
 use mdle_runtime::capability::{DiffDrive, Odometry, Paths};
 use mdle_runtime::{
@@ -38,7 +38,7 @@ pub struct Replaying {
     before: Option<Nanos>,
 }
 
-/// The heading, turn rate and speed of a path at a certain time.
+/// The heading, turn rate and speed that a path requires at a certain time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Asked {
     heading: Radians,
@@ -48,8 +48,8 @@ struct Asked {
 }
 
 impl Asked {
-    /// Returns the interpolated setpoint of `path` at the time `at` after its begin; `None` before its first setpoint
-    /// and from its last one on.
+    /// Returns the interpolated setpoint of `path` at the time `at` since the path began; `None` before its first
+    /// setpoint and from its last one on.
     fn of(path: &[Setpoint], at: Nanos) -> Option<Self> {
         let next = path.partition_point(|setpoint| setpoint.at <= at);
         let (from, to) = (path.get(next.checked_sub(1)?)?, path.get(next)?);
@@ -107,7 +107,7 @@ mod tests {
         }
     }
 
-    /// A second ahead, half a circle to the left through 180° in two, a second ahead.
+    /// A path with 1 s ahead, half a circle to the left through 180° in 2 s, and 1 s ahead.
     static BEND: [Setpoint; 4] =
         [setpoint(0, 90.0, 0.2), setpoint(1000, 90.0, 0.2), setpoint(3000, -100.0, 0.4), setpoint(4000, -100.0, 0.0)];
     static PATHS: [StoredPath; 1] = [StoredPath { name: "bend", setpoints: &BEND }];
@@ -116,8 +116,8 @@ mod tests {
         Sensed { paths: PathStore::new(&PATHS), ..Sensed::heading(degrees) }
     }
 
-    /// Returns the number of the law's turns until it is done, at most a thousand, in an atom with this path
-    /// that begins at time `from`.
+    /// Returns the number of turns, at most a thousand, until the law is done, in an atom that replays the path `file`
+    /// and begins at the time `from`.
     fn replayed(file: &'static str, y: &mut Sensed, mut begin: Begin, from: u64) -> u64 {
         let millis = |number: u64| Nanos((from + number * 100) * 1_000_000);
         begin.now = millis(0);

@@ -3,7 +3,7 @@
 use mdle_runtime::capability::Power;
 use mdle_runtime::{Interrupt, Signal};
 
-/// The interrupt `lowBattery`, which fires while the robot reports a low battery, by its own limit.
+/// The interrupt `lowBattery`, which fires while the robot reports a low battery, by the robot's own limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LowBattery;
 

@@ -19,9 +19,9 @@ impl Rotate {
     }
 }
 
-/// The law of [`Rotate`], which is done within 2° of the heading and at rest.
+/// The law of [`Rotate`], which is done when the robot is at rest within 2° of the heading.
 ///
-/// A robot that measures the drift of its heading at a wall corrects it when the atom begins.
+/// A robot that measures the drift of its heading at a wall corrects the final heading by it when the atom begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotating {
     /// The final heading by odometry.

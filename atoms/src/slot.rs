@@ -5,25 +5,26 @@ use mdle_runtime::{
     Begin, Control, Law, Meters, MetersPerSecond, Nanos, PeerState, Pose, Radians, RadiansPerSecond, Twist,
 };
 
-/// Speed of the correction, in m/s for each metre off the place.
+/// Speed of the correction, in m/s per metre of distance from the slot.
 const CORRECTS: f64 = 1.0;
-/// Distance of the steered point ahead of the robot's centre, in metres: a point on the axle cannot move sideways.
+/// Distance, in metres, of the steered point ahead of the robot's centre. A point on the axle could not move sideways.
 const AHEAD: f64 = 0.1;
-/// Time constant with which the formation turns after its leader, in seconds: without it, outer places would be too
-/// fast.
+/// Time constant, in seconds, with which the direction of the formation follows the leader's heading. Without the
+/// delay, the outer slots would move too fast.
 const TURNS_IN: f64 = 1.5;
 /// Age from which the leader's state is stale.
 const SILENT: Nanos = Nanos(1_000_000_000);
-/// Speed below which a place has no direction of its own, in m/s.
+/// Speed, in m/s, below which a slot has no direction of motion.
 const AT_REST: f64 = 0.02;
-/// Distance from a place at rest within which the robot stands, in metres.
+/// Distance from a slot at rest, in metres, within which the robot stands still.
 const NEAR: f64 = 0.03;
 /// Maximum forward speed, in m/s, and maximum turn rate, in rad/s.
 const FASTEST: (f64, f64) = (0.5, 1.5);
 
-/// `u = f + k (g + l f/|f| - q - l e)`, `v = u·e`, `ω = u·n/l`: the point `l` ahead of the robot at `q` with the
-/// heading `e` follows the one ahead of its place `g`, which moves at `f`. The formation turns with the leader's
-/// heading after a low-pass filter with time constant `TURNS_IN`.
+/// The control `slot`: `u = f + k (g + l f/|f| - q - l e)`, `v = u·e`, `ω = u·n/l`. The point at the distance `l` ahead
+/// of the robot, which is at `q` with the heading `e`, follows the point ahead of its slot `g`, which moves with the
+/// velocity `f`. The direction of the formation is the leader's heading after a low-pass filter with the time constant
+/// `TURNS_IN`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slot {
     leader: &'static str,
@@ -39,16 +40,16 @@ impl Slot {
     }
 }
 
-/// The law of [`Slot`]. The robot stands while the leader has been silent for a second.
+/// The law of [`Slot`]. The robot stands still while the leader's state is a second old or older.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Keeping {
     slot: Slot,
-    /// Direction of the formation, in radians, and the time for which it is valid; `None` before the leader is
-    /// known.
+    /// Direction of the formation, in radians, and the time of the turn for which it was computed; `None` before the
+    /// leader's state is known.
     direction: Option<(f64, Nanos)>,
 }
 
-/// A place that moves.
+/// A moving slot: its position and velocity.
 struct Moving {
     place: (f64, f64),
     velocity: (f64, f64),
@@ -63,7 +64,8 @@ impl<Y: DiffDrive + Odometry + StateLink> Control<Y> for Slot {
 }
 
 impl Keeping {
-    /// Returns the place of the slot at time `t`, from the leader's state, which was taken in an earlier turn.
+    /// Returns the position and velocity of the slot at time `t`, extrapolated from the leader's state, which was taken
+    /// in an earlier turn.
     fn place(&mut self, leader: &PeerState, t: Nanos) -> Moving {
         let since = self.direction.map_or(0.0, |(_, before)| t.since(before).seconds());
         // The age counts from the turn in which the state arrived, one after that in which it was sent.
@@ -83,7 +85,7 @@ impl Keeping {
     }
 }
 
-/// Returns the input that brings the robot at `me` to a place.
+/// Returns the input that brings the robot at `me` to a moving slot.
 fn towards(me: Pose, Moving { place, velocity: (fx, fy) }: Moving) -> Twist {
     let (sin, cos) = libm::sincos(me.theta.0);
     let speed = libm::hypot(fx, fy);
@@ -119,7 +121,8 @@ mod tests {
 
     const TURN: u64 = 100_000_000;
 
-    /// Sets the state of the leader, which is the only other robot.
+    /// Sets the state of the leader, which is the only other robot: its pose with the heading in degrees, its speed and
+    /// turn rate, and the age of the state.
     fn see(y: &mut Sensed, (x, side, degrees): (f64, f64, f64), (v, omega): (f64, f64), age: u64) {
         let pose = Pose { x: Meters(x), y: Meters(side), theta: Radians::from_degrees(degrees) };
         let velocity = Twist { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) };

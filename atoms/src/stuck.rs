@@ -1,5 +1,5 @@
-//! `stuck T`: fires when the law that runs makes no progress towards its goal; an interrupt of this project, beside the
-//! paper's `goAvoid` (docs/src/reference/semantics.md, 3.5).
+//! `stuck T`: fires when the law that runs makes no progress towards its goal. The interrupt is an addition of this
+//! project to the paper's `goAvoid` (docs/src/reference/semantics.md, 3.5).
 
 use mdle_runtime::capability::Odometry;
 use mdle_runtime::{Interrupt, Meters, Nanos, Pose};
@@ -7,7 +7,7 @@ use mdle_runtime::{Interrupt, Meters, Nanos, Pose};
 /// Length, in metres, by which a law must come nearer to its goal to have made progress.
 const NEARER: f64 = 0.1;
 
-/// The interrupt `stuck`, which fires once the law of the previous turn has made no progress for this long.
+/// The interrupt `stuck`, which fires once the law of the previous turn has made no progress for `duration`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stuck {
     duration: Nanos,
@@ -35,9 +35,9 @@ impl<Y: Odometry> Interrupt<Y> for Stuck {
 /// The progress of a law towards a place, by odometry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Progress {
-    /// Distance from the goal when progress was last made; initially, the distance from the start.
+    /// Distance from the goal when the law last made progress; initially, the distance at which the law began.
     from: Meters,
-    /// Time at which progress was last made.
+    /// Time at which the law last made progress; initially, the time at which it began.
     at: Nanos,
 }
 

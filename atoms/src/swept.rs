@@ -1,5 +1,6 @@
-//! Chooses the speed and turn rate that bring a body nearest to a place without touching anything on the map:
-//! the body, as a disc or rectangle, is tried along the arc of each (a dynamic window).
+//! Chooses the speed and turn rate that bring a body nearest to a place without touching anything on the map. For each
+//! pair of a speed and a turn rate, the body, a disc or a rectangle, is moved along the arc in a trial (a dynamic
+//! window).
 
 use core::f64::consts::TAU;
 
@@ -21,38 +22,40 @@ const SPEEDS: [f64; 4] = [1.0, 0.5, 0.0, -0.5];
 const TIMES: [f64; 3] = [0.3, 0.6, 1.0];
 /// Distance, in metres, by which an obstacle may be further away than the centre of its cell.
 const COARSE: f64 = 0.015;
-/// Radius of a rectangle's corners, in metres, up to which overlaps are measured.
+/// Radius, in metres, of the rounded corners of a rectangle. The depth of an overlap is measured up to this radius.
 const ROUNDED: f64 = 0.03;
 /// Distance, in metres, from which an obstacle has no cost.
 const ROOM: f64 = 0.12;
 /// Distance, in metres, below which an obstacle costs five times as much.
 const CLOSE: f64 = 0.08;
-/// Cost of turning on the spot, in metres, so that a turn must bring the robot further than that.
+/// Cost, in metres, of turning on the spot or driving backwards, which must therefore bring the robot nearer by more
+/// than this.
 const STANDING_COSTS: f64 = 0.06;
-/// Cost, in metres, of each radian by which the body faces off the place.
+/// Cost, in metres, per radian between the body's heading and the direction of the place.
 const OFF_COSTS: f64 = 0.15;
-/// Cost, in metres, of each radian by which the body faces off a place on the way to which it cannot turn.
+/// Cost, in metres, per radian between the body's heading and the direction of a place on the way to which the body
+/// cannot turn.
 const OFF_COSTS_STRAIGHT: f64 = 1.0;
 
-/// The place to which a body moves.
+/// The place to which a body is to move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Aim {
     /// Distances of the place ahead of the body and to its left, in metres.
     pub(crate) ahead: f64,
     pub(crate) left: f64,
-    /// `true` if the body cannot turn on the way there, so that it first turns to the place.
+    /// `true` if the body cannot turn on the way to the place, and therefore has to face the place first.
     pub(crate) is_straight: bool,
-    /// Angle that the robot has turned, which decides on which side it turns to the place.
+    /// Angle by which the robot has turned, which decides in which direction it turns to face the place.
     pub(crate) winding: Winding,
 }
 
-/// Outline and surroundings of a body.
+/// Outline of a body, and the occupied cells around it.
 pub(crate) struct Surroundings {
     points: [(f64, f64); POINTS],
     count: usize,
-    /// Half the length of a rectangle that `radius` surrounds; 0 for a disc.
+    /// Half the length of the rectangle that `radius` extends to the body's outline; 0 for a disc.
     half_length: f64,
-    /// Half the width of a rectangle that `radius` surrounds; 0 for a disc.
+    /// Half the width of the rectangle that `radius` extends to the body's outline; 0 for a disc.
     half_width: f64,
     radius: f64,
 }
@@ -83,12 +86,13 @@ impl Surroundings {
         near
     }
 
-    /// Returns the distance between the body and the nearest point.
+    /// Returns the distance, in metres, between the body and the nearest occupied cell.
     pub(crate) fn now(&self) -> f64 {
         self.room(0.0, 0.0, 0.0)
     }
 
-    /// Returns the distance between the body, moved by this pose, and the nearest point.
+    /// Returns the distance, in metres, between the body, after it has moved to this pose relative to its present one,
+    /// and the nearest occupied cell.
     fn room(&self, x: f64, y: f64, theta: f64) -> f64 {
         let (sin, cos) = libm::sincos(theta);
         let points = self.points.iter().take(self.count);
@@ -102,7 +106,7 @@ impl Surroundings {
     }
 
     /// Returns the input that brings the body nearest to a place, at most at this speed; `None` if every movement would
-    /// touch something. A bold robot drives where there is little room.
+    /// touch something. If `is_bold` is `true`, the body also drives where there is little room.
     pub(crate) fn towards(&self, aim: &Aim, speed: MetersPerSecond, is_bold: bool) -> Option<Twist> {
         let now = self.now();
         let off = Radians(libm::atan2(aim.left, aim.ahead));
@@ -126,8 +130,8 @@ impl Surroundings {
         best.1
     }
 
-    /// Returns the cost of a movement, in metres; `None` if it would touch something. `back` is the turn to the place
-    /// the longer way round, if the robot has to take that.
+    /// Returns the cost of a movement, in metres; `None` if the body would touch something. `back` is the angle to the
+    /// place by the longer way round; `None` if the robot may take the shorter way.
     fn cost(&self, v: f64, omega: f64, now: f64, kept: f64, aim: &Aim, back: Option<f64>) -> Option<f64> {
         let (mut least, mut end, mut before) = (f64::INFINITY, (0.0, 0.0, 0.0), now);
         for t in TIMES {
@@ -166,8 +170,8 @@ mod tests {
         Aim { ahead: 0.4, left, is_straight: false, winding: Winding::begin(&Sensed::default()) }
     }
 
-    /// Returns the input of this body towards a place 0.4 m ahead and `left`, beside walls along its way at
-    /// these distances.
+    /// Returns the input that brings this body nearest to a place 0.4 m ahead and `left` metres to the left, beside
+    /// walls along its way at these distances; `None` if every movement would touch a wall.
     fn towards(y: &Sensed, left: f64, walls: &[f64]) -> Option<Twist> {
         let mut map = Map::EMPTY;
         for wall in walls {

@@ -1,10 +1,11 @@
-//! `sync` and `rendezvous`: wait for another robot by the state link (paper, sections IV-A and IV-D).
+//! The interrupts that observe another robot over the state link: `sync` and `rendezvous` (paper, sections IV-A and
+//! IV-D), and `past`.
 
 use mdle_runtime::Interrupt;
 use mdle_runtime::capability::StateLink;
 
-/// The interrupt `sync`, which fires while the newest state of the robot is fresh, so that the state link to it
-/// is up.
+/// The interrupt `sync`, which fires while the newest state of the robot is fresh, that is, while the state link to
+/// this robot is up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sync(&'static str);
 
@@ -42,8 +43,8 @@ impl<Y: StateLink> Interrupt<Y> for Rendezvous {
     }
 }
 
-/// The interrupt `past`, which fires while the robot's plan has reached an atom, counted from 1 in the order of
-/// its text: while the plan runs this atom or a later one, or is over.
+/// The interrupt `past`, which fires once the plan of another robot has reached an atom, counted from 1 in the order of
+/// the plan's text: while that plan runs this atom or a later one, or has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Past {
     robot: &'static str,
@@ -72,8 +73,8 @@ mod tests {
     use super::*;
     use crate::trial::Sensed;
 
-    /// Returns the output of a robot that has entered `own` rounds with `ada`, whose state has this age and the
-    /// count `theirs`.
+    /// Returns the output of a robot that has entered `own` rounds with the robot `ada`. The state of `ada` has this
+    /// age and reports `theirs` rounds.
     fn linked(own: u64, age: u64, theirs: u64) -> Sensed {
         let state =
             PeerState { pose: Pose::ORIGIN, velocity: Twist::default(), age: Nanos(age), rounds: theirs, atom: 1 };

@@ -1,5 +1,5 @@
-//! The tangent rule of `goAvoid`: which of 72 directions leads best to the goal past the obstacles that the sonars see
-//! ("to the edge of the obstacle nearest the desired path", paper, section IV-A).
+//! The tangent rule of `goAvoid`, which chooses, among 72 directions, the one that leads best to the goal past the
+//! obstacles that the sonars hear ("to the edge of the obstacle nearest the desired path", paper, section IV-A).
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
@@ -15,17 +15,18 @@ const SEEN_WITHIN: f64 = 2.0;
 const ARC: [Radians; 3] = [Radians::from_degrees(-8.0), Radians(0.0), Radians::from_degrees(8.0)];
 /// Distances, in metres, by which a wall is assumed to continue beyond its last echo.
 const EXTENDS: [f64; 3] = [0.25, 0.5, 0.75];
-/// Minimum distance, in metres, between echoes of a wall; echoes of an edge are closer.
+/// Minimum distance, in metres, between the oldest and the newest echo of a wall; echoes of an edge are closer
+/// together.
 const APART: f64 = 0.15;
-/// Cosine of the angle from a sonar's axis at which a wall must at least be heard: 60°.
+/// Cosine of the minimum angle between a wall and the axis of the sonar that hears it: 60°.
 const ACROSS: f64 = 0.5;
-/// Maximum number of points: those of present echoes, and those of earlier echoes.
+/// Maximum number of points: the present echoes with the continuations of walls, and earlier echoes.
 const POINTS: usize = SONARS * (ARC.len() + EXTENDS.len()) + PLACES;
 /// Distance between the body and an obstacle, in metres, at which a way costs `CLOSE_COSTS`; a smaller distance
 /// costs more.
 const MARGIN: f64 = 0.06;
-/// Distance from the body, in metres, at which the law assumes an obstacle that may be nearer than its range:
-/// near enough that the robot steers away from it, and further than a distance that blocks a gap.
+/// Assumed distance, in metres, between the body and an obstacle that may be nearer than its range. The distance is
+/// small enough for the robot to steer away from the obstacle, and too large to block a gap.
 const AT_LEAST_RANGE: f64 = 0.08;
 /// Cost of a way that lacks free length, in radians of detour for the whole look-ahead.
 const BLOCKED_COSTS: f64 = 6.0;
@@ -37,13 +38,14 @@ const CLOSE_COSTS: f64 = 0.9;
 const CHANGE_COSTS: f64 = 0.15;
 /// Cost of a change of direction on a detour, in radians of detour for each radian.
 const CHANGE_COSTS_ON_A_DETOUR: f64 = 0.6;
-/// Maximum angle of a detour from the goal's direction: beyond it the robot would go in circles.
+/// Maximum angle of a detour from the goal's direction; with a larger angle, the robot would drive in circles.
 const TURNED_MOST: Radians = Radians::from_degrees(215.0);
 /// Difference below which costs count as equal, since it may come from the order of additions.
 const ROUNDING: f64 = 1e-9;
 /// Maximum length of free way that counts, in metres.
 const FREE_MOST: f64 = 3.0;
-/// Limits of the distance behind and ahead of the robot, in metres, at which points count as beside its way.
+/// Minimum and maximum distance along the way, in metres, of the points that count as beside the way; behind the robot,
+/// the distance is negative.
 const BESIDE: (f64, f64) = (-0.05, 0.9);
 
 /// Place of an echo relative to the centre of the body, in the odometry's axes.
@@ -67,20 +69,20 @@ pub(crate) struct Obstacles {
     gains: &'static Gains,
 }
 
-/// The direction in which a law wants to go.
+/// The direction in which a law wants to drive, and the conditions for the choice.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Wish {
     /// Direction of the goal.
     pub(crate) goal: Radians,
     /// Length of the way ahead that should be free.
     pub(crate) look_ahead: Meters,
-    /// Direction chosen in the previous turn.
+    /// Direction chosen in the previous turn; `None` if there is none.
     pub(crate) previous: Option<Radians>,
-    /// Side of an obstacle to which the law keeps.
+    /// Side on which the robot passes the obstacle during a detour; `None` if it is free to choose.
     pub(crate) side: Option<Side>,
     /// `true` if the law follows an obstacle instead of driving to the goal.
     pub(crate) along: bool,
-    /// `true` if the robot may drive as close to walls as it can.
+    /// `true` if being close to walls has no cost.
     pub(crate) close: bool,
 }
 
@@ -104,8 +106,8 @@ pub(crate) enum Side {
 }
 
 impl Side {
-    /// Returns an angle from the goal's direction, counted only towards this side: 0..2π to the left, -2π..0 to
-    /// the right.
+    /// Returns an angle from the goal's direction, measured only towards this side: from 0 to 2π on the left, from -2π
+    /// to 0 on the right.
     fn counted(self, offset: f64) -> f64 {
         match self {
             Self::Left if offset < 0.0 => offset + core::f64::consts::TAU,
@@ -149,7 +151,7 @@ impl Obstacles {
         }
     }
 
-    /// Adds the places that `memory` keeps; returns the number of points before this.
+    /// Adds the places that `memory` keeps, and returns the previous number of points.
     pub(crate) fn remember(&mut self, memory: &Memory, here: Pose, now: Nanos) -> usize {
         let seen = self.count;
         memory.around(here, now).for_each(|(x, y)| self.push(Point { x, y }));
@@ -178,11 +180,10 @@ impl Obstacles {
         Meters(free)
     }
 
-    /// Returns the distance of the nearest point beside the way in this direction, from a place along it;
-    /// infinite without any.
+    /// Returns the distance, in metres, from a place on the way in this direction to the nearest point beside the way;
+    /// infinite if there is no such point.
     ///
-    /// A point at which the way ends, after its `free` length, does not count as beside it, except for a wide
-    /// body.
+    /// A point at which the way ends, after its `free` length, does not count as beside it, except for a wide body.
     fn beside(&self, axis: Axis, free: Meters) -> f64 {
         let (back, ahead) = (BESIDE.0, BESIDE.1.min(free.0 + self.gains.beyond));
         let place = self.gains.room_at.min(free.0).max(0.0);
@@ -196,8 +197,8 @@ impl Obstacles {
         least
     }
 
-    /// Returns the direction of least cost, as an angle from the goal's direction counted towards the side to
-    /// which the robot keeps.
+    /// Returns the direction with the lowest cost, as an angle from the goal's direction, measured towards the side on
+    /// which the robot passes the obstacle.
     pub(crate) fn best(&self, wish: &Wish) -> Radians {
         let mut best = (f64::INFINITY, 0, 0.0);
         for number in 0..DIRECTIONS {
@@ -261,8 +262,8 @@ impl Axis {
     }
 }
 
-/// Returns points where a wall is assumed to continue that a sonar heard in all its pings. The sonars do not
-/// hear the surface ahead, since it does not face them.
+/// Returns points on the assumed continuation of a wall that the sonar heard in all its pings; `None` if the pings are
+/// not of a wall. The sonars do not hear the continuation itself, since it does not face them.
 fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose) -> Option<[Point; EXTENDS.len()]> {
     let mut echoes = y.pings(sonar).newest_first().map(|ping| {
         let range = ping.range.filter(|range| range.0 < SEEN_WITHIN)?;
@@ -283,16 +284,16 @@ fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose) -> Opti
     Some(EXTENDS.map(|further| Point { x: new.x + further * along / length, y: new.y + further * up / length }))
 }
 
-/// Returns the newest ping of a sonar, or the previous ping if the newest heard nothing; `None` if the echo is too far
-/// away to matter.
+/// Returns the newest ping of a sonar, or the previous ping if the newest had no echo, and its range. `None` if neither
+/// had an echo, or if the echo is too far away to matter.
 fn heard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<(Ping, Meters)> {
     const { assert!(PINGS_KEPT >= 2) };
     let (ping, range) = y.pings(sonar).newest_first().take(2).find_map(|ping| Some((*ping, ping.range?)))?;
     (range.0 < SEEN_WITHIN).then_some((ping, range))
 }
 
-/// Returns points of a ping's arc, at these angles off its axis, as seen from `here`. The arc lies around the
-/// transducer's place at the time of the ping.
+/// Returns points of a ping's arc, at these angles from its axis, relative to `here`. The centre of the arc is the
+/// place of the transducer at the time of the ping.
 fn on_arc<const N: usize>(
     ping: &Ping,
     range: Meters,
@@ -361,7 +362,7 @@ mod tests {
         assert!((-40.0..=-10.0).contains(&chosen.degrees()), "{}", chosen.degrees());
     }
 
-    /// Returns the distance, beside a place 60 cm ahead, of a wall that sonar 4 heard there at this range.
+    /// Returns the distance from a place 60 cm ahead to a wall beside it that sonar 4 heard there at this range.
     fn beside_a_wall_at(range: f64, confirmation: usize) -> f64 {
         let mut y = Sensed { confirmation, ..Sensed::default() };
         y.pose.x = Meters(0.6);

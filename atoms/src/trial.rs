@@ -61,7 +61,7 @@ impl Sensed {
         self.pings.get_mut(sonar.number()).expect("one of the sixteen").push(ping);
     }
 
-    /// Makes this robot the only other robot that the state link knows.
+    /// Makes `peer` the only other robot in the state link.
     pub(crate) fn link(&mut self, peer: Peer) {
         let mut links = Links::NONE;
         assert!(links.add(peer));
@@ -174,12 +174,12 @@ pub(crate) fn sized(half_length: f64, half_width: f64) -> Sensed {
     Sensed { halves: [half_length, half_width], ..Sensed::default() }
 }
 
-/// Returns an atom that begins at time 0 in the odometry's own axes.
+/// Returns the beginning of an atom at time 0, in the odometry's own axes.
 pub(crate) fn begun() -> Begin {
     framed(0.0)
 }
 
-/// Returns an atom that begins at time 0 in a frame turned by this many degrees.
+/// Returns the beginning of an atom at time 0, in a frame turned by this many degrees.
 pub(crate) fn framed(degrees: f64) -> Begin {
     Begin { now: Nanos::ZERO, frame: Frame::default().turned(Radians::from_degrees(degrees)) }
 }

@@ -1,5 +1,5 @@
-//! `turn α`: turns by an angle from the heading at which it begins; a law of this project, beside the paper's
-//! `rotate` (section IV-A).
+//! `turn α`: turns by an angle from the heading at which the atom begins. The law is an addition of this project to the
+//! paper's `rotate` (section IV-A).
 
 use mdle_runtime::capability::{DiffDrive, Odometry};
 use mdle_runtime::{Begin, Completes, Control, Law, Nanos, Radians, Twist};
@@ -13,20 +13,22 @@ pub struct Turn {
 }
 
 impl Turn {
-    /// Returns the quark `turn angle`: counter-clockwise positive, also for more than a full circle.
+    /// Returns the quark `turn angle`. The angle is positive for a counter-clockwise turn, and may exceed a full
+    /// circle.
     #[must_use]
     pub const fn new(angle: Radians) -> Self {
         Self { angle }
     }
 }
 
-/// The law of [`Turn`], which is done within 2° of the angle and at rest.
+/// The law of [`Turn`], which is done when the robot is at rest within 2° of the angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turning {
     angle: Radians,
-    /// The angle turned up to `last`. It is counted, because a heading does not distinguish 270° from -90°.
+    /// The angle turned until the heading `last`. It is added up turn by turn, because a heading does not distinguish
+    /// 270° from -90°.
     so_far: Radians,
-    /// The heading of the last turn.
+    /// The heading in the last turn.
     last: Radians,
     /// Time of the previous request for an input; `None` before the first.
     before: Option<Nanos>,

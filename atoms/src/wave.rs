@@ -1,5 +1,6 @@
-//! Costs of the ways to the goal from each cell of a map. They spread as a wave from the goal, or from the edge of the
-//! map on the way to it; cells beside obstacles cost more.
+//! Computes the costs of the ways to the goal from all cells of a map. They spread as a wave from the goal, or, if the
+//! goal is not on the map, from the cells at the map's edge through which a way leads to it. Cells beside obstacles
+//! cost more.
 
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Meters, Pose};
@@ -14,9 +15,9 @@ const STRAIGHT: u16 = 5;
 const ACROSS: u16 = 7;
 /// Bits of a cell that contain the distance; the other bits contain the class.
 const DISTANCE: u16 = 0x1fff;
-/// Classes of cells: the room beside the body, in centimetres, below which a cell belongs to a class, and the factor of
-/// its cost. A body does not pass a cell of the first class. From class `AROUND` on, the room is measured from the
-/// smallest circle around the body, in which a rectangle can turn.
+/// Classes of cells: for each, the room beside the body, in centimetres, below which a cell belongs to the class, and
+/// the factor of the cell's cost. A body does not pass a cell of the first class. From class `AROUND` on, the room is
+/// measured from the smallest circle around the body, in which a rectangle can turn.
 const CLASSES: [(i32, u16); 8] = [(2, 0), (4, 10), (6, 6), (8, 5), (2, 4), (10, 4), (16, 2), (i32::MAX, 1)];
 /// First class whose room is measured from the smallest circle around the body.
 const AROUND: usize = 4;
@@ -28,11 +29,12 @@ const SMALL: usize = 64;
 const LARGE: i32 = DISTANCE as i32;
 /// Factor of the cost of a step in a cell that the body does not pass: the step costs more than any distance.
 const NO_WAY: u16 = DISTANCE / STRAIGHT + 1;
-/// Class of cells of which nothing is known.
+/// Maximum class of an unknown cell.
 const UNKNOWN: usize = 5;
 /// Maximum number of passes over the map, forwards and backwards.
 const PASSES: u32 = 12;
-/// Distance, in metres, by which the goal must be nearer at the end of a way.
+/// Distance, in metres, by which the end of a way at the map's edge must be nearer to the goal than the reference
+/// distance.
 const GAINS: f64 = 0.5;
 /// Distance from the robot, in metres, to just beyond the corners of the map. The remaining distance to the goal is
 /// left out of the costs, so that they fit into a cell.
@@ -41,10 +43,10 @@ pub(crate) const EDGE: f64 = 2.4;
 /// The ends of ways on a map.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ends {
-    /// Place of the goal.
+    /// Position of the goal.
     pub(crate) goal: Pose,
-    /// Distance from the goal at which the robot is near enough: a goal near a wall, or in it by odometry's drift, lies
-    /// where the body has no room.
+    /// Distance from the goal at which the robot is near enough. At a goal near a wall, or inside it because odometry
+    /// has drifted, the body has no room.
     pub(crate) near: Meters,
     /// Reference distance from the goal: a way may leave the map only where it is nearer to the goal by at least
     /// `GAINS`.
@@ -53,7 +55,7 @@ pub(crate) struct Ends {
     pub(crate) base: f64,
 }
 
-/// The distance of each cell from the end of the way, and its class.
+/// The distance of each cell from the end of the cheapest way, and the class of each cell.
 pub(crate) struct Wave {
     rows: [Row; SIDE],
 }
@@ -61,8 +63,8 @@ pub(crate) struct Wave {
 /// A row of cells.
 type Row = [u16; SIDE];
 
-/// Rows of the map, one bit each, in which a forward or backward pass may change a distance: a distance decreases only
-/// after that of an earlier cell of the pass, in the same row or the previous one.
+/// Rows of the map, one bit each, in which a forward or backward pass may still lower a distance. A pass lowers a
+/// distance in a row only after a distance in the same row or in the previous row of the pass has changed.
 struct Rows {
     forth: u64,
     back: u64,
@@ -106,8 +108,9 @@ fn step(value: u16) -> u16 {
     }
 }
 
-/// Lowers the distances in a row by steps from earlier cells of a pass, which are in the same row and in the previous
-/// one, and have this factor of their cost; returns `true` if any distance has changed.
+/// Lowers the distances in a row by steps from the earlier cells of a pass, which are in the same row and in the
+/// previous one. `factor` returns the factor of a step's cost, given the value of the cell. Returns `true` if any
+/// distance has changed.
 fn relax<'r>(
     mut row: impl Iterator<Item = &'r mut u16>,
     mut previous: impl Iterator<Item = &'r u16>,
@@ -127,24 +130,24 @@ fn relax<'r>(
 }
 
 impl Wave {
-    /// The wave before it starts.
+    /// The wave before the computation, with the maximum distance in each cell.
     pub(crate) const NONE: Self = Self { rows: [[DISTANCE; SIDE]; SIDE] };
 
-    /// Computes the wave over a map for this body, from the ends of ways.
+    /// Computes the wave on a map for the body of `y`, from the ends of ways.
     pub(crate) fn start<Y: DiffDrive>(&mut self, map: &Map, ends: &Ends, y: &Y) {
         self.measure(map, y);
         let rows = self.seed(map, ends);
         self.spread(rows);
     }
 
-    /// Returns the cost from a cell to the goal, in centimetres, minus the cost of the length `base`; `None` if no way
-    /// leads to the goal.
+    /// Returns the cost from a cell to the goal, in centimetres, without the cost of the length `base`; `None` if no
+    /// way leads to the goal.
     pub(crate) fn left(&self, cell: usize) -> Option<i32> {
         let left = self.at(cell) & DISTANCE;
         (left < DISTANCE).then_some(left.into())
     }
 
-    /// Returns the cost, in centimetres, of a way of this many cells that are like this cell.
+    /// Returns the cost, in centimetres, of a way of `cells` cells of the same class as this cell.
     pub(crate) fn cost(&self, cell: usize, cells: f64) -> i32 {
         libm::round(f64::from(STRAIGHT * factor(self.at(cell))) * cells) as i32
     }
@@ -228,7 +231,7 @@ impl Wave {
         rows.back = 0;
     }
 
-    /// Returns the rows from the one before row `y` of the map.
+    /// Returns the rows from the one before row `y` of the map on.
     fn rows_from(&mut self, y: i32) -> &mut [Row] {
         self.rows.get_mut(y as usize..).unwrap_or_default()
     }

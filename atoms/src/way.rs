@@ -1,6 +1,6 @@
-//! The shortest way on a map to a place nearer to the goal. A rectangle keeps to its way until another one is much
-//! shorter. It goes straight through places in which it cannot turn: in the last place before them, it turns to the
-//! first place beyond them.
+//! Finds the shortest way on a map to a place nearer to the goal. A rectangle keeps to its way until another one is
+//! much shorter. It drives straight through places in which it cannot turn: in the last place before them, it turns to
+//! face the first place beyond them.
 
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians};
@@ -9,7 +9,7 @@ use crate::map::{CELLS, Cell, Map};
 use crate::wave::{EDGE, Ends, SIDE, Wave, index};
 use crate::winding::Winding;
 
-/// Maximum cost, in centimetres, by which a way may exceed the straight way.
+/// Maximum amount, in centimetres, by which the cost of a way may exceed the length of the straight way.
 const LONGER: i32 = 600;
 /// Number of cells along the way to the place to which a disc drives.
 const AHEAD: u32 = 7;
@@ -17,12 +17,12 @@ const AHEAD: u32 = 7;
 const NEAR: f64 = 7.0;
 /// Maximum distance along the way, in cells, over which a rectangle drives straight where it cannot turn.
 const STRAIGHT_MOST: u32 = 24;
-/// Number of cells beyond a narrow stretch to the place to which a rectangle drives straight.
+/// Number of cells between the end of a narrow section and the place to which a rectangle drives straight.
 const BEYOND: u32 = 3;
-/// Number of cells before a narrow stretch within which a rectangle begins to go straight.
+/// Maximum distance from a narrow section, in cells, at which a rectangle begins to drive straight.
 const BEFORE: f64 = 1.5;
-/// Maximum cost, in centimetres, by which the way chosen before may exceed the best way, which changes with
-/// single pings.
+/// Maximum amount, in centimetres, by which the cost of the way chosen before may exceed the cost of the best way,
+/// since single pings change the best way.
 const KEEPS: i32 = 80;
 
 /// The state of the tangent rule in this turn.
@@ -31,17 +31,17 @@ pub(crate) struct Ahead {
     pub(crate) goal: Pose,
     /// Distance from the goal at which the robot is near enough.
     pub(crate) near: Meters,
-    /// Distance from the goal that a way must reduce.
+    /// Reference distance from the goal; a way must end nearer to the goal.
     pub(crate) from: Meters,
-    /// Direction that the rule has chosen.
+    /// Direction that the tangent rule has chosen.
     pub(crate) chosen: Radians,
     /// Free length of the way to the goal, and the length that is required; `None` on a detour.
     pub(crate) free: Option<(Meters, Meters)>,
     /// Speed where the way is free.
     pub(crate) speed: MetersPerSecond,
-    /// Angle that the robot has turned.
+    /// Angle by which the robot has turned.
     pub(crate) winding: Winding,
-    /// Place to which the last way led.
+    /// Next place of the last way; `None` if there is no last way.
     pub(crate) before: Option<Next>,
 }
 
@@ -54,11 +54,11 @@ pub(crate) struct Next {
     pub(crate) is_straight: bool,
 }
 
-/// Returns the place at which the body of `y`, at `here`, next has to be on its way to the goal; `None` if the map has
-/// no way that leads nearer.
+/// Returns the next place to which the body of `y`, at `here`, has to drive on its way to the goal; `None` if the map
+/// has no way that leads nearer.
 ///
-/// The function is not inlined: the wave is the largest value that a law puts on the stack, and must leave the
-/// stack when the function returns.
+/// The function is not inlined: the wave is the largest value that a law puts on the stack, and must leave the stack
+/// when the function returns.
 #[inline(never)]
 pub(crate) fn way<Y: DiffDrive>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> Option<Next> {
     let (goal, straight) = (&ahead.goal, here.distance(&ahead.goal).0);
@@ -82,14 +82,14 @@ pub(crate) fn way<Y: DiffDrive>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> 
     Some(Next { x, y, is_straight })
 }
 
-/// The wave, with the cell of the robot.
+/// The wave, and the cell of the robot.
 struct Way<'w> {
     wave: &'w Wave,
     here: usize,
 }
 
 impl Way<'_> {
-    /// Returns the cell of the place to which the last way led, if that way is still good.
+    /// Returns the cell of the next place of the last way; `None` if that way is no longer good.
     fn kept(&self, map: &Map, before: &Next) -> Option<usize> {
         let at = Cell::of(before.x, before.y);
         let cell = map.contains(at).then(|| index(at.x - map.corner.x, at.y - map.corner.y))?;
@@ -103,8 +103,8 @@ impl Way<'_> {
     }
 
     /// Returns the cell to which a rectangular body drives next, and `true` if it must drive there straight. Before a
-    /// narrow stretch this is the last cell in which the body can turn; from there it is a cell a little beyond the
-    /// stretch, if a free straight line leads to it. `before` is the last result, from which the search continues while
+    /// narrow section this is the last cell in which the body can turn; from there it is a cell a little beyond the
+    /// section, if a free straight line leads to it. `before` is the last result, from which the search continues while
     /// that result is still good.
     fn beyond(&self, map: &Map, before: Option<Next>) -> (usize, bool) {
         let before = before.and_then(|before| Some((self.kept(map, &before)?, before.is_straight)));
@@ -132,7 +132,7 @@ impl Way<'_> {
         (cell, is_straight)
     }
 
-    /// Returns `true` if the body can pass all cells on the line to this one.
+    /// Returns `true` if the body can pass all cells on the straight line from the robot to this cell.
     fn sees(&self, to: usize) -> bool {
         line(self.here, to).all(|cell| self.wave.is_free(cell))
     }
@@ -164,7 +164,8 @@ mod tests {
     use super::*;
     use crate::trial::{Sensed, sized};
 
-    /// The state of a rule that has chosen the way straight ahead to a goal, 5 m away at first.
+    /// Returns the state of a tangent rule that has chosen the way straight ahead to a goal, with a reference distance
+    /// of 5 m.
     fn ahead(goal: Pose, before: Option<Next>) -> Ahead {
         Ahead {
             goal,
@@ -178,8 +179,8 @@ mod tests {
         }
     }
 
-    /// Returns the place to drive to first, past a wall 0.6 m ahead with a gap of this width, in metres, whose middle
-    /// is 0.3 m to the left.
+    /// Returns the first place to which the robot drives past a wall 0.6 m ahead, which has a gap of this width, in
+    /// metres, whose middle is 0.3 m to the left; `None` if there is no way.
     fn through(gap: f64, y: &Sensed) -> Option<(f64, f64)> {
         let mut map = Map::EMPTY;
         map.occupy((0.6, 0.3 + gap / 2.0), (0.6, 1.55));
@@ -213,7 +214,7 @@ mod tests {
         assert_eq!(way(&map, Pose::ORIGIN, &ahead, &Sensed::default()), next);
     }
 
-    /// Returns the next place of an ATRV-mini at this distance before a doorway of 0.7 m.
+    /// Returns the next place to which an ATRV-mini drives at this distance from a doorway 0.7 m wide.
     fn before_a_doorway(distance: f64, before: Option<Next>) -> Next {
         let mut map = Map::EMPTY;
         for side in [-1.0, 1.0] {
@@ -248,7 +249,7 @@ mod tests {
         assert!(next(0.3) > 0.1 && next(-0.3) < -0.1);
     }
 
-    /// A body has no room at a goal 10 cm before a wall: the robot drives to where it is near enough.
+    /// A body has no room at a goal 10 cm from a wall, so the robot drives to a place that is near enough.
     #[test]
     fn a_goal_beside_a_wall_has_a_way() {
         let mut map = Map::EMPTY;

@@ -1,5 +1,6 @@
-//! The angle by which a robot has turned since an atom began. Wheels that skid measure each turn too long or too short
-//! by about the same part, so the heading by odometry becomes wrong with every full circle, and turning back mends it.
+//! The angle by which a robot has turned since an atom began. Wheels that skid make an error in each turn that is about
+//! the same fraction of the turn, so the heading by odometry becomes wrong with every full circle, and turning back
+//! corrects it.
 
 use core::f64::consts::TAU;
 
@@ -11,11 +12,11 @@ use crate::gains::Gains;
 /// Angle, in radians, up to which the shorter turn is always chosen.
 const SHORT: f64 = core::f64::consts::FRAC_PI_2;
 
-/// The angle turned, counter-clockwise positive, beyond a full circle too.
+/// The angle turned, counter-clockwise positive, which may exceed a full circle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Winding {
     turned: f64,
-    /// Angle turned from which the robot turns back rather than on.
+    /// Angle turned from which the robot turns back instead of continuing in the same direction.
     most: f64,
 }
 
@@ -25,13 +26,13 @@ impl Winding {
         Self { turned: 0.0, most: Gains::of(y).winds_most }
     }
 
-    /// Includes the turn from one pose to the next.
+    /// Adds the turn from one pose to the next.
     pub(crate) fn take(&mut self, before: &Pose, here: &Pose) {
         self.turned += Radians(here.theta.0 - before.theta.0).wrapped().0;
     }
 
-    /// Returns the angle to turn to a direction at the angle `off`, from -π to π: the longer way round if `off` is
-    /// large and would turn the robot on where it has turned far.
+    /// Returns the angle by which the robot has to turn to a direction at the angle `off`, from -π to π. It is the
+    /// longer way round if `off` is large and the robot has already turned far in the direction of `off`.
     pub(crate) fn turn_to(self, Radians(off): Radians) -> Radians {
         let total = self.turned + off;
         let winds = off.abs() > SHORT && total.abs() > self.most && total * off > 0.0;
@@ -44,7 +45,8 @@ mod tests {
     use super::*;
     use crate::trial::{Sensed, sized};
 
-    /// Returns the degrees to turn to a direction `off` for a body that has turned from heading 0 by these steps.
+    /// Returns the angle, in degrees, by which a body has to turn to a direction at the angle `off`, after it has
+    /// turned from the heading 0 by these steps.
     fn turn_to(y: &Sensed, steps: &[f64], off: f64) -> f64 {
         let at = |degrees: f64| Pose { theta: Radians::from_degrees(degrees), ..Pose::ORIGIN };
         let (mut winding, mut before) = (Winding::begin(y), at(0.0));

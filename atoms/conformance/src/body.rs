@@ -1,4 +1,4 @@
-//! Checks of the measures that a robot reports of its own body.
+//! Checks that the measures that a robot reports of its own body are plausible.
 
 use std::format;
 
@@ -8,7 +8,7 @@ use mdle_runtime::capability::{DiffDrive, SonarRing};
 use super::trial::Trial;
 use super::{Out, Room, Stage, Verdict};
 
-/// Minimum and maximum radius of a body, in metres, beyond which a measure is an error.
+/// Minimum and maximum plausible radius of a body, in metres.
 const RADIUS: (f64, f64) = (0.01, 5.0);
 
 /// Checks that a measure, in metres, lies between two limits.

@@ -1,4 +1,4 @@
-//! The bumper, which must report contact and nothing else.
+//! Checks that the bumper reports every contact, and nothing else.
 
 use std::format;
 
@@ -13,7 +13,8 @@ use super::{Out, Room, Stage, Verdict};
 const AWAY: f64 = 0.4;
 /// Speed towards the wall, in m/s.
 const V: f64 = 0.1;
-/// Maximum gap, in metres, between the body and a wall that it feels, beyond the distance that it drives in one period.
+/// Maximum gap, in metres, between the body and a wall at which the bumper may report contact, in addition to the
+/// distance that the robot drives in one period.
 const FEELS: f64 = 0.02;
 
 pub(super) fn is_felt<S: Stage>(stage: &mut S) -> Result<(), Verdict>
@@ -44,7 +45,7 @@ where
     not_felt(&trial, wall - front, reach)
 }
 
-/// Checks that no contact is reported without contact.
+/// Checks that the robot reports no contact while its body is further than `reach` from the wall.
 fn not_felt<S: Stage>(trial: &Trial<'_, S>, wall: f64, reach: f64) -> Result<(), Verdict>
 where
     Out<S>: Bumpers,
@@ -58,7 +59,7 @@ where
     Ok(())
 }
 
-/// Checks that the interrupt agrees with the output.
+/// Checks that the interrupt `bumper` agrees with the contacts in the output.
 fn agrees<S: Stage>(trial: &Trial<'_, S>) -> Result<(), Verdict>
 where
     Out<S>: Bumpers,

@@ -1,4 +1,4 @@
-//! Checks of the effect of an input on the body: its signs and units, and that the body stops.
+//! Checks that an input moves the body with the right signs and units, and that the body stops.
 
 use std::format;
 
@@ -24,9 +24,9 @@ pub(super) const V: f64 = 0.2;
 pub(super) const OMEGA: f64 = 0.4;
 /// Maximum motion of a body at rest, in metres and radians.
 const STANDS: (f64, f64) = (0.01, 0.02);
-/// Minimum braking of a body that is stopped, in m/s² and rad/s².
+/// Minimum deceleration of a body that is stopped, in m/s² and rad/s².
 const BRAKES: (f64, f64) = (0.5, 1.5);
-/// Fraction of the speeds in the alphabet's limits that the body has to reach.
+/// Fraction of the speed limits of the alphabet that the body has to reach.
 const REACHED: f64 = 0.9;
 
 /// Checks that the body was at rest.
@@ -37,7 +37,8 @@ pub(super) fn stood(way: &Way, when: &str) -> Result<(), String> {
     Err(format!("{when} the body went {:.3} m and turned by {:.1} degrees", way.far(), way.turn.to_degrees()))
 }
 
-/// Checks that the body has moved along the arc of these speeds.
+/// Checks that the body has moved along the arc of a body that drives at the speed `v` and the turn rate `omega` for
+/// `seconds`.
 fn went(way: &Way, v: f64, omega: f64, seconds: f64) -> Result<(), String> {
     let arc = Way::between(Pose::ORIGIN, Pose::ORIGIN.moved(Meters(v * seconds), Radians(omega * seconds)));
     let did = format!("told {v} m/s and {omega} rad/s for {seconds:.1} s, the body");

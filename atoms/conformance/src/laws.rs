@@ -1,4 +1,4 @@
-//! The paper's laws as they run on this robot: `go`, `stop`, `rotate`, `turn`, `align` (section IV-A).
+//! Checks the paper's laws on this robot: `go`, `stop`, `rotate`, `turn`, `align` (section IV-A).
 
 use std::format;
 
@@ -11,10 +11,11 @@ use super::ring::HEARD;
 use super::trial::{Trial, Way, lasting};
 use super::{Out, Room, Stage, Verdict};
 
-/// Tolerance of the final heading of a law that turns, in degrees, in addition to a fraction of the turn: 2 degrees
-/// that the law tolerates, and the error of odometry.
+/// Tolerance of the final heading of a law that turns, in degrees, in addition to a fraction of the turn. It covers the
+/// law's own tolerance of 2 degrees, and the error of odometry.
 const DONE: f64 = 5.0;
-/// Tolerance of the heading of `align`, in degrees; its ranges may be wrong by an inch and old by a second.
+/// Tolerance of the heading of `align`, in degrees. The ranges that it compares may be wrong by an inch and a second
+/// old.
 const SQUARE: f64 = 8.0;
 /// Maximum duration of a turn, in seconds.
 const TURNS: f64 = 25.0;

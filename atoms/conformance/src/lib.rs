@@ -36,7 +36,7 @@ use mdle_runtime::{Alphabet, Nanos, PathStore, Pose, Robot, Twist};
 pub use report::{Checked, Report, Verdict};
 pub use room::{Room, Wall};
 
-/// The place of the trials: a stage builds a room around a robot and measures the true pose of its body.
+/// Test environment of a robot: builds a room around the robot and measures the true pose of its body.
 pub trait Stage {
     /// The robot.
     type Robot: Robot<Input = Twist>;
@@ -80,7 +80,7 @@ pub enum Supplied {
 /// The output of the robot on this stage.
 type Out<S> = <<S as Stage>::Robot as Robot>::Output;
 
-/// The requested checks, with a method for each capability.
+/// Suite of checks of one robot, with a method that runs the checks of each capability, and the verdicts so far.
 #[derive(Debug)]
 pub struct Suite<'s, S: Stage> {
     stage: &'s mut S,
@@ -88,17 +88,17 @@ pub struct Suite<'s, S: Stage> {
     checked: Vec<Checked>,
 }
 
-/// A check of a robot on a stage.
+/// Function that runs one check of the robot on a stage.
 type Check<S> = fn(&mut S) -> Result<(), Verdict>;
 
 impl<'s, S: Stage> Suite<'s, S> {
-    /// Returns an empty report.
+    /// Returns a suite in which no check has run yet.
     #[must_use]
     pub fn on(stage: &'s mut S) -> Self {
         Self { stage, asked: Vec::new(), checked: Vec::new() }
     }
 
-    /// Checks `diff_drive`: the effect of an input on the body, stops, and the laws that need no other capability.
+    /// Checks `diff_drive`: the motion that an input causes, stops, and the laws that need no other capability.
     #[must_use]
     pub fn diff_drive(self) -> Self
     where
@@ -121,7 +121,8 @@ impl<'s, S: Stage> Suite<'s, S> {
         )
     }
 
-    /// Checks `odometry`: the reported motion against the true motion of the body, and the laws that turn by odometry.
+    /// Checks `odometry`: compares the reported motion with the true motion of the body, and runs the laws that turn by
+    /// odometry.
     #[must_use]
     pub fn odometry(self) -> Self
     where
@@ -143,7 +144,7 @@ impl<'s, S: Stage> Suite<'s, S> {
         )
     }
 
-    /// Checks `bumper`: reports of contact.
+    /// Checks `bumper`: contact is reported while the body touches a wall, and not otherwise.
     #[must_use]
     pub fn bumper(self) -> Self
     where
@@ -174,7 +175,7 @@ impl<'s, S: Stage> Suite<'s, S> {
         )
     }
 
-    /// Checks `paths`: the paths that the robot was given.
+    /// Checks `paths`: the output has the paths that the robot was given, and the law `path` replays one.
     #[must_use]
     pub fn paths(self) -> Self
     where
@@ -189,7 +190,7 @@ impl<'s, S: Stage> Suite<'s, S> {
         )
     }
 
-    /// Checks `power`: the battery and the charger.
+    /// Checks `power`: the battery's voltage, the low-battery state, and the charger.
     #[must_use]
     pub fn power(self) -> Self
     where

@@ -1,4 +1,4 @@
-//! A measured number beside the expected one, and the probable cause of a difference.
+//! Compares a measured number with the expected number, and names the probable cause of a difference.
 
 use std::format;
 
@@ -21,14 +21,14 @@ const FACTORS: [(f64, &str); 10] = [
 /// Fraction of the expected number below which a measured number counts as zero.
 const NOTHING: f64 = 0.01;
 
-/// A number that was measured.
+/// A measured number, the expected number, and the texts for the message about a difference.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Measured<'a> {
     /// Text up to the number: the action, and the measured quantity.
     pub(super) what: &'a str,
     /// Unit of the quantity.
     pub(super) unit: &'a str,
-    /// Probable source of an error.
+    /// Name of the quantity that is blamed for a wrong sign or scale, such as "the input".
     pub(super) whose: &'a str,
     pub(super) found: f64,
     pub(super) wanted: f64,
@@ -50,7 +50,7 @@ impl Measured<'_> {
     }
 }
 
-/// Returns the probable cause of a difference, as the end of a sentence; empty if there is none.
+/// Returns the probable cause of a difference, as the end of a sentence; empty if no cause is known.
 fn why(found: f64, wanted: f64, within: f64, whose: &str) -> String {
     let factor = found / wanted;
     if wanted.abs() <= within || !factor.is_finite() {

@@ -1,4 +1,4 @@
-//! Checks of the motion that a robot reports against the true motion of its body.
+//! Compares the motion that a robot reports with the true motion of its body.
 
 use std::format;
 

@@ -8,12 +8,12 @@ use mdle_runtime::{Alphabet, Interrupt as _, Signal as _};
 use super::trial::Trial;
 use super::{Out, Room, Stage, Supplied, Verdict};
 
-/// Minimum and maximum voltage, in volts, beyond which a voltage is an error.
+/// Minimum and maximum plausible voltage of a battery, in volts.
 const VOLTS: (f64, f64) = (1.0, 1000.0);
 /// Time, in seconds, within which a robot must report a change of its supply.
 const TELLS: f64 = 5.0;
 
-/// The state of its supply that a robot reports.
+/// State of the power supply that a robot reports.
 #[derive(Debug, Clone, Copy)]
 struct ReportedSupply {
     volts: f64,
@@ -21,7 +21,7 @@ struct ReportedSupply {
     is_plugged: bool,
 }
 
-/// Returns the state that the robot reports `TELLS` seconds after it gets this supply.
+/// Returns the supply state that the robot reports `TELLS` seconds after the stage has set `supplied`.
 fn reported<S: Stage>(stage: &mut S, supplied: Supplied) -> Result<ReportedSupply, Verdict>
 where
     Out<S>: Power,
@@ -39,7 +39,7 @@ where
     Ok(supply)
 }
 
-/// Checks that the quarks and the signal of the alphabet agree with the output.
+/// Checks that the interrupts `lowBattery` and `charger` and the signal `battery` agree with the output.
 fn agree<S: Stage>(y: &Out<S>, supply: ReportedSupply) -> Result<(), Verdict> {
     for (name, wanted) in [("lowBattery", supply.is_low), ("charger", supply.is_plugged)] {
         let interrupt = S::Alphabet::interrupt(name, &[]).ok_or(Verdict::NotOffered)?;
@@ -54,7 +54,7 @@ fn agree<S: Stage>(y: &Out<S>, supply: ReportedSupply) -> Result<(), Verdict> {
     Ok(())
 }
 
-/// Checks that a state is reported only where it is true.
+/// Checks that the robot reports a state with the one power supply that causes it, and not with the two others.
 fn only(what: &str, where_it_is: bool, where_not: [bool; 2]) -> Result<(), String> {
     match (where_it_is, where_not) {
         (true, [false, false]) => Ok(()),
@@ -85,7 +85,7 @@ where
     Ok(())
 }
 
-/// Returns the states that the robot reports when it is well supplied, when its battery is low, and on its charger.
+/// Returns the states that the robot reports with a charged battery, with a low battery, and on its charger.
 fn each<S: Stage>(stage: &mut S) -> Result<[ReportedSupply; 3], Verdict>
 where
     Out<S>: Power,

@@ -10,7 +10,8 @@ use super::stored_path::{BEND, NAME, SPEED};
 use super::trial::{Trial, Way};
 use super::{Out, Room, Stage, Verdict};
 
-/// Maximum distance of the body from the end of the path, in metres and degrees: it has to accelerate and to stop.
+/// Maximum distance of the body from the end of the path, in metres, and from its heading there, in degrees. The body
+/// deviates from the path because it has to accelerate and to stop.
 const ENDS: (f64, f64) = (0.1, 10.0);
 
 pub(super) fn are_there<S: Stage>(stage: &mut S) -> Result<(), Verdict>

@@ -25,7 +25,7 @@ impl From<String> for Verdict {
     }
 }
 
-/// A check that was made.
+/// A check that has run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Checked {
     /// Capability to which the check belongs.
@@ -40,14 +40,14 @@ pub struct Checked {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Report {
     checked: Vec<Checked>,
-    /// Defects of the alphabet's claims.
+    /// Sentences about capabilities that are claimed but were not checked, or were checked but are not claimed.
     claims: Vec<String>,
     /// Claimed capabilities for which there are no checks.
     unknown: Vec<&'static str>,
 }
 
 impl Report {
-    /// Returns the report of these checks, made for the capabilities `asked`, of a robot that claims the
+    /// Returns a report of the results `checked` of the capabilities `asked`, for a robot whose alphabet claims the
     /// capabilities `claimed`.
     pub(super) fn new(checked: Vec<Checked>, asked: &[&str], claimed: &[&'static str]) -> Self {
         let method = |capability: &str| format!(".{}()", capability.trim_end_matches("[16]"));
@@ -67,13 +67,13 @@ impl Report {
         Self { checked, claims: missing.chain(more).collect(), unknown }
     }
 
-    /// Returns `true` if the robot meets all requirements.
+    /// Returns `true` if no check failed, and the checked capabilities are those that the alphabet claims.
     #[must_use]
     pub fn holds(&self) -> bool {
         self.claims.is_empty() && !self.checked.iter().any(|checked| matches!(checked.verdict, Verdict::Broken(_)))
     }
 
-    /// Returns the checks that were made.
+    /// Returns the checks that have run.
     #[must_use]
     pub fn checked(&self) -> &[Checked] {
         &self.checked

@@ -1,4 +1,4 @@
-//! The sixteen sonars: their directions, their ranges, and the times of their pings.
+//! Checks of the sixteen sonars: their directions, their ranges, and the times of their pings.
 
 use std::format;
 
@@ -11,16 +11,16 @@ use super::{Out, Room, Stage, Verdict};
 
 /// Time, in seconds, until every sonar has pinged three times, also on a robot whose sonars fire in turn.
 pub(super) const HEARD: f64 = 3.2;
-/// Tolerance of a range, in metres: for a sonar with a resolution of an inch, which need not be mounted exactly
-/// on the ring.
+/// Tolerance of a range, in metres. A sonar may have a resolution of an inch, and need not be mounted exactly on the
+/// ring.
 const RANGE: f64 = 0.05;
-/// Distances from the centre, in metres, of the walls in front of the sonars, all different. Walls with even numbers
-/// are nearer, since some robots listen to two sonars there, beside which the next walls are. The sequence differs from
-/// each of its rotations and reversals.
+/// Distances from the centre, in metres, of the walls in front of the sonars, all different. The walls of sonars with
+/// even numbers are nearer than their neighbours, since some robots listen to two sonars there. The sequence differs
+/// from each of its rotations and reversals.
 const WALLS: [f64; SONARS] =
     [1.08, 1.71, 0.75, 2.37, 1.41, 1.93, 0.86, 1.60, 1.19, 2.15, 0.97, 2.26, 1.52, 1.82, 1.30, 2.04];
-/// Half the width of a wall with an even and with an odd number, per metre of its distance, so that
-/// neighbouring sonars do not hear it.
+/// Half the width of the walls of sonars with even and with odd numbers, per metre of their distance. The walls are
+/// narrow enough not to be heard by the neighbouring sonars.
 const HALF: [f64; 2] = [0.05, 0.08];
 /// Maximum age of a ping, in seconds: a full ring takes a second.
 const OLD: f64 = 2.0;

@@ -6,11 +6,11 @@ use core::fmt;
 
 use mdle_runtime::{Meters, Pose, Radians};
 
-/// Distance of the outermost walls, in metres: further than any sonar hears.
+/// Distance of the outermost walls, in metres, which is beyond the range of any sonar.
 const FAR: f64 = 40.0;
 
-/// Pose at which robots begin: far from the origin and along no axis, so that a confusion of the room's axes
-/// with the robot's is found.
+/// Pose at which robots begin. It differs from the origin in position and heading, so that the checks detect a robot
+/// that confuses its own axes with those of the room.
 pub(super) const AT: Pose = Pose { x: Meters(1.0), y: Meters(-0.5), theta: Radians::from_degrees(30.0) };
 
 /// A straight wall without thickness.
@@ -31,7 +31,7 @@ pub struct Room {
 }
 
 impl Room {
-    /// Returns a hall whose walls no sonar hears.
+    /// Returns a hall whose walls are out of range of the sonars.
     pub(super) fn open() -> Self {
         let sides = [0.0, 90.0, 180.0, 270.0];
         sides.into_iter().fold(Self { walls: Vec::new() }, |room, side| room.across(side, FAR, FAR))
@@ -53,7 +53,7 @@ impl Room {
         &self.walls
     }
 
-    /// Returns the distance of the nearest wall from the place of this pose.
+    /// Returns the distance from the position of `at` to the nearest wall.
     pub(super) fn nearest(&self, at: Pose) -> Meters {
         let ways = self.walls.iter().map(|wall| wall.distance(at));
         Meters(ways.fold(f64::INFINITY, f64::min))

@@ -14,7 +14,7 @@ const ARRIVED: f64 = 0.2;
 const RANGE: f64 = 1.0;
 /// Speed to drive at, in m/s.
 const SPEED: f64 = 0.2;
-/// Maximum distance, in metres, at which a body touches a wall.
+/// Maximum distance, in metres, between a wall and a body that counts as touching it.
 const TOUCHES: f64 = 0.002;
 
 fn arguments(degrees: f64, range: f64) -> [Argument<'static>; 3] {

@@ -1,4 +1,4 @@
-//! `atIsection`: the four sides, and the bit of each side.
+//! Checks that `atIsection` assigns each of its four bits to the right side.
 
 use std::format;
 
@@ -9,9 +9,9 @@ use super::ring::HEARD;
 use super::trial::Trial;
 use super::{Out, Room, Stage, Verdict};
 
-/// Distance of a wall that blocks a side, as a fraction of the range below which a side is blocked.
+/// Distance of a wall that blocks a side, as a fraction of the range below which an obstacle blocks a side.
 const NEAR: f64 = 0.6;
-/// Distance of a wall that does not block a side, as a fraction of the range below which a side is blocked.
+/// Distance of a wall that does not block a side, as a multiple of the range below which an obstacle blocks a side.
 const FREE: f64 = 1.4;
 /// Half the length of the walls, in metres.
 const HALF: f64 = 0.8;
@@ -26,17 +26,17 @@ where
     Ok(())
 }
 
-/// Returns a wall on only this side.
+/// Returns the pattern in which only the side with this number has a wall.
 fn side(number: usize) -> [bool; 4] {
     core::array::from_fn(|other| other == number)
 }
 
-/// Returns the word of these bits as plans write it.
+/// Returns the bits as a word, as plans write them.
 fn word(bits: [bool; 4]) -> String {
     bits.iter().map(|bit| if *bit { '1' } else { '0' }).collect()
 }
 
-/// Checks that, of all 16 patterns, only the pattern of these walls fires.
+/// Checks that, of the 16 patterns of `atIsection`, only the pattern of these walls fires.
 fn tells<S: Stage>(stage: &mut S, walls: [bool; 4]) -> Result<(), Verdict>
 where
     Out<S>: SonarRing + DiffDrive,

@@ -1,4 +1,4 @@
-//! A trial of a robot in a room: runs turns, and records the motion of the body.
+//! A trial of a robot in a room, which runs turns and measures the motion of the body.
 
 use std::format;
 
@@ -10,7 +10,7 @@ use mdle_runtime::{
 use super::room::AT;
 use super::{Out, Room, Stage, Supplied, Verdict, stored_path};
 
-/// Maximum distance of a robot from the pose at which the stage had to put it, in metres and radians.
+/// Maximum deviation of the robot from the pose that the suite requested, in metres and radians.
 const PUT: (f64, f64) = (0.02, 0.02);
 
 /// A robot in a room.
@@ -109,9 +109,9 @@ impl<'s, S: Stage> Trial<'s, S> {
         Way::between(from, self.truth())
     }
 
-    /// Runs the law of this name with these arguments, from now on, in the frame of a plan that began with the
-    /// first exchange, until the law is done. Returns the number of seconds, or reports that the law was not
-    /// done within `most` seconds. Calls `each` in every turn.
+    /// Runs the law `name` with these arguments until it is done, in the frame of a plan that began with the first
+    /// exchange, and calls `each` in every turn. Returns the number of seconds that the law took; `None` if it was not
+    /// done within `most` seconds.
     pub(super) fn run(
         &mut self,
         name: &str,
@@ -147,7 +147,7 @@ fn periods<S: Stage>(seconds: f64) -> u32 {
     libm::round(seconds / S::PERIOD.seconds().max(1e-3)).max(1.0) as u32
 }
 
-/// Returns the duration of the whole periods that last about this many seconds.
+/// Returns the duration, in seconds, of the whole number of periods that is nearest to `seconds`.
 pub(super) fn lasting<S: Stage>(seconds: f64) -> f64 {
     f64::from(periods::<S>(seconds)) * S::PERIOD.seconds()
 }
