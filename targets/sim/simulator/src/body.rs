@@ -20,14 +20,14 @@ use odometry::Odometry;
 pub(crate) const STEP: f64 = 0.01;
 /// Maximum distance, in metres, at which the bumper feels a wall.
 const FEELS: f64 = 0.001;
-/// Minimum fraction of the forward speed that contact with a wall must leave so that the wheels keep turning:
-/// the fraction at a wall that is hit at 45°.
+/// Minimum fraction of the forward speed that must remain in contact with a wall for the wheels to keep turning: the
+/// fraction at a wall that is hit at 45°.
 const GLANCES: f64 = 0.5;
 /// Range of the search for walls, in metres beyond the body. The body can move as far as the search has found
 /// free before another search is needed.
 const LOOKS: f64 = 0.6;
 
-/// The place and the motion of the body.
+/// The pose and the motion of the body.
 #[derive(Debug, Clone)]
 pub(crate) struct Body {
     /// Pose on the floor.
@@ -77,7 +77,7 @@ impl Body {
         Footprint { pose: self.pose, form: self.drive.form }
     }
 
-    /// Returns the pose according to the wheels: the origin at the start.
+    /// Returns the pose according to the wheels, relative to the start pose.
     pub(crate) fn odometry(&self) -> Pose {
         self.odometry.pose
     }
@@ -90,7 +90,7 @@ impl Body {
         }
     }
 
-    /// Returns the mean speed of the wheels, in metres per second, whichever way they turn.
+    /// Returns the mean of the absolute speeds of the wheels, in metres per second.
     pub(crate) fn wheels(&self) -> f64 {
         (self.left.abs() + self.right.abs()) / 2.0
     }

@@ -1,4 +1,4 @@
-//! A charger: the pose at which a robot is on the charger, and its tolerance.
+//! A charger: the pose of a robot on the charger, and its tolerance.
 
 use mdle_runtime::{Meters, Pose, Radians};
 
@@ -25,7 +25,7 @@ impl Charger {
         pose.distance(&self.pose).0 <= self.reach && off.0.abs() <= HEADING.0
     }
 
-    /// Corners of a sign: the circle within reach, and the place ahead of a robot on the charger.
+    /// Returns points on the circle within which the centre of a robot on the charger lies.
     pub fn circle(&self) -> impl Iterator<Item = Place> {
         let at = self.pose;
         let reach = Meters(self.reach);

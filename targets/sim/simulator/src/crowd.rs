@@ -8,7 +8,7 @@ const CELL_LEAST: f64 = 1.0;
 /// Maximum number of cells for each robot.
 const CELLS_MOST: f64 = 8.0;
 
-/// The places of robots at a time, in a grid.
+/// The footprints of robots at one time, in a grid.
 #[derive(Debug, Clone)]
 pub struct Crowd {
     bodies: Vec<Footprint>,
@@ -23,7 +23,7 @@ pub struct Crowd {
     entries: Vec<(u32, Footprint)>,
 }
 
-/// Groups of robots: no robot of one group can touch a robot of another.
+/// Groups of robots, such that no robot can touch a robot of another group.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Groups {
     /// Numbers of the robots, group by group, in ascending order within a group.
@@ -33,7 +33,7 @@ pub struct Groups {
 }
 
 impl Crowd {
-    /// Returns the robots at these places, which are finite.
+    /// Returns a crowd of robots with these footprints, whose coordinates must be finite.
     #[must_use]
     pub fn of(bodies: Vec<Footprint>) -> Self {
         let bound = |of: fn(&Footprint) -> f64, pick: fn(f64, f64) -> f64| bodies.iter().map(of).reduce(pick);
@@ -89,14 +89,14 @@ impl Crowd {
         (((y - self.least.y) / self.cell) as usize).min(self.rows - 1)
     }
 
-    /// Returns the places of the robots, by their numbers.
+    /// Returns the footprints of the robots, indexed by their numbers.
     #[must_use]
     pub fn bodies(&self) -> &[Footprint] {
         &self.bodies
     }
 
-    /// Calls `take` with the number and the place of each robot whose centre is within `reach` metres of `at`; the
-    /// order depends on the places alone.
+    /// Calls `take` with the number and the footprint of each robot whose centre is within `reach` metres of `at`; the
+    /// order depends on the footprints alone.
     pub fn near(&self, at: Place, reach: f64, mut take: impl FnMut(usize, &Footprint)) {
         let (left, right) = (self.column(at.x - reach), self.column(at.x + reach));
         for row in self.row(at.y - reach)..=self.row(at.y + reach) {
@@ -112,7 +112,8 @@ impl Crowd {
         }
     }
 
-    /// Returns the groups of robots that are connected by distances of at most `reach` metres between centres.
+    /// Returns the groups of robots. Two robots are in one group if they are connected by a chain of robots whose
+    /// neighbours are at most `reach` metres apart, from centre to centre.
     #[must_use]
     pub fn groups(&self, reach: f64) -> Groups {
         let mut leaders: Vec<u32> = (0..self.bodies.len() as u32).collect();
@@ -138,8 +139,8 @@ fn leader(leaders: &mut [u32], mut number: u32) -> u32 {
 }
 
 impl Groups {
-    /// Returns the groups. `leaders` has a robot for each robot: the robot itself if it has the lowest number of its
-    /// group, otherwise a robot with a lower number in its group.
+    /// Returns the groups. `leaders` has an entry for each robot: its own number if this is the lowest number in its
+    /// group, otherwise a lower number of its group.
     fn of(leaders: &mut [u32]) -> Self {
         let mut sizes = vec![0_u32; leaders.len()];
         for number in 0..leaders.len() as u32 {

@@ -1,4 +1,4 @@
-//! The pictures of a run, drawn from its record when it has ended.
+//! Draws the pictures of a run from its record, when the run has ended.
 
 use mdle_runtime::{Nanos, Pose, Sensed};
 
@@ -10,7 +10,7 @@ use crate::robot::Simulated;
 use crate::trail::Trail;
 use crate::world::World;
 
-/// The record of a run in a world, and the pictures of it.
+/// The record of a run in a world, from which its pictures are drawn.
 #[derive(Debug, Clone)]
 pub struct Drawing {
     world: World,
@@ -60,8 +60,8 @@ impl Drawing {
         &self.trail.echoes
     }
 
-    /// Records an exchange of `robot` at time `t`, which gave `sensed`; `touches` is `true` if a contact begins with
-    /// it.
+    /// Records an exchange of `robot` at time `t` with the output `sensed`; `touches` is `true` if a contact begins
+    /// with it.
     pub fn exchanged(&mut self, robot: &Simulated, sensed: &Sensed, t: Nanos, touches: bool) {
         self.trail.went(&robot.pose());
         self.trail.things.clear();
@@ -83,8 +83,8 @@ impl Drawing {
         self.trail.began(number, law, t);
     }
 
-    /// Records that the turns of `plan` have ended at time `t` for this cause; `is_over` is `false` if the plan
-    /// was stopped.
+    /// Records that the turns of `plan` have ended at time `t`; `by` is the cause. `is_over` is `false` if the plan was
+    /// stopped.
     pub fn ended(&mut self, plan: &str, is_over: bool, by: &str, t: Nanos) {
         self.trail.ended(plan, is_over, by, t);
     }

@@ -1,4 +1,4 @@
-//! The picture of several robots in one world: the floor, and the path driven by each robot.
+//! Draws several robots in one world: the floor, and the path driven by each robot.
 
 use mdle_runtime::{Nanos, Pose};
 
@@ -19,7 +19,7 @@ pub struct FleetDrawing {
     contacts: Vec<(Place, Nanos)>,
 }
 
-/// The path driven by a robot.
+/// A robot and the path that it has driven.
 #[derive(Debug, Clone)]
 struct RobotWay {
     name: String,
@@ -38,7 +38,7 @@ impl FleetDrawing {
         Self { world: world.clone(), title: title.to_owned(), robots: Vec::new(), contacts: Vec::new() }
     }
 
-    /// Records the pose of the robot of this name; `touches` is `true` if the robot touches something.
+    /// Records the current pose of the robot `name`; `touches` is `true` if the robot touches something.
     pub fn went(&mut self, name: &str, robot: &Simulated, touches: bool) {
         let Footprint { pose, form } = robot.footprint();
         let place = Place::of(&pose);

@@ -48,7 +48,7 @@ pub(crate) struct Contact {
     pub(crate) gap: f64,
     /// Point on the obstacle.
     pub(crate) place: Place,
-    /// Point of the body from which the obstacle pushes the body off; the centre of a disc.
+    /// Point of the body at which the obstacle pushes the body away; the centre of a disc.
     pub(crate) body: Place,
 }
 
@@ -245,8 +245,8 @@ impl Footprint {
         }
     }
 
-    /// Returns the distance that a ray from outside in the unit direction `way` goes before it meets the body, if that
-    /// is less than `most`.
+    /// Returns the distance that a ray from outside in the unit direction `way` travels before it meets the body;
+    /// `None` if the ray does not meet it within `most` metres.
     pub(crate) fn met(&self, from: Place, way: Place, most: f64) -> Option<f64> {
         let Form::Disc { radius } = self.form else {
             return self.sides().filter_map(|side| side.met(from, way, most)).reduce(f64::min);
@@ -265,8 +265,8 @@ impl Footprint {
         (range >= 0.0 && range < most).then_some(range)
     }
 
-    /// Returns the surface that a ray from outside in the unit direction `way` meets, if its distance is less than
-    /// `most`: a disc has no edges. The surface is smooth.
+    /// Returns the surface that a ray from outside in the unit direction `way` meets; `None` if the ray does not meet
+    /// the body within `most` metres. The surface is smooth, and a disc has no edges.
     pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
         let Form::Disc { radius } = self.form else {
             let met = self.sides().filter_map(|side| Some((side.met(from, way, most)?, side)));

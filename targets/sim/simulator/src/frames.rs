@@ -1,13 +1,13 @@
-//! The moments of a run for a moving picture: a bounded number, evenly spread, however long the run is.
+//! Records the frames of a moving picture: a limited number, evenly spread over the run, regardless of its length.
 
 use mdle_runtime::{Nanos, Pose, SONARS};
 
 use crate::place::Place;
 
-/// Maximum number of moments kept; when it is reached, every second moment is removed.
+/// Maximum number of frames kept; when it is reached, every second frame is removed.
 pub(crate) const FRAMES_MOST: usize = 800;
 
-/// A recorded moment of a run.
+/// A frame: the state of the robot and of the moving objects at a certain time of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Frame {
     pub(crate) t: Nanos,
@@ -18,13 +18,13 @@ pub(crate) struct Frame {
     pub(crate) things: Vec<Option<Place>>,
 }
 
-/// Recorded moments of a run, thinned out as the run gets longer.
+/// The frames of a run; as the run gets longer, a smaller fraction of them is kept.
 #[derive(Debug, Clone)]
 pub(crate) struct Frames {
     kept: Vec<Frame>,
-    /// The last moment of the run, even if it is not among the recorded ones.
+    /// The last frame of the run, even if it is not among the kept frames; `None` before the first frame.
     last: Option<Frame>,
-    /// Number of moments per recorded moment.
+    /// Interval, in frames, between two frames that are kept.
     stride: u64,
     seen: u64,
 }
@@ -35,7 +35,7 @@ impl Frames {
         Self { kept: Vec::new(), last: None, stride: 1, seen: 0 }
     }
 
-    /// Adds the next moment.
+    /// Adds the next frame.
     pub(crate) fn push(&mut self, frame: Frame) {
         if self.seen.is_multiple_of(self.stride) {
             self.kept.push(frame.clone());
@@ -52,7 +52,7 @@ impl Frames {
         self.seen = self.seen.saturating_add(1);
     }
 
-    /// Returns the recorded moments in order, and the last moment.
+    /// Returns the kept frames in order, followed by the last frame if it is not among them.
     pub(crate) fn all(&self) -> Vec<Frame> {
         let last = self.last.as_ref().filter(|last| self.kept.last() != Some(last));
         self.kept.iter().chain(last).cloned().collect()

@@ -1,4 +1,4 @@
-//! The goal of a plan: a zone of the floor, and perhaps a heading.
+//! The goal of a run: a zone of the floor, and optionally a heading.
 
 use mdle_quantity::Quantity;
 use mdle_runtime::{Pose, Radians};
@@ -10,7 +10,7 @@ const FURTHEST: f64 = 1e6;
 /// Number of dots on the edge of a circle on a map.
 const DOTS: u16 = 72;
 
-/// A zone of the floor in which a run should end.
+/// A zone of the floor in which a run is to end, and optionally a heading.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
     /// Zone in which the robot's centre must be.
@@ -93,7 +93,7 @@ impl Zone {
     }
 }
 
-/// Places on a circle, evenly spaced.
+/// Returns evenly spaced points on a circle.
 pub fn edge(center: Place, radius: f64) -> impl Iterator<Item = Place> {
     (0..DOTS).map(move |dot| {
         let bearing = Radians::from_degrees(f64::from(dot) * (360.0 / f64::from(DOTS))).0;

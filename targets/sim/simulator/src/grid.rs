@@ -13,8 +13,8 @@ const CELLS_FOR_EACH: f64 = 3.0;
 const CELLS_MOST: f64 = 4096.0;
 /// Maximum number of cells that a segment of mean length crosses: a world of long walls gets larger cells.
 const CROSSED_MOST: f64 = 8.0;
-/// Fraction of a cell by which a segment extends beyond its ends when it is entered, so that rounding loses no
-/// cell.
+/// Fraction of a cell by which a segment is extended at both ends when it is entered into the grid, so that rounding
+/// loses no cell.
 const BEYOND: f64 = 1e-6;
 
 /// A segment from the point `from` to `from` plus `along`.
@@ -55,8 +55,8 @@ impl Segment {
         Place { x: self.from.x + self.along.x, y: self.from.y + self.along.y }
     }
 
-    /// Returns the distance that a ray from `from` in the unit direction `way` travels before it hits this
-    /// segment, if it is below `most`.
+    /// Returns the distance that a ray from `from` in the unit direction `way` travels before it hits this segment;
+    /// `None` if the ray does not hit it within `most` metres.
     pub(crate) fn met(&self, from: Place, way: Place, most: f64) -> Option<f64> {
         let (ox, oy) = (self.from.x - from.x, self.from.y - from.y);
         // Cramer's rule; divided only once it is known that there is a hit.
@@ -159,8 +159,8 @@ impl Grid {
         &self.entries[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
-    /// Returns the first segment that a ray from `from` in the unit direction `way` hits, if it is closer than
-    /// `most` metres.
+    /// Returns the first segment that a ray from `from` in the unit direction `way` hits; `None` if the ray hits none
+    /// within `most` metres.
     pub(crate) fn ray(&self, from: Place, way: Place, most: f64) -> Option<Hit> {
         let (entered, left) = self.crossed(from, way, most)?;
         let at = Place { x: from.x + entered * way.x, y: from.y + entered * way.y };
@@ -227,8 +227,8 @@ impl Grid {
         rows.any(|row| columns.clone().any(|column| self.entries(column, row).iter().any(overlaps)))
     }
 
-    /// Calls `take` with each segment that touches a cell within `reach` of `at`; a segment in several cells
-    /// comes several times.
+    /// Calls `take` with each segment that touches a cell within `reach` of `at`; a segment in several cells is passed
+    /// several times.
     pub(crate) fn near(&self, at: Place, reach: f64, mut take: impl FnMut(usize, &Segment)) {
         for row in self.row(at.y - reach)..=self.row(at.y + reach) {
             for column in self.column(at.x - reach)..=self.column(at.x + reach) {

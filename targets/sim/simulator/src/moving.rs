@@ -1,8 +1,8 @@
 //! Moving parts of a world: doors that open and close, boxes and discs on a schedule.
 //!
-//! No object moves into the robot: a door that would close on the robot stays open, and a box or disc that
-//! would move into it stops in contact until the robot has gone. The object's schedule then continues, so the
-//! object is late from there on.
+//! No object moves into the robot. A door that would close on the robot stays open, and a box or disc that would move
+//! into the robot stops in contact until the robot has left. The object's schedule then continues, so the object is
+//! late from then on.
 
 use crate::footprint::{Footprint, Form};
 use crate::grid::{Hit, Segment};
@@ -80,7 +80,7 @@ impl Thing {
 }
 
 impl Schedule {
-    /// Returns the displacement at time `t` from the place where the object begins; `None` for an open door.
+    /// Returns the displacement at time `t` from the object's first position; `None` for an open door.
     fn moved(&self, t: f64) -> Option<Place> {
         match self {
             Self::Open { times, every } => {
@@ -102,7 +102,7 @@ impl Schedule {
     }
 }
 
-/// Returns the place at time `t` on the way between two stops; `None` before the first stop and from the last one on.
+/// Returns the position at time `t` between two stops; `None` before the first stop and from the last one on.
 fn at(stops: &[Stop], t: f64) -> Option<Place> {
     let (from, to) = stops.iter().zip(stops.iter().skip(1)).find(|(from, to)| from.t <= t && t < to.t)?;
     let part = (t - from.t) / (to.t - from.t);
@@ -116,12 +116,12 @@ pub(crate) struct Moving {
     schedule: Schedule,
     /// Time of the object's own clock, in seconds; it stops while the object waits for the robot.
     t: f64,
-    /// Sides at the place where the object begins.
+    /// Sides of the object at its first position.
     first: Vec<Segment>,
     ends: Vec<Ends>,
     /// Roughness of the sides, from 0 to 1.
     rough: f64,
-    /// Sides at the current place; empty for an open door.
+    /// Sides of the object at its current position; empty for an open door.
     now: Vec<Segment>,
     /// Centre of a circle around the object at its first position; `moved` is the displacement from there.
     centre: Place,
@@ -155,7 +155,7 @@ impl Moving {
         moving
     }
 
-    /// Returns the displacement from the place where the object begins; `None` for an open door.
+    /// Returns the displacement from the object's first position; `None` for an open door.
     pub(crate) fn gone(&self) -> Option<Place> {
         self.moved
     }
@@ -192,7 +192,8 @@ impl Moving {
         }
     }
 
-    /// Puts the object at another place, unless it would then move into `body`; returns `true` if it is there.
+    /// Moves the object to the displacement `moved`, unless this would bring it too close to `body`; returns `true` if
+    /// it has moved there. An object that is already too close may move if it does not come closer.
     fn is_put(&mut self, moved: Option<Place>, body: &Footprint) -> bool {
         let was = self.moved;
         self.put(moved);
@@ -238,7 +239,7 @@ impl Moving {
         }
     }
 
-    /// Returns the first side of the object that a ray hits, if it is closer than `most`.
+    /// Returns the first side of the object that a ray hits; `None` if the ray hits none within `most` metres.
     pub(crate) fn ray(&self, from: Place, way: Place, most: f64) -> Option<Hit> {
         let around = self.around()?;
         let (x, y) = (around.x - from.x, around.y - from.y);
@@ -256,7 +257,7 @@ impl Moving {
         best
     }
 
-    /// Returns the surface of the object that a ray hits, if it is closer than `most`.
+    /// Returns the surface of the object that a ray hits; `None` if the ray hits none within `most` metres.
     pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
         let Hit { range, segment } = self.ray(from, way, most)?;
         let at = Place { x: from.x + range * way.x, y: from.y + range * way.y };

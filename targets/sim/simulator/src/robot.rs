@@ -1,4 +1,4 @@
-//! The simulated robot: body and sonars in a world, moved on by one period in each exchange.
+//! The simulated robot: a body and sonars in a world. Each exchange advances them by one period.
 
 use std::fmt;
 use std::sync::Arc;
@@ -168,8 +168,8 @@ impl Simulated {
         self.battery.charge(charge);
     }
 
-    /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its
-    /// world.
+    /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its world;
+    /// `None` for a world without a charger.
     pub fn supply(&mut self, charge: f64, charger: Option<Charger>) {
         self.battery.charge(charge);
         self.charger = charger;
@@ -203,14 +203,13 @@ impl Simulated {
         self.walls.put_others(others);
     }
 
-    /// Replaces the other robots, which this robot hears and cannot pass through; `others` receives the
-    /// previous ones.
+    /// Exchanges the other robots, which this robot hears and cannot pass through, with the robots in `others`.
     pub fn swap_others(&mut self, others: &mut Others) {
         self.walls.swap_others(others);
     }
 
-    /// Returns the last ping of each transducer, in the order of the body's model: the data of a robot's boards before
-    /// a driver combines them into sixteen sonars.
+    /// Returns the last ping of each transducer, in the order of the body's model. These are the data of a robot's
+    /// sonar boards, before a driver combines them into sixteen sonars.
     #[must_use]
     pub fn heard(&self) -> &[Heard] {
         &self.ring.heard
@@ -235,7 +234,7 @@ impl Simulated {
         self.walls.gone()
     }
 
-    /// Returns the point of a wall that the body touches; its centre if it touches none.
+    /// Returns the point of an obstacle that the body touches; the centre of the body if it touches none.
     pub(crate) fn touched(&self) -> Place {
         let at = Place::of(&self.body.pose);
         let body = self.footprint();

@@ -1,4 +1,4 @@
-//! Two ears in the middle of a simulated robot, which hear the sound sources of its world.
+//! Simulates the ears of a robot: two microphones in its middle, which hear the sound sources of its world.
 
 use mdle_runtime::{Nanos, Pose, Radians};
 use mdle_sound::{EarPose, Ears, RATE, SoundRoom, SphericalHead};
@@ -23,8 +23,8 @@ impl RobotEars {
         Some(Self { ears, before: None })
     }
 
-    /// Returns the samples of the left and the right ear from the previous exchange to this one, at which the robot has
-    /// this pose.
+    /// Returns the samples of the left and the right ear since the previous exchange; `here` is the robot's pose at
+    /// this exchange.
     pub fn heard(&mut self, here: &Pose, now: Nanos) -> Vec<[f32; 2]> {
         let until = (u128::from(now.0) * u128::from(RATE) / 1_000_000_000).try_into().unwrap_or(u64::MAX);
         let (before, since) = self.before.replace((*here, until)).unwrap_or((*here, until));

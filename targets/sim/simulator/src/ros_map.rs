@@ -1,8 +1,8 @@
-//! Worlds from maps of ROS as `map_server` saves them: a YAML file of a few keys beside an image.
+//! Creates worlds from ROS maps as `map_server` saves them: a YAML file of a few keys, and an image.
 //!
-//! Pixels darker than the threshold are occupied; there is a wall where they border on other pixels. The pixel
-//! steps of a slanted wall are smoothed, since a sonar would not hear the wall otherwise. Unknown pixels are
-//! floor. The robot starts at the origin of the map's frame, which is where the mapping robot began.
+//! Pixels darker than the threshold are occupied; there is a wall where they border on other pixels. The pixel steps of
+//! a slanted wall are smoothed, since a sonar would not hear the wall otherwise. Unknown pixels are floor. The robot
+//! starts at the origin of the map's frame, which is where the mapping robot began.
 
 mod contours;
 mod header;
@@ -21,7 +21,8 @@ pub use header::Header;
 use image::Image;
 
 impl Header {
-    /// Returns the world of this header and the bytes of its image; errors call the image `file`.
+    /// Returns the world of this header and of the bytes of its image; `file` is the name of the image in error
+    /// messages.
     ///
     /// # Errors
     /// Fails if the bytes are not a readable image, or are an image with too many walls.

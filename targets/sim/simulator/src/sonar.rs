@@ -22,7 +22,7 @@ pub(crate) struct Ring {
     /// Newest ping of each transducer, with the range from the transducer itself.
     pub(crate) heard: Vec<Heard>,
     errors: Option<Errors>,
-    /// The group that pings next, and its time, if there is a firing order.
+    /// The group that pings next, and the time of its ping; without effect if all sonars ping in every turn.
     next: (usize, Nanos),
 }
 
@@ -69,7 +69,7 @@ impl Ring {
         self.hearing.order.as_ref().map(|_| self.next.1)
     }
 
-    /// Returns the numbers of the sonars in the order in which they ping, if they ping one after the other.
+    /// Returns the numbers of the sonars in the order in which they ping; `None` if all sonars ping in every turn.
     pub(crate) fn order(&self) -> Option<Vec<u8>> {
         let groups = &self.hearing.order.as_ref()?.groups;
         let sonar = |group: &Vec<usize>| match group.as_slice() {
@@ -114,13 +114,13 @@ impl Ring {
         }
     }
 
-    /// Returns the number of the transducer at this place of a group.
+    /// Returns the number of the transducer at position `place` of a group; `None` if there is none.
     fn grouped(&self, group: usize, place: usize) -> Option<usize> {
         self.hearing.order.as_ref()?.groups.get(group)?.get(place).copied()
     }
 
-    /// Pings until every sonar has the number of pings that an output keeps, as if the robot had been switched
-    /// on a while before the plan began.
+    /// Makes the sonars ping until each has as many pings as an output keeps, as if the robot had been switched on a
+    /// while before the plan began.
     pub(crate) fn warm_up(&mut self, pose: &Pose, odometry: Pose, walls: &Walls) {
         let Some(order) = &self.hearing.order else { return };
         for _ in 0..order.groups.len() * mdle_runtime::PINGS_KEPT {
@@ -129,8 +129,8 @@ impl Ring {
         self.next.1 = self.hearing.order.as_ref().map_or(Nanos::ZERO, |order| order.gap);
     }
 
-    /// Returns the sonar that this transducer represents, if no other transducer of that sonar pings later in
-    /// the order.
+    /// Returns the sonar that this transducer represents; `None` if another transducer of the same sonar pings later in
+    /// the firing order, or if there is no firing order.
     fn completed(&self, group: usize, number: usize) -> Option<usize> {
         let speaks_for =
             |number: usize| self.hearing.transducers.get(number).map(|transducer| transducer.sonar.number());
@@ -159,8 +159,8 @@ impl Ring {
 }
 
 impl Errors {
-    /// Returns the measured range for an exact range. Every ping draws the same number of random numbers,
-    /// whatever its result.
+    /// Returns the measured range for the exact range `exact`; `None` without an echo. Every ping draws the same number
+    /// of random numbers, regardless of its result.
     fn of(&mut self, exact: Option<f64>, hearing: &Hearing) -> Option<f64> {
         let missed = self.ranges.uniform() < hearing.misses;
         let error = hearing.spread * self.ranges.normal();
@@ -208,7 +208,7 @@ fn stepped(range: f64, step: f64) -> f64 {
     if step > 0.0 { libm::floor(range / step + 1e-9) * step } else { range }
 }
 
-/// Returns the ping of this sonar, from the nearest echo that its transducers heard last.
+/// Returns the ping of this sonar, with the nearest of the last echoes of its transducers.
 fn nearest(hearing: &Hearing, heard: &[Heard], sonar: usize, at: Nanos, odometry: Pose) -> Ping {
     let speaking = hearing.transducers.iter().zip(heard).filter(|(transducer, _)| transducer.sonar.number() == sonar);
     let heard = speaking.filter_map(|(transducer, last)| {

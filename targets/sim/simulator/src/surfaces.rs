@@ -1,9 +1,9 @@
-//! The surface that a ray meets: its normal, and the nearest edge.
+//! Finds properties of the surface that a ray meets: its normal, and the nearest edge.
 
 use crate::grid::Segment;
 use crate::place::Place;
 
-/// Distance, in metres, below which the end of a segment belongs to another segment.
+/// Distance, in metres, below which the end of a segment counts as a point of another segment.
 const TOGETHER: f64 = 1e-3;
 /// Cosine of the angle up to which two segments form a smooth surface: 30°.
 const SMOOTH: f64 = 0.866;
@@ -13,13 +13,13 @@ const SMOOTH: f64 = 0.866;
 pub(crate) enum End {
     /// The end is free.
     Edge,
-    /// The end lies at the middle of another segment.
+    /// The end touches the middle of another segment, or two or more other segments.
     Covered,
     /// The end meets another segment, which continues in this unit direction.
     Meets(Place),
 }
 
-/// Both ends of a segment; the first is the end from which the segment is given.
+/// The forms of both ends of a segment, the end at `from` first.
 pub(crate) type Ends = [End; 2];
 
 /// The surface that a ray has hit.
@@ -29,8 +29,8 @@ pub(crate) struct Surface {
     pub(crate) range: f64,
     /// The unit normal of the surface, on the side of the ray.
     pub(crate) normal: Place,
-    /// Distance, in metres, of the nearest edge that reflects sound back to the start of the ray; infinite
-    /// without such an edge.
+    /// Distance, in metres, of the nearest edge that reflects sound back to the start of the ray; infinite if there is
+    /// no such edge.
     pub(crate) edge: f64,
     /// Roughness, from 0 to 1.
     pub(crate) rough: f64,
@@ -76,7 +76,7 @@ impl Meeting {
     }
 }
 
-/// Returns the form of a segment's end at `at`, where `other` is.
+/// Returns the form of a segment's end at `at`, which `other` touches.
 fn met(other: &Segment, at: Place) -> End {
     let way = |sign: f64| {
         let length = libm::hypot(other.along.x, other.along.y);
@@ -91,8 +91,8 @@ fn met(other: &Segment, at: Place) -> End {
     }
 }
 
-/// Returns the surface that a ray in the unit direction `way` hits at `at`, on `segment`, after `range` metres.
-/// The surface is smooth.
+/// Returns the surface that a ray in the unit direction `way` hits at the point `at` of `segment`, after `range`
+/// metres. The surface is smooth.
 pub(crate) fn surface(segment: &Segment, ends: &Ends, at: Place, way: Place, range: f64) -> Surface {
     let length = libm::hypot(segment.along.x, segment.along.y);
     let along = Place { x: segment.along.x / length, y: segment.along.y / length };

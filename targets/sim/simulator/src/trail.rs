@@ -26,7 +26,7 @@ pub(crate) struct Trail {
     pub(crate) here: Pose,
     /// Current displacement of each moving object of the world; `None` for an open door.
     pub(crate) things: Vec<Option<Place>>,
-    /// The path driven, divided by the atoms that drove it.
+    /// The path driven, divided into the parts that each atom drove.
     pub(crate) ways: Ways,
     /// Text about the run for a title.
     pub(crate) about: About,
@@ -36,15 +36,15 @@ pub(crate) struct Trail {
     /// Place and time of each beginning of a contact, at most one in a square of 4 cm.
     pub(crate) contacts: Vec<(Place, Nanos)>,
     touched: BTreeSet<(i64, i64)>,
-    /// Time of the robot's last output.
+    /// Time of the robot's last output; `None` before the first output.
     sensed: Option<Nanos>,
     /// Time at which the turns ended; `None` before that.
     ended: Option<Nanos>,
-    /// Frames of an animated picture, if one is recorded.
+    /// Frames of the moving picture; `None` if no moving picture is recorded.
     pub(crate) frames: Option<Frames>,
     /// The other robots of a fleet; empty if there is only one robot.
     pub(crate) companions: Vec<Companion>,
-    /// Word for the driver of a path: `atom`, or `robot` in a fleet.
+    /// Word for the elements that drive the path: `atom`, or `robot` in a fleet.
     pub(crate) kind: &'static str,
 }
 
@@ -68,7 +68,7 @@ pub(crate) struct About {
 }
 
 impl Trail {
-    /// Returns the trail of a body that begins here.
+    /// Returns the trail of a body that begins at this pose.
     pub(crate) fn from(body: &Footprint) -> Self {
         let pose = &body.pose;
         Self {
@@ -140,8 +140,8 @@ impl Trail {
     }
 }
 
-/// Returns the positions on the floor of the echoes of the newest pings, by sonar, on the axes of their cones;
-/// `None` for a sonar without a ping since `before`.
+/// Returns the positions on the floor of the echoes of the newest pings, by sonar; each echo is placed on the axis of
+/// its cone. `None` for a sonar without a ping since `before`.
 #[must_use]
 pub fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Place>; SONARS] {
     let mut echoes = [None; SONARS];
@@ -159,8 +159,8 @@ pub fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Pl
     echoes
 }
 
-/// Returns the pose on the floor that belongs to the pose `then` by odometry, when the robot is at `here` on the floor
-/// and at `odometry` by the same odometry.
+/// Converts a pose by odometry, `then`, to a pose on the floor. The robot is at `here` on the floor and at `odometry`
+/// by the same odometry.
 fn on_the_floor(then: &Pose, here: &Pose, odometry: &Pose) -> Pose {
     let turned = here.theta.0 - odometry.theta.0;
     let (x, y) = (then.x.0 - odometry.x.0, then.y.0 - odometry.y.0);

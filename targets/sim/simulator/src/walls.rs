@@ -12,8 +12,8 @@ use crate::place::Place;
 use crate::surfaces::{Ends, Meeting, Surface, apart, surface};
 use crate::world::World;
 
-/// Maximum number of pairs of a segment's end and another segment in its cell: checking this number takes about
-/// a second.
+/// Maximum number of pairs of a segment's end and another segment in the same cell; to check this number of pairs takes
+/// about a second.
 const PAIRS_MOST: u64 = 100_000_000;
 
 /// Distance, in metres, beyond a cone at which a robot still counts as inside it; larger than rounding errors.
@@ -66,11 +66,11 @@ impl Walls {
         Self::in_grid(world, segments, grid)
     }
 
-    /// Returns the walls of a world, unless so many of them share cells of its grid that preparing them would take too
-    /// long.
+    /// Returns the walls of a world.
     ///
     /// # Errors
-    /// Fails with a sentence if too many pairs of walls share a cell.
+    /// Fails with a sentence if too many pairs of walls share a cell of the grid, so that preparing the walls would
+    /// take too long.
     pub fn of_any(world: &World) -> Result<Self, String> {
         let segments = segments(world);
         let grid = Grid::of(&segments);
@@ -100,22 +100,23 @@ impl Walls {
         Self { standing, moving, others: Others::default(), rough: world.rough }
     }
 
-    /// Returns the distance that a ray from `from` goes before it hits a wall; `None` if that is `most` metres or more.
+    /// Returns the distance that a ray from `from` travels before it hits an obstacle; `None` if that is `most` metres
+    /// or more.
     #[must_use]
     pub fn ray(&self, from: Place, direction: Radians, most: f64) -> Option<f64> {
         let (sin, cos) = libm::sincos(direction.0);
         self.cast(from, Place { x: cos, y: sin }, most)
     }
 
-    /// Returns the distance that a ray in the direction of the unit vector `way` goes before it hits a wall; `None` if
-    /// that is `most` metres or more.
+    /// Returns the distance that a ray in the direction of the unit vector `way` travels before it hits an obstacle;
+    /// `None` if that is `most` metres or more.
     #[must_use]
     pub fn cast(&self, from: Place, way: Place, most: f64) -> Option<f64> {
         self.cast_among(self.all(), from, way, most)
     }
 
-    /// Returns the distance that a ray goes, as [`Walls::cast`] does, but considers only what `reached` names, and
-    /// moving objects.
+    /// Returns the distance that a ray travels, as [`Walls::cast`] does, but considers only moving objects and the
+    /// obstacles in `reached`.
     pub(crate) fn cast_among(&self, reached: Reached<'_>, from: Place, way: Place, most: f64) -> Option<f64> {
         let range = nearest_of(reached.others, from, way, most).map_or(most, |(range, _)| range);
         let hit = reached.standing.then(|| self.standing.grid.ray(from, way, range)).flatten();
@@ -125,7 +126,7 @@ impl Walls {
         (range < most).then_some(range)
     }
 
-    /// Returns everything that rays may meet.
+    /// Returns all other robots that rays may meet, and the fixed obstacles.
     pub(crate) fn all(&self) -> Reached<'_> {
         Reached { others: &self.others.heard, standing: true }
     }
@@ -135,8 +136,8 @@ impl Walls {
         self.standing.grid.is_in_reach(from, most)
     }
 
-    /// Returns the surface that a ray in the direction of the unit vector `way` meets, if nearer than `most` metres;
-    /// considers only what `reached` names, and moving objects.
+    /// Returns the surface that a ray in the direction of the unit vector `way` meets; `None` if it meets none within
+    /// `most` metres. Considers only moving objects and the obstacles in `reached`.
     pub(crate) fn found_among(&self, reached: Reached<'_>, from: Place, way: Place, most: f64) -> Option<Surface> {
         let at = |range: f64| Place { x: from.x + range * way.x, y: from.y + range * way.y };
         let other = nearest_of(reached.others, from, way, most);
@@ -162,14 +163,15 @@ impl Walls {
         self.standing(at, reach).min(self.moving(at))
     }
 
-    /// Returns the distance to the nearest obstacle that never moves, or `reach` if that is less.
+    /// Returns the distance from `at` to the nearest fixed obstacle, in metres, or `reach` if that is less.
     pub(crate) fn standing(&self, at: Place, reach: f64) -> f64 {
         let mut least = reach;
         self.standing.grid.near(at, reach, |_, segment| least = least.min(apart(segment.nearest(at), at)));
         least
     }
 
-    /// Returns the distance to the nearest moving object or other robot; infinite without any.
+    /// Returns the distance from `at` to the nearest moving object or other robot, in metres; infinite if there is
+    /// none.
     fn moving(&self, at: Place) -> f64 {
         let least = self.moving.iter().fold(f64::INFINITY, |least, thing| thing.distance(at, least).min(least));
         self.others.touched.iter().fold(least, |least, other| least.min(other.distance(at)))
@@ -182,7 +184,7 @@ impl Walls {
         self.standing_gap(body, reach).min(self.moving_gap(body))
     }
 
-    /// Returns the distance between a body and the nearest obstacle that never moves, or `reach` if that is less.
+    /// Returns the distance between a body and the nearest fixed obstacle, in metres, or `reach` if that is less.
     pub(crate) fn standing_gap(&self, body: &Footprint, reach: f64) -> f64 {
         if let Form::Disc { radius } = body.form {
             return self.standing(body.at(), radius + reach) - radius;
@@ -197,13 +199,14 @@ impl Walls {
         least
     }
 
-    /// Returns the distance between a body and the nearest moving thing or other robot; infinite without any.
+    /// Returns the distance between a body and the nearest moving object or other robot, in metres; infinite if there
+    /// is none.
     pub(crate) fn moving_gap(&self, body: &Footprint) -> f64 {
         let least = self.moving.iter().fold(f64::INFINITY, |least, thing| thing.gap(body, least).min(least));
         self.others.touched.iter().fold(least, |least, other| least.min(body.contact_with(other).gap))
     }
 
-    /// Returns the nearest contact of a body with an obstacle, if its gap is less than `reach`.
+    /// Returns the contact of a body with the nearest obstacle; `None` if there is no obstacle within `reach`.
     pub(crate) fn contact(&self, body: &Footprint, reach: f64) -> Option<Contact> {
         let mut nearest = (reach, None);
         self.contacts(body, reach, |contact| {
@@ -260,7 +263,7 @@ impl Walls {
         }
     }
 
-    /// Exchanges the other robots with those in `others`.
+    /// Exchanges the other robots with the robots in `others`.
     pub(crate) fn swap_others(&mut self, others: &mut Others) {
         std::mem::swap(&mut self.others, others);
     }
@@ -270,7 +273,7 @@ impl Walls {
         !self.moving.is_empty()
     }
 
-    /// Moves all objects for `seconds`, but none of them into `body`.
+    /// Advances all moving objects by `seconds`, but moves none of them into `body`.
     pub(crate) fn advance(&mut self, seconds: f64, body: &Footprint) {
         for thing in &mut self.moving {
             thing.advance(seconds, body);
@@ -278,7 +281,8 @@ impl Walls {
     }
 }
 
-/// Returns the robot that a ray in the unit direction `way` meets first, and its distance, if that is less than `most`.
+/// Returns the robot that a ray in the unit direction `way` meets first, and its distance; `None` if the ray meets none
+/// within `most` metres.
 fn nearest_of(others: &[Footprint], from: Place, way: Place, most: f64) -> Option<(f64, &Footprint)> {
     let mut nearest = (most, None);
     for other in others {
@@ -294,8 +298,8 @@ fn segments(world: &World) -> Vec<Segment> {
     world.segments().map(|(_, from, to)| Segment::between(from, to)).collect()
 }
 
-/// Returns the wall or box of `world` that is nearest to `body`, with all moving objects at their first
-/// positions.
+/// Returns the wall or box of `world` that is nearest to `body`, with all moving objects at their first positions;
+/// `None` in a world without walls.
 pub(crate) fn nearest<'w>(world: &'w World, body: &Footprint) -> Option<&'w Outline> {
     let distances =
         world.everything().map(|(outline, from, to)| (outline, body.contact(&Segment::between(from, to)).gap));

@@ -21,9 +21,9 @@ pub struct World {
     pub things: Vec<Thing>,
     /// Default start pose.
     pub start: Pose,
-    /// The goal, if the world has one.
+    /// The goal; `None` if the world has none.
     pub goal: Option<Goal>,
-    /// The charger, if the world has one.
+    /// The charger; `None` if the world has none.
     pub charger: Option<Charger>,
     /// Sources of sound.
     pub sounds: Vec<SoundSource>,
@@ -32,8 +32,7 @@ pub struct World {
     /// Default roughness of other robots and of outlines and objects of a file: from 0 (as smooth as the body's
     /// model) to 1 (heard by sonars at any angle).
     pub rough: f64,
-    /// Number of the first outlines that are contours of a map; a place inside an odd number of contours is
-    /// solid.
+    /// Number of leading `outlines` that are contours of a map; a place inside an odd number of contours is solid.
     pub(crate) contours: usize,
 }
 
@@ -54,7 +53,7 @@ impl World {
         }
     }
 
-    /// Returns the box, disc or contour that contains `place`.
+    /// Returns the box, disc or contour that contains `place`; `None` if the place is free.
     pub(crate) fn solid(&self, place: Place) -> Option<&Outline> {
         let around = || self.outlines.iter().take(self.contours).filter(|outline| outline.surrounds(place));
         if around().count() % 2 == 1 {
@@ -64,8 +63,9 @@ impl World {
         outlines.into_iter().find(|outline| outline.solid && outline.surrounds(place))
     }
 
-    /// Returns the name of the wall, box or disc that keeps robots of this radius, in metres, off a charger: it
-    /// surrounds the position of a robot on the charger, or is closer to it than the radius.
+    /// Returns the name of the wall, box or disc that keeps robots of this radius, in metres, off a charger; `None` if
+    /// the charger can be reached. The obstacle surrounds the position of a robot on the charger, or is closer to it
+    /// than the radius.
     pub(crate) fn obstacle_at(&self, charger: &Charger, radius: f64) -> Option<&str> {
         let place = Place::of(&charger.pose);
         let near = || {
@@ -79,7 +79,7 @@ impl World {
         self.solid(place).or_else(|| near().map(|(outline, ..)| outline)).map(|outline| outline.name.as_str())
     }
 
-    /// Checks that a world has no more walls and sides than can be prepared.
+    /// Checks that a world does not have too many walls and sides.
     pub(crate) fn check_size(&self) -> Result<(), String> {
         match self.everything().count() {
             count if count > SEGMENTS_MOST => {

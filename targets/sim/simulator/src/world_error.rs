@@ -24,7 +24,7 @@ impl fmt::Display for WorldError {
 impl std::error::Error for WorldError {}
 
 impl WorldError {
-    /// Returns the defect at a line and column, from 1, or of the whole file.
+    /// Returns the defect at a line and column, from 1; `None` for a defect of the whole file.
     pub(crate) fn new(file: &str, place: Option<(usize, usize)>, what: impl Into<String>) -> Self {
         Self { file: file.to_owned(), place, what: what.into() }
     }

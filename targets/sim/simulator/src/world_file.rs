@@ -21,7 +21,7 @@ use text::WorldText;
 /// Maximum size of the text, in bytes; reading a text takes up to 70 times its size in memory.
 const BYTES_MOST: usize = 8 << 20;
 
-/// A defect of the text: its byte range, and a message.
+/// A defect of the text: its byte range, `None` for the whole text, and a message.
 pub(crate) struct Wrong(pub(crate) Option<Range<usize>>, pub(crate) String);
 
 impl Wrong {
@@ -81,7 +81,7 @@ fn read(text: &str) -> Result<World, Wrong> {
     Ok(world)
 }
 
-/// Line and column of a byte of `text`, from 1, columns in characters.
+/// Returns the line and column of a byte of `text`, from 1; columns count characters.
 fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     let before = text.get(..byte).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);

@@ -1,11 +1,12 @@
-//! Worlds from texts: the worlds that come with the simulator, a user's TOML, and maps of ROS.
+//! Creates worlds from texts: the worlds that come with the simulator, a user's TOML, and ROS maps.
 
 use crate::ros_map::Header;
 use crate::world::World;
 use crate::world_error::WorldError;
 use crate::world_file;
 
-/// The worlds that come with the simulator: first the floor of the paper's tour, box in the hallway included.
+/// The names and texts of the worlds that come with the simulator. The first is the floor of the paper's tour,
+/// including the box in the hallway.
 const WORLDS: [(&str, &str); 4] = [
     ("office", include_str!("../worlds/office.toml")),
     ("maze", include_str!("../worlds/maze.toml")),
@@ -14,7 +15,7 @@ const WORLDS: [(&str, &str); 4] = [
 ];
 
 impl World {
-    /// Returns the world of a TOML text, which errors call `file`.
+    /// Returns the world of a TOML text; `file` is the name of the file in error messages.
     ///
     /// # Errors
     /// Fails with the error of the text, and its place.
@@ -22,8 +23,8 @@ impl World {
         world_file::parse(file, text)
     }
 
-    /// Returns the world of a map of ROS, from the text of its YAML file and the bytes of its image; errors call these
-    /// `file` and `image`.
+    /// Returns the world of a ROS map, from the text of its YAML file and the bytes of its image; `file` and `image`
+    /// are their names in error messages.
     ///
     /// # Errors
     /// Fails with the defect of either file, and its place.
@@ -40,7 +41,7 @@ impl World {
         Self::parse("the office floor", office)
     }
 
-    /// Returns the world of this name that comes with the simulator, if there is one.
+    /// Returns the world `name` that comes with the simulator; `None` if there is no such world.
     #[must_use]
     pub fn named(name: &str) -> Option<Result<Self, WorldError>> {
         let (name, text) = WORLDS.iter().find(|(known, _)| *known == name)?;

@@ -6,14 +6,14 @@ use crate::footprint::{Contact, Footprint};
 use crate::place::Place;
 use crate::walls::Walls;
 
-/// Distance, in metres, by which a slide is led away from the surface, so that rounding does not lead it into
+/// Distance, in metres, by which a slide moves away from the surface, so that rounding errors do not move the body into
 /// the surface.
 const LED_OFF: f64 = 1e-8;
 /// Maximum number of surfaces along which a step slides; a corner has two.
 const SLIDES: usize = 3;
 
-/// Returns the movement of `body` for the intended movement `way`: all of it if that is free, otherwise up to
-/// the contact and then along the surface. The step must be shorter than the body; at its end, the body
+/// Returns the movement of `body` for the intended movement `way`: the whole movement if the way is free, otherwise the
+/// movement up to the contact and then along the surface. The step must be shorter than the body; at its end, the body
 /// overlaps nothing.
 pub(crate) fn slid(body: &Footprint, way: Place, walls: &Walls) -> Place {
     let at = body.at();
@@ -35,8 +35,8 @@ pub(crate) fn slid(body: &Footprint, way: Place, walls: &Walls) -> Place {
     Place { x: here.x - at.x, y: here.y - at.y }
 }
 
-/// Returns `body` turned by `turn`. If a corner or side would turn into an obstacle, the body is pushed off by
-/// as much as the turn needs; if there is no room for that, it does not turn.
+/// Returns `body` turned by `turn`. If a corner or side would turn into an obstacle, the body is pushed away by as much
+/// as the turn needs. If there is no room for that, the body does not turn.
 pub(crate) fn turned(body: &Footprint, turn: Radians, walls: &Walls) -> Footprint {
     let Radians(theta) = body.pose.theta;
     let there = Footprint { pose: Pose { theta: Radians(theta + turn.0), ..body.pose }, ..*body };
@@ -58,7 +58,8 @@ fn moved(body: &Footprint, to: Place) -> Footprint {
     Footprint { pose: Pose { x: Meters(to.x), y: Meters(to.y), ..body.pose }, ..*body }
 }
 
-/// Returns the direction away from the surface of a contact.
+/// Returns the unit vector away from the surface of a contact; `None` if the nearest points of body and surface
+/// coincide.
 fn normal(contact: Contact) -> Option<Place> {
     let Contact { place, body, .. } = contact;
     let (x, y) = (body.x - place.x, body.y - place.y);

@@ -6,7 +6,7 @@ use crate::model::Slip;
 use crate::noise::{Noise, Purpose};
 use crate::place::Place;
 
-/// The pose that the body reckons from its wheels: the origin at the start.
+/// The pose that the robot computes from the motion of its wheels, relative to the start pose.
 #[derive(Debug, Clone)]
 pub(crate) struct Odometry {
     pub(crate) pose: Pose,
@@ -23,7 +23,7 @@ struct Errors {
     turn: f64,
     /// Error of the heading, in radians per metre.
     bend: f64,
-    /// Standard deviation of the heading after a metre, in radians.
+    /// Standard deviation of the heading's random error after a metre, in radians.
     wander: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Motion, stops, slides and odometry of the body.
+//! Tests of the body: motion, stops, slides and odometry.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};

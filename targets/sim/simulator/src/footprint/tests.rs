@@ -1,4 +1,4 @@
-//! Distances, contacts and rays of discs and rectangles.
+//! Tests of discs and rectangles: distances, contacts and rays.
 
 use mdle_runtime::Meters;
 

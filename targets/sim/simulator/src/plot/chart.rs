@@ -1,4 +1,5 @@
-//! The chart of a run over time: a band for each stay in an atom, a row for each atom, and signals as curves below.
+//! The chart of a run over time: a row for each atom, with a band for each period in which the atom runs, and curves of
+//! signals below.
 
 use mdle_runtime::Nanos;
 use svg::Document;
@@ -31,7 +32,7 @@ pub struct TimeChart {
     pub title: String,
     /// The atoms, by the text of their laws, with a row for each.
     pub atoms: Vec<String>,
-    /// The periods in atoms: the number of the atom, the begin and the end.
+    /// The periods in which atoms ran: the number of the atom, the begin and the end.
     pub stays: Vec<(usize, Nanos, Nanos)>,
     /// The signals, with a curve for each.
     pub signals: Vec<SignalCurve>,
@@ -69,7 +70,7 @@ impl TimeChart {
         format!("{document}\n")
     }
 
-    /// Returns the place of a time, in pixels from the left.
+    /// Returns the position of a time, in pixels from the left.
     fn at(&self, t: Nanos) -> f64 {
         let part = t.seconds() / self.end.seconds().max(1e-9);
         NAMES + (WIDTH - MARGIN - NAMES) * part

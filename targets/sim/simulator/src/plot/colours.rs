@@ -14,7 +14,7 @@ struct Palette {
     echo: &'static str,
     contact: &'static str,
     goal: &'static str,
-    /// Colour of the inside of a charger's sign.
+    /// Colour of the inside of a charger's symbol.
     charge: &'static str,
     /// The colours of the atoms, used in rotation, each with the colour of a number on it.
     atoms: [(&'static str, &'static str); COUNT],
@@ -67,8 +67,8 @@ const DARK: Palette = Palette {
     ],
 };
 
-/// Returns the class, in the colour of this atom, of a line (`way`), of the inside of a disc (`disc`), or of
-/// the number on it (`on`).
+/// Returns the style class that gives an element the colour of this atom. `kind` is `way` for a line, `disc` for the
+/// inside of a disc, and `on` for the number on a disc.
 pub(super) fn class(kind: &str, atom: usize) -> String {
     format!("{kind}{}", atom % COUNT)
 }
@@ -101,8 +101,8 @@ mod tests {
 
     type Rgb = [f64; 3];
 
-    /// Matrices for linear RGB as an eye sees it: with normal sight, and without red, green or blue cones (Machado,
-    /// Oliveira and Fernandes, 2009, severity 1).
+    /// Matrices that convert linear RGB to the colours that an eye sees: with normal sight, and without red, green or
+    /// blue cones (Machado, Oliveira and Fernandes, 2009, severity 1).
     const EYES: [[Rgb; 3]; 4] = [
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],

@@ -58,7 +58,7 @@ fn echoes(layout: &Layout, trail: &Trail) -> Path {
     path.set("class", "echo").set("stroke-opacity", 0.55).set("stroke-width", 1.6).set("stroke-linecap", "round")
 }
 
-/// Draws the path driven by each atom as written, with all passes of the atom in one SVG path.
+/// Draws the path driven by each atom of the plan's text, with all passes of the atom in one SVG path.
 fn way(layout: &Layout, trail: &Trail) -> Group {
     let data = |way: &[Place]| through(simplified(way.iter().map(|place| layout.at(*place))));
     let ways = &trail.ways;
@@ -96,7 +96,7 @@ fn contacts(layout: &Layout, trail: &Trail) -> Group {
     touched.fold(Group::new(), Group::add)
 }
 
-/// Draws a callout for each atom as written, at the place where it first began.
+/// Draws a callout for each atom of the plan's text, at the place where the atom first began.
 fn marks(layout: &Layout, trail: &Trail) -> Group {
     let atoms = || trail.ways.atoms.iter().take(ROWS_MOST);
     let dots: Vec<Pixel> = atoms().map(|atom| layout.at(atom.place)).collect();

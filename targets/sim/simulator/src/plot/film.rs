@@ -12,15 +12,15 @@ use crate::trail::{Mark, Trail};
 const SHOWN_MOST: f64 = 20.0;
 /// Maximum number of places of all paths driven, about 200 m, for a film that draws each place.
 const PLACES_MOST: usize = 20_000;
-/// Maximum number of atoms that begin and are all shown; if there are more, atoms that begin and end between
-/// two moments are left out.
+/// Maximum number of runs of atoms of which all are shown. If there are more, a run that begins and ends between two
+/// frames is left out.
 const ACTS_MOST: usize = 1000;
 /// Pause at the end, in seconds.
 const REST: f64 = 2.5;
 
 /// A film of a run.
 pub(super) struct Film<'f> {
-    /// Moments of the run.
+    /// Frames of the run.
     pub(super) frames: &'f [Frame],
     /// The atoms that run in the film, in order.
     pub(super) acts: Vec<Act>,
@@ -30,20 +30,20 @@ pub(super) struct Film<'f> {
     smooth: bool,
 }
 
-/// An atom that runs for a while.
+/// A run of an atom in the film.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Act {
     /// Index of the atom among those that began; `None` before the first.
     pub(super) mark: Option<usize>,
     pub(super) from: Nanos,
     pub(super) to: Nanos,
-    /// Index of the act's first moment; the last moment is the first moment of the next act.
+    /// Index of the act's first frame; the act's last frame is the first frame of the next act.
     first: usize,
     last: usize,
 }
 
 impl<'f> Film<'f> {
-    /// Returns the film of these moments of a trail.
+    /// Returns the film of these frames of a trail.
     pub(super) fn of(frames: &'f [Frame], trail: &Trail) -> Self {
         let marks = &trail.ways.marks;
         let mut acts: Vec<Act> = Vec::new();
@@ -77,18 +77,19 @@ impl<'f> Film<'f> {
         Self { frames, acts, times: round_step((seconds / SHOWN_MOST).max(1.0)), smooth }
     }
 
-    /// Returns the atom that runs in an act, by its position among those that began.
+    /// Returns the atom that runs in an act, by its position in the list of atoms; `None` before the first atom, or if
+    /// the act is the remainder of a run with too many passes.
     pub(super) fn atom(act: &Act, trail: &Trail) -> Option<usize> {
         act.mark.and_then(|mark| trail.ways.marks.get(mark))?.atom
     }
 
-    /// Returns the moments of an act.
+    /// Returns the frames of an act.
     pub(super) fn of_act(&self, act: &Act) -> &'f [Frame] {
         self.frames.get(act.first..=act.last).unwrap_or_default()
     }
 
-    /// Returns the path driven in an act, followed by the paths of the atoms left out after it; `None` if all paths
-    /// together are too long to be written down.
+    /// Returns the path driven in an act, followed by the paths of the atoms left out after it; `None` before the first
+    /// atom, or if all paths together are too long to be written place by place.
     pub(super) fn way(&self, act: &Act, trail: &Trail) -> Option<Vec<Place>> {
         let first = act.mark?;
         let next = self.acts.get(self.acts.partition_point(|other| other.mark <= act.mark)).and_then(|next| next.mark);
@@ -96,23 +97,24 @@ impl<'f> Film<'f> {
         Some(marks.iter().flat_map(|mark| &mark.way).copied().collect())
     }
 
-    /// Returns the end of the film, in the run's time.
+    /// Returns the time of the run at which the film ends.
     pub(super) fn end(&self) -> Nanos {
         self.frames.last().map_or(Nanos::ZERO, |frame| frame.t)
     }
 
-    /// Returns the part of the run that has passed at `t`, from 0 to 1.
+    /// Returns the fraction of the run that has passed at `t`, from 0 to 1.
     pub(super) fn part(&self, t: Nanos) -> f64 {
         let end = self.end().seconds();
         if end > 0.0 { (t.seconds() / end).min(1.0) } else { 1.0 }
     }
 
-    /// Returns the duration of the film, with the rest at its end, in seconds.
+    /// Returns the duration of the film, with the pause at its end, in seconds.
     pub(super) fn duration(&self) -> f64 {
         libm::round((self.end().seconds() / self.times + REST) * 1e3) / 1e3
     }
 
-    /// Returns the position of the run's time `t` in a repetition, from 0 to 1, rounded to a hundred-thousandth.
+    /// Returns the position of the run's time `t` within one repetition of the film, from 0 to 1, rounded to a
+    /// hundred-thousandth.
     fn key(&self, t: Nanos) -> f64 {
         let shown = t.min(self.end()).seconds() / self.times;
         libm::round(shown / self.duration() * 1e5) / 1e5
@@ -142,7 +144,7 @@ impl<'f> Film<'f> {
         self.attributes(&keyed).into_iter().fold(animate, |animate, (name, value)| animate.set(name, value))
     }
 
-    /// Returns an animation that shows an element from one time on, until another time if that is given.
+    /// Returns an animation that shows an element from one time on, until another time if `to` is given.
     pub(super) fn visible(&self, from: Nanos, to: Option<Nanos>) -> Animate {
         let before = (self.key(from) > 0.0).then(|| (Nanos::ZERO, "hidden".to_owned()));
         let behind = to.map(|to| (to, "hidden".to_owned()));
@@ -172,13 +174,14 @@ impl<'f> Film<'f> {
     }
 }
 
-/// Returns the last of the marks in a range, with its number.
+/// Returns the last mark from `before` up to, but not including, `begun`, with its number; `None` if there is no mark
+/// in this range.
 fn newest(marks: &[Mark], before: usize, begun: usize) -> Option<(usize, &Mark)> {
     let number = begun.checked_sub(1).filter(|number| *number >= before)?;
     Some((number, marks.get(number)?))
 }
 
-/// Returns the values without those that equal the previous value.
+/// Returns the values, without each value that equals the previous value.
 pub(super) fn changes<T>(values: impl Iterator<Item = (T, String)>) -> impl Iterator<Item = (T, String)> {
     let mut last = None;
     values.filter(move |(_, value)| last.replace(value.clone()).as_ref() != Some(value))

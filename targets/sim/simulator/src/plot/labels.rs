@@ -1,4 +1,4 @@
-//! The positions of the atoms' numbers: beside the places where the atoms began, without overlaps.
+//! Places the atoms' numbers beside the positions at which the atoms began, without overlaps.
 
 use std::f64::consts::TAU;
 
@@ -16,9 +16,9 @@ const APART: f64 = 3.0;
 /// A rectangle: from left to right, and from top to bottom.
 pub(super) type Room = ((f64, f64), (f64, f64));
 
-/// Returns a label for each of the `dots`, in order, inside `room` and clear of all dots and of the labels
-/// before it; if possible, also clear of the `lines`, which are given by places no farther apart than the width
-/// of a label.
+/// Returns the positions of the labels of the `dots`, in order. A label is inside `room` and clear of all dots and of
+/// the labels before it; if possible, it is also clear of the `lines`, which are given by points no farther apart than
+/// the width of a label.
 pub(super) fn placed(dots: &[Pixel], lines: &[Pixel], ((left, right), (top, bottom)): Room) -> Vec<Pixel> {
     let mut labels: Vec<Pixel> = Vec::with_capacity(dots.len());
     for dot in dots {

@@ -19,8 +19,7 @@ const SCALE_MOST: f64 = 220.0;
 pub(super) const BELOW: f64 = 44.0;
 /// Height of a line of the legend, in pixels.
 pub(super) const LINE: f64 = 22.0;
-/// Number of lines of the legend in addition to the atoms: the column heads, an empty line, the signs, and the
-/// scale.
+/// Number of lines of the legend in addition to the atoms: the column heads, an empty line, the symbols, and the scale.
 pub(super) const KEY: usize = 9;
 /// Maximum number of symbols of moving objects.
 const SIGNS: usize = 2;
@@ -91,20 +90,21 @@ impl Layout {
         self.height - MARGIN - BELOW
     }
 
-    /// Returns the middle of a line of the legend, from 0.
+    /// Returns the vertical middle of a line of the legend, counted from 0.
     pub(super) fn line(&self, number: usize) -> f64 {
         self.top + LINE * (number as f64 + 0.5)
     }
 
-    /// Returns the middle of the line of an atom, by its position among those that began.
+    /// Returns the vertical middle of an atom's line in the legend; `atom` is the atom's position among those that
+    /// began.
     pub(super) fn line_of(&self, atom: usize) -> f64 {
         // Below the heads of the columns; those that are not listed share the last line.
         self.line(1 + atom.min(self.rows.len().saturating_sub(1)))
     }
 }
 
-/// Returns the part of a range that is shown, with more of the floor around it where the minimum size requires
-/// it, and its size in pixels.
+/// Returns the part of a range that is shown, and its size in pixels. Where the minimum size requires it, the part is
+/// larger than the range.
 fn shown((least, most): (f64, f64), scale: f64) -> ((f64, f64), f64) {
     let pixels = libm::ceil(((most - least) * scale).max(FLOOR_LEAST));
     let more = (pixels / scale - (most - least)) / 2.0;

@@ -1,4 +1,5 @@
-//! The legend of a plot: each atom with its number, its law and when it began, and the meaning of the other signs.
+//! The legend of a plot: each atom with its number, its law and the time at which it began, and the meaning of the
+//! symbols.
 
 use svg::node::element::{Group, Path, Rectangle};
 
@@ -46,7 +47,7 @@ pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
     legend.add(scale_bar(layout))
 }
 
-/// Draws the signs that occur around height 0, each with its meaning.
+/// Returns the symbols that occur in the picture, drawn around height 0, each with its meaning.
 fn signs(layout: &Layout, x: f64, world: &World, trail: &Trail) -> Vec<(Group, &'static str)> {
     let body = |class| Group::new().add(circle((x, 0.0), 7.0).set("fill", "none").set("class", class));
     let mut signs = vec![(body("faint"), "start"), (body("ink"), "end")];
@@ -69,7 +70,7 @@ fn signs(layout: &Layout, x: f64, world: &World, trail: &Trail) -> Vec<(Group, &
     signs
 }
 
-/// Returns a bar as long as the round number of metres beside it.
+/// Draws a scale bar, whose length is a round number of metres.
 fn scale_bar(layout: &Layout) -> Group {
     let metres = round_step(BAR_MOST / layout.scale * 0.4);
     let (left, y) = (layout.chart, layout.height - MARGIN - 10.0);

@@ -1,5 +1,5 @@
-//! The moving picture of a run: the path is drawn as it was driven, the robot drives along it, and the running atom is
-//! named.
+//! Draws the moving picture of a run: the path grows as it was driven, the robot drives along it, and the running atom
+//! is named.
 //!
 //! Everything repeats together, after a pause. A viewer without animation shows the end of the run; a viewer that runs
 //! scripts also shows the time, a button to pause and a strip to seek.
@@ -82,7 +82,7 @@ fn lengths(pixels: &[Pixel]) -> Vec<f64> {
     [0.0].into_iter().take(pixels.len()).chain(steps).collect()
 }
 
-/// Draws the echoes of each moment.
+/// Draws the echoes of each frame.
 fn echoes(layout: &Layout, film: &Film<'_>) -> Path {
     let heard = |frame: &Frame| {
         let shown = frame.echoes.iter().flatten().filter(|place| layout.shows_any([**place].into_iter()));
@@ -139,7 +139,7 @@ fn robot(layout: &Layout, film: &Film<'_>, trail: &Trail) -> Group {
     moved.set("stroke-width", 1.8).add(turned).add(drives)
 }
 
-/// Draws the highlight of the legend's line whose atom runs.
+/// Draws the highlight of the line in the legend whose atom runs.
 fn highlight(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Rectangle {
     let y = |atom: Option<usize>| format!("{}", tenths(layout.line_of(atom.unwrap_or(0)) - LINE / 2.0));
     let values = film.acts.iter().map(|act| (act.from, y(Film::atom(act, trail))));

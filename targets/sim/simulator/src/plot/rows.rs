@@ -1,4 +1,4 @@
-//! The rows of a legend: each atom as written once, with the number of its runs and their total duration.
+//! The rows of a legend: each atom of the plan's text, with the number of its runs and their total duration.
 
 use mdle_runtime::Printable;
 
@@ -63,7 +63,7 @@ fn column<'r>(texts: impl Iterator<Item = &'r String>) -> f64 {
     if letters == 0 { 0.0 } else { letters as f64 * f64::from(LETTERS) * LETTER + APART }
 }
 
-/// Returns a law that is shortened to the available room, with numbers to a thousandth.
+/// Returns the text of a law, shortened to the available room, with numbers rounded to a thousandth.
 pub(super) fn shortened(law: &str) -> String {
     let words = law.split(' ').map(|word| match (word.split_once('.'), word.parse::<f64>()) {
         (Some((_, decimals)), Ok(number)) if decimals.len() > 3 => format!("{}", libm::round(number * 1e3) / 1e3),

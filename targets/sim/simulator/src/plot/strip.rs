@@ -1,4 +1,4 @@
-//! The strip below a moving picture: the running atom, and the time as a line in the colours of the atoms.
+//! Draws the strip below a moving picture: the running atom, and the time line in the colours of the atoms.
 
 use mdle_runtime::Nanos;
 use svg::node::element::{Group, Path, Rectangle, TSpan, Text};
@@ -18,7 +18,7 @@ pub(super) const STRIP: f64 = 84.0;
 const HALF: f64 = 5.0;
 /// Minimum distance between two numbers of the time line, in pixels.
 const APART: f64 = 70.0;
-/// Half the height of the signs of the button, in pixels.
+/// Half the height of the button's symbols, in pixels.
 const BUTTON: f64 = 9.0;
 
 /// Returns the strip of a film.
@@ -51,7 +51,7 @@ pub(super) fn strip(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
         .add(button((left - 22.0, middle)))
 }
 
-/// Draws the time line, with each pass in the colour of its atom.
+/// Draws the time line, with each run of an atom in the colour of the atom.
 fn times(trail: &Trail, film: &Film<'_>, middle: f64, at: impl Fn(Nanos) -> f64) -> Group {
     let mut data = vec![String::new(); trail.ways.atoms.len()];
     for act in &film.acts {
@@ -102,7 +102,7 @@ fn running(trail: &Trail, film: &Film<'_>, (x, y): (f64, f64)) -> Group {
     })
 }
 
-/// Returns the text of the length of the run and of the speed of the film; a script writes the time before it.
+/// Returns the text with the duration of the run and the speed of the film; a script writes the current time before it.
 fn speed(film: &Film<'_>, (x, y): (f64, f64)) -> Text {
     let end = format!("{:.1} s", film.end().seconds());
     let fast = match film.times {
@@ -112,7 +112,7 @@ fn speed(film: &Film<'_>, (x, y): (f64, f64)) -> Text {
     text("", (x, y), "end").add(TSpan::new("").set("class", "now")).add(TSpan::new(format!("{end}{fast}")))
 }
 
-/// Draws the signs for pause and resume; both are hidden if the viewer runs no script.
+/// Draws the symbols for pause and resume; both are hidden if the viewer runs no scripts.
 fn button((x, y): (f64, f64)) -> Group {
     let area = Rectangle::new().set("x", x - 14.0).set("y", y - 14.0).set("width", 28).set("height", 28);
     let bars = format!("M{} {}v{}m{} 0v-{}", x - 4.0, y - BUTTON, 2.0 * BUTTON, 8.0, 2.0 * BUTTON);

@@ -80,7 +80,7 @@ fn pictures_of_every_run_are_well_formed_and_say_what_ran() {
     }
 }
 
-/// Returns a run of passes of three atoms, each of one turn in ten.
+/// Returns the run of a plan that repeats three atoms `passes` times; each atom runs for ten turns.
 fn passes(passes: u64) -> Trail {
     let mut trail = run(0, 1, "");
     for turn in 0..30 * passes {

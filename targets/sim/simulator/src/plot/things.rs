@@ -1,5 +1,5 @@
-//! Drawings of the moving objects of a world: doors are dashed, other objects are at their last position, with the path
-//! that they followed.
+//! Draws the moving objects of a world: doors are dashed, other objects are at their last position, with the path that
+//! they followed.
 
 use svg::node::element::{Group, Path};
 
@@ -17,7 +17,7 @@ const DASHES: &str = "5 4";
 /// Displacement of a moving object that has not moved.
 const NOWHERE: Place = Place { x: 0.0, y: 0.0 };
 
-/// A sign that the legend explains.
+/// A symbol that the legend explains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sign {
     Door,
@@ -32,7 +32,7 @@ impl Sign {
         }
     }
 
-    /// Draws the sign around height 0.
+    /// Draws the symbol around height 0.
     pub(super) fn drawn(self, x: f64) -> Group {
         match self {
             Self::Door => Group::new().add(door([(x - 9.0, 0.0), (x + 9.0, 0.0)])),
@@ -43,7 +43,7 @@ impl Sign {
         }
     }
 
-    /// Returns the meaning of the sign.
+    /// Returns the meaning of the symbol.
     pub(super) fn meaning(self) -> &'static str {
         match self {
             Self::Door => "door",
@@ -99,7 +99,7 @@ fn pixels(layout: &Layout, thing: &Thing, gone: Place) -> impl Iterator<Item = P
     thing.corners(gone).map(|place| layout.at(place))
 }
 
-/// Draws the paths of all objects that follow one.
+/// Draws the paths of all moving objects that follow a path.
 fn ways(layout: &Layout, world: &World) -> Group {
     let moving = world.things.iter().filter(|thing| Sign::of(thing) == Sign::Moves);
     moving.fold(Group::new(), |group, thing| group.add(way(thing.way().map(|place| layout.at(place)))))
@@ -117,7 +117,7 @@ fn outline(pixels: impl IntoIterator<Item = Pixel>) -> Path {
     polyline(pixels).set("class", "ink solid").set("stroke-width", 1.5)
 }
 
-/// Returns the values without those whose two neighbours have the same value.
+/// Returns the values, without each value that equals both the previous and the next value.
 fn bends<T>(values: impl Iterator<Item = (T, String)>) -> impl Iterator<Item = (T, String)> {
     let mut values = values.peekable();
     let mut last: Option<String> = None;

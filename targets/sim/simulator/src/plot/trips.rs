@@ -1,5 +1,4 @@
-//! The picture of the trips of several robots: a floor for each robot with a line for each trip, as in Fig. 12
-//! of the paper.
+//! Draws the trips of several robots: a floor for each robot with a line for each trip, as in Fig. 12 of the paper.
 
 use mdle_runtime::Pose;
 use svg::Document;
@@ -63,8 +62,7 @@ impl TripDrawing {
         Self { title: title.to_owned(), robots: Vec::new() }
     }
 
-    /// Records that the robot of this name is at `pose` while this law runs; `begins` is `true` if the law has
-    /// just begun.
+    /// Records that the robot `name` is at `pose` while this law runs; `begins` is `true` if the law has just begun.
     pub fn went(&mut self, name: &str, pose: &Pose, law: &str, begins: bool) {
         let number = self.robots.iter().position(|robot| robot.name == name).unwrap_or_else(|| {
             self.robots.push(RobotTrips { name: name.to_owned(), trips: Vec::new(), is_on_trip: false });
@@ -169,7 +167,7 @@ impl Floor {
     }
 }
 
-/// Small circles along the first trip.
+/// Draws small circles along the first trip.
 fn circles(pixels: &[Pixel]) -> Group {
     let mut last: Option<Pixel> = None;
     pixels.iter().fold(Group::new().set("class", "ink").set("fill", "none"), |group, at| {

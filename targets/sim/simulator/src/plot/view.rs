@@ -7,7 +7,7 @@ use crate::world::World;
 const AROUND: f64 = 0.4;
 /// Margin of floor that is shown around the path driven, in metres; smaller where the world ends.
 const ROOM: f64 = 2.0;
-/// Fraction of the world from which the whole world is shown.
+/// Fraction of the world from which the whole world is shown instead of a part of this size.
 const MOST: f64 = 0.5;
 
 /// A rectangle of the floor, in metres.
@@ -18,7 +18,8 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Returns the path driven with the floor around it, or the whole world if only a little of it would be left out.
+    /// Returns the view of the path driven with the floor around it, or of the whole world if that is at most twice as
+    /// large.
     pub(super) fn of(world: &World, trail: &Trail) -> Self {
         // Without a world there is only what the robot has heard.
         let heard = || trail.echoes.iter().copied().filter(|_| world.places().next().is_none());

@@ -1,4 +1,4 @@
-//! Contours of the occupied pixels of a map, without the pixel steps of slanted lines.
+//! Finds the contours of the occupied pixels of a map, without the pixel steps of slanted lines.
 
 /// Maximum distance, in pixels, between a line and the pixel corners that it replaces. The steps of a slanted
 /// line deviate by up to 1, and by a little more where the line begins at an unfavourable corner.
@@ -8,10 +8,11 @@ const SIDES_MOST: usize = 4_000_000;
 /// Maximum number of corners that are smoothed together, since the time grows with the square of this number.
 const TOGETHER: usize = 1024;
 
-/// A corner of pixels, by its column and row of grid lines.
+/// A corner of pixels, given by the column and the row of its grid lines.
 type Corner = (i32, i32);
 
-/// The steps from a corner, in order of preference where two steps continue: first the step of the upper pixel.
+/// The possible steps from a corner, in the order of the bits of [`Sides::steps`]. If a line can begin with either of
+/// two steps, it begins with the earlier one, which is the step of the upper pixel.
 const STEPS: [Corner; 4] = [(0, -1), (1, 0), (0, 1), (-1, 0)];
 
 /// Returns closed lines around the occupied pixels, each ending where it began, in an order that depends only on the
@@ -46,7 +47,7 @@ pub(super) fn contours(
     Ok(loops)
 }
 
-/// The pixel sides with an occupied pixel only on their left, as steps from each corner.
+/// The pixel sides that have an occupied pixel on their left and none on their right, as steps from each corner.
 struct Sides {
     /// Steps from each corner, as bits; column by column.
     steps: Vec<u8>,
@@ -89,7 +90,8 @@ impl Sides {
         Ok(Self { steps, rows, next: 0 })
     }
 
-    /// Returns the first corner that has steps left, by its column and then by its row.
+    /// Returns the first corner that has steps left, in the order of columns and then of rows; `None` if no corner has
+    /// any.
     fn first(&mut self) -> Option<Corner> {
         let ahead = self.steps.get(self.next..)?.iter().position(|steps| *steps != 0)?;
         self.next += ahead;
@@ -97,8 +99,8 @@ impl Sides {
         Some(((self.next / self.rows) as i32, (self.next % self.rows) as i32))
     }
 
-    /// Takes the step that continues from `here`; where two pixels touch at a corner, takes the step along the
-    /// same pixel.
+    /// Removes and returns the step that continues from `here`; `None` if there is none. Where two pixels touch at a
+    /// corner, the step continues along the same pixel.
     fn taken(&mut self, here: Corner, came: Corner) -> Option<Corner> {
         let steps = self.steps.get_mut(here.0 as usize * self.rows + here.1 as usize)?;
         let turns = |step: Corner| came.0 * step.1 - came.1 * step.0;
@@ -109,7 +111,7 @@ impl Sides {
     }
 }
 
-/// Returns the line with fewer corners: no omitted corner is further from it than the tolerance.
+/// Returns the line with fewer corners: no omitted corner is further from the new line than the tolerance.
 fn smoothed(line: &[Corner]) -> Vec<Corner> {
     let far = |from: Corner| {
         let distance = |to: &Corner| i64::from(to.0 - from.0).pow(2) + i64::from(to.1 - from.1).pow(2);

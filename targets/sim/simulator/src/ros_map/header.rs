@@ -1,4 +1,4 @@
-//! The YAML file of a map: lines of the form `key: value`, with at most seven keys.
+//! Parses the YAML file of a map: lines of the form `key: value`, with at most seven keys.
 
 use crate::world_error::WorldError;
 
@@ -24,7 +24,7 @@ pub struct Header {
     pub(crate) occupied: f64,
 }
 
-/// A key's value, and where it is written.
+/// The value of a key, and its position in the file.
 struct Value<'t> {
     line: usize,
     column: usize,
@@ -32,7 +32,7 @@ struct Value<'t> {
 }
 
 impl Header {
-    /// Reads the text of the file, which errors call `file`.
+    /// Parses the text of a YAML file; `file` is the name of the file in error messages.
     ///
     /// # Errors
     /// Fails if the text lacks an image or a resolution, or has a value that is not a number or out of range.
@@ -77,7 +77,7 @@ impl Value<'_> {
     }
 }
 
-/// Returns the value of a key, without quotes.
+/// Returns the value of a key, without quotes; `None` if the text does not have the key.
 fn value<'t>(text: &'t str, key: &str) -> Option<Value<'t>> {
     let (number, line) = line(text, key)?;
     Some(trimmed(number, line, key.len() + 1, line.get(key.len() + 1..)?))
@@ -105,7 +105,8 @@ fn numbers<'t>(text: &'t str, key: &str) -> Vec<Value<'t>> {
     values.collect()
 }
 
-/// Returns the line that begins with a key, and the number of the line, from 1.
+/// Returns the line that begins with a key, and the number of the line, from 1; `None` if the text does not have the
+/// key.
 fn line<'t>(text: &'t str, key: &str) -> Option<(usize, &'t str)> {
     (1..).zip(text.lines()).find(|(_, line)| line.strip_prefix(key).is_some_and(|rest| rest.starts_with(':')))
 }

@@ -14,7 +14,7 @@ pub(super) struct Image {
 }
 
 impl Image {
-    /// Reads a file.
+    /// Parses the bytes of an image file.
     pub(super) fn read(bytes: &[u8]) -> Result<Self, String> {
         let mut words = Words(bytes);
         let kind = words.next().unwrap_or_default();
@@ -41,8 +41,8 @@ impl Image {
         Ok(Self { width, height, white, grey })
     }
 
-    /// Returns, for each pixel, `true` if it is darker than this fraction of black, or brighter if `negate` is
-    /// `true`.
+    /// Returns, for each pixel, `true` if its darkness, from 0 to 1, exceeds `than`. If `negate` is `true`, white
+    /// counts as dark.
     pub(super) fn darker(&self, than: f64, negate: bool) -> Vec<bool> {
         let is_dark = |grey: u16| {
             let bright = f64::from(grey) / f64::from(self.white);

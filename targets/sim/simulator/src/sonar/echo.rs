@@ -25,18 +25,19 @@ const SCATTERS: f64 = 0.08;
 const EDGE_COSTS: f64 = 0.65;
 /// Distance, in metres, up to which the receiver's growing gain compensates the loss.
 const GAIN_LASTS: f64 = 2.0;
-/// Loss for each metre beyond that distance: at 6.5 m, a wall is heard up to 26° off its normal.
+/// Loss for each metre beyond [`GAIN_LASTS`]: at 6.5 m, a wall is heard up to 26° off its normal.
 const METRE_COSTS: f64 = 0.13;
-/// Maximum distance between the two bounces of a ray in a corner, per metre of range, at which the sound
-/// returns to the sonar, as for a ray beside the one into the corner itself.
+/// Maximum distance between the two reflections of a ray in a corner, per metre of range, at which the sound still
+/// returns to the sonar, as it does for the neighbouring ray into the corner itself.
 const CORNER: f64 = 0.35;
-/// Maximum angle, as a cosine, between the opposite direction and a ray that leaves a corner: 15°.
+/// Maximum cosine of the angle between a ray into a corner and the ray that leaves it: the ray leaves within 15° of the
+/// opposite direction.
 const BACK: f64 = -0.966;
 /// Distance from a surface, in metres, at which a reflected ray begins, so that it does not meet the surface again.
 const OFF: f64 = 1e-6;
 
-/// Returns the distance, in metres, from a transducer to the nearest object that it hears in its cone. `fade`
-/// is the amount by which it hears better or worse than usual.
+/// Returns the distance, in metres, from a transducer to the nearest object that it hears in its cone; `None` if it
+/// hears nothing. `fade` is the amount by which the transducer hears better or worse than usual.
 pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing, fade: f64) -> Option<f64> {
     let spread = (0..RAYS).map(|ray| hearing.half_cone.0 * (2.0 * f64::from(ray) / f64::from(RAYS - 1) - 1.0));
     let others = walls.others_in(from, axis, hearing.half_cone);
@@ -67,8 +68,8 @@ pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing,
     best
 }
 
-/// Returns the range at which this surface is heard by a ray with the loss `lost` so far; `None` if it is not
-/// heard.
+/// Returns the range at which a ray hears this surface; `None` if it does not hear it. `lost` is the loss of the ray
+/// before it meets the surface.
 fn heard(
     walls: (&Walls, Reached<'_>),
     from: Place,
@@ -91,8 +92,8 @@ fn heard(
     corner(walls, from, way, surface).filter(|range| *range < hearing.most)
 }
 
-/// Returns the range of the corner in which this surface lies, if the corner reflects the ray back; a ray that leaves
-/// the surface may meet what `bounced` names.
+/// Returns the range of the corner to which this surface belongs; `None` if no corner reflects the ray back. `bounced`
+/// contains the obstacles that the ray may meet after it has left the surface.
 fn corner((walls, bounced): (&Walls, Reached<'_>), from: Place, way: Place, first: &Surface) -> Option<f64> {
     let on = reflected(way, first.normal);
     let bounce = Place {

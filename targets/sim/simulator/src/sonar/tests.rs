@@ -1,4 +1,4 @@
-//! Echoes that the sonars hear, ideal ones and those of a Scout.
+//! Tests of the echoes that ideal sonars and the sonars of a Scout hear.
 
 use mdle_runtime::SonarId;
 
@@ -25,7 +25,7 @@ fn range(ring: &Ring, sonar: u8) -> Option<f64> {
     ring.pings[SonarId::new(sonar).number()].nearest(1).map(|range| range.0)
 }
 
-/// Returns the range of an ideal sonar that looks ahead.
+/// Returns the range of an ideal sonar that faces ahead; `None` without an echo.
 fn ahead(text: &str) -> Option<f64> {
     range(&pinged(Body::Ideal, &[], text), 0)
 }

@@ -1,5 +1,5 @@
-//! The path driven by a robot, divided by the atoms that drove it: a bounded number of places, separate for each pass
-//! of an atom.
+//! The path driven by a robot, divided into the parts that each atom drove. The number of places is limited, and each
+//! pass of an atom has a part of its own.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use mdle_runtime::Nanos;
 
 use crate::place::Place;
 
-/// Distance, in metres, below which a place is not kept, as it is less than a pixel from the last place.
+/// Distance, in metres, from the last kept place below which a place is not kept, because it is less than a pixel away.
 const APART: f64 = 0.01;
 /// Maximum number of places of the path driven that are kept; above this number, every second place is removed.
 const PLACES_MOST: usize = 100_000;
@@ -21,13 +21,14 @@ pub(crate) struct Ways {
     pub(crate) before: Vec<Place>,
     /// Each pass of an atom, in order.
     pub(crate) marks: Vec<Mark>,
-    /// The atoms as written, in the order in which they first began.
+    /// The atoms of the plan's text, in the order in which they first began.
     pub(crate) atoms: Vec<Atom>,
     /// Number of beginnings of atoms that are not among `atoms`.
     pub(crate) uncounted: usize,
-    /// Positions of atoms by number and law, as plans that replace each other may have the same numbers.
+    /// Positions of atoms in `atoms` by number and law, because plans that replace each other may use the same numbers.
     by_number: BTreeMap<(u64, String), usize>,
-    /// The running atom, and the time from which its total still has to be counted.
+    /// The running atom, and the time from which its total time has not been counted yet; `None` while no atom in
+    /// `atoms` runs.
     running: Option<(usize, Nanos)>,
     /// Number of recorded places.
     count: usize,
@@ -35,7 +36,7 @@ pub(crate) struct Ways {
     apart: f64,
 }
 
-/// An atom as written.
+/// An atom of the plan's text.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Atom {
     /// Number of the atom's state in the first pass of the enclosing loops.
@@ -137,7 +138,8 @@ impl Ways {
         self.marks.push(Mark { atom, t, way: vec![place] });
     }
 
-    /// Returns the position of an atom in the list, to which it is appended if there is room.
+    /// Returns the position of an atom in `atoms`, and appends the atom if it is new; `None` if there is no room for
+    /// it.
     fn atom(&mut self, number: u64, law: &str, place: Place) -> Option<usize> {
         let next = self.atoms.len();
         let key = (number, law.to_owned());

@@ -1,4 +1,4 @@
-//! Rays and distances compared with brute force, and moving objects.
+//! Tests of walls: rays and distances compared with brute force, and moving objects.
 
 #[cfg(parry)]
 mod parry;

@@ -1,4 +1,4 @@
-//! The content of a world file, checked, in metres.
+//! Checks the content of a world file and converts it to metres.
 
 use mdle_runtime::{Meters, Pose, Radians};
 use toml::Spanned;

@@ -1,4 +1,4 @@
-//! The sources of sound of a world file, and the reverberation of its room.
+//! Checks the sources of sound of a world file, and the reverberation of its room.
 
 use mdle_sound::{SoundKind, SoundRoom, SoundSource};
 use toml::Spanned;

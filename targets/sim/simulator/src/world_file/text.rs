@@ -1,4 +1,4 @@
-//! A world file as written.
+//! The content of a world file as written, before it is checked.
 
 use std::fmt;
 use std::marker::PhantomData;
