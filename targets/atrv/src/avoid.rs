@@ -1,8 +1,8 @@
 //! Numbers without a byte 1B, for controllers that may not accept this byte as a value. See
 //! docs/src/reference/protocols.md, 2.2.
 //!
-//! Every known program that drives an rFLEX sends its bytes unmarked, and changes a turn rate with a byte 1B to the
-//! nearest turn rate without. This module does the same for every byte of every number.
+//! No known program that drives an rFLEX marks its bytes. Such programs replace a turn rate that contains a byte 1B by
+//! the nearest turn rate that does not. This module does so for every byte of every number.
 
 /// The byte 1B, which begins a mark on the line.
 pub(crate) const ESCAPE: u8 = 0x1B;

@@ -23,8 +23,8 @@ const HALF_LENGTH: Meters = Meters(0.315);
 const HALF_WIDTH: Meters = Meters(0.27);
 /// Radius of the smallest circle around the body.
 const RADIUS: Meters = Meters(0.415);
-/// Distance, in metres, between the two points of a wall beside the robot that the sonars 18° from the wall's direction
-/// hear.
+/// Distance, in metres, between the two points of a wall beside the robot that are heard by the sonars at 18° from the
+/// wall's direction.
 const SONARS_APART: Meters = Meters(0.33);
 /// Number of consistent pings that confirm a free way on a robot whose sonars fire in turn.
 const CONFIRMATION: usize = 2;
@@ -164,7 +164,7 @@ impl Atrv {
         Ok(())
     }
 
-    /// Pauses, because controllers need a moment after each command.
+    /// Pauses, because controllers need some time after each command.
     fn rest(&self) {
         self.clock.pass(Duration::from_millis(self.config.pause));
     }

@@ -29,7 +29,7 @@ pub struct Packet<'a> {
     pub port: u8,
     /// Number that the robot increments for each packet, and that the driver ignores.
     pub id: u8,
-    /// Number of the command or report among those of the port.
+    /// Number that identifies the command or report within its port.
     pub opcode: u8,
     /// Bytes after the packet's head.
     pub data: &'a [u8],
@@ -191,7 +191,7 @@ impl Reader {
         Ok(None)
     }
 
-    /// Stores a value of the packet.
+    /// Stores a value of the packet, which does not complete the packet. Fails if the packet is too long.
     fn keep(&mut self, byte: u8) -> Result<Option<Packet<'_>>, Garbled> {
         match self.bytes.get_mut(self.count) {
             Some(place) => {

@@ -5,7 +5,7 @@ use mdle_runtime::{Mount, Radians, SONARS, SonarId};
 
 /// Maximum number of sonars that an ATRV-mini has.
 pub(crate) const MOST: usize = 24;
-/// Distance from the centre at which laws assume the sonars, in metres.
+/// Radius, in metres, of the ring on which the laws assume the sonars.
 pub(crate) const RING_RADIUS: f64 = 0.28;
 
 /// A sonar on the body.
@@ -96,8 +96,8 @@ fn at(id: usize, (x, y, degrees): (f64, f64, f64), directions: &[usize]) -> Tran
 }
 
 impl Transducer {
-    /// Converts a range of this sonar, in metres, to a range from the ring: along the sonar's axis, from the point of
-    /// the axis nearest to the centre, less the ring's radius.
+    /// Converts a range of this sonar, in metres, to a range from the ring. The result is measured along the sonar's
+    /// axis from the point of the axis that is nearest to the centre, and reduced by the ring's radius.
     pub(crate) fn on_the_ring(&self, range: f64) -> f64 {
         let (sin, cos) = libm::sincos(self.degrees.to_radians());
         (self.x * cos + self.y * sin + range - RING_RADIUS).max(0.0)
@@ -115,7 +115,7 @@ mod tests {
 
     use super::*;
 
-    /// The ids of the sonars that speak for each direction.
+    /// Returns the ids of the sonars that serve each direction.
     fn speakers(sonars: u8) -> Vec<Vec<u8>> {
         let all = transducers(sonars);
         let of = |direction: usize| all.iter().flatten().filter(move |sonar| sonar.directions & (1 << direction) != 0);

@@ -8,7 +8,7 @@ use crate::config::Config;
 
 /// Maximum distance between two position reports, in metres; a greater difference of positions is rejected as a leap.
 const LEAP: f64 = 1.0;
-/// Maximum excess of leaps over normal steps; beyond it the positions are meaningless.
+/// Maximum number of leaps in excess of normal steps; with more leaps, the positions are meaningless.
 const LEAPS: u8 = 4;
 
 /// Returns the commands for `input`, translation first. Both axes are slowed down by the same factor so that no side

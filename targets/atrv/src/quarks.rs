@@ -1,3 +1,4 @@
-//! Quarks that this robot's alphabet declares itself because their ranges differ; their laws are the shared ones.
+//! Quarks that this robot's alphabet declares itself because their argument ranges differ; their laws are shared with
+//! other robots.
 
 pub use mdle_atoms::{Advance, Go, GoAvoid};

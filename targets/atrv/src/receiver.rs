@@ -1,4 +1,4 @@
-//! Reception of the robot's reports: the state that the reports contain, and the faults in them.
+//! Receives the robot's reports: keeps the state that they contain, and detects faults.
 
 use std::time::{Duration, Instant};
 
@@ -26,9 +26,9 @@ const READS: usize = 64;
 pub(crate) struct Hearing {
     reader: Reader,
     known: Known,
-    /// Time of the last position report, by this computer's clock.
+    /// Time of the last position report, by this computer's clock; `None` before the first report.
     last_report: Option<Instant>,
-    /// Fault found since the last position report.
+    /// Fault found since the last position report; `None` if there is none.
     trouble: Option<Fault>,
     /// Maximum time between two reports of the brake.
     unanswered: Nanos,
@@ -44,13 +44,13 @@ struct Known {
     /// used.
     along: Option<(i32, i32)>,
     velocity: Twist,
-    /// Time of the last position report, by the controller's clock.
+    /// Time of the last position report, by the controller's clock; `None` before the first report.
     time: Option<u32>,
     /// Time of the exchange that brought the last position report.
     positioned: Nanos,
     /// Bumpers in contact: bit 0 for the front bumper, bit 1 for the rear bumper.
     switches: u32,
-    /// Time of the last report of each bumper.
+    /// Time of the last report of each bumper; `None` before the first report.
     felt: [Option<Nanos>; 2],
     /// `true` if the brake is set; `None` before the first report.
     is_braked: Option<bool>,

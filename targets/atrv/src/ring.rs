@@ -11,12 +11,13 @@ const DEAF: Nanos = Nanos(1_000_000_000);
 
 /// State of the sonars and their pings.
 ///
-/// A direction pings when each sonar that serves it has reported since the direction's last ping, or when one of these
-/// sonars reports a second time before another sonar has reported: a report may be lost.
+/// A direction pings when each sonar that serves it has reported since the direction's last ping. If a sonar reports a
+/// second time before another sonar has reported, the direction pings as well, since the other sonar's report may have
+/// been lost.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     transducers: [Option<Transducer>; MOST],
-    /// Last range of each sonar, in metres from the ring.
+    /// Last range of each sonar, in metres from the ring; `None` without an echo.
     ranges: [Option<f64>; MOST],
     pub(crate) pings: [Pings; SONARS],
     /// Sonars that have reported since each direction's last ping: bit `i` for sonar `i`.
@@ -65,13 +66,13 @@ impl Ring {
         }
     }
 
-    /// Returns the lowest direction that has fewer pings than can be stored.
+    /// Returns the lowest direction that has fewer pings than are kept; `None` if there is no such direction.
     pub(crate) fn unheard(&self) -> Option<u8> {
         let all = (0..).zip(&self.pings);
         all.filter(|(_, pings)| pings.newest_first().count() < PINGS_KEPT).map(|(direction, _)| direction).next()
     }
 
-    /// Returns the lowest direction whose last ping is too old or missing.
+    /// Returns the lowest direction whose last ping is too old or missing; `None` if there is no such direction.
     pub(crate) fn deaf(&self, now: Nanos) -> Option<u8> {
         let all = (0..).zip(&self.pings);
         let is_old = |pings: &Pings| pings.newest_first().next().is_none_or(|ping| now.since(ping.at) > DEAF);

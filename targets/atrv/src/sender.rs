@@ -15,12 +15,12 @@ use crate::frame::FrameBytes;
 /// Maximum time for the line to accept the watchdog's commands.
 const STOPPING: Duration = Duration::from_millis(100);
 
-/// The line to the robot, with the watchdog over the motion commands.
+/// The line to the robot, with a watchdog that supervises the motion commands.
 #[derive(Debug)]
 pub(crate) struct Mouth {
     shared: Arc<Shared>,
     watching: Option<JoinHandle<()>>,
-    /// Time without a motion command after which the watchdog stops the robot.
+    /// Time without a motion command after which the watchdog stops the robot; `None` without a watchdog.
     limit: Option<Duration>,
 }
 

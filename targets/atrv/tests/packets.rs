@@ -1,4 +1,5 @@
-//! Every worked packet that we know of, both ways: what a command is on the line, and what a report says.
+//! Compares the driver's language with all known example packets, in both directions: the bytes of commands, and the
+//! content of reports.
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test fails by panicking")]
 
 use mdle_atrv::{Axis, Command, Escape, Garbled, Motion, Packet, Reader, Report, Unreadable};
@@ -24,7 +25,8 @@ fn read(bytes: &[u8]) -> Vec<Result<Owned, Garbled>> {
     found
 }
 
-/// The one packet that these bytes are, and that is these bytes again.
+/// Returns the packet in these bytes. Panics unless they contain exactly one packet, and the packet is written as these
+/// bytes.
 fn packet(hex: &str) -> Owned {
     let found = read(&bytes(hex));
     assert_eq!(found.len(), 1, "{hex}: {found:?}");
@@ -68,7 +70,7 @@ fn commands_are_the_worked_packets() {
     }
 }
 
-/// Hands the report in these bytes to `is`.
+/// Calls `is` with the id and the content of the report in these bytes.
 fn message(hex: &str, is: impl FnOnce(u8, Report<'_>)) {
     let (port, id, opcode, data) = packet(hex);
     is(id, Report::read(&Packet { port, id, opcode, data: &data }).unwrap());

@@ -45,7 +45,7 @@ enum Feels {
     Turn,
 }
 
-/// The expected effect of faults on a run. A fault without a time of its own begins after three seconds.
+/// The expected effect of faults on a run. A fault without an explicit time begins after three seconds.
 #[derive(Debug, Clone, Copy)]
 pub struct Effect {
     faults: &'static [&'static str],
@@ -95,7 +95,8 @@ impl Effect {
         Self { stop: Err(words), ..self }
     }
 
-    /// Allows the stop to succeed as well: the moment of a request decides whether its answer is lost.
+    /// Accepts a stop that succeeds as well as one that fails, since the answer to a request may or may not be lost,
+    /// depending on the time of the request.
     #[must_use]
     pub const fn may_stop(self) -> Self {
         Self { may_stop: true, ..self }
@@ -183,7 +184,7 @@ impl Feels {
     }
 }
 
-/// Returns the fault with its time; the default time is that at which faults begin.
+/// Returns the text of a fault with a time; a fault without a time gets the default time, [`BEGINS`].
 fn begun(fault: &str) -> String {
     if fault.contains('@') { fault.to_owned() } else { format!("{fault}@{BEGINS}") }
 }
@@ -197,9 +198,10 @@ fn same<F: std::fmt::Display>(expected: Result<(), &str>, result: Result<(), F>)
     }
 }
 
-/// Runs the robot with the faults of each row, and starts it with each fault of `refusals`; the driver has to refuse
-/// the start with a sentence that contains the words beside the fault. Returns a sentence for each row that differs
-/// from its run, and for each fault of the emulator that is in no row.
+/// Runs the robot with the faults of each row of `effects`, and starts a robot with each fault of `refusals`. The
+/// driver has to refuse this start with a sentence that contains the words next to the fault. Returns a sentence for
+/// each row that differs from its run, for each start that is not refused so, and for each fault of the emulator that
+/// is in no row.
 #[must_use]
 pub fn untrue_effects<T: Trial>(effects: &[Effect], refusals: &[(&'static str, &'static str)]) -> Vec<String> {
     let run = |effect: &Effect| effect.differences::<T>().map_err(|error| format!("{:?}: {error}", effect.faults));
@@ -225,8 +227,8 @@ pub fn untrue_effects<T: Trial>(effects: &[Effect], refusals: &[(&'static str, &
     untrue.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Returns a sentence for each fault that the robot can have and that is in no row. Late frames are left out: they need
-/// a clock, which robots in lockstep do not have.
+/// Returns a sentence for each fault that the robot can have and that is in no row. Late frames are not checked: they
+/// need a clock, which robots in lockstep do not have.
 fn missing<T: Trial>(effects: &[Effect]) -> Vec<String> {
     let faults = effects.iter().flat_map(|effect| effect.faults).filter_map(|fault| fault.parse::<At>().ok());
     let names: Vec<String> = faults.map(|at| at.fault.to_string()).collect();

@@ -1,4 +1,5 @@
-//! Faults that a user can order from an emulated robot: on its line, in any language, or in its body.
+//! Faults that a user can request of an emulated robot: faults of its line, which do not depend on the robot's
+//! language, and faults of its body.
 
 use std::fmt;
 use std::mem::discriminant;
@@ -9,13 +10,13 @@ use mdle_host::Quantity;
 
 /// The latest time at which a fault can begin.
 const LATEST: Duration = Duration::from_secs(1_000_000);
-/// Maximum number of a fault: bytes of noise, or milliseconds of delay.
+/// Maximum value of a fault's number, which counts bytes of noise or milliseconds of delay.
 const MOST: u32 = 60_000;
 
 /// A fault of the line or of the robot's body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
-    /// Random bytes, in this number, precede each frame.
+    /// This number of random bytes precedes each frame.
     Noise(u32),
     /// Frames arrive byte by byte.
     Dribble,
@@ -129,7 +130,7 @@ impl Fault {
     }
 }
 
-/// Reads a whole number of milliseconds up to [`MOST`], with a unit or without.
+/// Reads a whole number of milliseconds up to [`MOST`], with a unit or without; `None` if `text` is something else.
 fn milliseconds(text: &str) -> Option<u32> {
     let most = Duration::from_millis(u64::from(MOST));
     let time = Quantity::duration(text, "ms", Duration::ZERO, most).ok()?;

@@ -70,7 +70,8 @@ impl<R: Emulated> Faulty<R> {
         self.begun.contains(&fault)
     }
 
-    /// Returns the number of the first fault that has begun and for which `of` returns a number.
+    /// Returns the number that `of` returns for the first fault that has begun and has such a number; `None` if there
+    /// is no such fault.
     fn number(&self, of: fn(Fault) -> Option<u32>) -> Option<u32> {
         self.begun.iter().find_map(|fault| of(*fault))
     }
@@ -185,7 +186,7 @@ mod tests {
         }
     }
 
-    /// The pieces of three frames with these faults.
+    /// Returns the pieces in which three frames arrive with these faults.
     fn frames(faults: &[&str]) -> Vec<Vec<u8>> {
         let faults: Vec<At> = faults.iter().map(|text| text.parse().expect("a fault")).collect();
         let mut robot = Faulty::new(Robot::default(), &faults).expect("a robot");

@@ -37,7 +37,7 @@ impl Orders {
         self.0.iter().copied()
     }
 
-    /// Returns the last order, with the age of the world at which it arrived.
+    /// Returns the last order, with the age of the world at which it arrived; `None` before the first order.
     #[must_use]
     pub fn last(&self) -> Option<(Duration, Order)> {
         self.0.back().copied()

@@ -1,4 +1,4 @@
-//! Detection of the lines to which a driver is connected: the system reports each opening and closing of a device.
+//! Detects to which lines a driver is connected: the system reports each opening and closing of a device.
 
 use std::mem::MaybeUninit;
 use std::os::fd::OwnedFd;

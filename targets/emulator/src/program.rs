@@ -74,7 +74,7 @@ fn run<R: Emulated + Embodied>(
     line.map_err(|error| format!("the line failed: {error}"))
 }
 
-/// Returns the bodies that the options define, each with its name if it has one. Each body knows the places of the
+/// Returns the bodies that the options define, each with its name if it has one. Each body has the footprints of the
 /// others.
 fn bodies(
     options: &Options,
@@ -107,7 +107,7 @@ fn bodies(
     Ok(bodies)
 }
 
-/// Returns an error if another robot has this name, or if it overlaps this robot's body.
+/// Returns an error if another robot has this name, or overlaps the body of this robot.
 fn refuse(name: &str, body: &Simulated, others: &[(Option<String>, Simulated)]) -> Result<(), String> {
     for (other, known) in others {
         if other.as_deref() == Some(name) {

@@ -25,7 +25,7 @@ pub trait Emulated {
     /// Advances the robot's world by `time`.
     ///
     /// # Errors
-    /// Returns the world's sentence about an input that it cannot accept; no input here is of this kind.
+    /// Returns the world's error about an input that it cannot accept, which does not occur here.
     fn pass(&mut self, time: Duration) -> Result<(), String>;
 
     /// Returns the frames that the robot has to send since the last call.

@@ -25,7 +25,7 @@ struct SharedState<T> {
     now: Mutex<T>,
     /// Number of periods that still pass without a command.
     idle: AtomicU32,
-    /// Fault of the body that begins next.
+    /// Fault of the body that begins at the end of the period; `None` if none has been requested.
     ailment: Mutex<Option<Ailment>>,
     is_over: AtomicBool,
 }

@@ -56,7 +56,7 @@ pub trait Trial {
     /// Returns a robot that has just been switched on, whose world advances in steps of `step`.
     ///
     /// # Errors
-    /// Returns the world's sentence about an input that it cannot accept; no input here is of this kind.
+    /// Returns the world's error about an input that it cannot accept, which does not occur here.
     fn emulated(body: Simulated, step: Duration) -> Result<Self::Emulated, String>;
 
     /// Returns the true pose of the robot.
@@ -139,8 +139,8 @@ impl<T: Trial> Stage for OnItsLine<T> {
     }
 }
 
-/// Returns the number of allocations of the driver in fifty turns, as `asked` counts them on this thread. Fifty turns
-/// are enough for each sonar to ping, and for all that does not happen in each turn.
+/// Returns the number of allocations of the driver in fifty turns, as `asked` counts them on this thread. In fifty
+/// turns each sonar pings, and everything that the driver does only in some turns occurs.
 ///
 /// # Errors
 /// Fails if the robot or its driver failed.

@@ -1,5 +1,5 @@
-//! The line of a program that leads a session, as services do, must not become its terminal: the program would be hung
-//! up with it.
+//! Tests that a line does not become the controlling terminal of a program that leads a session, as services do.
+//! Otherwise the program would receive SIGHUP when the line is closed.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::env;
@@ -8,7 +8,7 @@ use std::process::Command;
 
 use mdle_emulator::Port;
 
-/// Environment variable by which this test knows that it leads a session.
+/// Environment variable that is set if the test runs as the leader of a session.
 const LEADS: &str = "MDLE_LEADS_A_SESSION";
 
 #[test]

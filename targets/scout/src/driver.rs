@@ -51,7 +51,7 @@ pub struct Scout {
     freshness: Freshness,
     obedience: Obedience,
     times: Times,
-    /// Time of the last command, until the robot is stopped.
+    /// Time of the last command; `None` before the first command, and after the robot has been stopped.
     commanded: Option<Moment>,
     /// Recorded paths that the plan can replay.
     pub(crate) paths: PathStore,
@@ -170,8 +170,8 @@ impl Scout {
         self.line.ask(&command, Instant::now() + patience)
     }
 
-    /// Sends the stop command repeatedly to a robot that does not answer, for the time in which the robot comes to
-    /// rest: it may receive commands even if its answers are lost.
+    /// Sends the stop command repeatedly to a robot that does not answer, for the time that the robot needs to come to
+    /// rest. The robot may receive commands even if its answers are lost.
     fn insist(&mut self, begun: Instant, limit: Duration) {
         for attempts in 1.. {
             let deadline = Instant::now() + AGAIN;

@@ -1,9 +1,9 @@
-//! Detection of stale data: a Scout's clock has to advance, and its sonars' ranges have to change as the robot moves.
-//! See docs/src/reference/protocols.md, 1.8.
+//! Detects stale data: a Scout's clock has to advance, and its sonars' ranges have to change as the robot moves. See
+//! docs/src/reference/protocols.md, 1.8.
 //!
-//! A state answers a command, and is as recent as the command, unless the controller repeats an old state; the state's
-//! clock shows that. No clock shows when the sonars pinged. But while the robot turns, or moves towards or away from an
-//! object that a sonar hears, the range of at least one sonar changes if the sonars ping.
+//! A state answers a command, and is as recent as the command, unless the controller repeats an old state; the clock in
+//! the state reveals this. No clock shows when the sonars pinged. But while the robot turns, or moves towards or away
+//! from an object that a sonar hears, the range of at least one sonar changes if the sonars ping.
 
 use mdle_runtime::{Nanos, Pose, Radians};
 
@@ -13,21 +13,21 @@ use crate::state::State;
 
 /// Range that a sonar without an echo reports.
 const NOTHING: u8 = 255;
-/// Turn of the robot, in radians, after which at least one range must have changed: each sonar then points in the
-/// direction in which the sonar four places further pointed before.
+/// Turn of the robot, in radians, after which at least one range must have changed: each sonar then faces in the
+/// direction in which the fourth sonar after it faced before.
 const TURN: f64 = std::f64::consts::FRAC_PI_2;
 
 /// Last data of the robot that differed from the previous data, and its motion since then.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Freshness {
-    /// Time of the robot's clock, and the moment at which it was first received.
+    /// Last new time of the robot's clock, and the time at which it was received; `None` before the first state.
     clock: Option<(u32, Nanos)>,
     sonars: [u8; 16],
     /// Last pose of the robot.
     pose: Pose,
-    /// Length of the path driven since a sonar's range changed, in metres.
+    /// Distance driven since a sonar's range last changed, in metres.
     way: f64,
-    /// Angle turned since a sonar's range changed, in radians.
+    /// Angle turned since a sonar's range last changed, in radians.
     turn: f64,
 }
 
@@ -73,8 +73,8 @@ mod tests {
     use super::*;
     use crate::config::Configured;
 
-    /// Returns the first of these states, a second apart, that is refused, and the fault. A state is the range ahead,
-    /// the range to the left, x in metres, the heading in degrees, and the clock.
+    /// Returns the index of the first of these states, a second apart, that is refused, and the fault. A state consists
+    /// of the range ahead, the range to the left, x in metres, the heading in degrees, and the clock.
     fn refused(states: &[(u8, u8, f64, f64, u32)]) -> Option<(usize, Fault)> {
         let config = Config { stale: 1500, ..Configured::read(None, None).unwrap().config };
         let mut freshness = Freshness::default();

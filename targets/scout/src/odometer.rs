@@ -1,4 +1,4 @@
-//! Odometry of a Scout beyond 83 m, where the robot's position numbers wrap. See docs/src/reference/protocols.md, 1.8.
+//! Computes the odometry of a Scout, whose position numbers wrap at 83 m. See docs/src/reference/protocols.md, 1.8.
 
 use mdle_runtime::{Meters, Nanos, Pose, Radians};
 
@@ -6,7 +6,7 @@ use crate::fault::Fault;
 use crate::state::State;
 use crate::wheels::UNIT;
 
-/// Count of the numbers in sign and magnitude, from -32767 to 32767.
+/// Number of different values in sign and magnitude, from -32767 to 32767.
 const NUMBERS: i32 = 65_535;
 
 /// Maximum plausible distance between two states, beyond the distance that the robot can drive in the time between
@@ -14,7 +14,7 @@ const NUMBERS: i32 = 65_535;
 const LEAP: f64 = 1.0;
 /// Maximum ratio of a wheel's speed to its commanded speed.
 const FASTER: f64 = 2.0;
-/// Maximum excess of leaps over normal steps; beyond it the positions are meaningless.
+/// Maximum number of leaps in excess of normal steps; with more leaps, the positions are meaningless.
 const LEAPS: u8 = 4;
 
 /// Odometry that follows the wrapping positions from state to state.

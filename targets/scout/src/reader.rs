@@ -10,7 +10,7 @@ pub(crate) const CHUNK: usize = 512;
 pub struct Reader {
     /// Bytes that have not been read as a frame; empty, or beginning with the first byte of a frame.
     waiting: Vec<u8>,
-    /// First defect in the bytes since the last valid frame.
+    /// First defect in the bytes since the reader was cleared; `None` if there is none.
     garbled: Option<Garbled>,
     /// `true` after a defective frame of the right length.
     was_whole: bool,
@@ -41,7 +41,8 @@ impl Reader {
         self.waiting.len()
     }
 
-    /// Removes and returns the next frame with a right sum. Bytes before it that cannot begin a frame are dropped.
+    /// Removes and returns the next frame with a right sum; `None` if there is no complete one. Bytes before it that
+    /// cannot begin a frame are dropped.
     pub fn next_frame(&mut self) -> Option<Frame> {
         loop {
             match Frame::read(&self.waiting) {
@@ -61,7 +62,8 @@ impl Reader {
     }
 
     /// Removes and returns a frame of type `kind` that follows the incomplete beginning of another frame, which may be
-    /// noise. Call it only when no more bytes arrive: otherwise a part of a valid frame could be taken for a frame.
+    /// noise; `None` if there is no such frame. Call it only when no more bytes arrive: otherwise a part of a valid
+    /// frame could be taken for a frame.
     pub fn after_false_start(&mut self, kind: u8) -> Option<Frame> {
         let found = (1..self.waiting.len()).find_map(|place| {
             let frame = Frame::read(self.waiting.get(place..)?).ok().flatten();
@@ -72,7 +74,7 @@ impl Reader {
         Some(frame)
     }
 
-    /// Returns the first defect of the received bytes.
+    /// Returns the first defect of the received bytes; `None` if there is none.
     #[must_use]
     pub fn garbled(&self) -> Option<Garbled> {
         self.garbled

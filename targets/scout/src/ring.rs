@@ -5,7 +5,7 @@ use mdle_runtime::{Meters, Mount, Nanos, Ping, Pings, Pose, SONARS};
 
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
-/// Number of gaps by which a round of pings may be late: to miss a ping is better than to report a ping that did not
+/// Number of gaps by which a round of pings may be late. It is better to miss a ping than to report a ping that did not
 /// happen.
 const SLACK: usize = 2;
 /// Range that a sonar without an echo reports.

@@ -1,17 +1,18 @@
-//! Every worked packet that we know of, both ways: what a command is on the line, and what an answer says.
+//! Compares the driver's language with all known example packets, in both directions: the bytes of commands, and the
+//! content of answers.
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test fails by panicking")]
 
 use mdle_runtime::Volts;
 use mdle_scout::{Command, Frame, Garbled, State};
 
-/// The order in which a Scout's sonars are fired.
+/// The order in which a Scout's sonars ping.
 const ORDER: [u8; 16] = [0, 2, 15, 1, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8];
 
 fn bytes(hex: &str) -> Vec<u8> {
     hex.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
 }
 
-/// The one frame that these bytes are.
+/// Returns the frame in these bytes; panics unless they are exactly one frame.
 fn frame(hex: &str) -> Frame {
     let bytes = bytes(hex);
     let (frame, count) = Frame::read(&bytes).unwrap().unwrap();

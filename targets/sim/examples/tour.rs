@@ -1,4 +1,4 @@
-//! The lab tour on the simulated robot without mdlec, with a robot that breaks down if an option asks for it.
+//! Runs the lab tour on the simulated robot without mdlec; with the option `--panic-at`, the robot breaks down.
 //!
 //! `cargo run -p mdle-sim --example tour -- --watch --speed 10`. The tests of this package run it as a program.
 
@@ -28,10 +28,10 @@ struct Breaking {
     left: Option<u64>,
 }
 
-/// Runs of the tour on the simulator.
+/// The simulator's functions for the observer of a run and for several runs.
 const SIM: Option<Observation<Observed>> = Sim::OBSERVATION;
 
-/// Returns the runs of the simulator, each with a robot that may break down.
+/// Returns the simulator's runs, with robots that may break down.
 fn batch(matches: &ArgMatches, period: Duration) -> SeveralRuns<Breaking> {
     let batch = SIM.map_or(Ok(None), |sim| (sim.batch)(matches, period))?;
     let left = matches.get_one("panic-at").copied();

@@ -1,8 +1,7 @@
 //! The simulated robot as a target: a differential drive with bumper, odometry and sixteen sonars in a flat world.
 //!
-//! For generated code: [`Target`], on which the host runs a plan, and [`alphabet`], the quarks of this robot.
-//! For tests and tools: [`Observed`], and the items of `mdle-simulator`: [`World`], [`Simulated`], [`Make`] and
-//! [`Sensed`].
+//! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], the quarks of this robot. Tests and
+//! tools use [`Observed`], and the items of `mdle-simulator`: [`World`], [`Simulated`], [`Make`] and [`Sensed`].
 #![forbid(unsafe_code)]
 
 mod observed;

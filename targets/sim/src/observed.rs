@@ -1,4 +1,4 @@
-//! The simulated robot with its observers: pictures, the live view, and the table of its poses.
+//! The simulated robot with the observers of its run: pictures, the live view, and the table of its poses.
 
 use std::sync::Arc;
 
@@ -18,12 +18,12 @@ pub struct Observed {
     pictures: Option<Pictures>,
     table: Option<Table>,
     watch: Option<Watch>,
-    /// Sounds of the world, and the random seed of the sounds.
+    /// Sounds of the world, and their random seed; `None` before they are set.
     sounds: Option<Sounds>,
     ears: Option<(RobotEars, Microphones)>,
 }
 
-/// Sound that the robot hears once it has ears.
+/// Sounds of a world, which the robot hears once it has ears.
 pub(crate) struct Sounds {
     pub(crate) world: Arc<World>,
     pub(crate) seed: u64,
@@ -97,7 +97,8 @@ impl Observed {
         self.robot.set_charge(charge);
     }
 
-    /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its world.
+    /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its world;
+    /// `None` for a world without a charger.
     pub fn supply(&mut self, charge: f64, charger: Option<Charger>) {
         self.robot.supply(charge, charger);
     }
@@ -119,12 +120,12 @@ impl Observed {
         Ok(())
     }
 
-    /// Takes the paths that the plan replays.
+    /// Sets the paths that the plan replays.
     pub(crate) fn take_paths(&mut self, paths: PathStore) {
         self.robot.paths = paths;
     }
 
-    /// Sets the goal that judges the end of the run.
+    /// Sets the goal by which the end of the run is evaluated; `None` for no goal.
     pub(crate) fn judged_by(self, goal: Option<Goal>) -> Self {
         Self { goal, ..self }
     }
@@ -144,12 +145,13 @@ impl Observed {
         self
     }
 
-    /// Shows the run on `watch` while it runs.
+    /// Shows the run on `watch` while it runs; `None` for no live view.
     pub(crate) fn watched(self, watch: Option<Watch>) -> Self {
         Self { watch, ..self }
     }
 
-    /// Writes the robot's poses to `file` during the run: `t,x,y,heading` in seconds, metres and degrees.
+    /// Writes the robot's poses to `file` during the run: `t,x,y,heading` in seconds, metres and degrees. With `None`,
+    /// no poses are written.
     pub(crate) fn written_down(mut self, file: Option<WholeFile>) -> Self {
         self.table = file.map(|file| Table { file, lines: None });
         self

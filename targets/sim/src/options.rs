@@ -115,7 +115,7 @@ fn of_runs(command: Command) -> Command {
 /// Options that show or record a single run.
 const ONE_RUN: [&str; 4] = ["watch", "plot", "record", "trail"];
 
-/// Options of several runs that are omitted from the command that repeats one of them.
+/// Options of several runs that are left out of the command that repeats a single one of these runs.
 const OF_SEVERAL: [&str; 5] = ["runs", "jobs", "json", "seed", "speed"];
 
 /// Returns a long option with a value.
@@ -151,7 +151,8 @@ pub(crate) fn world(matches: &ArgMatches) -> Result<World, String> {
     }
 }
 
-/// Returns the goal of `--goal`: the goal of the world, or the one that the option describes.
+/// Returns the goal of `--goal`: the goal of the world, or the goal that the option describes; `None` without the
+/// option.
 pub(crate) fn goal(matches: &ArgMatches, world: &World) -> Result<Option<Goal>, String> {
     let Some(text) = matches.get_one::<String>("goal") else { return Ok(None) };
     if text == "world" {
@@ -188,7 +189,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>, String> {
     read_file(path, LARGEST).map_err(|error| format!("--world {}: the file cannot be read: {error}", path.display()))
 }
 
-/// Returns the pose of `--start`, as text and parsed.
+/// Returns the pose of `--start`, as text and parsed; `None` without the option.
 pub(crate) fn start(matches: &ArgMatches) -> Result<Option<(&str, Start)>, String> {
     let Some(text) = matches.get_one::<String>("start") else { return Ok(None) };
     let start = text.parse().map_err(|error| format!("--start {text}: {error}"))?;
@@ -217,24 +218,24 @@ pub(crate) fn battery(matches: &ArgMatches) -> f64 {
     matches.get_one("battery").map_or(1.0, |percent: &u64| *percent as f64 / 100.0)
 }
 
-/// Returns the start noise of `--start-noise`.
+/// Returns the start noise of `--start-noise`; `None` without the option.
 pub(crate) fn start_noise(matches: &ArgMatches) -> Result<Option<StartNoise>, String> {
     let Some(text) = matches.get_one::<String>("start-noise") else { return Ok(None) };
     StartNoise::read(text).map(Some).map_err(|sentence| format!("--start-noise {text}: {sentence}"))
 }
 
-/// Returns the number of `--runs`.
+/// Returns the number of `--runs`; `None` without the option.
 pub(crate) fn runs(matches: &ArgMatches) -> Option<NonZeroU64> {
     matches.get_one("runs").copied().and_then(NonZeroU64::new)
 }
 
-/// Returns the number of `--jobs`.
+/// Returns the number of `--jobs`; `None` without the option.
 pub(crate) fn jobs(matches: &ArgMatches) -> Option<NonZeroUsize> {
     let jobs: u64 = matches.get_one("jobs").copied()?;
     usize::try_from(jobs).ok().and_then(NonZeroUsize::new)
 }
 
-/// Checks that the other options fit several runs.
+/// Checks that `--speed` does not slow down several runs, which are made as fast as possible.
 pub(crate) fn agree(matches: &ArgMatches) -> Result<(), String> {
     match time(matches)? {
         Time::Stepped(Pace::Times(times)) if matches.contains_id("speed") => Err(format!(
@@ -244,7 +245,7 @@ pub(crate) fn agree(matches: &ArgMatches) -> Result<(), String> {
     }
 }
 
-/// Returns the given options that apply to each one of several runs, as words.
+/// Returns the given options that apply to every one of several runs, as words of a command.
 pub(crate) fn given(matches: &ArgMatches) -> Vec<String> {
     let names = matches.ids().map(|id| id.as_str()).filter(|name| !OF_SEVERAL.contains(name));
     let given = names.filter(|name| matches.value_source(name) == Some(ValueSource::CommandLine));
@@ -261,7 +262,7 @@ pub(crate) fn given(matches: &ArgMatches) -> Vec<String> {
     words.collect()
 }
 
-/// Returns the path of `--plot`, `--record` or `--trail`.
+/// Returns the path of the option `--plot`, `--record` or `--trail`; `None` if it is not given.
 pub(crate) fn file<'m>(matches: &'m ArgMatches, option: &str) -> Option<&'m Path> {
     matches.get_one::<PathBuf>(option).map(PathBuf::as_path)
 }

@@ -14,21 +14,21 @@ use mdle_simulator::{Goal, Make, PARTS, Simulated, Start, StartError, StartNoise
 use crate::observed::{Observed, Sounds};
 use crate::options;
 
-/// A world, the robot to be simulated in it, and where it starts.
+/// A world, the robot that is simulated in it, and the robot's start pose.
 struct Setup {
     world: Arc<World>,
     walls: Walls,
     make: Make,
     start: Pose,
     noise: Option<StartNoise>,
-    /// The goal that judges the run.
+    /// Goal that decides whether a run succeeds; `None` without the option `--goal`.
     goal: Option<Goal>,
     /// Charge of the battery at the start, from 0 to 1.
     charge: f64,
     period: Duration,
 }
 
-/// Returns the robot that the options describe. All errors are found at this point, before anything moves.
+/// Returns the robot that the options describe. All errors in the options are reported here, before anything moves.
 pub(crate) fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, String> {
     let setup = Setup::of(matches, period)?;
     let robot = setup.robot(setup.make.seed)?;
@@ -38,7 +38,7 @@ pub(crate) fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, 
     Ok(robot.drawn((file("plot")?, file("record")?), &setup.world, setup.in_words(&options::world_name(matches))))
 }
 
-/// Returns the runs that the options request; `None` if they do not request several.
+/// Returns the batch of runs that the options request; `None` without the option `--runs`.
 pub(crate) fn batch(matches: &ArgMatches, period: Duration) -> Result<Option<Batch<Observed>>, String> {
     let Some(runs) = options::runs(matches) else { return Ok(None) };
     options::agree(matches)?;
@@ -93,7 +93,7 @@ impl Setup {
         format!("world {world}, body {body}{without}, {seed}")
     }
 
-    /// Returns the robot whose errors and start pose are drawn with this seed.
+    /// Returns the robot of the run with this seed, which determines the errors and the start pose.
     fn robot(&self, seed: Option<u64>) -> Result<Observed, String> {
         let make = Make { seed, ..self.make.clone() };
         let start = match (self.noise, seed) {
@@ -108,7 +108,7 @@ impl Setup {
     }
 }
 
-/// Returns a text to type instead.
+/// Returns a hint for error messages: the start pose of the world, as an option.
 fn hint(start: &Pose) -> String {
     // Degrees that were read from a file come back with a last digit of their own.
     let degrees = libm::round(start.theta.degrees() * 1e6) / 1e6;

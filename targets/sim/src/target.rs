@@ -1,4 +1,4 @@
-//! The target `sim`, as the host runs plans on it.
+//! The target `sim`, on which the host runs plans.
 
 use std::time::Duration;
 

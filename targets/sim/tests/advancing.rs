@@ -1,5 +1,5 @@
-//! `advance` on the simulated bodies: at the limits of their wheels, with their errors and however long a turn of the
-//! machine is, it ends at its distance, at rest, and does not go past it.
+//! Tests of `advance` on the simulated bodies, at the limits of their wheels, with their errors, and with turns of
+//! several durations: the law ends at rest at its distance, and the body does not overshoot.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::time::Duration;
@@ -12,12 +12,12 @@ use mdle_sim::{Body, Make, Simulated, World};
 /// A path that was driven, in metres by odometry and seconds.
 #[derive(Debug)]
 struct Driven {
-    /// Distance ahead, in metres; `left` is the distance to the left.
+    /// Distance ahead, in metres; `aside` is the distance to the left.
     ahead: f64,
     aside: f64,
     /// Maximum distance on the intended side, in metres.
     furthest: f64,
-    /// Number of changes between forward and backward.
+    /// Number of changes between forward and backward motion.
     hunts: u32,
     seconds: f64,
 }

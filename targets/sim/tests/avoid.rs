@@ -7,7 +7,7 @@ use mdle_runtime::{
 use mdle_sim::alphabet::GoAvoid;
 use mdle_sim::{Simulated, World};
 
-/// Returns the number of ten starts, side by side across 10 cm, from which a robot reaches the point 6 m ahead without
+/// Returns the number of ten starts, spread across 10 cm, from which a robot reaches the point 6 m ahead without
 /// contact.
 fn arrived(walls: &str) -> usize {
     let world = World::parse("a test's world", walls).expect("a good world");

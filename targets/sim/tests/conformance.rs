@@ -1,5 +1,5 @@
-//! Tests that the simulated robot conforms: the ideal body, and the bodies of both robots with exact sensors.
-//! With a fault in its driver it does not, and the report names the fault.
+//! Tests that the simulated robot conforms: the ideal body, and the bodies of both robots with exact sensors. A robot
+//! with a fault in its driver does not conform, and the report names the fault.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::time::Duration;

@@ -15,7 +15,7 @@ fn matches(options: &[&str]) -> ArgMatches {
         .expect("known options")
 }
 
-/// Returns the sentence with which these options are refused.
+/// Returns the error message with which these options are refused.
 fn refused(options: &[&str]) -> String {
     match Sim::connect(&matches(options), Sim::PERIOD, &StopRequest::default()) {
         Ok(_) => panic!("{options:?} were accepted"),

@@ -1,5 +1,5 @@
-//! `rotate` and `turn` on the simulated bodies: at the limits of their wheels, and however long a turn of the machine
-//! is, they end at their heading and do not go past it.
+//! Tests of `rotate` and `turn` on the simulated bodies, at the limits of their wheels and with turns of several
+//! durations: the laws end at their heading, and the body does not overshoot.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::time::Duration;
@@ -9,7 +9,7 @@ use mdle_runtime::{Begin, Completes, Control, Frame, Law, Nanos, Output, Pose, R
 use mdle_sim::alphabet::{Rotate, Turn};
 use mdle_sim::{Body, Make, Sensed, Simulated, World};
 
-/// The result of a turn on the spot, in degrees by odometry and seconds.
+/// The result of a turn on the spot: angles in degrees by odometry, and the duration in seconds.
 #[derive(Debug)]
 struct Turned {
     /// Total turn, counter-clockwise positive.
@@ -19,7 +19,7 @@ struct Turned {
     seconds: f64,
 }
 
-/// Runs a law that turns, on a body without anything around it, in turns of this many milliseconds.
+/// Runs a law that turns, on a body on an empty floor, in turns of `period` milliseconds.
 fn turned<C>(quark: &C, way: f64, make: &Make, period: u64) -> Turned
 where
     C: Control<Sensed, Law: Completes<Sensed> + Law<Sensed, Input = Twist>>,
@@ -50,7 +50,7 @@ fn bodies() -> Vec<Make> {
     [Body::Ideal, Body::Scout, Body::Atrv].into_iter().flat_map(of).collect()
 }
 
-/// Checks that this turn by `angle` degrees ends within its 2 degrees, and never overshoots by more.
+/// Checks that this turn by `angle` degrees ends within 2 degrees of the angle, and never overshoots by more than that.
 fn ends_well(turned: &Turned, angle: f64, what: &str) {
     assert!((turned.by - angle).abs() <= 2.0, "{what}: {turned:?}");
     assert!(turned.furthest <= angle.abs() + 2.0, "{what}: {turned:?}");

@@ -1,4 +1,5 @@
-//! World files: the office has its walls (docs/src/reference/office.md, 1), and every fault is reported with its place.
+//! Tests of world files: the office has its walls (docs/src/reference/office.md, 1), and every fault is reported with
+//! its place.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::time::Duration;
@@ -206,7 +207,7 @@ fn every_world_that_comes_along_has_a_place_to_start() {
     assert!(World::named("ofice").is_none());
 }
 
-/// Returns the ranges ahead of the robot at the origin, second by second, while it stands still.
+/// Returns the ranges ahead of a robot that stands still at the origin, one per second; `None` without an echo.
 fn ahead(text: &str, seconds: usize) -> Vec<Option<f64>> {
     let world = World::parse("a test's world", text).expect("a good world");
     let mut robot = Simulated::new(&world, world.start, None, Duration::from_secs(1)).expect("a start on the floor");

@@ -53,7 +53,7 @@ pub struct Atrv {
     inputs: Schedule,
     /// Data of the last axis reports.
     axis_reports: Vec<Vec<u8>>,
-    /// Time of the last reported ping of each sonar, while the sonars run.
+    /// Time of the last reported ping of each sonar; `None` while the sonars are switched off.
     pings: Option<Vec<Nanos>>,
     is_braked: bool,
     silence: Duration,
@@ -123,7 +123,8 @@ impl Atrv {
         &self.orders
     }
 
-    /// Executes a command, and returns `true` for the command of a turn rate, which is the second half of a motion.
+    /// Executes a command, and returns `true` for the command that sets a turn rate, which is the second half of a
+    /// motion.
     fn does(&mut self, request: &Request) -> bool {
         if self.has(Ailment::Deaf) {
             return request.port == 2 && request.code == 7 && request.data.first() == Some(&1);

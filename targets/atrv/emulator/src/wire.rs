@@ -43,8 +43,8 @@ impl Incoming {
         self.bytes.len()
     }
 
-    /// Returns the next complete command. A command with a wrong length or check, or with an unknown mark after 1B, is
-    /// skipped.
+    /// Returns the next complete command; `None` if there is no complete command. A command with a wrong length or
+    /// check, or with an unknown mark after 1B, is skipped.
     pub fn next_request(&mut self) -> Option<Request> {
         loop {
             let Some(begin) = self.bytes.windows(2).position(|two| two == [0x1B, 0x02]) else {
@@ -100,14 +100,14 @@ impl Incoming {
 enum Body {
     /// The command is not complete yet.
     Open,
-    /// The first bytes, in this number, do not belong to a command.
+    /// This number of bytes at the beginning does not belong to a command.
     Lost(usize),
     /// The bytes of a complete command, and the number of bytes that it takes on the line.
     Whole(Vec<u8>, usize),
 }
 
-/// Returns the bytes on the line of a report with this number; a value 1B is followed by 00. `filler` is inserted
-/// between the bytes.
+/// Returns the bytes on the line of the report with this number. A value 1B is followed by 00, and `filler` is inserted
+/// into the report.
 #[must_use]
 pub fn report(port: u8, number: u8, code: u8, data: &[u8], filler: &[u8]) -> Vec<u8> {
     let data = data.get(..data.len().min(255)).unwrap_or_default();

@@ -1,4 +1,5 @@
-//! Whatever bytes come, both readers go on, and what one of them writes the other one reads.
+//! Property tests of the rFLEX language: no bytes stop the reader of the driver or of the emulator, and each reader
+//! reads what the other side writes.
 #![allow(clippy::panic, clippy::indexing_slicing, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "the seed is seen where a test fails")]
 
@@ -8,12 +9,12 @@ use proptest::collection::vec;
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_oneof, proptest};
 use proptest::test_runner::RngSeed;
 
-/// Bytes of which many mean something.
+/// Returns random bytes, many of which have a meaning in the language.
 fn bytes() -> impl Strategy<Value = Vec<u8>> {
     vec(prop_oneof![3 => any::<u8>(), 2 => Just(0x1B), 1 => 0_u8..8], 0..400)
 }
 
-/// The packets in these bytes: port, opcode and data.
+/// Returns the packets in these bytes: port, opcode and data.
 fn packets(reader: &mut Reader, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
     let mut found = Vec::new();
     for byte in bytes {
@@ -28,7 +29,7 @@ fn packets(reader: &mut Reader, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
     found
 }
 
-/// Returns the commands that the robot finds in these bytes.
+/// Returns the commands that the emulated robot finds in these bytes: port, opcode and data.
 fn requests(incoming: &mut Incoming, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
     incoming.push(bytes);
     std::iter::from_fn(|| incoming.next_request()).map(|found| (found.port, found.code, found.data)).collect()

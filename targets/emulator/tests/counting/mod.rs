@@ -1,4 +1,4 @@
-//! An allocator that counts how often each thread asks it for memory: for the tests that a driver's turn never does.
+//! Allocator that counts the allocations of each thread, for tests that a driver's turns allocate nothing.
 #![allow(unsafe_code, reason = "an allocator is unsafe to write, and this one only counts")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -8,7 +8,7 @@ thread_local! {
     static ASKED: Cell<u64> = const { Cell::new(0) };
 }
 
-/// Returns how often this thread has asked for memory.
+/// Returns the number of allocations of this thread so far.
 pub(crate) fn asked() -> u64 {
     ASKED.get()
 }

@@ -55,10 +55,10 @@ pub struct Scout {
     is_low: bool,
     is_plugged: bool,
     is_mute: bool,
-    /// State that a hung robot repeats.
+    /// State that the robot repeats; `None` if it does not hang.
     hung: Option<Vec<u8>>,
     is_cut_off: bool,
-    /// Wheel speeds of a robot that ignores all commands.
+    /// Wheel speeds that the robot keeps because it ignores all commands; `None` if it obeys.
     runaway: Option<(i32, i32)>,
     /// Offset of the reported positions, in tenths of an inch.
     off: i64,

@@ -28,8 +28,8 @@ impl Incoming {
         self.0.len()
     }
 
-    /// Returns the next complete request. Bytes that cannot begin a request are skipped one by one, as a robot does
-    /// that waits for a first byte.
+    /// Returns the next complete request; `None` if there is no complete request. Bytes that cannot begin a request are
+    /// skipped one by one, as a robot that waits for a start byte skips them.
     pub fn next_request(&mut self) -> Option<Request> {
         loop {
             let Some(begin) = self.0.iter().position(|byte| *byte == 1) else {
@@ -81,7 +81,8 @@ pub fn number(low: u8, high: u8) -> i32 {
     if high >= 128 { -size } else { size }
 }
 
-/// Returns the two bytes of a number in sign and magnitude, modulo 65,535, the count of numbers in this form.
+/// Returns the two bytes of a number in sign and magnitude. The number wraps modulo 65,535, the number of different
+/// values in this form.
 #[must_use]
 pub fn two_bytes(number: i64) -> [u8; 2] {
     let number = (number + 32_767).rem_euclid(65_535) - 32_767;

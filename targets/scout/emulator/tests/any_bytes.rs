@@ -1,4 +1,5 @@
-//! Whatever bytes come, both readers go on, and what one of them writes the other one reads.
+//! Property tests of the Scout's language: no bytes stop the reader of the driver or of the emulator, and each reader
+//! reads what the other side writes.
 #![allow(clippy::panic, clippy::indexing_slicing, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "the seed is seen where a test fails")]
 

@@ -14,7 +14,7 @@ use mdle_simulator::{Body, Make, Simulated, World};
 const PERIOD: Duration = Duration::from_millis(100);
 const AHEAD: Twist = Twist { v: MetersPerSecond(0.2), omega: mdle_runtime::RadiansPerSecond(0.0) };
 
-/// Returns what `drive` makes of a robot with these faults, by the clock, and the robot.
+/// Runs `drive` in real time with a robot that has these faults; returns the result of `drive`, and the robot.
 fn with_robot<T>(faults: &[&str], drive: impl FnOnce(&mut Scout) -> T) -> (T, Faulty<Emulated>) {
     let world = World::office().unwrap();
     let make = Make { body: Body::Scout, without: Vec::new(), seed: None };

@@ -1,5 +1,5 @@
-//! The driver and the robot on a real pseudo-terminal: signs, units and directions, and what either of them says of a
-//! fault.
+//! Tests of the driver with the emulated robot on a real pseudo-terminal: signs, units and directions, and the messages
+//! about faults on either side.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -28,7 +28,7 @@ const SHORT: u64 = 100;
 /// Steering that differs from the default.
 const STEERING: Steering = Steering { rotate: 1.0, align: 3.0, avoid: 1.5 };
 
-/// Connects a driver to the robot at this line, which has `answer` milliseconds for each answer.
+/// Connects a driver to the robot at this line; the driver waits at most `answer` milliseconds for each answer.
 fn connected(port: &Port, answer: u64) -> Result<Scout, Fault> {
     let mut config = Configured::read(None, port.path().to_str()).unwrap().config;
     config.answer = answer;
@@ -36,7 +36,7 @@ fn connected(port: &Port, answer: u64) -> Result<Scout, Fault> {
     Scout::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default())
 }
 
-/// Ends the robot's thread when a test ends, also when it fails.
+/// Guard that ends the robot's thread when a test ends, even if the test fails.
 struct Ends<'a>(&'a AtomicBool);
 
 impl Drop for Ends<'_> {
@@ -62,13 +62,13 @@ fn with_robot<T>(drive: impl FnOnce(&mut Scout) -> T) -> T {
     })
 }
 
-/// Returns the result of an exchange, after the start, with a robot that answers like this; `answers` gets the number
-/// of each request.
+/// Starts a driver and returns the result of one exchange. `answers` plays the robot: it is called with the number of
+/// each request, the request, and the line.
 fn exchanged(patience: u64, answers: impl Fn(usize, &Request, &Port) + Sync) -> Result<(), Fault> {
     asked(patience, answers, |driver| driver.exchange(&Twist::default()).map(|_| ()))
 }
 
-/// Returns the result of `drive`, after the start, with a robot that answers like this.
+/// Starts a driver and returns the result of `drive`. `answers` plays the robot, as in [`exchanged`].
 fn asked(
     patience: u64,
     answers: impl Fn(usize, &Request, &Port) + Sync,
@@ -91,12 +91,12 @@ fn asked(
     })
 }
 
-/// Returns the fault of a driver whose robot answers with these bytes.
+/// Returns the fault of a driver whose robot answers with the bytes from `answers`.
 fn fault_of(answers: impl Fn(usize, &Request) -> Vec<u8> + Sync) -> Fault {
     exchanged(SHORT, |count, request, port| port.write(&answers(count, request)).unwrap()).unwrap_err()
 }
 
-/// Returns the state of a robot that is at rest where it began.
+/// Returns the frame of an answer of type `kind` with the state of a robot that is at rest where it began.
 fn state(kind: u8) -> Vec<u8> {
     answer(kind, &[0; 42])
 }

@@ -1,5 +1,5 @@
-//! The tests that every robot on a line has to pass, with the Super Scout and its driver, over a pseudo-terminal in
-//! lockstep.
+//! Runs the tests that every robot on a serial line has to pass, with the Super Scout and its driver, over a
+//! pseudo-terminal in lockstep.
 
 use std::time::Duration;
 

@@ -17,10 +17,10 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 const PERIOD: Duration = Duration::from_millis(100);
-/// Number of turns after which a run is given up: ten minutes.
+/// Number of turns after which a run counts as failed: ten minutes.
 const TURNS: u64 = 6000;
 
-/// An atom that ended.
+/// The end of an atom.
 struct End {
     atom: u64,
     at: f64,
@@ -29,12 +29,12 @@ struct End {
 }
 
 impl End {
-    /// Returns the heading in degrees, 0..360.
+    /// Returns the heading at the end of the atom, in degrees from 0 to 360.
     fn heading(&self) -> f64 {
         self.pose.theta.degrees().rem_euclid(360.0)
     }
 
-    /// Returns the difference between the end's heading and `heading`, in degrees.
+    /// Returns the difference between the heading at the end of the atom and `heading`, in degrees.
     fn off(&self, heading: f64) -> f64 {
         Radians::from_degrees(self.heading() - heading).wrapped().degrees().abs()
     }
@@ -49,7 +49,7 @@ impl Watch for Watched {
     }
 }
 
-/// Runs the tour; returns the end of each atom.
+/// Runs the tour; returns the ends of the atoms, in order.
 fn run(robot: &mut Observed) -> Vec<End> {
     let mut input = Twist::default();
     let mut machine = None;
@@ -87,7 +87,7 @@ fn tour(start: Pose, seed: Option<u64>) -> Vec<End> {
     run(&mut Simulated::new(&world, start, seed, PERIOD).expect("a start on the floor").into())
 }
 
-/// Returns the robot that an executable with these options drives.
+/// Returns the robot that an executable drives when it is started with these options.
 fn connected(options: &[&str]) -> Observed {
     let matches = Sim::arguments(view_options(Command::new("tour").no_binary_name(true))).get_matches_from(options);
     Sim::connect(&matches, PERIOD, &StopRequest::default()).expect("good options")
@@ -106,11 +106,11 @@ fn table(ends: &[End]) -> String {
 struct Zone {
     x: [f64; 2],
     y: [f64; 2],
-    /// A heading and its tolerance, in degrees.
+    /// Required heading and its tolerance, in degrees; `None` for any heading.
     heading: Option<[f64; 2]>,
 }
 
-/// Returns the zone of an atom; none for those that are not judged.
+/// Returns the zone in which an atom has to end; `None` if its end is not checked.
 fn zone(atom: u64) -> Option<Zone> {
     let (a_b, b_c) = (([-0.9, 0.9], [4.0, 5.5]), ([6.7, 8.3], [3.9, 5.6]));
     let (lab_1, corner) = (([6.7, 8.3], [-0.2, 0.8]), ([6.7, 8.3], [-0.9, 0.25]));
@@ -130,7 +130,7 @@ fn zone(atom: u64) -> Option<Zone> {
     Some(Zone { x, y, heading })
 }
 
-/// Returns the defects of a tour; nothing if every atom ended in its zone.
+/// Returns the faults of a tour; empty if every atom ended in its zone.
 fn faults(ends: &[End]) -> Vec<String> {
     let mut faults = Vec::new();
     if ends.iter().map(|end| end.atom).ne(1..=13) {
@@ -155,7 +155,7 @@ fn off(seed: u64) -> Pose {
     Pose { x: Meters(within(0.1)), y: Meters(within(0.1)), theta: Radians::from_degrees(within(5.0)) }
 }
 
-/// Returns the number of these tours that arrive; prints the faults of the others.
+/// Returns the number of tours with these seeds that arrive; prints the faults of the others.
 fn arrived(seeds: std::ops::Range<u64>, noisy: bool) -> usize {
     let count = seeds.clone().count();
     let arrived = seeds.filter(|seed| {
@@ -196,7 +196,7 @@ fn a_start_that_is_a_little_off_arrives_too() {
     assert_eq!(arrived(0..100, false), 100);
 }
 
-/// Beside a jamb no heading has equal ranges: from this start `align 11 13` never ended.
+/// Beside a jamb no heading has equal ranges; from this start, `align 11 13` once never ended.
 #[test]
 fn a_tour_past_a_jamb_ends() {
     let start = Pose { x: Meters(-0.08), y: Meters(0.06), theta: Radians::from_degrees(-4.0) };
@@ -208,7 +208,7 @@ fn noisy_sonars_arrive_too() {
     assert_eq!(arrived(0..3, true), 3);
 }
 
-/// A Scout with everything that goes wrong on it. Of seeds 0..200, 196 arrive, and of 30000..30300, 297.
+/// A Scout with all its errors. Of seeds 0..200, 196 arrive, and of 30000..30300, 297.
 #[test]
 fn a_scout_arrives_whose_sonars_fire_in_turn_and_miss_and_whose_wheels_slip() {
     let world = World::office().expect("our own floor");
@@ -222,8 +222,8 @@ fn a_scout_arrives_whose_sonars_fire_in_turn_and_miss_and_whose_wheels_slip() {
     assert!(arrived.count() >= 19);
 }
 
-/// Of seeds 9960000..9960300, by which nothing was chosen, a Scout arrives in 296, 299, 300 and 280 tours where walls
-/// have `rough` 0, 0.25, 0.5 and 1, and an ATRV-mini in 292, 298, 294 and 276.
+/// With the seeds 9960000..9960300, with which no parameter was tuned, a Scout arrives in 296, 299, 300 and 280 tours
+/// where walls have `rough` 0, 0.25, 0.5 and 1, and an ATRV-mini in 292, 298, 294 and 276.
 #[test]
 fn both_bodies_arrive_however_rough_walls_are() {
     let office = include_str!("../../worlds/office.toml");
@@ -257,8 +257,7 @@ fn the_same_options_draw_the_same_bytes() {
     }
 }
 
-/// The picture in the book is drawn by an executable that mdlec has built, so with optimisation and by the emitted
-/// plan.
+/// The picture in the book was drawn by an executable from mdlec, that is, with optimisation and with the emitted plan.
 #[test]
 fn the_book_shows_the_tour_as_it_is_driven_without_optimisation() {
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("office.svg");

@@ -1,4 +1,4 @@
-//! Numbers drawn by a seed.
+//! Pseudo-random numbers from a seed.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -15,7 +15,7 @@ impl Chance {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Returns a number up to `most` from 0, to either side.
+    /// Returns a number from `-most` to `most`.
     pub(crate) fn within(&mut self, most: f64) -> f64 {
         most * (2.0 * self.unit() - 1.0)
     }

@@ -15,12 +15,12 @@ use mdle_sim::{Body, Make};
 use room::{Outcome, drive};
 use worlds::Crossing;
 
-/// Returns a whole number in the environment.
+/// Returns the whole number in the environment variable `name`, or `usual` if the variable is not set.
 fn number(name: &str, usual: u64) -> u64 {
     std::env::var(name).map_or(usual, |text| text.parse().expect("a whole number"))
 }
 
-/// Panics unless at least this share of a few runs, in hundredths, arrives without contact.
+/// Panics unless at least `share` percent of some runs arrive without contact.
 fn assert_clean(name: &str, crossing: fn(Body, u64) -> Crossing, body: Body, share: u64) {
     let (first, count) = (number("MDLE_FIRST", 5000), 12 * number("MDLE_LONG", 1));
     let (mut clean, mut touched) = (0, 0);
@@ -37,7 +37,8 @@ fn assert_clean(name: &str, crossing: fn(Body, u64) -> Crossing, body: Body, sha
     assert!(100 * clean >= share * count, "{name}, {body}: {clean} of {count}");
 }
 
-/// A way is as wide as the body and 15 cm, where the width of a rectangle is that at which it drives along its length.
+/// The doorway is 15 cm wider than the body. The width of a rectangle is measured across its length, along which it
+/// drives.
 #[test]
 fn a_doorway_fifteen_centimetres_wider_is_passed() {
     assert_clean("doorway", worlds::doorway, Body::Ideal, 95);
@@ -80,7 +81,7 @@ fn the_first_passages_of_the_maze_are_driven() {
     assert_clean("maze", worlds::maze, Body::Atrv, 90);
 }
 
-/// Before the law waited for the walker, 14 of 40 ideal robots and 19 of 40 Scouts met the walker.
+/// Before `goAvoid` waited for the walker, 14 of 40 ideal robots and 19 of 40 Scouts met the walker.
 #[test]
 fn somebody_who_walks_across_is_waited_for() {
     assert_clean("hall", worlds::hall, Body::Ideal, 90);

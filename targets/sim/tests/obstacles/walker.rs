@@ -1,4 +1,5 @@
-//! The walker of `hall`: a robot that meets the walker would have met it standing still, too.
+//! Tests with the walker of the world `hall`: a robot that meets the walker would also have met the walker if it had
+//! stopped shortly before.
 
 use std::time::Duration;
 
@@ -14,15 +15,14 @@ use crate::number;
 use crate::worlds::{Crossing, hall};
 
 const PERIOD: Duration = Duration::from_millis(100);
-/// Number of turns after which a run is given up: three minutes.
+/// Number of turns after which a run counts as failed: three minutes.
 const TURNS: u64 = 1800;
-/// Number of turns after the moment of the contact for which a robot at rest is watched; by then the walker has
-/// passed.
+/// Number of turns after the contact for which a robot at rest is watched; by then the walker has passed.
 const PASSED: u64 = 50;
 /// Start and radius of the walker, in metres, as in the world.
 const WALKER: (Place, f64) = (Place { x: 8.0, y: 1.0 }, 0.25);
 
-/// Returns `true` if the robot touches the walker, as the bumper says that it touches something.
+/// Returns `true` if the obstacle that the robot's bumper reports is the walker.
 fn is_walker(robot: &Simulated) -> bool {
     // The door of the world is the other thing that moves.
     let Some(Some(gone)) = robot.gone().next() else { return false };
@@ -31,12 +31,13 @@ fn is_walker(robot: &Simulated) -> bool {
     libm::hypot(dx, dy) < radius + WALKER.1 + 0.03
 }
 
-/// Drives across the hall; returns the turn in which the robot meets the walker. From turn `stands` on it stands still.
+/// Drives across the hall, and stands still from turn `stands` on. Returns the turn in which the robot meets the
+/// walker; `None` if it does not.
 fn meets(body: Body, seed: u64, stands: u64) -> Option<u64> {
     crosses(body, seed, stands, &hall(body, seed))
 }
 
-/// Does what [`meets`] does, on this way.
+/// Drives through a given world, as [`meets`] does through the hall.
 fn crosses(body: Body, seed: u64, stands: u64, Crossing { world, to }: &Crossing) -> Option<u64> {
     let make = Make { body, seed: (body != Body::Ideal).then_some(seed), ..Make::default() };
     let mut robot = Simulated::with(&make, world, world.start, PERIOD).expect("a start on the floor");
@@ -60,12 +61,12 @@ fn crosses(body: Body, seed: u64, stands: u64, Crossing { world, to }: &Crossing
     None
 }
 
-/// Returns `true` if a robot that stands from `before` turns before this contact on is not met.
+/// Returns `true` if the robot avoids this contact by standing still from `before` turns before it on.
 fn avoids(body: Body, seed: u64, contact: u64, before: u64) -> bool {
     meets(body, seed, contact.saturating_sub(before)).is_none_or(|turn| turn > contact + PASSED)
 }
 
-/// The walker is noticed, so that the test below can fail: it walks from (8, 1) to (8, 9).
+/// Checks that the walker is noticed, so that the test below can fail. The walker walks from (8, 1) to (8, 9).
 #[test]
 fn a_robot_in_the_way_of_the_walker_is_met() {
     for body in [Body::Ideal, Body::Scout, Body::Atrv] {
@@ -77,8 +78,9 @@ fn a_robot_in_the_way_of_the_walker_is_met() {
     }
 }
 
-/// From 1 or 2 s before each contact on. From 3 s before it standing would have avoided one contact of an ATRV-mini in
-/// 120 runs; from 5 s before it the robot would stand a metre away: that is printed.
+/// The robot stands still from 1 or 2 s before each contact on. From 3 s before it on, standing still would have
+/// avoided one contact of an ATRV-mini in 120 runs; from 5 s before it on, the robot would stand a metre away. The test
+/// prints the number of contacts that each time would have avoided.
 #[test]
 fn standing_still_would_not_avoid_the_walker() {
     let (first, count) = (number("MDLE_FIRST", 5000), 12 * number("MDLE_LONG", 1));

@@ -1,5 +1,5 @@
-//! Worlds with ways that a body can just pass: doorways, boxes in a hallway, corners, and random rooms; and the worlds
-//! of the simulator.
+//! Worlds in which a body can just pass: doorways, boxes in a hallway, corners, and random rooms; and the worlds of the
+//! simulator.
 
 use mdle_sim::{Body, Place, World};
 
@@ -11,8 +11,8 @@ pub(crate) struct Crossing {
     pub(crate) to: Place,
 }
 
-/// Returns the width, in metres, on which the width of ways is based: a Scout's diameter, or the shorter side
-/// of an ATRV-mini.
+/// Returns the width, in metres, on which the widths of passages are based: the diameter of a Scout, or the shorter
+/// side of an ATRV-mini.
 pub(crate) fn width(body: Body) -> f64 {
     match body {
         Body::Ideal | Body::Scout => 0.41,
@@ -20,7 +20,7 @@ pub(crate) fn width(body: Body) -> f64 {
     }
 }
 
-/// Returns a world of these outlines with a start near the origin, and a place `far` metres ahead.
+/// Returns a world with these outlines, a start near the origin, and a goal `far` metres along the first axis.
 fn ahead(seed: u64, far: f64, outlines: &str) -> Crossing {
     let mut chance = Chance::new(seed);
     let (y, heading) = (chance.within(0.05), chance.within(5.0));
@@ -34,7 +34,7 @@ fn hallway(width: f64) -> String {
     format!("[[wall]]\npoints = [[-1, {half}], [9, {half}], [9, -{half}], [-1, -{half}], [-1, {half}]]\n")
 }
 
-/// Returns a doorway 15 cm wider than the body, up to 30 cm off the way, across a hallway.
+/// Returns a doorway across a hallway, 15 cm wider than the body and up to 30 cm off the middle.
 pub(crate) fn doorway(body: Body, seed: u64) -> Crossing {
     let off = Chance::new(seed ^ 0xd00).within(0.3);
     let half = (width(body) + 0.15) / 2.0;
@@ -43,7 +43,7 @@ pub(crate) fn doorway(body: Body, seed: u64) -> Crossing {
     ahead(seed, 6.0, &[hallway(wide), jambs].concat())
 }
 
-/// Returns a box in the middle of a hallway, with a gap of the body and 25 cm on both sides.
+/// Returns a box in the middle of a hallway, with a gap on both sides that is 25 cm wider than the body.
 pub(crate) fn middle(body: Body, seed: u64) -> Crossing {
     let side = 0.3 + 0.2 * Chance::new(seed ^ 0xb0c).unit();
     let wide = side + 2.0 * (width(body) + 0.25);
@@ -51,7 +51,7 @@ pub(crate) fn middle(body: Body, seed: u64) -> Crossing {
     ahead(seed, 6.0, &[hallway(wide), block].concat())
 }
 
-/// Returns a U across the way, open towards the start, up to 1.5 m deep.
+/// Returns a U-shaped wall across the way, open towards the start and up to 1.5 m deep.
 pub(crate) fn corner(body: Body, seed: u64) -> Crossing {
     let mut chance = Chance::new(seed ^ 0xc0);
     let (depth, half) = (0.5 + chance.unit(), width(body) / 2.0 + 0.5 + 0.4 * chance.unit());
@@ -71,7 +71,7 @@ pub(crate) fn room(_: Body, seed: u64) -> Crossing {
     Crossing { world, to }
 }
 
-/// Returns the world `hall`: from the start to the other end, past the walker.
+/// Returns the world `hall`, with a way past the walker from the start to the other end.
 pub(crate) fn hall(_: Body, seed: u64) -> Crossing {
     let mut world = World::named("hall").expect("a world").expect("a good world");
     let mut chance = Chance::new(seed);
@@ -86,7 +86,7 @@ pub(crate) fn random(body: Body, seed: u64) -> Crossing {
     Crossing { world, to: Place { x: 7.0, y: 7.0 } }
 }
 
-/// Returns the first passages of `maze`, from the start to its first corner.
+/// Returns the world `maze`, with a way through its first passages, from the start to the first corner.
 pub(crate) fn maze(_: Body, seed: u64) -> Crossing {
     let mut world = World::named("maze").expect("a world").expect("a good world");
     let mut chance = Chance::new(seed);

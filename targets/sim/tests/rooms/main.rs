@@ -1,4 +1,4 @@
-//! `goAvoid` in random rooms, out of corners and through a narrow doorway, with and without all that goes wrong on
+//! Tests of `goAvoid` in random rooms, out of corners and through a narrow doorway, with and without the errors of real
 //! robots.
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "a test fails by panicking, and tells what happened")]
 
@@ -7,7 +7,7 @@ mod room;
 use mdle_sim::{Body, Make, Place, World};
 use room::{Outcome, drive, room};
 
-/// Minimum gap of a room: the width of the body and 40 cm.
+/// Minimum gap between the obstacles of a room, in metres: the width of the body plus 40 cm.
 const GAP: f64 = 0.81;
 
 fn ideal() -> Make {
@@ -42,8 +42,8 @@ fn rooms_are_crossed_by_a_scout_too() {
     assert!(clean("scout", runs) >= 22);
 }
 
-/// Returns the number of four starts, side by side across 10 cm, that lead to a place 6 m ahead without contact: ideal,
-/// and as a Scout.
+/// Returns the number of runs that reach a place 6 m ahead without contact, of four starts spread across 10 cm: with
+/// the ideal robot, and with a Scout.
 fn past(walls: &str) -> (usize, usize) {
     let runs = |make: fn(u64) -> Make| {
         let run = move |seed: u64| {
@@ -65,7 +65,7 @@ fn a_way_leads_out_of_concave_corners() {
     assert_eq!(past("[[wall]]\npoints = [[1, 1], [4, 1], [4, -1]]").0, 4, "an L");
 }
 
-/// 0.61 m, where the body is 0.41 m wide. Of twenty Scouts all pass.
+/// The doorway is 0.61 m wide, and the body 0.41 m. All of twenty Scouts pass.
 #[test]
 fn a_doorway_twenty_centimetres_wider_than_the_body_is_passed() {
     let hallway = "[[wall]]\npoints = [[-1, 1], [8, 1]]\n[[wall]]\npoints = [[-1, -1], [8, -1]]\n";
@@ -75,8 +75,9 @@ fn a_doorway_twenty_centimetres_wider_than_the_body_is_passed() {
     assert!(scout >= 3);
 }
 
-/// Returns the number of these seeds that go 6 m along a hallway 2 m wide, without contact, while a person comes
-/// towards them at this speed and keeps this far to the person's right of the middle.
+/// Returns the number of runs, of those with these seeds, that go 6 m along a hallway 2 m wide without contact, while a
+/// person comes towards the robot at `speed`, in m/s. The person keeps `right` metres to the right of the middle, as
+/// the person sees it.
 fn meet(name: &str, make: fn(u64) -> Make, seeds: u64, speed: f64, right: f64) -> usize {
     let run = |seed: u64| {
         let y = 0.1 * (seed as f64 / 9.5 - 1.0);
@@ -91,8 +92,8 @@ fn meet(name: &str, make: fn(u64) -> Make, seeds: u64, speed: f64, right: f64) -
     clean(name, (0..seeds).map(run))
 }
 
-/// A person who walks at 1 m/s, 20 cm right of the middle, touches none of 20 ideal robots and 2 of 20 Scouts. At 0.5
-/// m/s the person touches none.
+/// A person who walks at 1 m/s, 20 cm right of the middle, touches none of 20 ideal robots and 2 of 20 Scouts. A person
+/// who walks at 0.5 m/s touches none.
 #[test]
 fn somebody_who_keeps_right_in_a_hallway_is_given_way_to() {
     assert_eq!(meet("ideal", |_| ideal(), 6, 1.0, 0.2), 6);

@@ -1,4 +1,4 @@
-//! Random rooms of convex obstacles with gaps wide enough for the robot, and a run of `goAvoid` in one.
+//! Creates random rooms of convex obstacles, with gaps wide enough for the robot, and runs `goAvoid` in them.
 
 use std::fmt::Write;
 use std::time::Duration;
@@ -12,9 +12,9 @@ use mdle_sim::{Make, Place, Simulated, World};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// The side of a room, in metres.
+/// Side length of a room, in metres.
 const SIDE: f64 = 8.0;
-/// Number of turns after which a run is given up: five minutes.
+/// Number of turns after which a run counts as failed: five minutes.
 const TURNS: u64 = 3000;
 
 /// The outcome of a run.

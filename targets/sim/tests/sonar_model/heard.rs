@@ -1,4 +1,4 @@
-//! Pings of a simulated Scout's front sonar, which is aimed at a wall or a column.
+//! Measures the pings of a simulated Scout's front sonar at a wall or a column.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Pose, Radians, Robot, SonarId, Twist};
 use mdle_sim::{Body, Make, Simulated, World};
 
-/// Duration of a ring of sixteen sonars, in milliseconds.
+/// Time, in milliseconds, in which each of the sixteen sonars pings once.
 const RING: u64 = 960;
 /// Distance of the transducer from the centre of the body, in metres.
 const TRANSDUCER: f64 = 0.19;
@@ -15,13 +15,13 @@ const ONE_RUN: usize = 20;
 
 /// A long wall across the first axis at `{x}`.
 pub(crate) const WALL: &str = "[[wall]]\npoints = [[{x}, -60], [{x}, 60]]";
-/// A column 60 cm thick on the first axis, the near side at `{x}`.
+/// A column 60 cm thick on the first axis, whose centre is at `{x}`.
 pub(crate) const COLUMN: &str = "[[disc]]\nradius = 0.3\ncentre = [{x}, 0]";
 
 /// The results of a number of pings.
 #[derive(Debug, Default)]
 pub(crate) struct Heard {
-    /// Errors of the ranges heard, in metres; positive if too long.
+    /// Errors of the measured ranges, in metres; positive if the range is too long.
     pub(crate) errors: Vec<f64>,
     /// Number of pings without an echo.
     pub(crate) silent: usize,
@@ -35,8 +35,8 @@ impl Heard {
     }
 }
 
-/// Makes `pings` pings at something `distance` metres from the transducer along its normal, which lies `degrees`
-/// degrees off the sonar's axis.
+/// Makes `pings` pings at the object `what`, whose surface is `distance` metres from the transducer along the surface's
+/// normal. The normal is `degrees` degrees off the sonar's axis.
 pub(crate) fn heard(what: &str, distance: f64, degrees: f64, pings: usize) -> Heard {
     let theta = Radians::from_degrees(degrees);
     let (y, ahead) = (TRANSDUCER * libm::sin(theta.0), TRANSDUCER * libm::cos(theta.0));

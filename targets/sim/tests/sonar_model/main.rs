@@ -1,4 +1,4 @@
-//! The sonars of the simulated Scout compared with measurements of real ones, and their picture in the book.
+//! Compares the sonars of the simulated Scout with measurements of real ones, and checks their picture in the book.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 mod heard;
@@ -8,12 +8,13 @@ use std::path::Path;
 
 use heard::{COLUMN, Heard, WALL, heard};
 
-/// Number of pings for a fraction.
+/// Number of pings from which a fraction is computed.
 const PINGS: usize = 100;
-/// Number of pings for a histogram.
+/// Number of pings from which a histogram is drawn.
 const MANY: usize = 2000;
 
-/// Cao and Borenstein (2002) measured up to 42 degrees, and much less at a cylinder.
+/// Cao and Borenstein (2002) measured echoes of a flat wall up to 42 degrees off its normal, and of a cylinder only at
+/// much smaller angles.
 #[test]
 fn a_flat_wall_is_heard_up_to_forty_degrees_and_a_column_less() {
     let share = |what, distance, degrees| heard(what, distance, degrees, PINGS).share();
@@ -26,8 +27,8 @@ fn a_flat_wall_is_heard_up_to_forty_degrees_and_a_column_less() {
     assert!(share(WALL, 1.0, 30.0) > 0.95 && share(WALL, 1.0, 55.0) < 0.05);
 }
 
-/// Within 3 cm in a closed room, and one part in a hundred; in whole inches, rounded down. One ping in a hundred brings
-/// nothing, one in two hundred anything.
+/// The error of a range is at most 3 cm in a closed room, plus one part in a hundred. Ranges are in whole inches,
+/// rounded down. One ping in a hundred has no echo, and one in two hundred a random range.
 #[test]
 fn ranges_err_as_much_as_was_measured() {
     for distance in [0.5, 1.0, 4.0] {

@@ -1,4 +1,4 @@
-//! The picture: the fraction of pings at which a wall and a column are heard, by their angle, and the errors of
+//! The picture of the sonar model: the fraction of pings that hear a wall or a column, by angle, and the errors of the
 //! ranges.
 
 use svg::Document;

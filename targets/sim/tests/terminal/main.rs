@@ -1,4 +1,4 @@
-//! Tests of output in a real pseudo-terminal: the live view and the progress line, of which nothing remains.
+//! Tests of the live view and the progress line in a real pseudo-terminal: neither leaves anything on the screen.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod pseudo;
@@ -23,7 +23,8 @@ fn tour(options: &[&str]) -> Command {
     command
 }
 
-/// Returns the output after the screen was given back, which it was once.
+/// Returns the output after the program has left the alternate screen. Panics unless the program entered the alternate
+/// screen before, and sent no further control sequences after leaving it.
 fn behind_the_screen(seen: &str) -> &str {
     let (before, behind) = seen.split_once(LEAVE).unwrap();
     assert!(before.contains(ENTER), "{seen:?}");

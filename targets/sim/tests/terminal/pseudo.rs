@@ -1,4 +1,4 @@
-//! A pseudo-terminal with a program in it.
+//! Runs a program in a pseudo-terminal.
 
 use std::fs::File;
 use std::io::Read;
@@ -19,8 +19,8 @@ pub(crate) struct Terminal {
     pub(crate) seen: String,
 }
 
-/// Restores the default effect of SIGHUP in the programs that this one starts. Under `nohup` all of them would
-/// ignore the signal; a signal that is caught has its default effect in another program.
+/// Restores the default effect of SIGHUP in the programs that the tests start. Under `nohup` they would inherit that
+/// SIGHUP is ignored, whereas a signal that this process catches has its default effect in the programs that it starts.
 fn catch_hang_up() {
     static CAUGHT: Once = Once::new();
     CAUGHT.call_once(|| {
@@ -29,12 +29,13 @@ fn catch_hang_up() {
 }
 
 impl Terminal {
-    /// Starts the program in a terminal of 100 columns and 30 rows; its standard output goes elsewhere if `piped`.
+    /// Starts the program in a terminal of 100 columns and 30 rows; if `piped` is `true`, its standard output is
+    /// discarded instead of going to the terminal.
     pub(crate) fn start(command: Command, piped: bool) -> Self {
         Self::sized(command, piped, 100, 30)
     }
 
-    /// Runs a command in a terminal of this size.
+    /// Starts the program in a terminal of this size; `piped` has the same meaning as in [`Self::start`].
     pub(crate) fn sized(mut command: Command, piped: bool, columns: u16, rows: u16) -> Self {
         catch_hang_up();
         let controller = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
@@ -52,7 +53,7 @@ impl Terminal {
         Self { child, controller, modes, seen: String::new() }
     }
 
-    /// Reads until this text has been written, which must happen before the program ends.
+    /// Reads output until it contains `text`; panics if the program ends before.
     pub(crate) fn wait_for(&mut self, text: &str) {
         while !self.seen.contains(text) {
             assert!(self.read(), "{text:?} never came: {:?}", self.seen);
@@ -69,12 +70,12 @@ impl Terminal {
         kill_process(Pid::from_child(&self.child), signal).unwrap();
     }
 
-    /// Waits for the end of a program without reading its output.
+    /// Waits for the end of the program without reading its output.
     pub(crate) fn end_unread(&mut self) -> ExitStatus {
         self.child.wait().unwrap()
     }
 
-    /// Maximum memory that the program has used so far, in kB.
+    /// Returns the maximum memory that the program has used so far, in kB.
     pub(crate) fn memory(&self) -> u64 {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
         let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();
@@ -88,7 +89,7 @@ impl Terminal {
         (self.seen, status)
     }
 
-    /// Returns `true` if keys are echoed, as at the start.
+    /// Returns `true` if the terminal echoes keys and edits lines as it did at the start.
     pub(crate) fn echoes(&self) -> bool {
         tcgetattr(&self.controller).unwrap().local_modes.contains(self.modes & (LocalModes::ECHO | LocalModes::ICANON))
     }

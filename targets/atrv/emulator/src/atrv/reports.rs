@@ -1,5 +1,5 @@
-//! Reports that the robot sends by itself, about the positions of its axes, the echoes of its sonars, and its bumpers;
-//! and the schedule of these reports.
+//! Reports that the robot sends unasked about the positions of its axes, the echoes of its sonars, and its bumpers, and
+//! the schedule of these reports.
 
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ const BOARDS: [u8; 4] = [0, 1, 3, 2];
 const NOTHING: u16 = 32_766;
 /// Distance between consecutive reported positions of a robot with the fault `leap`, in metres.
 const LEAP: f64 = 3.0;
-/// Number of reports from one report with filler to the next.
+/// Interval, in reports, between reports that contain filler.
 const FILLED: u8 = 7;
 
 /// Schedule of a report that is sent periodically.
@@ -54,7 +54,7 @@ impl Atrv {
         [&[0; 4][..], &self.time(), &[axis], &position.to_be_bytes(), &speed.to_be_bytes(), &[0; 8]].concat()
     }
 
-    /// Reports the sonars that have pinged since the last report of sonars; sends no report if there are none.
+    /// Reports the sonars that have pinged since the last sonar report; sends no report if no sonar has pinged.
     pub(super) fn report_pings(&mut self) {
         let is_dead = self.has(Ailment::DeadSonar);
         let is_mute = self.has(Ailment::NoPings);

@@ -1,5 +1,5 @@
-//! The driver and the robot on a real pseudo-terminal: signs, units and directions, and what either of them says of a
-//! fault.
+//! Tests of the driver with the emulated robot on a real pseudo-terminal: signs, units and directions, and the messages
+//! about faults on either side.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod room;

@@ -1,4 +1,4 @@
-//! A robot in a room, on a pseudo-terminal, and drivers of it; and what only says that it is one.
+//! Runs drivers on a pseudo-terminal: with the emulated robot in a room, or with a test's own answers.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -23,7 +23,7 @@ const LONG: u64 = 60_000;
 /// Maximum time to wait for a report that never arrives, in milliseconds.
 const SHORT: u64 = 500;
 
-/// Ends the robot's thread when a test ends, also when it fails.
+/// Guard that ends the robot's thread when a test ends, even if the test fails.
 struct Ends<'a>(&'a AtomicBool);
 
 impl Drop for Ends<'_> {
@@ -35,12 +35,13 @@ impl Drop for Ends<'_> {
 /// Steering that differs from the default.
 pub(crate) const STEERING: Steering = Steering { rotate: 1.0, align: 3.0, avoid: 1.5 };
 
-/// Returns the configuration of a robot at this line that has `answer` milliseconds for each report.
+/// Returns the configuration of a driver on this line that waits at most `answer` milliseconds for each report.
 fn config(port: &Port, answer: u64) -> Config {
     Config { answer, steering: STEERING, ..Configured::read(None, port.path().to_str()).unwrap().config }
 }
 
-/// The robot with an operator, who can press its emergency stop, and sees when it has come to rest.
+/// The robot under the control of a test, which can press its emergency stop and learns when the robot has come to
+/// rest.
 struct Watched<'a> {
     robot: Emulated,
     emergency: &'a AtomicBool,
@@ -124,29 +125,29 @@ pub(crate) fn with_emergency<T>(pressed: &AtomicBool, drive: impl FnOnce(&mut At
     in_the_room(Pace::Lockstep(PERIOD), lights, |_| {}, |driver| drive(&mut driver.unwrap()))
 }
 
-/// Runs `drive` with a robot in lockstep that treats bytes of 1B as `escape` says.
+/// Runs `drive` with a robot in lockstep; `escape` is the treatment of bytes with the value 1B on both sides.
 pub(crate) fn driven_in(escape: Escape, drive: impl FnOnce(&mut Atrv)) {
     let off = AtomicBool::new(false);
     let lights = [&off; 2];
     in_the_room(Pace::Lockstep(PERIOD), lights, |config| config.escape = escape, |driver| drive(&mut driver.unwrap()));
 }
 
-/// Returns the fault for which a driver with this configuration does not start.
+/// Returns the fault with which a driver fails to start after `change` has changed its configuration.
 pub(crate) fn refused(change: impl FnOnce(&mut Config)) -> Fault {
     let off = AtomicBool::new(false);
     let lights = [&off; 2];
     in_the_room(Pace::Lockstep(PERIOD), lights, change, |driver| driver.map(|_| ()).unwrap_err()).1
 }
 
-/// Returns the fault for which a driver does not start while the emergency stop is pressed.
+/// Returns the fault with which a driver fails to start while the emergency stop is pressed.
 pub(crate) fn refused_in_emergency(pressed: &AtomicBool) -> Fault {
     let off = AtomicBool::new(false);
     let lights = [pressed, &off];
     in_the_room(Pace::Lockstep(PERIOD), lights, |_| {}, |driver| driver.map(|_| ()).unwrap_err()).1
 }
 
-/// Runs `drive` with a robot in real time and the flag that is set when the robot has come to rest; returns the robot's
-/// speed at the end, in m/s, and the result.
+/// Runs `drive` with a robot in real time, and with a flag that is set once the robot has come to rest. Returns the
+/// robot's speed at the end, in m/s, and the result of `drive`.
 pub(crate) fn overslept<T>(drive: impl FnOnce(&mut Atrv, &AtomicBool) -> T) -> (f64, T) {
     let (emergency, stands) = (AtomicBool::new(false), AtomicBool::new(false));
     let (robot, result) = in_the_room(
@@ -159,7 +160,8 @@ pub(crate) fn overslept<T>(drive: impl FnOnce(&mut Atrv, &AtomicBool) -> T) -> (
     (robot.velocity().v.0, result)
 }
 
-/// Returns the fault of a driver whose robot answers each command with these bytes.
+/// Returns the fault with which a driver fails to start if the robot answers each command with the bytes from
+/// `answers`.
 pub(crate) fn fault_of(answers: impl Fn(&Request) -> Vec<u8> + Sync) -> Fault {
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     thread::scope(|scope| {
