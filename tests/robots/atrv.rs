@@ -1,6 +1,6 @@
-//! The lab tour on an ATRV-mini: the executable that `mdlec --target atrv` builds, against the emulated robot on a
-//! pseudo-terminal, beside the simulator's own run with that robot's body; and its messages about a device that is not
-//! a robot.
+//! Tests the lab tour on an ATRV-mini: the executable that `mdlec --target atrv` builds drives the emulated robot over
+//! a pseudo-terminal, and is compared with a run of the simulator with the same body. Also tests the messages about a
+//! device that is not a robot.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -18,16 +18,16 @@ use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::root;
 
-/// Pace of the emulator: no result depends on the speed of this machine.
+/// Pace of the emulator, in which no result depends on the speed of this machine.
 const IN_LOCKSTEP: Pace = Pace::Lockstep(Duration::from_millis(100));
 
-/// The tour's executable for the ATRV, built once.
+/// Returns the tour's executable for the ATRV, which is built once.
 fn on_atrv() -> &'static Path {
     static TOUR: OnceLock<PathBuf> = OnceLock::new();
     TOUR.get_or_init(|| tour("atrv"))
 }
 
-/// The tour's executable for this target.
+/// Builds the tour's executable for this target.
 fn tour(target: &str) -> PathBuf {
     let folder = folder(&format!("tour_beside_atrv_on_{target}"));
     let plan = root().join("plans/lab_tour.mdle");
@@ -36,13 +36,13 @@ fn tour(target: &str) -> PathBuf {
     folder.join("lab_tour")
 }
 
-/// The atoms that a run passed, in order, and how it ended: its report without the times.
+/// Returns the lines of a run's report without the times: the atoms in order, and the end of the run.
 fn passed(output: &Output) -> Vec<String> {
     let text = String::from_utf8(output.stdout.clone()).unwrap();
     text.lines().map(|line| line.split_once(" s  ").map_or(line, |(_, transition)| transition).to_owned()).collect()
 }
 
-/// An emulated robot where the tour begins.
+/// Returns an emulated robot at the start of the tour.
 fn robot(pace: Pace) -> Atrv {
     let world = World::office().unwrap();
     let make = Make { body: Body::Atrv, without: Vec::new(), seed: None };
@@ -50,7 +50,7 @@ fn robot(pace: Pace) -> Atrv {
     Atrv::new(body, step(pace), false).unwrap()
 }
 
-/// The executable with these arguments on this robot, which is handed back.
+/// Runs the executable with these arguments on this robot. Returns the output and the robot.
 fn emulated<R: Emulated + Send>(mut robot: R, pace: Pace, arguments: &[&str]) -> (Output, R) {
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     let executable = on_atrv();
@@ -88,7 +88,7 @@ fn the_tour_ends_on_an_atrv_where_it_ends_in_the_simulator() {
     assert!(away <= 0.15 && turned.abs() <= 5.0, "{away} m and {turned} degrees away from {x}, {y}, {heading}");
 }
 
-/// Returns the output of the executable with these arguments, and its exit status.
+/// Returns the output of the executable with these arguments, without a robot, and its exit status.
 fn printed(arguments: &[&str]) -> String {
     let output = Command::new(on_atrv()).args(arguments).current_dir(on_atrv().parent().unwrap()).output().unwrap();
     listed(&output)
@@ -125,7 +125,7 @@ fn the_configuration_says_what_holds_and_why() {
     insta::assert_snapshot!(all.join("\n"));
 }
 
-/// A robot, or something else, that answers every command with the same bytes.
+/// A device that answers every command with the same bytes.
 struct Answers(Incoming, Vec<u8>, Vec<Vec<u8>>);
 
 impl Answers {
@@ -185,7 +185,8 @@ fn a_robot_that_is_none_is_a_fault() {
     insta::assert_snapshot!(all.join("\n"));
 }
 
-/// A robot to which something happens once it moves, and whether it has become silent by that.
+/// A robot to which an event happens once it moves. The event returns `true` if it silences the robot; the last field
+/// is `true` once the robot is silent.
 struct Then(Atrv, fn(&mut Atrv) -> bool, bool);
 
 impl Emulated for Then {
@@ -253,7 +254,7 @@ fn a_line_that_is_cut_ends_the_run() {
     insta::assert_snapshot!(listed(&output));
 }
 
-/// A robot that reports whether it moves.
+/// A robot that sets a flag once it moves.
 struct Moves<'a>(&'a mut Atrv, &'a AtomicBool);
 
 impl Emulated for Moves<'_> {

@@ -1,4 +1,4 @@
-//! Several runs of a plan by the executable that `mdlec` builds: their summary, and that it is true.
+//! Tests several runs of a plan by the executable that `mdlec` builds: their summary, and that the summary is correct.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -9,13 +9,13 @@ use std::sync::OnceLock;
 use mdle_tests::executable::{folder, run_mdlec};
 use serde_json::Value;
 
-/// Plan that drives a metre ahead in five seconds; the start decides whether that reaches the goal, and which obstacles
-/// are in the way.
+/// A plan that drives a metre ahead in five seconds. The start determines whether the robot reaches the goal, and which
+/// obstacles are in its way.
 const PLAN: &str = "{ Ahead (bumper) (Atom (wait 5) (go 20 0)) }\n";
 const WORLD: &str = "goal = { min = [0.7, -0.3], max = [1.3, 0.3] }\n\
                      [[wall]]\nname = \"left\"\npoints = [[0.2, 0.65], [1.5, 0.65]]\n";
 
-/// The executable, built once, beside its world.
+/// Returns the folder of the executable, which is built once, and of its world.
 fn ahead() -> &'static Path {
     static AHEAD: OnceLock<PathBuf> = OnceLock::new();
     AHEAD.get_or_init(|| {
@@ -36,7 +36,7 @@ fn text(bytes: Vec<u8>) -> String {
     String::from_utf8(bytes).unwrap()
 }
 
-/// Starts so far off that runs end in every way there is.
+/// Options with such a large random offset of the start that runs end in all possible ways.
 const OFF: [&str; 8] = ["--goal", "world", "--runs", "40", "--start-noise", "0.1,50", "--seed", "7"];
 
 #[test]
@@ -136,7 +136,7 @@ fn without_a_goal_runs_are_grouped_by_their_cause() {
     ");
 }
 
-/// Returns the output of a single run at maximum speed, and its status.
+/// Returns the output of a single run at maximum speed, and its exit status.
 fn alone(options: &[&str]) -> String {
     let output = run(&[&["--speed", "max"], options].concat());
     let [out, err] = [output.stdout, output.stderr].map(text);

@@ -1,9 +1,10 @@
-//! A building that was drawn after the control laws had been written, and two plans for it, each as a reader of the
-//! book would write it. Neither was changed after its first run.
+//! Tests a building that was drawn after the control laws had been written, and two plans for it in the style of a
+//! reader of the book. Neither plan was changed after its first run.
 //!
-//! `MDLE_FIRST=8300000 MDLE_LONG=30` tries 300 seeds. There the ideal body and a Scout arrive by measures in all of
-//! them, by landmarks in 300 and 297; an ATRV-mini in 248 and 282: the rest come to the door of the store and do not
-//! find their way through, as they come along the corridor and the door is 36 cm wider than they are.
+//! `MDLE_FIRST=8300000 MDLE_LONG=30` tries 300 seeds. With them, the ideal body and a Scout arrive in all runs by
+//! measures, and in 300 and 297 runs by landmarks. An ATRV-mini arrives in 248 and 282 runs. In its other runs it
+//! reaches the door of the store but does not find the way through, because it comes along the corridor and the door is
+//! only 36 cm wider than the robot.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, reason = "a test tells what happened")]
 
 use std::time::Duration;
@@ -16,7 +17,8 @@ use crate::driven::{first_seed, plans, robot};
 
 const WORLD: &str = include_str!("building/world.toml");
 
-/// The way as measured on the floor plan: along the first corridor, along the second one, through the door.
+/// A plan with distances that were measured on the floor plan: along the first corridor, along the second one, and
+/// through the door.
 const BY_MEASURES: &str = "{ ToTheStore (bumper OR wait 5min)
   (Atom (stuck 30s) (goAvoid 0 9.2m))
   (Atom (stuck 30s) (goAvoid 90 6m))
@@ -24,7 +26,7 @@ const BY_MEASURES: &str = "{ ToTheStore (bumper OR wait 5min)
 }
 ";
 
-/// The way as one tells it: to the corner, left, past the corner, to the first open door on the left, in.
+/// A plan by landmarks: to the corner, left, past the corner, to the first open door on the left, and in.
 const BY_LANDMARKS: &str = "{ ToTheStore (bumper OR wait 5min)
   (Atom (atIsection 1001) (goAvoid 0 20 20))
   (Atom (atIsection 0011) (go 0 0.36))
@@ -36,8 +38,8 @@ const BY_LANDMARKS: &str = "{ ToTheStore (bumper OR wait 5min)
 }
 ";
 
-/// Returns the number of runs that arrive in the store without contact, and the number of runs. `MDLE_FIRST` is the
-/// first seed.
+/// Returns the number of runs that arrive in the store without contact, and the number of all runs. The variable
+/// `MDLE_FIRST` sets the first random seed.
 fn arrived(text: &str, body: Body, count: u64) -> (u64, u64) {
     let world = World::parse("building/world.toml", WORLD).unwrap();
     let (plan, goal) = (plans("to_the_store.mdle", text).remove(0), world.goal.unwrap());

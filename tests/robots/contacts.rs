@@ -1,6 +1,6 @@
-//! All plans of `plans/` and of the book in every world in which they make sense, on every body: a robot comes into
-//! contact only where the plan asks for that. Such a plan has an atom whose own interrupt names `bumper`, and where it
-//! touched something it backs off and turns as far as its author says; `goAvoid` is never asked to touch.
+//! Tests all plans of `plans/` and of the book in every world in which they make sense, on every body: a robot comes
+//! into contact only if the plan requests contact. Such a plan has an atom whose own interrupt names `bumper`, and
+//! after a contact it backs off and turns as far as its author intends. The law `goAvoid` must never cause contact.
 //!
 //! Each plan and world is driven on one body. `MDLE_LONG=300 cargo test --release -p mdle-tests --test robots
 //! contacts:: -- --nocapture` drives a hundred seeds on each of the three bodies; `MDLE_FIRST` is the first seed.
@@ -21,12 +21,13 @@ use crate::driven::{Contact, Driven, first_seed, plans, robot};
 use table::{Row, TABLE};
 
 const BODIES: [Body; 3] = [Body::Scout, Body::Atrv, Body::Ideal];
-/// Runs are cut off after this time.
+/// Time limit of a run.
 const LONGEST: Duration = Duration::from_secs(150);
 /// A floor whose walls are 50 m from the start.
 const FLOOR: &str = "[[wall]]\npoints = [[-50, -50], [50, -50], [50, 50], [-50, 50], [-50, -50]]\n";
 
-/// The plans of the repository that the simulator can run, each once: the file or the page of each first.
+/// Returns all plans of the repository that the simulator can run, without duplicates, each with its file or the page
+/// of the book.
 fn all_plans() -> Vec<(String, Driven)> {
     let mut all = Vec::new();
     let shown: Vec<_> = files(&[".mdle"]).into_iter().filter(|file| file.path.starts_with("plans/")).collect();
@@ -44,7 +45,7 @@ fn all_plans() -> Vec<(String, Driven)> {
     all
 }
 
-/// The text of a block, with the blocks of the page in place of their files that it uses.
+/// Returns the text of a block in which each `use` of a file is replaced by the page's block for this file.
 fn with_used(text: &str, blocks: &[Fence]) -> String {
     let file = |line: &str| Some(line.strip_prefix("use \"")?.strip_suffix('"')?.to_owned());
     let used = |path: String| blocks.iter().find(|block| block.file().is_some_and(|file| file.ends_with(&path)));
@@ -55,13 +56,13 @@ fn with_used(text: &str, blocks: &[Fence]) -> String {
     text.lines().map(line).collect()
 }
 
-/// A file that a page of the book writes.
+/// Returns a file that a page of the book writes.
 fn of_book(page: &str, file: &str) -> String {
     let page = pages().into_iter().find(|other| name(other) == page).unwrap();
     fences(&page).into_iter().find(|fence| fence.file() == Some(file)).unwrap().text
 }
 
-/// The world of this name, with the start of the plans that are driven in it.
+/// Returns the world with this name, with the start of the plans that are driven in it.
 fn world(name: &str) -> World {
     let parsed = |text: &str| World::parse(name, text).unwrap();
     match name {
@@ -78,7 +79,7 @@ fn world(name: &str) -> World {
     }
 }
 
-/// The path of the book.
+/// Returns the path that the book shows.
 fn paths() -> PathStore {
     let fastest = Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) };
     let setpoints = mdle_host::setpoints("bend.csv", of_book("quarks.md", "bend.csv").as_bytes(), fastest).unwrap();
@@ -88,13 +89,13 @@ fn paths() -> PathStore {
 /// Contacts of a plan in a world.
 #[derive(Default)]
 struct Touched {
-    /// The first contact of each run that the plan did not ask for, as a line.
+    /// For each run with a contact that the plan did not request, a line about the first such contact.
     unasked: Vec<String>,
-    /// Number of contacts under an interrupt that names `bumper`.
+    /// Number of contacts during atoms whose interrupt names `bumper`.
     by_bumper: usize,
 }
 
-/// Drives a plan in a world.
+/// Drives a plan in a world `runs` times, and returns its contacts.
 fn touched(row: &Row, plan: &Driven, place: &str, paths: PathStore, runs: u64) -> Touched {
     let (world, mut touched) = (world(place), Touched::default());
     for run in 0..runs {

@@ -1,5 +1,5 @@
-//! `mdle run CROWD.toml`: the same bytes for any number of threads, robots that never overlap, and a robot alone that
-//! drives as in a scenario.
+//! Tests `mdle run CROWD.toml`: the output is identical for any number of threads, robots never overlap, and a single
+//! robot drives as it does in a scenario.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,10 +10,10 @@ use std::process::{Command, Output};
 
 use mdle_tests::executable::{folder, mdle};
 
-/// Drives on, and turns off what it has met.
+/// A plan that drives, and turns away after a contact.
 const WANDER: &str = "{ Wander (wait 1h)\n  ExecPlan inf {\n    (Atom (wait 6 OR bumper) (goAvoid 0 40 30))\n    \
                       (Atom (wait 1) (go -20 0))\n    (Atom (wait 9) (turn 100))\n  }\n}\n";
-/// The radius of a Scout, in metres.
+/// Radius of a Scout, in metres.
 const RADIUS: f64 = 0.205;
 
 fn run(folder: &Path, arguments: &str) -> Output {
@@ -21,13 +21,13 @@ fn run(folder: &Path, arguments: &str) -> Output {
     Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// Writes a crowd with these keys, and its plan.
+/// Writes a crowd with these entries, and its plan.
 fn crowd(folder: &Path, keys: &str) {
     fs::write(folder.join("wander.mdle"), WANDER).unwrap();
     fs::write(folder.join("crowd.toml"), format!("seed = 3\n[crowd]\nfile = \"wander.mdle\"\n{keys}")).unwrap();
 }
 
-/// The places of all robots at each time.
+/// Returns the places of all robots, by time.
 fn places(trail: &str) -> BTreeMap<String, Vec<[f64; 2]>> {
     let mut places: BTreeMap<String, Vec<[f64; 2]>> = BTreeMap::new();
     for line in trail.lines().skip(1) {
@@ -137,7 +137,7 @@ fn a_wrong_crowd_is_refused_with_place_and_cure() {
     assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// A record of each robot, which replays to the bit; the number of threads changes none.
+/// Each robot has a record, which replays to the bit and does not depend on the number of threads.
 #[test]
 fn each_robot_of_a_crowd_has_a_record() {
     let folder = folder("recorded");

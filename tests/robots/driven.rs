@@ -1,4 +1,4 @@
-//! A plan that is loaded from text and driven on the simulated robot, turn by turn.
+//! Loads a plan from text, and drives the simulated robot with it turn by turn.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -16,39 +16,39 @@ use mdle_tests::golden;
 use mdle_tests::repository::TextFile;
 
 const PERIOD: Duration = Duration::from_millis(100);
-/// The maximum distance of a start from the world's, along each axis, in metres, and in heading, in degrees.
+/// Maximum distance of a start from the world's start, along each axis in metres, and in heading in degrees.
 const OFF: [f64; 2] = [0.05, 3.0];
 
-/// A plan before it begins.
+/// A loaded plan, which can be driven any number of times.
 pub(crate) struct Driven {
     pub(crate) name: String,
     loaded: Arc<Loaded<alphabet::Alphabet>>,
 }
 
-/// A moment in which the robot came into contact.
+/// The begin of a contact.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Contact {
-    /// Seconds since the plan began.
+    /// Time of the plan, in seconds.
     pub(crate) t: f64,
-    /// The law that drove.
+    /// Law of the current atom.
     pub(crate) law: String,
-    /// The interrupt of its atom.
+    /// Interrupt of the current atom.
     pub(crate) interrupt: String,
     pub(crate) pose: Pose,
 }
 
-/// A run that is over, or was cut off.
+/// Result of a run that is over or reached its time limit.
 pub(crate) struct Drive {
     pub(crate) contacts: Vec<Contact>,
-    /// The last pose.
+    /// Last pose of the robot.
     pub(crate) pose: Pose,
-    /// The place where each atom ended.
+    /// Poses of the robot at the ends of atoms.
     pub(crate) ends: Vec<Pose>,
     /// `true` if the plan is over.
     pub(crate) is_over: bool,
 }
 
-/// Returns the plans of a file that the simulator can run, apart from those that read modules.
+/// Returns the plans of a file that the simulator can run, except plans that read modules or other robots.
 pub(crate) fn plans(path: &str, text: &str) -> Vec<Driven> {
     let file = TextFile { path: path.to_owned(), text: text.to_owned() };
     let (sources, target) = (golden::sources(&file).0, golden::alphabet(Some("sim")));
@@ -65,7 +65,7 @@ pub(crate) fn plans(path: &str, text: &str) -> Vec<Driven> {
     plans.into_iter().map(load).filter(is_alone).collect()
 }
 
-/// Counts the ends of atoms in a turn.
+/// Number of transitions in a turn.
 struct Ends(usize);
 
 impl Watch for Ends {
@@ -74,7 +74,7 @@ impl Watch for Ends {
     }
 }
 
-/// A robot of this body near the start of `world`; without sensor and wheel errors if the body is ideal.
+/// Returns a robot with this body near the start of `world`. An ideal body has no sensor and wheel errors.
 pub(crate) fn robot(body: Body, world: &World, seed: u64) -> Simulated {
     let make = Make { body, seed: (body != Body::Ideal).then_some(seed), ..Make::default() };
     let mut chance = Chance::new(seed);
@@ -90,13 +90,13 @@ pub(crate) fn robot(body: Body, world: &World, seed: u64) -> Simulated {
     panic!("{body} cannot stand at the start");
 }
 
-/// The first seed of the runs of a test: the number in the variable `MDLE_FIRST`, or this one without it.
+/// Returns the first random seed of a test: the number in the variable `MDLE_FIRST`, or else `usual`.
 pub(crate) fn first_seed(usual: u64) -> u64 {
     std::env::var("MDLE_FIRST").map_or(usual, |text| text.parse().expect("a whole number"))
 }
 
 impl Driven {
-    /// Drives the robot for this time at most.
+    /// Drives the robot until the plan is over, for at most the time `most`.
     pub(crate) fn drive(&self, mut robot: Simulated, paths: PathStore, most: Duration) -> Drive {
         robot.paths = paths;
         let (mut input, mut machine, mut ends) = (Twist::default(), None, Vec::new());

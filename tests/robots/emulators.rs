@@ -1,4 +1,4 @@
-//! `mdlec emulator`: the real binary builds and becomes a robot emulator, on which executables run.
+//! Tests `mdlec emulator`: the real binary builds a robot emulator and becomes it, and executables run on it.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;

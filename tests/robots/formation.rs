@@ -1,4 +1,4 @@
-//! Three robots that drive in a triangle round a box (paper, sections II-C and III-G), over random seeds.
+//! Tests three robots that drive in a triangle around a box (paper, sections II-C and III-G), with random seeds.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test tells")]
 
@@ -13,13 +13,14 @@ use mdle_tests::repository::root;
 use mdle_tests::ways::{Place, distance};
 use serde_json::Value;
 
-/// Places of the members: ahead of the leader and to its left, in metres.
+/// Places of the members relative to the leader: ahead and to the left, in metres.
 const PLACES: [(&str, Place); 2] = [("robot2", [-0.866, 0.5]), ("robot3", [-0.866, -0.5])];
-/// Time constant with which the triangle turns after its leader, and the period of a turn, in seconds.
+/// Time constant with which the triangle follows the leader's heading, in seconds. `PERIOD` is the period of a turn, in
+/// seconds.
 const TURNS_IN: f64 = 1.5;
 const PERIOD: f64 = 0.1;
 
-/// A folder with the scenario of the book, to which `more` is added.
+/// Returns a folder with the scenario of the book, to which `more` is appended.
 fn scenario(test: &str, more: &str) -> PathBuf {
     let folder = folder(test);
     let plans = root().join("plans/formation");
@@ -36,7 +37,7 @@ fn run(folder: &Path, seed: u64, log: &str) -> Output {
     Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// The turns of a run, each with what the log says of each robot.
+/// Returns the turns of a run; each contains the line of the log about each robot.
 fn turns(log: &Path) -> Vec<BTreeMap<String, Value>> {
     let mut turns: BTreeMap<u64, BTreeMap<String, Value>> = BTreeMap::new();
     for line in fs::read_to_string(log).unwrap().lines() {
@@ -55,7 +56,8 @@ fn place(of: &Value) -> Place {
     ["x", "y"].map(|axis| number(of, axis))
 }
 
-/// Returns the distances of the members from their places while the leader leads, by where the robots really are.
+/// Returns the distances of the members from their places while the leader leads. All places are the true places of the
+/// robots.
 fn errors(turns: &[BTreeMap<String, Value>]) -> Vec<f64> {
     let mut direction = None;
     let mut errors = Vec::new();
@@ -75,7 +77,7 @@ fn errors(turns: &[BTreeMap<String, Value>]) -> Vec<f64> {
     errors
 }
 
-/// Runs the scenario with a few seeds, and checks what is promised of each run.
+/// Runs the scenario with a few seeds, and asserts what the book promises about each run.
 fn assert_keep(test: &str, more: &str, first: u64) {
     let folder = scenario(test, more);
     let mut all = Vec::new();
@@ -148,7 +150,8 @@ fn the_same_seed_gives_the_same_run() {
     assert!(bytes("one.jsonl") == bytes("other.jsonl"), "two runs of one seed differ");
 }
 
-/// A group of two, by whose plan robots that turn and drive end when the first one has.
+/// A plan of a group of two, in which each robot turns and drives, and an atom ends for all robots when it has ended
+/// for the first one.
 const PAIR: &str = "{ Group [robot1 robot2] Pair (any bumper OR wait 1min)
   (Atom (null) (rotate 90))
   (Atom (all rendezvous) stop)
@@ -156,7 +159,7 @@ const PAIR: &str = "{ Group [robot1 robot2] Pair (any bumper OR wait 1min)
 }
 ";
 
-/// A scenario of robots with these names, 2 m apart, that all run the plan `pair.mdle`.
+/// Returns the folder of a scenario of robots with these names, 2 m apart, that all run the plan `pair.mdle`.
 fn pair(test: &str, robots: &[&str], more: &str) -> PathBuf {
     let folder = folder(test);
     fs::write(folder.join("pair.mdle"), PAIR.to_owned() + more).unwrap();
@@ -186,7 +189,7 @@ fn robots_whose_laws_complete_wait_for_the_first() {
     }
 }
 
-/// Returns what `mdle` says on standard error, with its exit status.
+/// Returns standard error of `mdle`, with its exit status.
 fn refused(folder: &Path, arguments: &[&str]) -> String {
     let output = Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap();
     format!("{}[{}]", String::from_utf8(output.stderr).unwrap(), output.status.code().unwrap())

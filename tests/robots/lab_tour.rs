@@ -1,4 +1,4 @@
-//! The main job, end to end: the paper's lab tour, compiled by the real `mdlec` and driven by the executable it builds.
+//! Tests the paper's lab tour from end to end: it is compiled by the real `mdlec` and driven by the executable.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -12,7 +12,7 @@ use mdle_tests::golden::judge;
 use mdle_tests::repository::{TextFile, root};
 use serde_json::{Value, json};
 
-/// The executable of the tour, built once.
+/// Returns the executable of the tour, which is built once.
 fn tour() -> &'static Path {
     static TOUR: OnceLock<PathBuf> = OnceLock::new();
     TOUR.get_or_init(|| {
@@ -30,12 +30,12 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(tour()).args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// Pose of the robot at a time.
+/// Pose of the robot.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     x: f64,
     y: f64,
-    /// Degrees, from 0 to 360.
+    /// Heading in degrees, from 0 to 360.
     heading: f64,
 }
 
@@ -50,7 +50,7 @@ fn apart(one: f64, other: f64) -> f64 {
     apart.min(360.0 - apart)
 }
 
-/// Zone in which an atom has to end and, after a turn, its heading (docs/src/reference/office.md, 2).
+/// Zone in which an atom must end and, for an atom that turns, the required heading (docs/src/reference/office.md, 2).
 type Zone = ([f64; 4], Option<(f64, f64)>);
 
 const ROUND: f64 = 35.0;
@@ -145,7 +145,7 @@ fn it_gives_the_same_bytes_on_every_processor() {
     assert!(once == files("bytes_plain", plain), "a processor without FMA and AVX2 gives other bytes");
 }
 
-/// The executable and the compiler's machine behave equally on the same events.
+/// The executable and the compiler's machines behave equally on the same events.
 #[test]
 fn its_log_is_the_trace_of_what_it_met() {
     let folder = folder("lab_tour_log");
@@ -183,7 +183,7 @@ fn happenings(turn: &Value) -> Value {
     json!({"t": turn["t"], "fired": fired, "completed": completed})
 }
 
-/// The text of the law of a state of the tour, which has no loops.
+/// Returns the text of the law of a state of the tour, which has no loops.
 fn law(state: u64) -> &'static str {
     static LAWS: OnceLock<Vec<String>> = OnceLock::new();
     let laws = LAWS.get_or_init(|| {

@@ -1,4 +1,5 @@
-//! A run in which plans are late, skipped and rolled back is made again by an engine that waits for nobody, to the bit.
+//! Tests that a run in which plans are late, skipped and rolled back can be repeated to the bit by an engine that does
+//! not wait for plans.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::sync::Mutex;
@@ -14,17 +15,17 @@ use mdle_sim::{Simulated, World};
 use super::modules::{PERIOD, loaded};
 use super::odd_plans::{Odd, TURN};
 
-/// Plans whose laws take long at two times.
+/// A plan whose law takes long at two times.
 const FIRST: &str = "{ First (null) ((Atom (wait 400ms) (go -16 0)) (Atom (wait 200ms) (go -16 0.1)))^inf }";
 const SECOND: &str = "{ Second (null) ((Atom (wait 200ms) (go -16 0.2)) (Atom (wait 300ms) (go -16 0.3)))^inf }";
 
 /// Number of turns.
 const TURNS: u64 = 40;
 
-/// Held by the test for whose turns slow laws wait.
+/// Locked by the test whose turns slow laws wait for.
 static SLOW_TURNS: Mutex<()> = Mutex::new(());
 
-/// A turn of a run, and all that led to it.
+/// A turn of a run, with all data that determine it.
 #[derive(Debug)]
 struct Made {
     y: Sensed,
@@ -33,7 +34,7 @@ struct Made {
     outcome: Outcome,
 }
 
-/// The outcome of a turn: the input, the transitions, the state, and the plan.
+/// Outcome of a turn: the input, the transitions, the state, and the number of the plan.
 #[derive(Debug, PartialEq)]
 struct Outcome(Turn<Twist>, Vec<Step>, Option<u64>, u64);
 
@@ -50,7 +51,7 @@ fn turn(engine: &mut Engine<Odd>, y: &Sensed, number: u64) -> Outcome {
     Outcome(turn, steps.collect(), engine.machine().map(|machine| machine.state()), engine.plan_number())
 }
 
-/// A run on workers with a deadline for each turn.
+/// Returns the turns of a run on workers, with a deadline for each turn.
 fn live() -> Vec<Made> {
     let _held = SLOW_TURNS.lock();
     let world = World::named("hall").unwrap().unwrap();

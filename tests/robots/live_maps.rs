@@ -1,4 +1,4 @@
-//! The modules `pings` and `map`: an evidence grid that is made while the robot drives, by `--map`.
+//! Tests the modules `pings` and `map`: with `--map`, an evidence grid is made while the robot drives.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -15,13 +15,13 @@ fn run(folder: &Path, arguments: &str) -> Output {
     Command::new(mdle()).args(arguments.split(' ')).current_dir(folder).output().unwrap()
 }
 
-/// Returns what a run printed, with its exit status.
+/// Returns the output of a run, with its exit status.
 fn text(output: &Output) -> String {
     let [out, err] = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
     format!("{out}{err}[{}]\n", output.status.code().unwrap())
 }
 
-/// Returns the text of a map without the line with the name of its image, and its images.
+/// Returns the text of a map without the line that names its image, and its images.
 fn map(folder: &Path, name: &str) -> (String, [Vec<u8>; 2]) {
     let yaml = fs::read_to_string(folder.join(format!("{name}.yaml"))).unwrap();
     let (first, rest) = yaml.split_once('\n').unwrap();

@@ -1,5 +1,5 @@
-//! `mdle run` beside the executable of the same plan: the same bytes in report, messages, log and trail, and the same
-//! exit status.
+//! Compares `mdle run` with the executable of the same plan: report, messages, log and trail are identical byte for
+//! byte, and the exit status is equal.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -12,8 +12,9 @@ use mdle_tests::run_output::{
     FILES, RunOutput, called, emulated_run, in_simulator, left, loaded, simulated_run, warnings,
 };
 
-/// Runs the plan of a file both ways with the same options, and compares what the runs leave. Warnings about the plan,
-/// which `mdlec` prints when it builds, come before the run.
+/// Runs the plan in a file loaded and as its executable, with the same options, and compares the output and files of
+/// both runs. The warnings about the plan, which `mdlec` prints at build time, are added to the messages of the
+/// executable.
 fn compare(folder: &Path, file: &str, target: &str, options: &[&str]) -> RunOutput {
     let run = |command| simulated_run(folder, command, options);
     let mut executable = run(Command::new(folder.join("executable")));
@@ -23,13 +24,13 @@ fn compare(folder: &Path, file: &str, target: &str, options: &[&str]) -> RunOutp
     loaded
 }
 
-/// Builds the executable of the plan in this file.
+/// Builds the executable of the plan in a file.
 fn build(folder: &Path, file: &str, target: &str) {
     let built = run_mdlec(folder, &[file, "--target", target, "-o", "executable"]);
     assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
 }
 
-/// The plans of the repository.
+/// Returns the plan files of the repository.
 fn plans() -> Vec<PathBuf> {
     let folders = ["plans", "plans/paper"].map(|folder| root().join(folder));
     let files = folders.iter().flat_map(|folder| fs::read_dir(folder).unwrap()).map(|entry| entry.unwrap().path());

@@ -1,4 +1,4 @@
-//! Executables on simulated and emulated robots, in simulated time.
+//! Tests of executables on simulated and emulated robots, in simulated time.
 
 mod atrv;
 mod batches;

@@ -1,4 +1,4 @@
-//! `rendezvous`, `sync` and `Follow` between robots of one scenario, and the messages for wrong scenarios.
+//! Tests `rendezvous`, `sync` and `Follow` between robots of a scenario, and the messages about wrong scenarios.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 
 use mdle_tests::executable::{folder, mdle};
 
-/// Runs a scenario of the robots `ada` and `bob` with these plans, 3 m apart; returns its report.
+/// Runs a scenario in which the robots `ada` and `bob`, 3 m apart, run these plans; returns the report.
 fn meets(test: &str, more: &str, ada: &str, bob: &str) -> String {
     let folder = folder(test);
     let mut text = more.to_owned();
@@ -28,7 +28,7 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// The time and the first word of each line about a robot.
+/// Returns the time and the first word of each line of the report about a robot.
 fn course<'r>(report: &'r str, robot: &str) -> Vec<(&'r str, &'r str)> {
     let named = format!(" s  {robot}: ");
     let lines = report.lines().filter_map(|line| line.split_once(&named));

@@ -1,5 +1,5 @@
-//! Faults of modules that a plan reads: the robot stands as soon as the plan ends by the age of what it reads, the
-//! operator gets a sentence, and no turn hangs.
+//! Tests faults of modules that a plan reads: the plan ends because of the age of the values that it reads, the robot
+//! then stops, the operator gets a message, and no turn hangs.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
@@ -12,12 +12,12 @@ use mdle_runtime::{Radians, Sensed, Turn as PlanTurn, Twist};
 
 use super::modules::Run;
 
-/// Drives while a module says something.
+/// A plan that drives while a module publishes.
 const PLAN: &str = "{ Listen (age(ears module) > 500ms) (Atom (null) (go 20 0)) }";
-/// Turn in which a module does something else.
+/// Number of the turn in which the fault begins.
 const FAULT: u64 = 20;
 
-/// Something that a module does instead of its turn.
+/// A fault of a module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Deed {
     None,
@@ -66,7 +66,7 @@ impl Module<Sensed> for Ears {
     }
 }
 
-/// A background module that does something else from its exchange 20 on.
+/// A background module with a fault that begins with its exchange number [`FAULT`].
 struct Listens {
     bearing: Out<Radians>,
     deed: &'static str,
@@ -97,8 +97,8 @@ impl Background for Listens {
     }
 }
 
-/// Runs the plan with these modules; returns all messages with their turns, the end, and the turns from the fault until
-/// the robot was sent the null input.
+/// Runs the plan with these modules. Returns all messages with their turns, the end of the plan, and the number of
+/// turns from the fault until the robot was sent the null input.
 fn story(library: &Library<Sensed>, time: Time, mut each: impl FnMut(&mut Run)) -> String {
     let mut run = match Run::begin(PLAN, library, time) {
         Ok(run) => run,
@@ -161,7 +161,7 @@ fn a_robot_stands_soon_after_a_background_module_ends() {
     insta::assert_snapshot!(reports.join("\n"));
 }
 
-/// A module that reads what another one publishes.
+/// A module that reads an attribute of another module.
 struct Reader {
     read: In<Radians>,
     bearing: Out<Radians>,

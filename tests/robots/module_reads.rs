@@ -1,4 +1,4 @@
-//! Modules and plans that read what is misspelt, of another kind, or late.
+//! Tests modules and plans that read attributes that are misspelt, of another type, or late.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 
 use mdle_tests::executable::{folder, mdle};
 
-/// A folder with a plan that reads `range` of the module `ears`, and one that reads no module.
+/// Returns a folder with a plan that reads `range` of the module `ears`, and a plan that reads no module.
 fn with_plans(test: &str) -> PathBuf {
     let folder = folder(test);
     fs::write(folder.join("near.mdle"), "{ Near (bumper)\n  (Atom (range(ears module) < 50cm) stop)\n}\n").unwrap();
@@ -15,7 +15,7 @@ fn with_plans(test: &str) -> PathBuf {
     folder
 }
 
-/// Both streams and the exit status of a plan with the module `ears`, in simulated time.
+/// Runs a plan with the module `ears` in simulated time. Returns standard output, standard error and the exit status.
 fn report(folder: &Path, plan: &str, ears: &str) -> String {
     let mut command = Command::new(mdle());
     command.args(["run", plan, "--target", "sim", "--world", "hall", "--speed", "max", "--module"]);
@@ -24,12 +24,12 @@ fn report(folder: &Path, plan: &str, ears: &str) -> String {
     format!("{out}{err}[{}]\n", status.code().unwrap())
 }
 
-/// A process with this declaration that answers nothing.
+/// Returns the command of a process with this declaration that publishes nothing.
 fn silent(declaration: &str) -> String {
     format!("echo '{declaration}'; while read line; do echo '{{}}'; done")
 }
 
-/// A process that needs this time in seconds for each answer, and declares it.
+/// Returns the command of a process that needs `seconds` for each answer. `latency` is a part of its declaration.
 fn slow(seconds: f64, latency: &str) -> String {
     format!(
         "echo '{{\"publishes\": {{\"range\": \"m\"}}{latency}}}'; while read line; do sleep {seconds}; \

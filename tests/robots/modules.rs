@@ -1,4 +1,5 @@
-//! Plans that read modules: a robot that follows what a module publishes, and what happens if no module does.
+//! Tests plans that read modules: a robot follows the attributes that a module publishes, and the plan ends or never
+//! begins if no module publishes them.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -21,15 +22,15 @@ use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::golden;
 
 pub(super) const PERIOD: Duration = Duration::from_millis(100);
-/// Drives to whatever the module `heading` publishes.
+/// A plan that drives to the point that the module `heading` publishes.
 const FOLLOW: &str = "{ Sound (bumper OR age(heading module) > 5s)
   (Atom (range(heading module) < 60cm) goAvoid(heading module))
   (Atom (wait 1) stop)
 }";
-/// Place of the source of sound.
+/// Place of the sound source, in metres.
 const SOURCE: (f64, f64) = (3.0, 1.0);
 
-/// Publishes the place of the robot.
+/// A module that publishes the pose of the robot.
 struct Place(Out<Pose>);
 
 impl Module<Sensed> for Place {
@@ -39,7 +40,7 @@ impl Module<Sensed> for Place {
     }
 }
 
-/// Hears the sound, as two microphones would, a while after it was made.
+/// A background module that publishes the bearing and range of the sound source with a delay.
 struct Ears {
     place: In<Pose>,
     bearing: Out<Radians>,
@@ -60,7 +61,7 @@ impl Background for Ears {
     }
 }
 
-/// Passes on what is new of what the ears hear.
+/// A module that publishes new values of `ears`.
 struct Heading {
     heard: (In<Radians>, In<Meters>),
     bearing: Out<Radians>,
@@ -78,7 +79,7 @@ impl Module<Sensed> for Heading {
     }
 }
 
-/// The modules by which a robot follows a sound.
+/// Returns the modules by which a robot follows a sound.
 fn followers() -> Library<Sensed> {
     let mut library = Library::new();
     library.registered("place", |declare| Place(declare.publishes("pose")));
@@ -115,7 +116,7 @@ pub(super) struct Run<A: EngineAlphabet = Alphabet> {
     robot: Simulated,
     pub(super) engine: Engine<A>,
     pub(super) input: Twist,
-    /// Place of the robot by odometry.
+    /// Pose of the robot by odometry.
     place: Pose,
     pub(super) turns: u64,
 }
@@ -147,14 +148,14 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> Run<A> {
         Ok(turn)
     }
 
-    /// Lets another plan drive at once, as a safety rule does.
+    /// Replaces the plan at once, as a safety rule does.
     pub(super) fn divert(&mut self, plan: LoadedPlan<A>) {
         let y = self.robot.exchange(&self.input).unwrap();
         let t = Nanos(self.turns * 100_000_000);
         self.engine.divert(plan, Moment { y: &y, t, number: self.turns });
     }
 
-    /// Drives until the plan is over, for at most a minute; returns the inputs.
+    /// Drives until the plan is over, for at most a minute, and returns the inputs.
     fn drive(&mut self) -> Vec<Twist> {
         let mut inputs = Vec::new();
         while self.turns < 600 {
@@ -193,7 +194,7 @@ fn a_plan_that_waits_in_vain_never_begins() {
     assert_eq!((fault, run.turns, run.input), (PilotFault::Stopped(sentence.into()), 20, Twist::default()));
 }
 
-/// Publishes a range before a turn, and a bearing always.
+/// A module that publishes a range until a certain turn, and a bearing in all turns.
 struct Echo {
     range: Out<Meters>,
     bearing: Out<Radians>,
@@ -210,7 +211,7 @@ impl Module<Sensed> for Echo {
     }
 }
 
-/// A library with a module `echo`, which publishes no range from a turn on.
+/// Returns a library with a module `echo`, which publishes no range from the turn `until` on.
 fn echo(until: u64) -> Library<Sensed> {
     let mut library = Library::new();
     let make = move |declare: &mut Declare| Echo {
@@ -255,7 +256,7 @@ fn a_plan_that_waits_in_vain_names_the_modules() {
     ");
 }
 
-/// A module `heading` whose bearing is not an angle.
+/// Returns a library with a module `heading` whose bearing is not an angle.
 fn wrong() -> Library<Sensed> {
     struct Wrong;
     impl Module<Sensed> for Wrong {

@@ -1,4 +1,4 @@
-//! Compares the movements that plans claim with the trail of a run: the plans of `plans/` and those of the
+//! Compares the movements that plans claim with the trail of a run, for the plans of `plans/` and for the plans of the
 //! book that have a file name there.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -9,32 +9,32 @@ use std::process::Command;
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::root;
 
-/// A floor with one wall, far away.
+/// A floor with a single wall, far away.
 const FLOOR: &str = "[[wall]]\npoints = [[-20, -20], [20, -20]]\n";
 /// A room of 8 m by 6 m.
 const ROOM: &str = "[[wall]]\npoints = [[0, 0], [8, 0], [8, 6], [0, 6], [0, 0]]\n";
 /// A floor with a wall across the x axis at 3 m.
 const ACROSS: &str = "[[wall]]\npoints = [[3, -4], [3, 4]]\n[[wall]]\npoints = [[-20, -20], [20, -20]]\n";
-/// A floor with a post on the x axis, 60 cm wide, whose near side is at 1.7 m.
+/// A floor with a round post on the x axis, with a diameter of 60 cm, whose near side is at 1.7 m.
 const POST: &str =
     "[[disc]]\nname = \"post\"\ncentre = [2, 0]\nradius = 0.3\n\n[[wall]]\npoints = [[-20, -20], [20, -20]]\n";
 
-/// A row of a trail: seconds, metres, metres, degrees.
+/// A row of a trail: time in seconds, x and y in metres, and heading in degrees.
 type Row = [f64; 4];
 
-/// A run that is over.
+/// Result of a run.
 struct Run {
     trail: Vec<Row>,
-    /// The lines that the executable printed, each transition with its time.
+    /// Lines of the report, each a transition with its time.
     lines: Vec<String>,
 }
 
-/// A plan of the folder `plans`.
+/// Returns the text of a plan in the folder `plans`.
 fn of_plans(name: &str) -> String {
     fs::read_to_string(root().join("plans").join(format!("{name}.mdle"))).unwrap()
 }
 
-/// The blocks that a page of the book writes to this file, one after the other.
+/// Returns all blocks that a page of the book writes to this file, in order.
 fn all_of_book(page: &str, file: &str) -> Vec<String> {
     let text = fs::read_to_string(root().join("docs/src").join(page)).unwrap();
     let language = file.rsplit('.').next().unwrap();
@@ -45,12 +45,12 @@ fn all_of_book(page: &str, file: &str) -> Vec<String> {
     plans
 }
 
-/// The last block that a page of the book writes to this file.
+/// Returns the last block that a page of the book writes to this file.
 fn of_book(page: &str, file: &str) -> String {
     all_of_book(page, file).pop().unwrap()
 }
 
-/// Builds a plan for the simulator.
+/// Builds a plan for the simulator, and returns the path of its executable.
 fn built(name: &str, text: &str) -> PathBuf {
     let folder = folder(&format!("movement_{name}"));
     fs::write(folder.join(format!("{name}.mdle")), text).unwrap();
@@ -62,7 +62,7 @@ fn built(name: &str, text: &str) -> PathBuf {
     folder.join(name)
 }
 
-/// Runs a plan with these options, which may end it at a time.
+/// Runs a plan with these options, which may set a time limit.
 fn run(executable: &PathBuf, options: &[&str]) -> Run {
     let folder = executable.parent().unwrap();
     let mut command = Command::new(executable);
@@ -80,7 +80,7 @@ fn run(executable: &PathBuf, options: &[&str]) -> Run {
 }
 
 impl Run {
-    /// The trail as it is seen from the start: metres ahead, metres to the left, degrees turned to the left.
+    /// Returns the trail relative to the start pose: metres ahead, metres to the left, and degrees turned to the left.
     fn relative(&self) -> Vec<[f64; 3]> {
         let [_, x0, y0, heading] = self.trail[0];
         let (sin, cos) = (libm::sin(heading.to_radians()), libm::cos(heading.to_radians()));
@@ -91,20 +91,20 @@ impl Run {
         relative.collect()
     }
 
-    /// The place in the trail at this time.
+    /// Returns the index of the row of the trail at this time.
     fn at(&self, seconds: f64) -> usize {
         self.trail.iter().position(|[t, ..]| *t >= seconds - 1e-9).unwrap_or(self.trail.len() - 1)
     }
 
-    /// The times at which a law began, by the beginning of its text.
+    /// Returns the times at which a law began whose text begins with `law`.
     fn begins(&self, law: &str) -> Vec<f64> {
         let lines = self.lines.iter().filter(|line| line.contains(&format!(" s  {law}")));
         lines.map(|line| line.split(' ').find(|word| !word.is_empty()).unwrap().parse().unwrap()).collect()
     }
 }
 
-/// Counts how often the robot reached the far end of a path of this length, within 30 cm, and then the start again; the
-/// robot never left the path by more than 30 cm.
+/// Returns how often the robot reached the far end of a straight line of this length, within 30 cm, and how often it
+/// returned to the start. Asserts that the robot never left the line by more than 30 cm.
 fn legs(trail: &[[f64; 3]], length: f64, name: &str) -> (u32, u32) {
     let (mut there, mut back, mut is_out) = (0, 0, false);
     for [ahead, left, _] in trail {
@@ -358,7 +358,8 @@ fn the_yard_is_crossed_and_the_robot_turns_left() {
     assert!(through.is_some_and(|pair| pair[1][2] > 1.5 && pair[1][2] < 3.0), "{through:?}");
 }
 
-/// In a closed room the first leg leads nowhere. The second one has all of its time; a plan in rows does likewise.
+/// In a closed room the robot makes no progress in the first leg. The second leg gets its full time; a plan in rows
+/// behaves in the same way.
 #[test]
 fn stuck_ends_a_leg_that_leads_nowhere() {
     let legs = of_book("quarks.md", "legs.mdle");

@@ -1,4 +1,4 @@
-//! `mdle navigate` and `mdle map` on the floor of the paper (docs/src/navigation.md).
+//! Tests `mdle navigate` and `mdle map` on the paper's office floor (docs/src/navigation.md).
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -11,12 +11,12 @@ use mdle_tests::chance::repeated;
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
 
-/// Runs `mdle` in a folder.
+/// Runs `mdle` with these arguments in a folder.
 fn run(folder: &Path, words: &[&str]) -> Output {
     Command::new(mdle()).args(words).current_dir(folder).output().unwrap()
 }
 
-/// Standard output, standard error and the exit status, as a text.
+/// Returns standard output, standard error and the exit status as text.
 fn text(output: &Output) -> String {
     let [out, err] = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8(bytes.clone()).unwrap());
     format!("{out}{err}[{}]\n", output.status.code().unwrap())
@@ -29,15 +29,15 @@ fn navigate(folder: &Path, words: &[&str]) -> Output {
     run(folder, &[&["navigate", graph.to_str().unwrap()], words, &usual].concat())
 }
 
-/// The lines about the route and the landmarks.
+/// Returns the lines about the route and the landmarks.
 fn landmarks(output: &Output) -> String {
     let text = text(output);
     let is_about = |line: &&str| line.contains("route: ") || line.contains(" at ") || line.starts_with("at ");
     text.lines().filter(is_about).collect::<Vec<_>>().join("\n")
 }
 
-/// Graph of four landmarks in a folder of its own: a plan that ends, one that never ends, one that is cut short, and
-/// two that only their own conditions can end.
+/// Returns a folder with a graph of four landmarks. Its edges are a plan that ends, a plan that never ends, a plan that
+/// is cut short by its timer, and two plans that only their own conditions can end.
 fn small_graph(test: &str) -> PathBuf {
     let folder = folder(test);
     let graph = "Γ_a^b = { AToB (bumper) (Atom (wait 1s) (go 20 0)) }\n\
@@ -122,8 +122,8 @@ fn a_robot_is_believed_without_places() {
     assert_eq!(status("place = \"1\"\n"), Some(2));
 }
 
-/// A folder for a test with the graph of the repository, and maps of its landmarks that a Scout has made, once for all
-/// tests.
+/// Returns a folder for a test with the graph of the repository, and with maps of its landmarks. A Scout has made the
+/// maps once for all tests.
 fn mapped(test: &str) -> PathBuf {
     static MADE: OnceLock<PathBuf> = OnceLock::new();
     let made = MADE.get_or_init(with_maps);
@@ -154,7 +154,7 @@ fn with_maps() -> PathBuf {
     folder
 }
 
-/// Drives a Scout by the graph in a folder.
+/// Navigates a simulated Scout by the graph and the maps in a folder.
 fn by_maps(folder: &Path, words: &[&str]) -> Output {
     let usual = ["--target", "sim", "--speed", "max", "--body", "scout"];
     run(folder, &[&["navigate", "office.mdle"], words, &usual].concat())
@@ -253,7 +253,7 @@ fn a_graph_without_the_way_is_refused() {
     "#);
 }
 
-/// Runs `mdle` on a record, and expects success; returns the text.
+/// Runs `mdle` on a record, asserts that it succeeds, and returns its output.
 fn read(folder: &Path, words: &[&str]) -> String {
     let output = run(folder, words);
     assert_eq!(output.status.code(), Some(0), "{words:?}: {}", text(&output));

@@ -1,18 +1,18 @@
-//! The worlds in which a plan makes sense, and where it asks for contact.
+//! The worlds in which each plan makes sense, and the contacts that it requests.
 
-/// The plans of one name of a file or of a page of the book.
+/// Plans with the same name in a file or on a page of the book.
 pub(super) struct Row {
     pub(super) file: &'static str,
     pub(super) plan: &'static str,
-    /// The worlds in which the way of the plan is free as far as it does not look: a plan that goes ahead by time needs
-    /// that much room, and one that waits for `atIsection 1000` or for a range ahead comes to a wall that is square to
-    /// its way, since a sonar hears nothing of a wall at a slant.
+    /// Worlds in which the path of the plan is free where the plan does not look: a plan that drives ahead for a
+    /// certain time needs enough room. A plan that waits for `atIsection 1000` or for a range ahead must reach a wall
+    /// at a right angle, because a sonar gets no echo from a slanting wall.
     pub(super) worlds: &'static str,
-    /// The reason why the plan asks for contact; empty if it does not.
+    /// Reason why the plan requests contact; empty if it does not.
     pub(super) asks: &'static str,
-    /// Maximum number of runs in a hundred with a contact that the plan does not ask for.
+    /// Maximum percentage of runs with a contact that the plan does not request.
     pub(super) most: u64,
-    /// The cause of such contacts.
+    /// Cause of such contacts.
     pub(super) cause: &'static str,
 }
 
@@ -21,12 +21,12 @@ const fn row(file: &'static str, plan: &'static str, worlds: &'static str) -> Ro
 }
 
 impl Row {
-    /// A plan that asks for contact, for this reason.
+    /// Returns the row for a plan that requests contact, with the reason.
     const fn asks(self, asks: &'static str) -> Self {
         Self { asks, ..self }
     }
 
-    /// A plan that touches something in at most `most` runs of a hundred, for this reason.
+    /// Returns the row for a plan that touches something in at most `most` percent of the runs, with the cause.
     const fn touches(self, most: u64, cause: &'static str) -> Self {
         Self { most, cause, ..self }
     }
