@@ -1,4 +1,5 @@
-//! Plans whose laws hang or panic, on trial and not, and the threads on which plans are dropped and modules are made.
+//! Tests plans whose laws hang or panic, on trial and not, and the threads on which plans are dropped and modules are
+//! made.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -17,34 +18,34 @@ use mdle_sim::alphabet::{Alphabet, AnyControl, AnyInterrupt, AnyLaw, AnySignal};
 
 use super::modules::{Run, loaded};
 
-/// Something that a law does besides its input.
+/// An unusual effect of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Deed {
-    /// Nothing else.
+    /// No unusual effect.
     None,
-    /// Never returns, until the test is over.
+    /// Does not return until the test is over.
     Hangs,
-    /// At a time of [`SLOW`], returns three turns later, by [`TURN`].
+    /// Returns three turns later, according to [`TURN`], at each time in [`SLOW`].
     Slow,
     /// Panics.
     Panics,
-    /// Notes the thread that drops its plan.
+    /// Records the name of the thread that drops its plan.
     Noted,
 }
 
-/// The speeds of `go` with which a law does something else, in m/s.
+/// Speeds of `go` that select an unusual effect, in m/s.
 const DEEDS: [(f64, Deed); 4] =
     [(-0.13, Deed::Hangs), (-0.14, Deed::Panics), (-0.15, Deed::Noted), (-0.16, Deed::Slow)];
-/// The times at which a slow law takes long.
+/// Times at which a slow law takes long.
 const SLOW: [Nanos; 2] = [Nanos(300_000_000), Nanos(1_000_000_000)];
-/// Number of the turn for which slow laws wait.
+/// Number of the current turn, by which slow laws wait.
 pub(super) static TURN: AtomicU64 = AtomicU64::new(u64::MAX);
-/// `true` once laws that hang are to return.
+/// `true` once laws that hang should return.
 static IS_OVER: AtomicBool = AtomicBool::new(false);
-/// Names of the threads that have dropped noted plans.
+/// Names of the threads that have dropped plans with [`Deed::Noted`].
 static DROPPED: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// The alphabet of the simulated robot, in which some laws do something else.
+/// The alphabet of the simulated robot, in which some laws have unusual effects.
 pub(super) struct Odd;
 
 pub(super) struct OddControl(AnyControl, Deed);
@@ -137,13 +138,13 @@ fn run(text: &str, time: Time, library: &Library<Sensed>) -> Run<Odd> {
     Run::begin(text, library, time).unwrap()
 }
 
-/// A plan with one law.
+/// Returns the text of a plan whose first atom has this law.
 fn plan(law: &str) -> String {
     format!("{{ Odd (null) (Atom (wait 60s) {law}) (Atom (null) stop) }}")
 }
 
-/// Makes turns until the run ends by a fault, or the first plan goes on after another one began to drive; returns the
-/// number of turns in which the robot was driven by the plan that is at fault, the messages, and the fault.
+/// Runs turns until the run ends with a fault, or the first plan continues after the plan `Odd` began to drive. Returns
+/// the number of turns in which `Odd` drove the robot, the messages, and the fault, if any.
 fn outcome(run: &mut Run<Odd>) -> (usize, Vec<String>, Option<PilotFault>) {
     let (mut messages, mut driven, mut has_begun) = (Vec::new(), 0, run.engine.plans().number() == 1);
     for _ in 0..200 {
@@ -163,7 +164,7 @@ fn outcome(run: &mut Run<Odd>) -> (usize, Vec<String>, Option<PilotFault>) {
     panic!("no end: {messages:?}");
 }
 
-/// Returns `true` if the first plan drives the robot in one of the next turns: on a busy machine some are late.
+/// Returns `true` if the first plan drives the robot in one of the next turns; on a busy machine some turns are late.
 fn drives_on(run: &mut Run<Odd>) -> bool {
     let drives = (0..50).any(|_| {
         run.turn().unwrap();
@@ -210,7 +211,8 @@ fn a_law_that_hangs_stops_the_robot() {
     IS_OVER.store(true, Ordering::Relaxed);
 }
 
-/// Makes turns until a noted plan is dropped; returns the name of the thread.
+/// Runs turns, waits until a plan with [`Deed::Noted`] is dropped, and returns the name of the thread that has dropped
+/// it.
 fn dropped(run: &mut Run<Odd>) -> String {
     let begun = Instant::now();
     (0..5).for_each(|_| _ = run.turn().unwrap());
@@ -281,7 +283,7 @@ impl Module<Sensed> for Silent {
     }
 }
 
-/// The scheduling policy and the real-time priority of this thread, fields 41 and 40 of proc(5).
+/// Returns the scheduling policy and the real-time priority of this thread: fields 41 and 40 of proc(5).
 fn scheduling() -> [String; 2] {
     let stat = fs::read_to_string("/proc/thread-self/stat").unwrap();
     let fields: Vec<_> = stat.rsplit(')').next().unwrap().split_whitespace().collect();

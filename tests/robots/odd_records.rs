@@ -1,5 +1,5 @@
-//! Odd records and odd questions: from pipes, very long, of a plan that this version does not know, and times outside
-//! of the run.
+//! Tests unusual records and questions: records from pipes, very long records, records of a plan that this version
+//! cannot compile, and times outside the run.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs::{self, File};
@@ -17,7 +17,8 @@ const PLAN: &str = "{ Square (wait 5min)
 }
 ";
 
-/// Runs a command line in which `mdle` is the program of this workspace.
+/// Runs a command line of the shell, in which `mdle` is the program of this workspace. Returns the output, the messages
+/// and the exit status.
 fn shell(folder: &Path, line: &str) -> (String, String, i32) {
     let programs = std::env::var("PATH").unwrap();
     let programs = format!("{}:{programs}", mdle().parent().unwrap().display());
@@ -26,7 +27,7 @@ fn shell(folder: &Path, line: &str) -> (String, String, i32) {
     (out, err, output.status.code().unwrap())
 }
 
-/// A folder with the record `run.mcap`, with these options of the run.
+/// Returns a folder with `run.mcap`, the record of a run with these options.
 fn recorded(name: &str, options: &str) -> PathBuf {
     let folder = folder(&format!("odd-record-{name}"));
     fs::write(folder.join("square.mdle"), PLAN).unwrap();
@@ -69,7 +70,7 @@ fn a_record_may_come_from_a_pipe() {
     assert_eq!((err.lines().count(), status), (1, 2), "{err}");
 }
 
-/// Writes a record of this many turns, all with the first output of `run.mcap`, into `to`.
+/// Writes a record of `turns` turns to `to`. All turns have the first output of `run.mcap`.
 fn long(folder: &Path, turns: u64, to: File) {
     let (begin, mut records) = Records::open(File::open(folder.join("run.mcap")).unwrap()).unwrap();
     let first = records.next().unwrap().unwrap();
@@ -90,7 +91,7 @@ fn long(folder: &Path, turns: u64, to: File) {
     file.write_all(&bytes).unwrap();
 }
 
-/// A record is read part by part: where a short one can be read, so can one that is fifty times as long.
+/// Records are read in parts, so that a record that is fifty times as long takes no more memory.
 #[test]
 fn a_long_record_takes_no_more_memory() {
     let folder = recorded("long", "--turns 20");
@@ -112,7 +113,7 @@ fn a_long_record_takes_no_more_memory() {
     assert!(text.contains("10000 turns"), "with {least} kB: {text}{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Between two turns it is the earlier one; outside of the run there is none.
+/// A time between two turns means the earlier turn; a time outside the run is refused.
 #[test]
 fn times_outside_of_the_run_are_refused() {
     let folder = recorded("times", "--seed 7 --turns 30");
@@ -139,7 +140,7 @@ fn times_outside_of_the_run_are_refused() {
     insta::assert_snapshot!(answers.collect::<String>());
 }
 
-/// The plan of a record may use what an alphabet no longer has.
+/// The plan of a record may use quarks that the alphabet no longer has.
 #[test]
 fn a_plan_that_the_alphabet_no_longer_fits_is_refused() {
     let folder = recorded("alphabet", "--turns 20");

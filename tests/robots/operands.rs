@@ -1,4 +1,4 @@
-//! Reports, logs, batches and traces name the operands that fired, exactly those, with their values and places.
+//! Tests that reports, logs, batches and traces name exactly the operands that fired, with their values and places.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -16,7 +16,7 @@ use mdle_tests::random_script::script;
 /// Number of random plans.
 const PLANS: u64 = 1_000;
 
-/// Returns the operands of a condition text: the parts that AND and OR join, inside any parentheses.
+/// Returns the operands of a condition's text: the parts that AND and OR join, at any depth of parentheses.
 fn operands(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut operand = String::new();
@@ -47,7 +47,8 @@ fn operands(text: &str) -> Vec<String> {
     found
 }
 
-/// Returns the value of an operand in a turn, by its text alone; `None` if it depends on more than these arguments.
+/// Returns the value of an operand in a turn, computed only from its text and these arguments. Returns `None` if its
+/// value depends on anything else.
 fn value(operand: &str, reports: &Reports, since: f64) -> Option<bool> {
     let now = reports.t.seconds();
     let seconds = |text: &str| text.parse::<f64>().ok();
@@ -120,7 +121,8 @@ fn the_operands_named_are_exactly_those_that_fired() {
     );
 }
 
-/// A wall follower that has everything a report names: operands with values, several at once, loops, behaviors.
+/// A wall-following plan with everything that a report can name: operands with values, several operands at once, loops,
+/// and behaviors.
 const PLAN: &str = "\
 { Wall (bumper OR // contact
         wait 10min)
@@ -136,7 +138,7 @@ const PLAN: &str = "\
 }
 ";
 
-/// Plan that ends by contact, by time, or with its last atom.
+/// A plan that ends by contact, by time, or with its last atom.
 const PUSH: &str = "\
 { Push (bumper OR wait 1min)
   (Atom (r0 < 60cm OR wait 10s) (go 20 0))
@@ -158,14 +160,14 @@ fn plans() -> &'static Path {
     })
 }
 
-/// Returns the exit status of a plan in the hall, and its output.
+/// Runs a plan in the hall; returns its exit status and its report.
 fn reported(plan: &str, options: &[&str]) -> (Option<i32>, String) {
     let mut command = Command::new(format!("./{plan}"));
     let output: Output = command.args(["--world", "hall"]).args(options).current_dir(plans()).output().unwrap();
     (output.status.code(), String::from_utf8(output.stdout).unwrap())
 }
 
-/// A run of the wall follower at the fastest pace, until it turns for the second time.
+/// Options for a run of the wall follower at maximum speed, until the robot turns for the second time.
 const TWICE: [&str; 5] = ["--start=1.5,5,0", "--speed", "max", "--timeout", "79"];
 
 #[test]

@@ -1,5 +1,5 @@
-//! Plans that replay paths, by the executables that `mdlec` builds: where and when they end, which paths they refuse,
-//! and that a recorded path is a path again.
+//! Tests plans that replay paths, by the executables that `mdlec` builds: where and when they end, which paths they
+//! refuse, and that a recorded path can be replayed.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -15,12 +15,13 @@ use mdle_scout_emulator::scout::Scout;
 use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
 
-/// The path twice, by both ways to name its file; the second time from where the first has led.
+/// A plan that replays the path twice, with both ways to name its file. The second replay begins where the first has
+/// ended.
 const TWICE: &str = "{ Twice (bumper) (Atom (null) path(bend)) FRAME 200deg (Atom (null) path \"bend.csv\") }\n";
-/// Once, by a plan that becomes rows of tables.
+/// A plan that replays the path once, and is emitted as rows of tables.
 const ONCE: &str = "{ Once (RISING bumper) (Atom (null) path(bend)) }\n";
 
-/// Through 180°, at speeds that change, to a heading of 200°.
+/// A path that turns by 180° at changing speeds, and ends with a heading of 200°.
 const BEND: &str = "# To the left and back.
 time s, heading deg, speed cm/s
 0, 0, 0
@@ -36,10 +37,10 @@ time s, heading deg, speed cm/s
 9, -160, 0
 ";
 
-/// The floor: a wall far away.
+/// A floor with a single wall, far away.
 const WORLD: &str = "start = { x = 1, y = 2, heading = 30 }\n[[wall]]\npoints = [[-20, -20], [20, -20]]\n";
 
-/// The plan for the simulator, built once, beside its path and its floor.
+/// Returns the folder of the plan's executable for the simulator, which is built once, and of its path and floor.
 fn twice() -> &'static Path {
     static TWICE_FOLDER: OnceLock<PathBuf> = OnceLock::new();
     TWICE_FOLDER.get_or_init(|| built("paths_sim", "twice", TWICE, "sim"))
@@ -67,11 +68,11 @@ fn good(options: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Place and heading: metres and degrees.
+/// Place in metres, and heading in degrees.
 type At = [f64; 3];
 
-/// Returns the pose to which the setpoints of a path lead from `from`, in a frame turned by `frame` degrees, and the
-/// time at which they end: read and integrated here, in steps of a millisecond.
+/// Returns the pose to which the setpoints of a path lead from the pose `from`, in a frame that is turned by `frame`
+/// degrees, and the time at which they end. The setpoints are parsed and integrated here, in steps of a millisecond.
 fn integrated(path: &str, from: At, frame: f64) -> (At, f64) {
     let report = path.lines().map(|line| line.split('#').next().unwrap()).filter(|line| !line.trim().is_empty());
     let numbers = |row: &str| row.split(',').map(|number| number.trim().parse().unwrap()).collect::<Vec<f64>>();
@@ -92,7 +93,7 @@ fn integrated(path: &str, from: At, frame: f64) -> (At, f64) {
     ([x, y, heading], rows.last().unwrap()[0])
 }
 
-/// Returns the pose to which the plan should lead with this path.
+/// Returns the pose at which the plan [`TWICE`] should end with this path.
 fn twice_integrated(path: &str) -> At {
     let (half, _) = integrated(path, [1.0, 2.0, 30.0], 30.0);
     integrated(path, half, 230.0).0
@@ -104,7 +105,7 @@ fn assert_near([x, y, heading]: At, [to_x, to_y, to_heading]: At, metres: f64, d
     assert!(away <= metres && turned.abs() <= degrees, "{away} m and {turned}° from ({to_x}, {to_y}) at {to_heading}°");
 }
 
-/// Returns the robot's pose in a turn that is over, by the time that begins its row.
+/// Returns the robot's pose at a time, from the row of the trail that begins with this time.
 fn was_at(trail: &str, seconds: &str) -> At {
     let trail = fs::read_to_string(twice().join(trail)).unwrap();
     let row = trail.lines().find(|row| row.split(',').next() == Some(seconds)).unwrap_or_else(|| panic!("{trail}"));

@@ -1,4 +1,4 @@
-//! A plan that depends on battery and charger behaves equally on each emulated robot that has them.
+//! Tests that a plan that depends on the battery and the charger behaves equally on each emulated robot that has them.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -15,13 +15,13 @@ use mdle_tests::executable::{folder, run_mdlec};
 
 const PERIOD: Duration = Duration::from_millis(100);
 const PACE: Pace = Pace::Lockstep(PERIOD);
-/// Plan of a robot that drives until its battery is low, and rests until it is plugged in.
+/// A plan that drives until the battery is low, and then stops until the robot is plugged in.
 const PLAN: &str = "{ Home (charger OR wait 30s) (Atom (lowBattery OR battery < 5V) (go 10 0)) (Atom (null) stop) }\n";
 
-/// Faults of a robot: its battery is low after 5 s, and it is plugged in after 10.
+/// Faults of a robot: its battery is low after 5 s, and it is plugged in after 10 s.
 const FAULTS: [&str; 2] = ["low-battery@5", "plugged-in@10"];
 
-/// The report of a plan on this robot with these faults, without times.
+/// Runs a plan on this robot with these faults, and returns its report without times.
 fn reported<R: Emulated + Send>(target: &str, plan: &str, faults: &[&str], robot: R) -> Vec<String> {
     let folder = folder(&format!("power_on_{target}_{}", faults.len()));
     fs::write(folder.join("home.mdle"), plan).unwrap();
@@ -41,13 +41,13 @@ fn reported<R: Emulated + Send>(target: &str, plan: &str, faults: &[&str], robot
     transitions(&output.stdout)
 }
 
-/// The lines of a report without their times.
+/// Returns the lines of a report without their times.
 fn transitions(report: &[u8]) -> Vec<String> {
     let report = String::from_utf8(report.to_vec()).unwrap();
     report.lines().map(|line| line.split_once(" s  ").map_or(line, |(_, transition)| transition).to_owned()).collect()
 }
 
-/// A floor with a charger ahead of the start, and a plan that drives until it is on it.
+/// A floor with a charger ahead of the start; `DOCK` is a plan that drives until the robot is on the charger.
 const FLOOR: &str = "charger = { at = [1, 0], heading = 0, reach = 0.15 }\n";
 const DOCK: &str = "{ Dock (wait 1min) (Atom (charger) (go 10 0)) (Atom (wait 2s) stop) }\n";
 

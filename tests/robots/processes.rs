@@ -1,5 +1,5 @@
-//! Modules that are child processes: a plan that reads one in Python, whatever such a process does wrong, and that
-//! none is left when the run has ended.
+//! Tests modules that are child processes: a plan that reads a module in Python, all faults of such a process, and that
+//! no process is left when the run has ended.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -11,15 +11,15 @@ use std::time::{Duration, Instant};
 use mdle_tests::executable::{folder, mdle};
 use rustix::process::{Pid, Signal, kill_process};
 
-/// Drives until a module says that something is near, or says nothing for a second.
+/// A plan that drives until a module publishes a short range, or publishes nothing for a second.
 const PLAN: &str = "{ Near (bumper OR age(ears module) > 1s OR wait 8s)
   (Atom (range(ears module) < 50cm) (go 20 0))
   (Atom (wait 1) stop)
 }
 ";
 
-/// A process that publishes the way to a place ahead, and does something else at its answer 10. It writes its number
-/// into the file `pid`, and those of its children.
+/// A process that publishes the bearing and range of a place ahead, and runs the statement `OTHER` before its answer
+/// 10. It writes its process number, and those of its children, to the file `pid`.
 const PROGRAM: &str = "import json, os, signal, subprocess, sys, time
 def say(**line):
     print(json.dumps(line), flush=True)
@@ -37,7 +37,8 @@ for number, line in enumerate(sys.stdin):
     say(bearing=0, range=None if x is None else 120 - x)
 ";
 
-/// A folder with the plan and a process, whose declaration and whose answer 10 are preceded by these statements.
+/// Returns a folder with the plan and a process. The process runs `first` before its declaration, and `other` before
+/// its answer 10.
 fn with_process(test: &str, first: &str, other: &str) -> PathBuf {
     let folder = folder(test);
     fs::write(folder.join("plan.mdle"), PLAN).unwrap();
@@ -45,7 +46,7 @@ fn with_process(test: &str, first: &str, other: &str) -> PathBuf {
     folder
 }
 
-/// `mdle run` of the plan in the simulator.
+/// Returns the command `mdle run` for the plan in the simulator.
 fn run(folder: &Path, speed: &str) -> Command {
     let mut command = Command::new(mdle());
     command.args(["run", "plan.mdle", "--target", "sim", "--world", "hall", "--speed", speed]);
@@ -53,26 +54,27 @@ fn run(folder: &Path, speed: &str) -> Command {
     command
 }
 
-/// Both streams and the exit status of a run.
+/// Returns standard output, standard error and the exit status of a run.
 fn report(mut command: Command) -> String {
     let Output { status, stdout, stderr } = command.output().unwrap();
     let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     format!("{out}{err}[{}]\n", status.code().unwrap())
 }
 
-/// The processes that the file `pid` names.
+/// Returns the process numbers in the file `pid`.
 fn processes(folder: &Path) -> Vec<u32> {
     let text = fs::read_to_string(folder.join("pid")).unwrap_or_default();
     text.lines().map(|line| line.parse().unwrap()).collect()
 }
 
-/// Returns `true` if a process runs. One that has ended may still wait for its parent to notice.
+/// Returns `true` if a process runs. A process that has ended, but for which its parent has not waited yet, does not
+/// count.
 fn is_running(process: u32) -> bool {
     let stat = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
     stat.rsplit(") ").next().is_some_and(|state| !state.is_empty() && !state.starts_with(['Z', 'X']))
 }
 
-/// Waits until something is so, for at most a minute.
+/// Waits until `is_so` returns `true`, for at most a minute.
 #[track_caller]
 fn wait_for(what: &str, is_so: impl Fn() -> bool) {
     let begun = Instant::now();
@@ -163,7 +165,7 @@ fn a_process_that_declares_nothing_is_refused() {
     assert!(!processes(&folder).into_iter().any(is_running));
 }
 
-/// A process that ends with nothing but SIGKILL, with a child of its own.
+/// Statements that make a process ignore all signals except SIGKILL, and start a child process.
 const STUBBORN: &str =
     "[signal.signal(each, signal.SIG_IGN) for each in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)]
 note(subprocess.Popen(['sleep', '1000'], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL).pid)

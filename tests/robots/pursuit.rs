@@ -1,4 +1,5 @@
-//! Local pursuit by three robots (paper, section IV-D, Fig. 12): the iterated ways become straight, over random seeds.
+//! Tests local pursuit by three robots (paper, section IV-D, Fig. 12): with random seeds, the paths become straight
+//! from trip to trip.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test tells")]
 
@@ -15,7 +16,7 @@ use serde_json::Value;
 /// Number of trips: four laps there and back.
 const TRIPS: usize = 8;
 
-/// A folder with the scenario of the book, to which `more` is added.
+/// Returns a folder with the scenario of the book, to which `more` is appended.
 fn scenario(test: &str, more: &str) -> PathBuf {
     let folder = folder(test);
     let plans = root().join("plans/pursuit");
@@ -33,9 +34,9 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// The ways that a robot drove by `path` and `Follow`, in order, by the log of a run.
+/// Trips of a robot by `path` and `Follow`, in order, according to the log of a run.
 struct Trips {
-    /// For each trip, if the robot led it, and its places.
+    /// For each trip, `true` if the robot led it, and the robot's places.
     trips: Vec<(bool, Vec<Place>)>,
 }
 
@@ -64,8 +65,9 @@ impl Trips {
     }
 }
 
-/// Figures of a run: time of its end in seconds, least gap in centimetres, and for the trips the excess of the leader
-/// and of the second robot, and how far the leader was from the line between the ends.
+/// Figures of a run: the time of its end in seconds, the minimum gap in centimetres and, for each trip, the excess
+/// length of the leader's and of the second robot's path in percent, and the maximum distance of the leader from the
+/// line between the ends in metres.
 struct Figures {
     seconds: f64,
     gap: f64,
@@ -74,7 +76,7 @@ struct Figures {
     bulges: Vec<f64>,
 }
 
-/// Runs the scenario with this seed, and checks what holds for each run.
+/// Runs the scenario with this seed, checks conditions that hold for every run, and returns the figures.
 fn figures(folder: &Path, seed: u64) -> Figures {
     let log = format!("{seed}.jsonl");
     let output = run(folder, &["--seed", &seed.to_string(), "--log", &log]);
@@ -97,7 +99,7 @@ fn figures(folder: &Path, seed: u64) -> Figures {
     }
 }
 
-/// Checks what is promised of each run, and prints the figures of all.
+/// Asserts what the book promises about each run, and prints the figures of all runs.
 fn assert_converge(test: &str, more: &str, first: u64) {
     let folder = scenario(test, more);
     let seeds = first..first + repeated(5);
@@ -163,7 +165,7 @@ fn the_same_seed_gives_the_same_bytes() {
     assert!(one.2[0] != original, "the recorded path is another one");
 }
 
-/// Returns the times at which each atom of a robot's plan begins in the first lap, by the report of a run.
+/// Returns the times at which the atoms of a robot's plan begin in the first lap, according to the report of a run.
 fn begins(report: &str, robot: &str) -> Vec<f64> {
     let named = format!(" s  {robot}: ");
     let lines = report.lines().filter_map(|line| line.split_once(&named));

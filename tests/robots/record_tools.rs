@@ -1,4 +1,4 @@
-//! `mdle log`, `mdle plot` and `mdle replay --until` on the record of a run in the simulator.
+//! Tests `mdle log`, `mdle plot` and `mdle replay --until` on the record of a run in the simulator.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -20,7 +20,7 @@ fn run(folder: &Path, arguments: &str) -> (String, String, i32) {
     (out, err, output.status.code().unwrap())
 }
 
-/// A folder with the record `square.mcap`.
+/// Returns a folder with the record `square.mcap`.
 fn recorded(name: &str) -> PathBuf {
     let folder = folder(&format!("record-tools-{name}"));
     fs::write(folder.join("square.mdle"), PLAN).unwrap();
@@ -45,7 +45,7 @@ fn a_record_tells_what_it_contains() {
     assert!(out.contains("; the record has no end\n") && status == 0, "{out}");
 }
 
-/// A part is a record as well: it replays, and its turns have the same explanation.
+/// A part of a record is a record too: it replays, and its turns have the same explanations.
 #[test]
 fn a_part_of_a_record_is_a_record() {
     let folder = recorded("cut");
@@ -90,7 +90,7 @@ fn messages_for_viewers_are_complete() {
     );
 }
 
-/// A negative time is not an option.
+/// A negative time is not parsed as an option.
 #[test]
 fn times_before_the_run_have_a_help() {
     let folder = recorded("negative");
@@ -105,7 +105,7 @@ fn times_before_the_run_have_a_help() {
     }
 }
 
-/// As in `mdle log export --csv square.mcap | head -1`.
+/// The reader of the output may close the pipe, as in `mdle log export --csv square.mcap | head -1`.
 #[test]
 fn a_reader_that_has_gone_is_no_error() {
     let folder = recorded("closed");
@@ -157,7 +157,8 @@ fn a_record_becomes_a_table() {
     assert_eq!(fs::read_to_string(folder.join("table.csv")).unwrap(), out);
 }
 
-/// On its script the plan does what it did in the run, by two machines: so the debugger steps through that run.
+/// On the script of a record, two machines make the plan behave as in the run, so that the debugger can step through
+/// the run.
 #[test]
 fn a_record_becomes_a_script() {
     let folder = recorded("script");
@@ -220,7 +221,7 @@ fn a_record_is_drawn() {
     assert!(!folder.join("other.svg").exists());
 }
 
-/// The plan goes on under a rule, and its own input is computed again.
+/// Pictures are written as SVG only.
 #[test]
 fn a_picture_is_svg_alone() {
     let folder = recorded("format");

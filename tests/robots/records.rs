@@ -1,5 +1,5 @@
-//! Records of runs: each replays to the bit, on the simulator and on both emulated robots; a record that was changed,
-//! cut short, or that belongs to a run that was killed says so.
+//! Tests records of runs. Each record replays to the bit, on the simulator and on both emulated robots. A record that
+//! was changed or cut short, or whose run was killed, is reported as such.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -24,7 +24,7 @@ use mdle_tests::run_output::simulated;
 const PERIOD: Duration = Duration::from_millis(100);
 const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
 
-/// The text of a plan with a loop, a memory, a rising condition and a frame.
+/// A plan with a loop, a memory, a rising condition and a label.
 const PLAN: &str = "{ Rounds (wait 60s)
   ((Atom (RISING (r0 < 80cm) OR wait 4s) (go 30 0)) ahead: (Atom (wait 2s OR bumper) (go 0 0.7))
   (Atom (NOT after ahead (wait 2s) OR wait 1s) stop))^inf
@@ -36,7 +36,7 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// The report, the messages and the exit status of a replay.
+/// Returns the report, the messages and the exit status of a replay.
 fn replay(folder: &Path, arguments: &[&str]) -> (String, String, Option<i32>) {
     let output = run(folder, &[&["replay"], arguments].concat());
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
@@ -53,7 +53,7 @@ fn assert_same(folder: &Path, arguments: &[&str]) -> u64 {
     turns.expect(&out).parse().unwrap()
 }
 
-/// A record of `PLAN` in the simulator, as `run.mcap` in this folder.
+/// Runs `PLAN` in the simulator, and writes the record `run.mcap` to this folder.
 fn recorded(folder: &Path, options: &[&str]) {
     fs::write(folder.join("rounds.mdle"), PLAN).unwrap();
     fs::write(folder.join("rules.toml"), "[limits]\nspeed = \"10cm/s\"\n").unwrap();
@@ -137,7 +137,7 @@ fn the_record_of_an_executable_needs_the_text_of_its_plan() {
     assert_eq!((err.as_str(), status), (expected, Some(2)));
 }
 
-/// Another plan on the outputs of the record is another run: the first turn that differs is named.
+/// With another plan, the replay of a record differs from the run, and the first turn that differs is named.
 #[test]
 fn another_plan_differs_in_a_turn() {
     let folder = folder("other");
@@ -159,7 +159,7 @@ fn another_plan_differs_in_a_turn() {
     assert_eq!(rows, expected);
 }
 
-/// The causes of the record are those of its own plan, not of the one that replaces it.
+/// Recorded causes have the texts of the recorded plan, not of the plan that replaces it in the replay.
 #[test]
 fn recorded_causes_have_the_texts_of_their_plan() {
     let folder = folder("own-texts");
@@ -187,8 +187,8 @@ fn a_plan_that_uses_others_replays_without_their_files() {
     assert_eq!(assert_same(&folder, &["run.mcap"]), 31);
 }
 
-/// The place in a record of the range of the first new ping in a turn that has one. The turn begins with its number,
-/// its time, and the time of its output, which is the same on a simulated robot.
+/// Returns the position in a record of the first new ping's range in a turn, or `None` if the turn has no such range. A
+/// turn begins with its number, its time and the time of its output; both times are equal on a simulated robot.
 fn range_of(record: &[u8], turn: u64) -> Option<usize> {
     let t = turn * 100_000_000;
     let start = [turn, t, t].map(u64::to_le_bytes).concat();
@@ -253,7 +253,7 @@ fn what_is_no_record_is_refused() {
     insta::assert_snapshot!(messages.concat());
 }
 
-/// The message names the format of the record, and who can read it.
+/// The message names the format of the record, and the version of mdle that can read it.
 #[test]
 fn a_record_of_another_version_is_refused() {
     let folder = folder("version");
@@ -269,7 +269,7 @@ fn a_record_of_another_version_is_refused() {
     assert_eq!((out.as_str(), err.as_str(), status), ("", expected, Some(2)));
 }
 
-/// The name of each record of a file with its place and length, and those within chunks.
+/// Returns the kind of each record in an MCAP file, with the range of its content.
 fn parts(record: &[u8]) -> Vec<(u8, std::ops::Range<usize>)> {
     let (mut at, mut parts) = (8, Vec::new());
     while at + 9 <= record.len() - 8 {
@@ -280,8 +280,7 @@ fn parts(record: &[u8]) -> Vec<(u8, std::ops::Range<usize>)> {
     parts
 }
 
-/// Wherever a bit of a record is another, the reader notices it: by the sum of the turns, that of the chunk, or that of
-/// the file.
+/// The reader notices a changed bit anywhere in a record, by the checksum of a turn, of a chunk or of the file.
 #[test]
 fn a_changed_bit_is_noticed_in_every_part() {
     let folder = folder("bits");
@@ -332,7 +331,7 @@ fn a_full_disk_ends_the_run() {
     assert_eq!(message, expected);
 }
 
-/// With `--log-best-effort` it ends the log alone: also when the reader of a pipe goes away.
+/// With `--log-best-effort`, a full disk or a closed pipe ends only the log, and not the run.
 #[test]
 fn a_log_of_best_effort_ends_without_the_run() {
     let folder = folder("effort");
@@ -388,7 +387,7 @@ fn a_log_of_best_effort_ends_before_the_time_that_is_named() {
     }
 }
 
-/// As a run in real time writes it: each second reaches the file at once.
+/// As in a run in real time, each second is written to the file at once.
 #[test]
 fn the_record_of_a_killed_run_can_be_read() {
     let folder = folder("killed");

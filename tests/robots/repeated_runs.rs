@@ -1,4 +1,5 @@
-//! `mdle log info` prints the command that repeats the run of a record: all that determines it is in the command.
+//! Tests that `mdle log info` prints the command that repeats the run of a record. The command contains everything that
+//! determines the run.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -43,7 +44,7 @@ fn shell(folder: &Path, line: &str) -> Output {
     Command::new("sh").args(["-c", &line]).current_dir(folder).output().unwrap()
 }
 
-/// Asserts that the command of a record gives the same record again.
+/// Asserts that the command in a record makes an identical record.
 fn assert_repeated(folder: &Path, record: &str, again: &str) {
     let info = Command::new(mdle()).args(["log", "info", record]).current_dir(folder).output().unwrap();
     let info = String::from_utf8(info.stdout).unwrap();
@@ -57,7 +58,8 @@ fn assert_repeated(folder: &Path, record: &str, again: &str) {
     assert!(one == other, "`{command}` gives another record");
 }
 
-/// Where it began, errors, body, world, period, limits, rules, modules, commands and settings.
+/// The command contains the start, errors, body, world, period, limits, rules, modules, commands and settings of the
+/// run.
 #[test]
 fn the_command_of_a_record_repeats_it() {
     let folder = folder("repeated");

@@ -1,5 +1,5 @@
-//! Runs of every kind are made again from their records, to the bit: with random errors, modules, child processes,
-//! safety rules, and people who replace plans; in the simulator and on both emulated robots.
+//! Tests that runs of every kind can be repeated from their records to the bit: with random errors, modules, child
+//! processes, safety rules, and operators who replace plans, in the simulator and on both emulated robots.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
@@ -25,11 +25,11 @@ const PERIOD: Duration = Duration::from_millis(100);
 const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
 /// Number of kinds of runs.
 const KINDS: u64 = 10;
-/// Number of runs if `MDLE_LONG` is 1: half of them without the variable.
+/// Number of runs if the variable `MDLE_LONG` is 1. Without the variable, half of them are made.
 const RUNS: u64 = 50;
 
-/// The files of all runs. `Rounds` has a loop, a memory, a rising condition and a frame; `Sound` and `Ears` read
-/// modules; `Back` is what a safety rule diverts to, and uses another file.
+/// Files of all runs. `Rounds` has a loop, a memory, a rising condition and a frame; `Sound` and `Ears` read modules;
+/// `Back` is the plan to which a safety rule diverts, and uses another file.
 const FILES: [(&str, &str); 10] = [
     (
         "rounds.mdle",
@@ -75,7 +75,7 @@ for number, line in enumerate(sys.stdin):
     ("push.toml", "[limits]\nacceleration = \"50cm/s2\"\n\n[contact]\nthen = \"back.mdle\"\n"),
 ];
 
-/// A folder with the files, and the random plan and commands of this number.
+/// Returns a folder with the files, and with the random plan and commands of the run with this number.
 fn prepared(number: u64) -> PathBuf {
     let folder = folder(&format!("replay-{number}"));
     for (name, text) in FILES {
@@ -87,7 +87,7 @@ fn prepared(number: u64) -> PathBuf {
     folder
 }
 
-/// Commands of a session, some of which are refused.
+/// Returns random commands of a session, some of which are refused.
 fn commands(chance: &mut Chance) -> String {
     let mut text = "load_plan go.mdle\nload_plan sound.mdle\nstep 3\n".to_owned();
     for _ in 0..12 {
@@ -112,7 +112,7 @@ fn commands(chance: &mut Chance) -> String {
     text + "wait\n"
 }
 
-/// The arguments of `mdle` for the run of this number, without those of an emulated robot.
+/// Returns the arguments of `mdle` for the run with this number, without the device of an emulated robot.
 fn arguments(number: u64) -> String {
     let body = ["ideal", "scout", "atrv"][number as usize % 3];
     let sim = format!("--target sim --world hall --speed max --body {body} --seed {number} --timeout 100");
@@ -133,7 +133,8 @@ fn arguments(number: u64) -> String {
     format!("{arguments} --log run.mcap")
 }
 
-/// Runs `mdle` with these words; a no-break space is a space within a word.
+/// Runs `mdle` with these arguments, which are separated by spaces; a no-break space stands for a space inside an
+/// argument. Returns the output and the exit status.
 fn run(folder: &Path, arguments: &str) -> (String, i32) {
     let words = arguments.split(' ').map(|word| word.replace('\u{a0}', " "));
     let output = Command::new(mdle()).args(words).current_dir(folder).output().unwrap();
@@ -141,7 +142,7 @@ fn run(folder: &Path, arguments: &str) -> (String, i32) {
     (text, output.status.code().unwrap())
 }
 
-/// Runs `mdle` on an emulated robot at this pace.
+/// Runs `mdle` on an emulated robot at this pace. Returns the output and the exit status.
 fn emulated<R: Emulated + Send>(folder: &Path, mut robot: R, pace: Pace, arguments: &str) -> (String, i32) {
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     thread::scope(|scope| {
@@ -153,14 +154,14 @@ fn emulated<R: Emulated + Send>(folder: &Path, mut robot: R, pace: Pace, argumen
     })
 }
 
-/// A robot with all errors of its body.
+/// Returns a simulated robot with all errors of its body.
 fn simulated(body: Body, step: Duration, seed: u64) -> Simulated {
     let world = World::named("hall").unwrap().unwrap();
     let make = Make { body, without: Vec::new(), seed: Some(seed) };
     Simulated::with(&make, &world, world.start, step).unwrap()
 }
 
-/// Records the run of this number; returns its folder and its output.
+/// Records the run with this number; returns its folder and its output.
 fn recorded(number: u64) -> (PathBuf, String) {
     let (folder, arguments) = (prepared(number), arguments(number));
     let (text, status) = match number % KINDS {
@@ -180,7 +181,7 @@ fn recorded(number: u64) -> (PathBuf, String) {
     (folder, text)
 }
 
-/// Writes the record `run.mcap` without the changes of its turns, as `bare.mcap`.
+/// Writes the record `run.mcap` without the changes of its turns to `bare.mcap`.
 fn without_changes(folder: &Path) {
     let (begin, turns) = Records::open(fs::File::open(folder.join("run.mcap")).unwrap()).unwrap();
     let (mut frames, mut bytes) = (Frames::default(), Vec::new());
@@ -194,7 +195,7 @@ fn without_changes(folder: &Path) {
     RecordFile::new(fs::File::create(folder.join("bare.mcap")).unwrap()).write_all(&bytes).unwrap();
 }
 
-/// The course of a run depends on modules and people: without their changes the record is that of another run.
+/// A run depends on modules and operators. Without their changes, the record does not replay.
 #[test]
 fn a_replay_needs_the_changes_of_a_record() {
     for number in [62, 63, 66, 67] {
@@ -206,7 +207,7 @@ fn a_replay_needs_the_changes_of_a_record() {
     }
 }
 
-/// A record has the values alone that the run has read: a plan that reads another one waits for it.
+/// A record contains only the values that the run has read. In a replay, a plan that reads another value waits for it.
 #[test]
 fn another_plan_reads_what_the_run_has_read() {
     let (folder, _) = recorded(72);
@@ -220,7 +221,7 @@ fn another_plan_reads_what_the_run_has_read() {
     assert!(unknown.contains("input by\n  recorded: the law of the atom\n  replayed: the null input\n"), "{unknown}");
 }
 
-/// Returns how often something is in a record.
+/// Returns the number of occurrences of a text in a record.
 fn count(record: &[u8], text: &str) -> usize {
     record.windows(text.len()).filter(|bytes| *bytes == text.as_bytes()).count()
 }
@@ -254,7 +255,7 @@ fn runs_of_every_kind_replay_to_the_bit() {
     assert!(counts.iter().all(|count| *count > 1), "{WORDS:?}: {counts:?}");
 }
 
-/// Plans and modules run on workers with a deadline, and a process publishes whenever it does.
+/// Plans and modules run on workers with a deadline, and a process publishes at arbitrary times.
 #[test]
 fn a_run_in_real_time_replays_to_the_bit() {
     let folder = prepared(1001);
@@ -271,7 +272,7 @@ fn a_run_in_real_time_replays_to_the_bit() {
     assert!(matches!(status, 0 | 1 | 3), "{status} {report}");
 }
 
-/// The rule ends the plan on trial, and not the run: the plan before goes on, as it does in the replay.
+/// The rule ends the plan on trial but not the run. The previous plan continues, both in the run and in the replay.
 #[test]
 fn a_trial_that_a_rule_ends_replays_to_the_bit() {
     let folder = prepared(1000);

@@ -1,4 +1,4 @@
-//! The safety rules against plans that run at them, in the simulator.
+//! Tests the safety rules in the simulator, with plans that try to violate them.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
@@ -20,18 +20,18 @@ const PLANS: u64 = 10;
 const PERIOD: Duration = Duration::from_millis(100);
 const BODIES: [Body; 3] = [Body::Ideal, Body::Scout, Body::Atrv];
 
-/// A turn of a run.
+/// A turn of a run under safety rules.
 #[derive(Debug)]
 struct Turned {
     t: f64,
-    /// Pose and speeds before the turn.
+    /// Pose of the robot before the turn, followed by its speeds.
     pose: Pose,
     velocity: Twist,
     sent: Twist,
     verdict: Option<(Verdict, String)>,
 }
 
-/// Loads a plan of the simulated robot.
+/// Compiles and loads a plan for the simulated robot.
 fn loaded(text: &str) -> Arc<Loaded<mdle_sim::alphabet::Alphabet>> {
     let file = TextFile { path: "plan.mdle".to_owned(), text: text.to_owned() };
     let (plans, messages) = golden::judge(&file, Some("sim"));
@@ -39,14 +39,14 @@ fn loaded(text: &str) -> Arc<Loaded<mdle_sim::alphabet::Alphabet>> {
     Arc::new(load(&plan.machine, &golden::sources(&file).0, &golden::alphabet(Some("sim"))).unwrap())
 }
 
-/// Compiles the conditions of rules in the file `s.toml` of this text, which is added to the sources.
+/// Compiles the conditions of rules. `text` is the text of their file `s.toml`, which is added to the sources.
 fn conditions(text: &str, rules: &Rules) -> (Sources, Result<Conditions<mdle_sim::alphabet::Alphabet>, GuardError>) {
     let mut sources = golden::sources(&TextFile { path: "plan.mdle".to_owned(), text: String::new() }).0;
     let compiled = Conditions::compile(("s.toml", text), &rules.guards, &mut sources, &golden::alphabet(Some("sim")));
     (sources, compiled)
 }
 
-/// Runs a plan under rules for some turns, or until it is over or ended.
+/// Runs a plan under rules for `turns` turns, or until the plan is over or a rule ends it.
 fn run(plan: &str, rules: &Rules, make: &Make, turns: u64) -> Vec<Turned> {
     let world = World::named("hall").unwrap().unwrap();
     let mut robot = Simulated::with(make, &world, world.start, PERIOD).unwrap();
@@ -71,7 +71,8 @@ fn run(plan: &str, rules: &Rules, make: &Make, turns: u64) -> Vec<Turned> {
     made
 }
 
-/// The times at which another rule decided, or none.
+/// Returns a line for each time at which another rule, or no rule, began to overrule the plan, and a line about the
+/// last turn.
 fn story(run: &[Turned]) -> String {
     let mut story = String::new();
     let mut before = None;
@@ -88,7 +89,7 @@ fn story(run: &[Turned]) -> String {
     story
 }
 
-/// A robot without errors.
+/// Returns a robot with this body and without errors.
 fn exact(body: Body) -> Make {
     Make { body, ..Make::default() }
 }
@@ -231,7 +232,7 @@ fn no_random_plan_passes_fence_or_limits() {
 /// Corners of a fence with slanting edges and a corner that points inwards.
 const SLANTING: [[f64; 2]; 5] = [[-0.5, -0.5], [2.0, -0.5], [2.0, 0.6], [0.8, 0.1], [-0.5, 0.5]];
 
-/// Returns the distance of a place from the edges of `SLANTING`, in metres; below 0 if it is outside.
+/// Returns the distance of a place from the edges of `SLANTING`, in metres; negative if the place is outside.
 fn inside_slanting([x, y]: [f64; 2]) -> f64 {
     let edges = || SLANTING.into_iter().zip(SLANTING.into_iter().cycle().skip(1));
     let crossed =
@@ -262,7 +263,7 @@ fn random_plans_keep_the_margin_of_a_slanting_fence() {
     assert!((0.098..0.105).contains(&nearest), "{nearest} m from the edges");
 }
 
-/// A plan that drives about at any speed, straight and in circles.
+/// Returns a random plan that drives straight and in circles at any speed.
 fn random_plan(chance: &mut Chance) -> String {
     let mut plan = String::from("{ Main (wait 60)\n");
     for _ in 0..60 {
@@ -274,7 +275,7 @@ fn random_plan(chance: &mut Chance) -> String {
     plan + "}\n"
 }
 
-/// A safety file with a guard.
+/// Returns the text of a safety file with a guard.
 fn file_with(when: &str) -> String {
     format!("# safety\n\n[guards.near]\nwhen = \"{when}\"\nthen = \"hold\"\n")
 }

@@ -1,4 +1,5 @@
-//! Records of scenarios: each robot has one of its own, which all commands read as that of a run of one robot.
+//! Tests records of scenarios: each robot has a record of its own, and all commands read it like the record of a run of
+//! a single robot.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -14,7 +15,7 @@ use mdle_record::{Change, RecordFile, RecordedTurn, Records, TurnMade};
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
 
-/// The robots meet by a bad line; `bob` is killed before its plan is over.
+/// A scenario in which two robots meet over a bad line, and `bob` is killed before its plan is over.
 const SCENARIO: &str = "world = \"square.toml\"
 seed = 3
 timeout = \"30s\"
@@ -105,7 +106,7 @@ fn each_robot_has_a_record() {
     assert_eq!(recorded, times);
 }
 
-/// Writes a record without what the link brought.
+/// Writes a record without the states that the link received.
 fn without_peers(folder: &Path, from: &str, to: &str) {
     let (begin, turns) = Records::open(fs::File::open(folder.join(from)).unwrap()).unwrap();
     let (mut frames, mut bytes) = (Frames::default(), Vec::new());
@@ -120,7 +121,8 @@ fn without_peers(folder: &Path, from: &str, to: &str) {
     std::io::Write::write_all(&mut RecordFile::new(fs::File::create(folder.join(to)).unwrap()), &bytes).unwrap();
 }
 
-/// What a robot knew of the other is part of its record: without it, or with another bit of it, the turn is named.
+/// The states that a robot received from the other robot are part of its record. Without them, or with a changed bit in
+/// them, the replay names the turn.
 #[test]
 fn knowledge_of_other_robots_is_recorded() {
     let folder = prepared("peers");
@@ -146,7 +148,7 @@ fn knowledge_of_other_robots_is_recorded() {
     }
 }
 
-/// The three robots of the book learn a way: each path that a robot records is in its record.
+/// The three robots of the book learn a path. Each path that a robot records is in the robot's record.
 #[test]
 fn recorded_ways_are_recorded() {
     let folder = folder("scenario-record-ways");
@@ -189,7 +191,8 @@ fn records_of_a_killed_scenario_can_be_read() {
     }
 }
 
-/// A full disk ends the scenario, and names the file; a log of another kind is refused with the names to type.
+/// A full disk ends the scenario with a message that names the file. A log of another format is refused with the names
+/// to type.
 #[test]
 fn records_that_cannot_be_written_end_a_scenario() {
     let folder = prepared("full");
@@ -232,7 +235,7 @@ fn a_refused_scenario_leaves_no_records() {
     assert!(!folder.join("log.ada.mcap").exists());
 }
 
-/// A sentence and its help are lines of their own in the report, and the sentence alone ends the record.
+/// In the report, an error message and its help are separate lines; the record ends with the message alone.
 #[test]
 fn a_fault_with_help_has_two_lines() {
     let folder = prepared("two-lines");

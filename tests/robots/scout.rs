@@ -1,5 +1,5 @@
-//! The lab tour on a Super Scout: the executable that `mdlec --target scout` builds, against the emulated robot on a
-//! pseudo-terminal, beside the simulator's own run with that robot's body.
+//! Tests the lab tour on a Super Scout: the executable that `mdlec --target scout` builds drives the emulated robot
+//! over a pseudo-terminal, and is compared with a run of the simulator with the same body.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -19,13 +19,13 @@ use mdle_tests::repository::root;
 
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// The tour's executable for the Scout, built once.
+/// Returns the tour's executable for the Scout, which is built once.
 fn on_scout() -> &'static Path {
     static TOUR: OnceLock<PathBuf> = OnceLock::new();
     TOUR.get_or_init(|| tour("scout"))
 }
 
-/// The tour's executable for this target.
+/// Builds the tour's executable for this target.
 fn tour(target: &str) -> PathBuf {
     let folder = folder(&format!("tour_on_{target}"));
     let plan = root().join("plans/lab_tour.mdle");
@@ -34,13 +34,13 @@ fn tour(target: &str) -> PathBuf {
     folder.join("lab_tour")
 }
 
-/// The atoms that a run passed, in order, and how it ended: its report without the times.
+/// Returns the lines of a run's report without the times: the atoms in order, and the end of the run.
 fn passed(output: &Output) -> Vec<String> {
     let message = String::from_utf8(output.stdout.clone()).unwrap();
     message.lines().map(|line| line.split_once(" s  ").map_or(line, |(_, transition)| transition).to_owned()).collect()
 }
 
-/// The executable on an emulated robot, and where that robot then was.
+/// Runs the executable on an emulated robot. Returns the output, and the pose of the robot at the end.
 fn emulated(executable: &Path) -> (Output, Pose) {
     let world = World::office().unwrap();
     let make = Make { body: Body::Scout, without: Vec::new(), seed: None };
@@ -84,7 +84,7 @@ fn the_tour_ends_on_a_scout_where_it_ends_in_the_simulator() {
     assert!(away <= 0.15 && turned.abs() <= 5.0, "{away} m and {turned} degrees away from {x}, {y}, {heading}");
 }
 
-/// The executable draws the run by the robot's own odometry, though it knows no world.
+/// Asserts that the executable draws the run by the robot's own odometry, although it has no world.
 fn check_views() {
     let [picture, trail] =
         ["tour.svg", "tour.csv"].map(|file| fs::read_to_string(on_scout().with_file_name(file)).unwrap());

@@ -1,4 +1,4 @@
-//! Tests that plans of other robots use up none of the names that a process keeps of loaded plans.
+//! Tests that refused or replaced plans of other robots do not use up the names that a process stores for loaded plans.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -12,7 +12,7 @@ use crate::shared_modules::{run, scenario};
 const STANDS: &str = "{ Stand (wait 50s) (Atom (null) stop) }";
 const TAKES: &str = "plans-from = [\"ada\"]";
 
-/// Lets `ada` send these plans to `bob`, one each 2 s; returns what is printed.
+/// Runs a scenario in which `ada` sends a plan to `bob` every 2 s; returns its output.
 fn sent(folder: &Path, plans: &[String]) -> String {
     let mut more = String::new();
     for (number, plan) in plans.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! `mdle shell` with safety rules on the emulated robots.
+//! Tests `mdle shell` with safety rules on the emulated robots.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -18,7 +18,7 @@ use mdle_tests::executable::{folder, mdle};
 const PERIOD: Duration = Duration::from_millis(100);
 const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
 
-/// A folder with a plan that waits, one that drives, and rules.
+/// Returns a folder with a plan that waits, a plan that drives, and safety rules.
 fn with_plans(test: &str) -> PathBuf {
     let folder = folder(test);
     fs::write(folder.join("null.mdle"), "{ Null (bumper)\n  (Atom (null) stop)\n}\n").unwrap();
@@ -28,14 +28,14 @@ fn with_plans(test: &str) -> PathBuf {
     folder
 }
 
-/// A robot in the hall.
+/// Returns a simulated robot in the hall.
 fn simulated(body: Body, step: Duration) -> Simulated {
     let world = World::named("hall").unwrap().unwrap();
     let make = Make { body, without: Vec::new(), seed: None };
     Simulated::with(&make, &world, world.start, step).unwrap()
 }
 
-/// `mdle shell` on the robot at this port, whose clock stands at first.
+/// Returns the command `mdle shell` for the robot at this port, with its clock paused.
 fn shell(folder: &Path, target: &str, port: &Port) -> Command {
     let mut command = Command::new(mdle());
     command.args(["shell", "null.mdle", "--target", target, "--safety", "rules.toml", "--paused", "-x"]);
@@ -44,7 +44,7 @@ fn shell(folder: &Path, target: &str, port: &Port) -> Command {
     command
 }
 
-/// The dialogue of a session on an emulated robot, and the exit status.
+/// Returns the dialogue of a session on an emulated robot, and the exit status.
 fn dialogue<R: Emulated + Send>(folder: &Path, target: &str, mut robot: R, commands: &str) -> String {
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     let output = thread::scope(|scope| {

@@ -1,5 +1,5 @@
-//! Two Scouts in one world, each with an executable of its own: they hear and touch each other, in lockstep, with the
-//! same result each time.
+//! Tests two Scouts in one world, each with a separate executable. They detect and touch each other, in lockstep, with
+//! the same result in every run.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::cell::RefCell;
@@ -15,14 +15,14 @@ use mdle_sim::{Body, Footprint, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
 
 const PERIOD: Duration = Duration::from_millis(100);
-/// Two robots 3 m apart have nothing else before them that is nearer.
+/// A room in which nothing is nearer to two robots that are 3 m apart than the other robot.
 const ROOM: &str =
     "start = { x = -1.5, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -3], [4, 3], [-4, 3], [-4, -3], [4, -3]]";
 const APPROACH: &str = "{ Approach (bumper OR wait 30s) (Atom (r0 < 60cm) (go 20 0)) }\n";
 const MEET: &str = "{ Meet (bumper OR wait 30s) (Atom (null) (go 20 0)) }\n";
 const STAY: &str = "{ Stay (wait 3s) (Atom (null) stop) }\n";
 
-/// The executable of a plan for the Scout.
+/// Builds the executable of a plan for the Scout, and returns its path.
 fn executable(folder: &Path, name: &str, plan: &str) -> PathBuf {
     let file = format!("{name}.mdle");
     fs::write(folder.join(&file), plan).unwrap();
@@ -31,7 +31,7 @@ fn executable(folder: &Path, name: &str, plan: &str) -> PathBuf {
     folder.join(name)
 }
 
-/// A robot at a line, 1.5 m from the middle, that looks there.
+/// Returns a robot with its line. The robot is 1.5 m from the middle of the room, and faces the middle.
 fn seat(is_left: bool) -> Seat<Scout> {
     let world = World::parse("room", ROOM).unwrap();
     let there = Pose { x: Meters(1.5), theta: Radians::from_degrees(180.0), ..world.start };
@@ -40,7 +40,8 @@ fn seat(is_left: bool) -> Seat<Scout> {
     Seat { robot: Scout::new(body).unwrap(), port: Port::open().unwrap() }
 }
 
-/// Returns the output of two executables, each on a robot of its own, and the robots' places at the end.
+/// Runs two executables, each on a robot of its own. Returns their outputs, and the footprints of the robots at the
+/// end.
 fn together(executables: [&Path; 2]) -> ([String; 2], [Footprint; 2]) {
     let mut robots = Several::of(vec![seat(true), seat(false)]).unwrap();
     let mut started = executables.iter().zip(robots.seats()).map(|(executable, seat)| {

@@ -1,4 +1,5 @@
-//! Tests that robots of a scenario send each other attributes of modules and plans by the link, besides their states.
+//! Tests that robots of a scenario send each other attributes of modules, and plans, over the link, in addition to
+//! their states.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -8,18 +9,19 @@ use std::process::Command;
 
 use mdle_tests::executable::{folder, mdle};
 
-/// A room in which something rustles all the time.
+/// A room with a source of constant noise.
 const ROOM: &str = "t60 = 0.24\n[[wall]]\npoints = [[-2, -3], [5, -3], [5, 3], [-2, 3], [-2, -3]]\n\
                     [[sound]]\nat = [3, 1]\nkind = \"white\"\n";
 
-/// Runs `mdle` with these words; returns its output, its messages and its exit status.
+/// Runs `mdle` with these arguments; returns its output, its messages and its exit status.
 pub(super) fn run(folder: &Path, words: &str) -> (String, String, i32) {
     let output = Command::new(mdle()).args(words.split(' ')).current_dir(folder).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     (out, err, output.status.code().unwrap())
 }
 
-/// Writes the scenario of `ada` and `bob`, who stand 1 m apart, with these further keys, and their plans.
+/// Writes a scenario of `ada` and `bob`, 1 m apart, each with additional entries and a plan. `more` is appended to the
+/// scenario.
 pub(super) fn scenario(folder: &Path, [ada, bob]: [(&str, &str); 2], more: &str) {
     let mut text = "world = \"room.toml\"\nseed = 1\n".to_owned();
     for (name, (keys, plan), start) in [("ada", ada, "0, 0, 0"), ("bob", bob, "0, 1, 0")] {
@@ -30,7 +32,7 @@ pub(super) fn scenario(folder: &Path, [ada, bob]: [(&str, &str); 2], more: &str)
     fs::write(folder.join("two.toml"), text + more).unwrap();
 }
 
-/// Asserts that the record of a robot is repeated to the bit.
+/// Asserts that the record of a robot replays to the bit.
 fn assert_replayed(folder: &Path, robot: &str) {
     let (out, err, status) = run(folder, &format!("replay run.{robot}.mcap"));
     assert!(out.starts_with("the same to the bit, ") && status == 0, "{robot}: {out}{err}");
@@ -73,11 +75,11 @@ fn a_robot_shares_only_modules_that_it_has() {
     assert!(status == 3 && out.contains("/usr/bob_heading/age, which no module has published within 2 s"), "{out}");
 }
 
-/// Keys of `bob`, who takes plans of `ada`, and a plan of either that ends after 8 s.
+/// Entry of `bob`, which accepts plans from `ada`; `STANDS` is a plan for either robot that ends after 8 s.
 const TAKES: &str = "plans-from = [\"ada\"]";
 const STANDS: &str = "{ S (wait 8s)\n(Atom (wait 5s) stop)\n(Atom (null) stop) }";
 
-/// A plan that `ada` sends to `bob` at this time.
+/// Returns the entry of a plan that `ada` sends to `bob` at this time.
 fn sent(at: &str, file: &str, when: &str) -> String {
     format!("[[sent-plan]]\nat = \"{at}\"\nfrom = \"ada\"\nto = \"bob\"\nfile = \"{file}\"\nwhen = \"{when}\"\n")
 }

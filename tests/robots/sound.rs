@@ -1,5 +1,5 @@
-//! Plans that follow what a robot hears: by the microphones of the simulated robot, a WAV file and the pipe of a
-//! recorder (docs/src/sound.md).
+//! Tests plans that follow sounds that a robot hears, by the microphones of the simulated robot, a WAV file, and the
+//! pipe of a recorder (docs/src/sound.md).
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -11,10 +11,11 @@ use mdle_tests::chance::sized;
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
 
-/// Place of the source of the plan's world, and the distance at which a robot has arrived, in metres.
+/// Place of the sound source in the plan's world, in metres. `ARRIVED` is the distance at which a robot has arrived, in
+/// metres.
 const SOURCE: (f64, f64) = (5.5, 4.2);
 const ARRIVED: f64 = 0.8;
-/// First seed, one by which nothing was chosen.
+/// First random seed of these tests. No parameter was chosen with these seeds.
 const FIRST: u64 = 9_820_000;
 
 /// Copies the plan and its world into a folder.
@@ -24,19 +25,19 @@ fn copy_plan(folder: &Path) {
     }
 }
 
-/// `mdle run` of the plan with these arguments.
+/// Runs the plan with `mdle run` and these arguments.
 fn run(folder: &Path, arguments: &str) -> Output {
     let mut command = Command::new(mdle());
     command.args(["run", "sound_following.mdle", "--target", "sim", "--speed", "max"]).args(arguments.split(' '));
     command.current_dir(folder).stdin(Stdio::null()).output().unwrap()
 }
 
-/// Exit status and standard error.
+/// Returns the exit status and standard error.
 fn refusal(output: &Output) -> String {
     format!("[{}] {}", output.status.code().unwrap(), String::from_utf8_lossy(&output.stderr))
 }
 
-/// Writes a WAV file of a second of 16-bit samples, each of this value.
+/// Writes a WAV file with a second of 16-bit samples that all have this value.
 fn write_wav(path: &Path, sample_rate: u32, channels: u16, value: i16) {
     let spec = WavSpec { channels, sample_rate, bits_per_sample: 16, sample_format: SampleFormat::Int };
     let mut writer = WavWriter::create(path, spec).unwrap();
@@ -44,7 +45,7 @@ fn write_wav(path: &Path, sample_rate: u32, channels: u16, value: i16) {
     writer.finalize().unwrap();
 }
 
-/// Returns the least distance from the source in a trail.
+/// Returns the minimum distance from the sound source in a trail.
 fn nearest(trail: &str) -> f64 {
     let distances = trail.lines().skip(1).map(|line| {
         let numbers: Vec<f64> = line.split(',').filter_map(|text| text.parse().ok()).collect();

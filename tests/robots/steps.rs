@@ -1,4 +1,4 @@
-//! `mdle replay --step`: the turns of a record one by one, forth and back.
+//! Tests `mdle replay --step`, which shows the turns of a record one by one, forward and back.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 use mdle_tests::executable::{folder, mdle};
 
-/// A folder with the record of a session under a safety rule.
+/// Returns a folder with the record of a session under a safety rule.
 fn recorded(test: &str) -> PathBuf {
     let folder = folder(&format!("steps-{test}"));
     fs::write(
@@ -26,7 +26,7 @@ fn recorded(test: &str) -> PathBuf {
     folder
 }
 
-/// The answers to these commands, and the exit status.
+/// Returns the answers to these commands, and the exit status.
 fn dialogue(folder: &Path, arguments: &str, commands: &str) -> String {
     let mut command = Command::new(mdle());
     command.args(arguments.split(' ')).current_dir(folder);
@@ -80,7 +80,7 @@ fn wrong_commands_of_steps_are_refused() {
     assert!(file.contains("\nturn 1 at 0.1 s"), "{file}");
 }
 
-/// Each step is compared: another plan differs in its turn, and the steps end with exit status 1.
+/// Each step is compared with the record: another plan differs in a turn, and the exit status is then 1.
 #[test]
 fn a_step_says_what_differs() {
     let folder = recorded("differs");

@@ -1,5 +1,5 @@
-//! `--watch`, `--plot`, `--record` and `--trail` on emulated robots, whose world nobody tells the driver: the views are
-//! made of the poses and ranges that the robot reports.
+//! Tests `--watch`, `--plot`, `--record` and `--trail` on emulated robots. The driver does not know their world, so
+//! that the views are made from the poses and ranges that the robot reports.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs::{self, File};
@@ -21,7 +21,7 @@ use rustix::termios::{Winsize, tcsetwinsize};
 
 const PERIOD: Duration = Duration::from_millis(100);
 const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
-/// Ahead for a second, a turn of a quarter, and ahead again: 1.2 m in two directions.
+/// A plan that drives ahead for 3 s, turns left by about 90°, and drives ahead for 3 s again: 1.2 m in two directions.
 const PLAN: &str = "{ Corner (wait 1min)
   (Atom (wait 3s) (go 20 0)) (Atom (wait 4s) (go 0 0.4)) (Atom (wait 3s) (go 20 0))
 }
@@ -38,7 +38,7 @@ fn run<R: Emulated + Send>(folder: &Path, robot: R, target: &str, options: &[&st
     called(Command::new(mdle()), folder, robot, target, options, out)
 }
 
-/// Runs the plan as [`run`] does, by a command that takes the arguments of `mdle`.
+/// Runs the plan like [`run`], by a command that takes the arguments of `mdle`.
 fn called<R: Emulated + Send>(
     mut command: Command,
     folder: &Path,
@@ -60,7 +60,7 @@ fn called<R: Emulated + Send>(
     })
 }
 
-/// Checks the files that a run on a robot has written.
+/// Asserts that a run on a robot has succeeded and has written the expected files.
 fn check_files(folder: &Path, target: &str, output: &Output) {
     assert!(output.status.success(), "{target}: {}", String::from_utf8_lossy(&output.stderr));
     let [plot, record, trail] =
@@ -121,7 +121,7 @@ fn robots_are_watched_at_a_terminal() {
     assert!(behind.contains("plan over: wait 3s (corner.mdle:2)"), "{behind}");
 }
 
-/// A view is not a reason to stop a robot.
+/// An error of a view does not stop the robot.
 #[test]
 fn a_file_that_may_not_grow_is_an_error_at_the_end() {
     let folder = folder("views-limited");

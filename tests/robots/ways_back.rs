@@ -1,4 +1,4 @@
-//! `mdle run PLAN --records PATH`: the way back along a path replaces it while the plan runs.
+//! Tests `mdle run PLAN --records PATH`: while the plan runs, the recorded way back replaces the path that was driven.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,7 +10,7 @@ use mdle_tests::executable::{folder, mdle};
 
 const PLAN: &str = "{ There (wait 1min)\n  (Atom (null) path(way))\n  (Atom (wait 1) stop)\n  (Atom (wait 8) turn 180)\n  \
                     (Atom (null) path(way))\n  (Atom (wait 1) stop)\n}\n";
-/// A way of 1.9 m with a bend to the left.
+/// A path of 1.9 m with a bend to the left.
 const WAY: &str =
     "time s, heading deg, speed cm/s\n0, 0, 0\n0.5, 0, 50\n1.3, 0, 50\n2, 0, 50\n3, 30, 50\n4, 60, 50\n4.5, 60, 0\n";
 

@@ -1,4 +1,4 @@
-//! `mdle why` answers questions about records that a test writes, and names the operands that decide.
+//! Tests the answers of `mdle why` about records that a test writes, and the operands that they name.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod absences;

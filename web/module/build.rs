@@ -1,4 +1,4 @@
-//! Links the module for a browser with a stack of the size that programs have, and with a limit on its memory.
+//! Links the browser module with a stack as large as that of native programs, and with a limit on its memory.
 
 #![allow(clippy::disallowed_methods, reason = "cargo tells a build script the target by its environment")]
 

@@ -1,10 +1,10 @@
-//! Why an atom or a behavior did not begin, or not again: in loops, in behaviors that ran, and by all names that tests
-//! of plans take.
+//! Tests why an atom or a behavior did not begin, or did not begin again: in loops, in behaviors that ran, and with all
+//! names that tests of plans accept.
 
 use super::questions::answers;
 use super::scripted::{outputs, ping};
 
-/// The answer is about the time since the atom last began, and names the last of several chances.
+/// The answer covers the time since the atom last began, and names the last of several chances.
 #[test]
 fn later_passes_count() {
     let plan = "{ Rounds (wait 10s)
@@ -20,7 +20,7 @@ fn later_passes_count() {
     insta::assert_snapshot!(answers("rounds", plan, &outputs, &questions));
 }
 
-/// A chance in each pass: the answer has the first and the last.
+/// There is a chance in each pass; the answer names the first and the last chance.
 #[test]
 fn each_pass_is_a_chance() {
     let plan = "{ Passes (wait 10s)
@@ -32,7 +32,7 @@ fn each_pass_is_a_chance() {
     insta::assert_snapshot!(answers("passes", plan, &outputs, &["--not go 10 0", "--not go 5 0"]));
 }
 
-/// A behavior has begun when the law of one of its atoms is applied, whichever that is.
+/// A behavior has begun when the law of any of its atoms is applied.
 #[test]
 fn a_behavior_began() {
     let plan = "{ Whole (wait 4s)
@@ -46,7 +46,7 @@ fn a_behavior_began() {
     insta::assert_snapshot!(answers("behaviors", plan, &outputs, &["--not Near", "--not Gone", "--not Whole"]));
 }
 
-/// Laws are named as in tests of plans: in other units, and by their names.
+/// Laws can be named as in tests of plans: with other units, or by their names alone.
 #[test]
 fn laws_have_the_names_of_tests() {
     let plan =
@@ -56,7 +56,7 @@ fn laws_have_the_names_of_tests() {
     insta::assert_snapshot!(answers("names", plan, &outputs, &questions));
 }
 
-/// A law that was skipped has not begun, whether it has a goal or not.
+/// A skipped law has not begun, even if the law has a goal.
 #[test]
 fn a_skipped_law_has_not_begun() {
     let plan = "{ Skipped (wait 4s)

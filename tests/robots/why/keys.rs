@@ -1,5 +1,5 @@
-//! The reference lists the keys of the answers of `mdle why`, all of them and no others
-//! (docs/src/reference/interfaces.md, 6.8).
+//! Tests that the reference lists exactly the keys of the answers of `mdle why` (docs/src/reference/interfaces.md,
+//! 6.8).
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::asked;
 use super::scripted::{outputs, ping, write};
 
-/// Returns the keys that the tables after `head` and before `end` list.
+/// Returns the keys in the tables after `head` and before `end`.
 fn documented(head: &str, end: &str) -> BTreeSet<String> {
     let page = fs::read_to_string(root().join("docs/src/reference/interfaces.md")).unwrap();
     let section = page.split_once("### 6.8 ").unwrap().1.split_once(head).unwrap().1.split_once(end).unwrap().0;
@@ -19,8 +19,9 @@ fn documented(head: &str, end: &str) -> BTreeSet<String> {
     cells.flat_map(|cell| cell.split(',').map(|key| key.trim().trim_matches('`').to_owned())).collect()
 }
 
-/// Removes from `unused` the keys of an object that is reached by the keys in `path`, and of all inside it; `others`
-/// gets those that are not documented. The longest documented end of a path counts.
+/// Removes the keys of an object, and of all objects inside it, from `unused`. `path` contains the keys that lead to
+/// the object. Undocumented keys are added to `others`. If several ends of a path are documented, the longest one
+/// counts.
 fn look(
     value: &Value,
     path: &str,

@@ -1,4 +1,4 @@
-//! A plan that is not the one that ran is refused with exit status 1, by all commands that need that one.
+//! Tests that all commands that need the plan of a run refuse any other plan with exit status 1.
 
 use std::fs::{self, File};
 use std::io::Write as _;
@@ -14,7 +14,7 @@ use super::scripted::{PERIOD, outputs};
 
 const RAN: &str = "{ Square (wait 5min)\n  ((Atom (way >= 1m OR r0 < 40cm) (go 20 0)) (Atom (null) turn 90))^4\n}\n";
 
-/// A folder with the plan that ran, its record, and others beside it.
+/// Returns a folder with the plan `square.mdle`, which is run, and with other plans.
 fn recorded(name: &str) -> PathBuf {
     let folder = folder(&format!("why-other-{name}"));
     let others = [
@@ -56,7 +56,7 @@ fn only_the_plan_that_ran_explains() {
     assert!(replayed.iter().all(|answer| answer.ends_with("[1]\n")), "{replayed:?}");
 }
 
-/// Its turns cannot be made again, but what it contains can be read.
+/// The turns of the record cannot be repeated, but its content can be read.
 #[test]
 fn a_record_of_an_unknown_robot_is_told_apart() {
     let folder = folder("why-other-robot");
@@ -70,7 +70,8 @@ fn a_record_of_an_unknown_robot_is_told_apart() {
     insta::assert_snapshot!(answers.join("\n"));
 }
 
-/// The record of an executable has no text, but its laws, its conditions and its inputs tell another plan.
+/// The record of an executable does not contain the text of its plan, but another plan is recognized by the laws,
+/// conditions and inputs.
 #[test]
 fn executables_have_a_plan_as_well() {
     let folder = recorded("executable");

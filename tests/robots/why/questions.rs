@@ -1,4 +1,4 @@
-//! Forty questions, each on a record of a few seconds, with their answers as snapshots.
+//! Tests forty questions, each about a record of a few seconds, with snapshots of the answers.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use mdle_tests::executable::folder;
 use super::asked;
 use super::scripted::{outputs, ping, write};
 
-/// Writes a record and returns the answers to questions about it: a time, or `--not` and an atom.
+/// Writes a record, and returns the answers to questions about it. A question is a time, or `--not` and an atom.
 pub(super) fn answers(name: &str, plan: &str, outputs: &[Sensed], questions: &[&str]) -> String {
     let folder = folder(&format!("why-{name}"));
     let target = mdle_files::target(Some("sim")).unwrap();
@@ -26,7 +26,7 @@ fn one(folder: &Path, name: &str, question: &str) -> String {
     asked(folder, &arguments)
 }
 
-/// A bumper is hit a tenth of a second before the timer.
+/// The bumper is pressed a tenth of a second before the timer fires.
 #[test]
 fn a_timer_was_short() {
     let plan = "{ Timers (wait 10s)
@@ -60,7 +60,7 @@ fn behaviors_were_skipped() {
     insta::assert_snapshot!(answers("skips", plan, &outputs, &questions));
 }
 
-/// The outer interrupt wins, and the inner one and the law would have ended the atom as well.
+/// The outermost interrupt wins, although the inner interrupt and the law would have ended the atom too.
 #[test]
 fn conditions_were_shadowed() {
     let plan = "{ Outer (r0 < 50cm)
@@ -81,7 +81,7 @@ fn conditions_were_shadowed() {
     insta::assert_snapshot!(answers("shadows", plan, &outputs, &questions));
 }
 
-/// Three operands fire in one turn: joined by OR, by AND, and by both.
+/// Three operands fire in the same turn: joined by OR, by AND, and by both.
 #[test]
 fn three_operands_fired_at_once() {
     let plan = "{ Three (wait 1min)
@@ -102,7 +102,7 @@ fn three_operands_fired_at_once() {
     insta::assert_snapshot!(answers("three", plan, &outputs, &questions));
 }
 
-/// One sonar has failed after a second, another one never pinged, and two fire in turns.
+/// One sonar fails after a second, another one never pings, and two sonars ping alternately.
 #[test]
 fn sensors_were_stale() {
     let plan = "{ Stale (wait 5s)
@@ -128,7 +128,7 @@ fn sensors_were_stale() {
     insta::assert_snapshot!(answers("stale", plan, &outputs, &questions));
 }
 
-/// NOT, RISING and `after`, alone and of several conditions.
+/// Conditions with NOT, RISING and `after`, alone and combined with other conditions.
 #[test]
 fn memories_kept_a_condition_from_firing() {
     let plan = "{ Memories (wait 10s)
@@ -146,8 +146,8 @@ fn memories_kept_a_condition_from_firing() {
     insta::assert_snapshot!(answers("memories", plan, &outputs, &questions));
 }
 
-/// Each operand inside NOT and RISING has its value with its unit, and what holds says by how much or for how long: so
-/// much is missing until NOT fires.
+/// Each operand inside NOT and RISING is shown with its value and unit. An operand that holds is shown with the amount
+/// or the time that is missing until NOT fires.
 #[test]
 fn operands_inside_not_have_values() {
     let plan = "{ Inside (wait 1min)
@@ -165,7 +165,8 @@ fn operands_inside_not_have_values() {
     insta::assert_snapshot!(answers("inside", plan, &outputs, &questions));
 }
 
-/// A law that has a goal makes no progress, an interrupt that an enclosing scope has is removed, and loops count.
+/// A law with a goal makes no progress, an interrupt that an enclosing scope has is removed, and passes of loops are
+/// counted.
 #[test]
 fn laws_and_loops_took_part() {
     let plan = "{ Laws (bumper)
@@ -178,7 +179,7 @@ fn laws_and_loops_took_part() {
     insta::assert_snapshot!(answers("laws", plan, &outputs, &questions));
 }
 
-/// An atom that nothing led to, and names that the plan does not have.
+/// Nothing leads to an atom, and some names do not exist in the plan.
 #[test]
 fn an_atom_had_no_chance() {
     let plan = "{ Far
@@ -195,7 +196,7 @@ fn an_atom_had_no_chance() {
     insta::assert_snapshot!(answers("far", plan, &outputs, &questions));
 }
 
-/// Programs get all that people get.
+/// The answer as JSON contains everything that the text contains.
 #[test]
 fn answers_are_objects_as_well() {
     let plan = "{ Both (bumper)\n  (Atom (r0 < 50cm OR wait 1s) go 20 0)\n  (Atom (wait 1s) stop)\n}\n";

@@ -1,5 +1,5 @@
-//! On random runs the operands that `mdle why` names are those whose change alone changes the transition: each operand
-//! is changed in the output of that turn alone.
+//! Tests on random runs that the operands that `mdle why` names are exactly those whose change alone changes the
+//! transition. Each operand is changed in the output of the explained turn only.
 
 use std::fs;
 use std::path::Path;
@@ -30,7 +30,7 @@ fn plan(chance: &mut Chance) -> String {
     )
 }
 
-/// Returns a condition of at most four operands, each of a sonar of its own.
+/// Returns a condition of at most four operands, each of which reads a different sonar.
 fn condition(chance: &mut Chance, sonars: &mut impl Iterator<Item = usize>) -> String {
     let mut operand = |chance: &mut Chance| {
         let not = if chance.percent(25) { "NOT " } else { "" };
@@ -55,7 +55,7 @@ fn sonar(operand: &str) -> usize {
     operand[at + 1..].split(' ').next().unwrap().parse().unwrap()
 }
 
-/// Outputs in which ranges cross the limit now and then, and everything fires at once never.
+/// Returns outputs in which single ranges cross the limit now and then, so that not all operands fire at once.
 fn random_outputs(chance: &mut Chance) -> Vec<Sensed> {
     let mut ranges = [1.5; 16].map(|range: f64| if chance.percent(50) { range } else { 0.5 });
     outputs(TURNS, |_, y| {
@@ -68,8 +68,9 @@ fn random_outputs(chance: &mut Chance) -> Vec<Sensed> {
     })
 }
 
-/// Compares the names with the changes in the first turn that has a transition and begins in an atom; returns the
-/// number of operands that were changed, and that of those that decided. `None` for a run without such a turn.
+/// Compares the operands that `mdle why` names with the effect of changing each operand, in the first turn with a
+/// transition. Returns the number of operands that were changed, and the number of those that decide; `None` for a run
+/// without a transition.
 fn compare(folder: &Path, target: &Target, seed: u64) -> Option<(usize, usize)> {
     let mut chance = Chance::new(seed);
     let (text, outputs) = (plan(&mut chance), random_outputs(&mut chance));

@@ -1,4 +1,4 @@
-//! Records of runs whose outputs a test writes turn by turn.
+//! Writes records of runs whose outputs a test defines turn by turn.
 
 use std::fs::{self, File};
 use std::io::Write as _;
@@ -17,7 +17,7 @@ use mdle_runtime::{
 
 type Alphabet = mdle_sim::alphabet::Alphabet;
 
-/// The period of a turn.
+/// Period of a turn.
 pub(super) const PERIOD: Nanos = Nanos(100_000_000);
 
 /// A plan for the simulated robot.
@@ -36,7 +36,7 @@ impl Scripted {
         Self { name: compiled.plan.root.name, text: text.to_owned(), loaded: Arc::new(loaded) }
     }
 
-    /// Writes the record of the run that has these outputs, up to the turn in which the plan is over.
+    /// Writes the record of a run with these outputs, which ends with the turn in which the plan is over.
     pub(super) fn record(&self, outputs: &[Sensed], file: &Path) {
         let begin = Begin {
             target: "sim".to_owned(),
@@ -69,7 +69,8 @@ impl Scripted {
         record.write_all(&bytes).unwrap();
     }
 
-    /// Returns the transitions of the last of these outputs: the scope that ended with its text, and the state entered.
+    /// Returns the transitions in the turn of the last output: the scope that ended, the text of its condition, and the
+    /// state that was entered.
     pub(super) fn last_steps(&self, outputs: &[Sensed]) -> Vec<(u32, String, u64)> {
         let mut machine = Machine::begin(self.loaded.plan(), &outputs[0], Nanos(0));
         let mut last = Vec::new();
@@ -82,7 +83,7 @@ impl Scripted {
     }
 }
 
-/// The steps of a turn.
+/// Transitions of a turn, in the form in which a record stores them.
 #[derive(Default)]
 struct Steps {
     steps: Vec<Step>,
@@ -99,7 +100,7 @@ impl Watch for Steps {
     }
 }
 
-/// Returns as many outputs as `turns`, each changed by `change` from the previous one; its number comes with it.
+/// Returns `turns` outputs. `change` is called with the number of each turn, and changes the previous output.
 pub(super) fn outputs(turns: u64, mut change: impl FnMut(u64, &mut Sensed)) -> Vec<Sensed> {
     let mut y = first();
     let turns = (0..turns).map(|number| {
@@ -110,7 +111,7 @@ pub(super) fn outputs(turns: u64, mut change: impl FnMut(u64, &mut Sensed)) -> V
     turns.collect()
 }
 
-/// The output of a robot at the origin whose sonars have not pinged.
+/// Returns the output of a robot at the origin whose sonars have not pinged yet.
 fn first() -> Sensed {
     let steering = Steering { rotate: 1.0, align: 1.0, avoid: 1.0 };
     let shape = Shape {
@@ -138,13 +139,13 @@ fn first() -> Sensed {
     }
 }
 
-/// Lets a sonar ping now and measure this range.
+/// Adds a ping of a sonar with this range to an output.
 pub(super) fn ping(y: &mut Sensed, sonar: usize, range: f64) {
     let ping = Ping { range: Some(Meters(range)), at: y.at, pose: y.odometry, mount: Mount::default() };
     y.pings[sonar].push(ping);
 }
 
-/// Returns the output with another range as the newest of a sonar.
+/// Returns the output with another range in the newest ping of a sonar.
 pub(super) fn with_range(y: &Sensed, sonar: usize, range: f64) -> Sensed {
     let mut changed = *y;
     let kept: Vec<Ping> = changed.pings[sonar].newest_first().copied().collect();
@@ -155,7 +156,7 @@ pub(super) fn with_range(y: &Sensed, sonar: usize, range: f64) -> Sensed {
     changed
 }
 
-/// Writes a record of a plan with these outputs to a folder, as `NAME.mcap`.
+/// Writes the record `NAME.mcap` of a plan with these outputs to a folder.
 pub(super) fn write(folder: &Path, name: &str, target: &Target, plan: &str, outputs: &[Sensed]) {
     let file = folder.join(format!("{name}.mcap"));
     Scripted::new(plan, target).record(outputs, &file);

@@ -1,4 +1,5 @@
-//! Runs in which plans replace each other, and runs with modules: every command about records goes through all turns.
+//! Tests runs in which plans replace each other, and runs with modules: every command about records processes all
+//! turns.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,7 +18,7 @@ const FILES: [(&str, &str); 4] = [
     ),
 ];
 
-/// A folder with the record `run.mcap` of this call.
+/// Returns a folder with `run.mcap`, the record of a run with these arguments.
 fn recorded(name: &str, call: &str) -> PathBuf {
     let folder = folder(&format!("why-{name}"));
     for (name, text) in FILES {
@@ -29,7 +30,7 @@ fn recorded(name: &str, call: &str) -> PathBuf {
     folder
 }
 
-/// The answers to these calls, one after the other.
+/// Returns the answers to these calls of `mdle`, in order.
 fn all(folder: &Path, calls: &[&str]) -> String {
     calls.iter().map(|call| asked(folder, &call.split(' ').collect::<Vec<_>>())).collect::<Vec<_>>().join("\n")
 }

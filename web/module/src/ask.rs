@@ -1,4 +1,4 @@
-//! Requests of a page, each with the function that answers it.
+//! Parses and answers the requests of a page.
 
 use mdle_language_service::lines::Position;
 use serde::Deserialize;
@@ -44,7 +44,7 @@ enum Request {
         plan: Option<String>,
         script: String,
     },
-    /// Return diagnostics with their fixes, the names of plans, and colours by meaning.
+    /// Return diagnostics with their fixes, the names of plans, and semantic tokens.
     Diagnose(Draft),
     /// Return proposals at a place.
     Complete {
@@ -106,7 +106,7 @@ pub struct Session {
 }
 
 impl Session {
-    /// Answers a request; a refusal is `{"error":SENTENCE}`.
+    /// Returns the answer to a request, or `{"error":SENTENCE}` if the request is refused.
     #[must_use]
     pub fn answer(&mut self, request: &[u8]) -> String {
         let answer = serde_json::from_slice(request)

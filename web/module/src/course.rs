@@ -1,4 +1,4 @@
-//! The course of a run: exchange and turn in the order of `mdle run`, without its clock.
+//! Runs exchanges and turns in the same order as `mdle run`, but without a clock.
 
 use mdle_compiler::load::{LoadedPlan, Moment};
 use mdle_runtime::capability::Bumpers as _;
@@ -9,7 +9,7 @@ use mdle_simulator::{Goal, Simulated};
 use crate::plan::Plan;
 use crate::setup::{PERIOD, Ready};
 
-/// A run that is being made.
+/// A run in progress.
 pub(crate) struct Course {
     pub(crate) robot: Simulated,
     pub(crate) machine: Option<Machine<LoadedPlan<Alphabet>>>,
@@ -31,14 +31,14 @@ pub(crate) struct Course {
     pub(crate) end: Option<End>,
 }
 
-/// The way in which a run ended.
+/// The reason why a run has ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum End {
     /// The plan is over, with the last transition.
     Over,
     /// The time limit was reached.
     Limit,
-    /// Sentence about a fault of the robot.
+    /// The robot has a fault, which the sentence describes.
     Fault(String),
 }
 
@@ -53,7 +53,7 @@ pub(crate) struct Exchange {
     pub(crate) hits: bool,
 }
 
-/// A turn that was made.
+/// A turn of a run, with its result.
 pub(crate) struct Made {
     /// Number of the turn, from 0.
     pub(crate) number: u64,
@@ -61,13 +61,14 @@ pub(crate) struct Made {
     pub(crate) t: Nanos,
     /// Result of the turn, with the next input.
     pub(crate) turn: Turn<Twist>,
-    /// Number of the current atom, if its law was applied for the first time since the atom was entered.
+    /// Number of the current atom, if its law was applied for the first time since the atom was entered; otherwise
+    /// `None`.
     pub(crate) began: Option<u32>,
     /// The state of the plan before each transition, and at the end of the turn.
     pub(crate) moments: Vec<Moment>,
 }
 
-/// Transitions with the operands that had fired.
+/// Transitions of a turn, each with the operands that fired.
 #[derive(Default)]
 pub(crate) struct Seen {
     pub(crate) transitions: Vec<(Transition, Vec<(u32, Measured)>)>,
@@ -85,7 +86,7 @@ impl Watch for Seen {
 }
 
 impl Course {
-    /// Puts the robot at its start; moments are kept if `looks` is `true`.
+    /// Returns a run whose robot is at its start. The moments of turns are recorded if `looks` is `true`.
     pub(crate) fn new(plan: &Plan, ready: &Ready, looks: bool) -> Result<Self, String> {
         let waiting = if looks { plan.looked_at() } else { plan.looked_at().unobserved() };
         Ok(Self {
@@ -103,7 +104,8 @@ impl Course {
         })
     }
 
-    /// Sends the last input, and takes the output that follows; a fault ends the run.
+    /// Sends the input of the last turn to the robot, and returns the robot's output. A fault of the robot ends the run
+    /// and returns `None`.
     pub(crate) fn exchange(&mut self) -> Option<Exchange> {
         let t = self.robot.now();
         match self.robot.exchange(&self.input) {
@@ -120,7 +122,7 @@ impl Course {
         }
     }
 
-    /// Makes the turn of an exchange.
+    /// Runs a turn of the plan after an exchange; `y` is the robot's output.
     pub(crate) fn turn(&mut self, y: &Sensed) -> Option<Made> {
         let number = self.turns;
         let t = Nanos(number.saturating_mul(PERIOD.0));
@@ -144,7 +146,7 @@ impl Course {
         Some(Made { number, t, turn, began, moments })
     }
 
-    /// Sends the null input once more, unless the robot has a fault.
+    /// Sends the null input, unless the robot has a fault.
     pub(crate) fn release(&mut self) -> Option<Exchange> {
         self.input = Twist::default();
         if matches!(self.end, Some(End::Fault(_))) { None } else { self.exchange() }
@@ -156,7 +158,8 @@ impl Course {
         let _ = self.robot.stop();
     }
 
-    /// Returns the judgement of the robot's pose, as by `mdle run --goal`; `None` without a goal.
+    /// Returns the result of the run with respect to the goal, as `mdle run --goal` reports it: `arrived`, `bumped` or
+    /// `astray`. Returns `None` without a goal.
     pub(crate) fn judged(&self, goal: Option<&Goal>) -> Option<&'static str> {
         let arrives = goal?.holds(&self.robot.pose());
         Some(match (self.touches, arrives) {

@@ -20,7 +20,7 @@ pub(crate) struct Document<'d> {
     /// Alphabet of the robot.
     pub(crate) alphabet: &'static Alphabet,
     draft: &'d Draft,
-    /// Plan files that were read, by their places.
+    /// Plan files that were read. The keys are their paths without `.` and `..`.
     read: BTreeMap<String, SourceId>,
 }
 
@@ -51,7 +51,7 @@ impl<'d> Document<'d> {
         Self::for_robot(&draft.robot, draft)
     }
 
-    /// Returns the document for a page's files, with another robot than the page's.
+    /// Returns the document for a page's files, for the robot `name` instead of the page's robot.
     ///
     /// # Errors
     /// Fails with a sentence if the text is too long, or if there is no such robot.
@@ -78,17 +78,17 @@ impl<'d> Document<'d> {
         Ok(source)
     }
 
-    /// Returns the place of a plan file that was read.
+    /// Returns the path of a plan file that was read, without `.` and `..`; `None` for other files.
     pub(crate) fn place(&self, source: SourceId) -> Option<&str> {
         self.read.iter().find(|(_, read)| **read == source).map(|(place, _)| place.as_str())
     }
 
-    /// Returns the places of all plan files that were read.
+    /// Returns the paths of all plan files that were read, without `.` and `..`.
     pub(crate) fn places(&self) -> BTreeMap<SourceId, String> {
         self.read.iter().map(|(place, source)| (*source, place.clone())).collect()
     }
 
-    /// Returns the file in the editor, and `true` if it was read for the file that is run.
+    /// Returns the file in the editor, and `true` if it is among the files that were read for the file that is run.
     ///
     /// # Errors
     /// Fails with a sentence if there is no such file, or if it is too long.
@@ -135,7 +135,7 @@ impl<'d> Document<'d> {
         }
     }
 
-    /// Returns diagnostics as people read them.
+    /// Returns diagnostics as text for a user.
     pub(crate) fn rendered(&self, found: &[Diagnostic]) -> String {
         found.iter().map(|diagnostic| self.sources.render(diagnostic)).collect::<Vec<_>>().join("\n")
     }

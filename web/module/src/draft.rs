@@ -25,7 +25,7 @@ pub(crate) struct Draft {
 }
 
 impl Draft {
-    /// Returns the text of the file at `place`, or `None` if there is none.
+    /// Returns the text of the file with the path `place`, or `None` if there is no such file.
     pub(crate) fn at(&self, place: &str) -> Option<&str> {
         if place == FILE { Some(&self.text) } else { self.files.get(place).map(String::as_str) }
     }
@@ -36,8 +36,8 @@ impl Draft {
     }
 }
 
-/// Returns the path that `path` means in the folder of the file `from`, and its place, which is the path
-/// without `.` and `..`; the place is `None` outside the page's folder.
+/// Returns the path that results from `path` in the folder of the file `from`, and the same path without `.` and `..`.
+/// The second path is `None` if it leads out of the page's folder.
 pub(crate) fn looked_up(from: &str, path: &str) -> (String, Option<String>) {
     let whole = Path::new(from).parent().unwrap_or(Path::new("")).join(path);
     let mut parts = Vec::new();

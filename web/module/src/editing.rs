@@ -1,4 +1,4 @@
-//! Features of the editor: places are lines and columns in UTF-16 code units, both from 0.
+//! Features of the editor. Places are lines and columns in UTF-16 code units, both from 0.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use crate::document::Document;
 use crate::draft::FILE;
 
-/// Converts places of bytes in one text.
+/// Converter between byte offsets in a text and positions.
 struct Places<'t> {
     text: &'t str,
     lines: Lines,
@@ -28,7 +28,7 @@ impl<'t> Places<'t> {
         Self { text, lines: Lines::of(text) }
     }
 
-    /// Returns `[line, column, line, column]`.
+    /// Returns a range as `[line, column, line, column]`, its start and its end.
     fn range(&self, range: &Range<usize>) -> Value {
         let [start, end] = [range.start, range.end].map(|byte| self.lines.position(self.text, byte));
         json!([start.line, start.character, end.line, end.character])
@@ -39,8 +39,9 @@ impl<'t> Places<'t> {
     }
 }
 
-/// Returns the diagnostics of the file that is run and of the file in the editor, with their fixes; the names of all
-/// plans and of those that run by themselves; and the colours by meaning of the file in the editor.
+/// Returns the diagnostics of the file that is run and of the file in the editor, with their fixes; the names of the
+/// plans of the file that is run, and of those among them that can be run; and the semantic tokens of the file in the
+/// editor.
 pub(crate) fn diagnose(document: &mut Document<'_>) -> Result<Value, String> {
     let found = document.check();
     let mut diagnostics = diagnostics(document, &found, |_| true);

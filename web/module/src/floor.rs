@@ -1,11 +1,11 @@
-//! A world as a page draws it.
+//! Data of a world from which a page draws it.
 
 use mdle_simulator::{Form, Goal, Walls, World, Zone};
 use serde_json::{Value, json};
 
 use crate::setup::Ready;
 
-/// Maximum number of corners that a page gets to draw.
+/// Maximum number of corners of a world that is drawn.
 const CORNERS_MOST: usize = 200_000;
 
 /// Returns the floor of a world in TOML: outlines, moving things, start, goal and charger, in metres.

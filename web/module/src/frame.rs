@@ -1,4 +1,4 @@
-//! A turn as a page draws it. Numbers are rounded for drawing; the files of a run have all digits.
+//! Data of a turn from which a page draws it. Numbers are rounded for drawing; the files of a run have all digits.
 
 use std::collections::BTreeMap;
 
@@ -48,14 +48,16 @@ fn range(exchange: &Exchange, number: usize) -> Value {
     newest.and_then(|ping| ping.range).map_or(Value::Null, |range| json!(round(range.0)))
 }
 
-/// Returns the times since the current atom and the scope around it were entered, the atom's last.
+/// Returns the times since the innermost scope that encloses the current atom and the atom itself were entered, in this
+/// order. Returns an empty list if the atom has ended.
 fn since(moment: Option<&Moment>) -> Value {
     let scopes = moment.filter(|moment| moment.cause.is_none()).map_or(&[][..], |moment| &moment.scopes);
     let inner = scopes.get(scopes.len().saturating_sub(2)..).unwrap_or(scopes);
     inner.iter().map(|scope| round(scope.since.seconds())).collect()
 }
 
-/// Returns the atoms that ended in the turn in which they were entered, each with the number of times.
+/// Returns the atoms that ended in the turn in which they were entered, each with the number of times that this
+/// happened.
 fn skipped(moments: &[Moment]) -> Value {
     let mut times = BTreeMap::<u32, u32>::new();
     for moment in moments.iter().filter(|moment| moment.cause.is_some() && moment.is_new()) {

@@ -11,13 +11,13 @@ use mdle_simulator::alphabet::{Alphabet, NAME};
 use crate::document::Document;
 use crate::draft::Draft;
 
-/// A plan that can begin any number of times.
+/// A compiled plan, from which any number of runs can start.
 pub(crate) struct Plan {
     /// The plan as a state machine.
     pub(crate) machine: Arc<fsm::Machine>,
     /// Texts of the plan.
     pub(crate) sources: Sources,
-    /// Places of the plan's files.
+    /// Paths of the plan's files, without `.` and `..`.
     pub(crate) files: BTreeMap<SourceId, String>,
     loaded: Arc<Loaded<Alphabet>>,
 }
@@ -36,7 +36,7 @@ impl Plan {
         Ok(Self { machine, sources: document.sources, files, loaded })
     }
 
-    /// Returns the plan before it begins; it is observed while it makes turns.
+    /// Returns the plan for a new run, which records the moments of its turns.
     pub(crate) fn looked_at(&self) -> LoadedPlan<Alphabet> {
         self.loaded.plan()
     }

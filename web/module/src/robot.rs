@@ -9,7 +9,7 @@ use mdle_simulator::alphabet::NAME;
 /// An alphabet that is read once, when it is first needed.
 type Once = OnceLock<Result<ReadAlphabet, String>>;
 
-/// Returns the alphabet of a robot that is part of mdlec, or that of `sim` for an empty name.
+/// Returns the alphabet of a robot that is part of mdlec, or the alphabet of `sim` if `name` is empty.
 ///
 /// # Errors
 /// Fails with a sentence if there is no such robot.

@@ -1,4 +1,4 @@
-//! A run that a page steps by turns.
+//! A run that a page advances by turns.
 
 use mdle_compiler::fsm::{Element, ElementKind};
 use mdle_compiler::load::{Moment, ScopeMoment};
@@ -13,10 +13,10 @@ use crate::{floor, frame, why};
 
 /// Maximum number of moments of a turn that are shown.
 const MOMENTS_MOST: usize = 40;
-/// Maximum number of transitions in one answer: a turn can make 4,096.
+/// Number of transitions after which an answer contains no further turn; a single turn can have 4,096 transitions.
 const TRANSITIONS_MOST: usize = 20_000;
 
-/// Limits on the data that are kept of a run.
+/// Limits on the size of the data of a run.
 #[derive(Debug, Clone, Copy)]
 struct Limits {
     /// Maximum size of all moments, in bytes; a turn whose moments are not kept is explained by repeating the
@@ -33,7 +33,7 @@ pub(crate) struct Run {
     plan: Plan,
     ready: Ready,
     course: Course,
-    /// Moments of the first turns, up to the limit.
+    /// Moments of each turn from the first turn on, until their limit was reached.
     moments: Vec<Vec<Moment>>,
     /// Remaining size within the limits.
     left: Limits,
@@ -44,7 +44,7 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    /// Puts the robot at its start.
+    /// Compiles the plan, and puts the robot at its start.
     ///
     /// # Errors
     /// Fails with messages about the plan, or with a sentence about the setup.
@@ -93,7 +93,7 @@ impl Run {
         })
     }
 
-    /// Makes at most this many turns.
+    /// Runs at most `turns` turns, and returns them as a page draws them, with the end of the run if it has ended.
     pub(crate) fn step(&mut self, turns: u64) -> Value {
         let (mut frames, mut transitions) = (Vec::new(), 0);
         for _ in 0..turns {
@@ -122,7 +122,7 @@ impl Run {
         self.left.turns = self.left.turns.saturating_sub(size);
     }
 
-    /// Keeps the moments of a turn, if those of all earlier turns are kept and the limit allows it.
+    /// Stores the moments of a turn, if the moments of all earlier turns are stored and the limit allows it.
     fn keep(&mut self, turn: u64, moments: Vec<Moment>) {
         let size: usize = moments.iter().map(size).sum();
         if self.moments.len() as u64 == turn && size <= self.left.moments {
@@ -131,7 +131,7 @@ impl Run {
         }
     }
 
-    /// Returns the end of the run, with the judgement of its goal; null before the end.
+    /// Returns the reason why the run has ended, with the result with respect to the goal; null before the end.
     fn end(&self) -> Value {
         let judged = self.course.judged(self.ready.goal.as_ref());
         match &self.course.end {
@@ -179,7 +179,7 @@ impl Run {
     }
 }
 
-/// Returns the first moments and the last one, if there are too many to show.
+/// Returns the moments or, if there are too many to show, only the first ones and the last one.
 fn shown(mut moments: Vec<Moment>) -> Vec<Moment> {
     if moments.len() > MOMENTS_MOST {
         let last = moments.pop();

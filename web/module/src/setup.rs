@@ -45,7 +45,7 @@ pub(crate) struct Setup {
 pub(crate) struct Ready {
     pub(crate) world: World,
     pub(crate) make: Make,
-    /// Start pose of this seed.
+    /// Start pose, which includes the random offset.
     pub(crate) begins: Pose,
     /// Charge of the battery, from 0 to 1.
     charge: f64,

@@ -1,4 +1,4 @@
-//! Answers of the commands of `mdlec`, identical to the bytes that it prints.
+//! Answers to requests for the commands of `mdlec`. They are byte for byte the output of these commands.
 
 use mdle_compiler::Compiled;
 use mdle_compiler::alphabet::{Declaration, DeclarationKind};

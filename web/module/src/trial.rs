@@ -1,4 +1,4 @@
-//! A complete run of which only the end is reported, as one of a batch.
+//! Makes a complete run and reports only its end, for batches of runs.
 
 use mdle_runtime::{Nanos, Turn};
 use serde_json::{Value, json};

@@ -39,8 +39,8 @@ fn scope(machine: &Machine, words: &dyn Words, moment: &ScopeMoment) -> Value {
     })
 }
 
-/// Collects the parts that AND and OR join, each with the value of the comparison that it shows. The parts of a
-/// condition come before the parts of its operands.
+/// Collects in `joined` the operands that AND and OR join, each with the value of the comparison that is shown for it.
+/// `parts` are the values of the condition and its operands; a condition comes before its operands.
 fn operands(condition: &Condition, parts: &mut std::slice::Iter<'_, Examined>, joined: &mut Vec<(Examined, bool)>) {
     let Some(part) = parts.next().copied() else { return };
     if condition.lasting().is_some() {
@@ -62,7 +62,8 @@ fn operands(condition: &Condition, parts: &mut std::slice::Iter<'_, Examined>, j
     }
 }
 
-/// Takes the parts of a condition inside NOT or RISING, and returns the value of the innermost comparison.
+/// Takes the values of a condition inside NOT or RISING from `parts`, and returns the value of the innermost
+/// comparison.
 fn innermost(condition: &Condition, parts: &mut std::slice::Iter<'_, Examined>) -> Option<bool> {
     let part = parts.next()?;
     let inside = if condition.lasting().is_some() { &[] } else { condition.children() };

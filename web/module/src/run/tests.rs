@@ -1,4 +1,5 @@
-//! Tests of a run's limits: turns whose moments are not kept are explained as others, and a run that is too large ends.
+//! Tests of a run's limits: turns whose moments are not stored can be explained like others, and a run whose data are
+//! too large ends.
 
 use serde_json::Value;
 
@@ -8,7 +9,7 @@ use crate::setup::Setup;
 
 const DOCK: &str =
     "{ Dock (bumper)\n (Atom (wait 1s) (go 20 0))\n (Atom (NOT bumper) stop)\n (Atom (wait 2s) stop)\n}\n";
-/// Makes 4,096 transitions in each turn.
+/// A plan that makes 4,096 transitions in each turn.
 const SPIN: &str = "{ Spin (wait 1h)\n ExecPlan inf {\n  (Atom (NOT bumper) stop)\n  (Atom (wait 0s) stop)\n }\n}\n";
 
 fn begun(text: &str, limits: Limits) -> Run {
