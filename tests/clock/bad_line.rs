@@ -1,4 +1,5 @@
-//! A line between two robots that loses and delays states: it stands between a sender and the peer that it connects to.
+//! A line between two robots that loses and delays states. It is placed between a sender and the peer to which the
+//! sender connects.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -12,20 +13,20 @@ use std::time::{Duration, Instant};
 
 use mdle_tests::chance::Chance;
 
-/// Length of the bytes by which a robot greets a sender (docs/src/reference/interfaces.md, 6.5).
+/// Length in bytes of the greeting that a robot sends to a sender (docs/src/reference/interfaces.md, 6.5).
 const GREETING: usize = 21;
 
-/// A line's faults.
+/// Faults of a line.
 #[derive(Clone, Copy)]
 pub(crate) struct Line {
-    /// States that are lost, in percent.
+    /// Percentage of states that are lost.
     pub(crate) loss: usize,
-    /// The maximum time that a state takes; each takes a random one, so that later ones overtake.
+    /// Maximum delay of a state. Delays are random, so that a state can overtake an earlier one.
     pub(crate) longest: Duration,
 }
 
 impl Line {
-    /// Begins to carry states to `peer`, and returns the address to which they are to be sent.
+    /// Starts a line to `peer`, and returns the address to which senders have to connect instead.
     pub(crate) fn before(self, peer: SocketAddr, seed: u64) -> SocketAddr {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap();
@@ -47,7 +48,7 @@ impl Line {
         address
     }
 
-    /// Takes the frames of a connection, each with the time at which it arrives, until it ends.
+    /// Receives the frames of a connection until it ends, and passes each to `frames` with the time at which it is due.
     fn take(self, mut from: TcpStream, frames: &Sender<(Instant, Vec<u8>)>, mut chance: Chance) -> io::Result<()> {
         loop {
             let mut length = [0; 4];
@@ -64,7 +65,7 @@ impl Line {
     }
 }
 
-/// Writes each frame when it is due.
+/// Writes each frame to the peer when it is due.
 fn carry(mut to: TcpStream, frames: &Receiver<(Instant, Vec<u8>)>) -> io::Result<()> {
     let mut waiting = BinaryHeap::new();
     loop {

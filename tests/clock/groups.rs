@@ -1,4 +1,4 @@
-//! The plan of a group, each of whose robots has a program of its own, linked over TCP.
+//! Tests the plan of a group whose robots run in separate processes that are linked over TCP.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;

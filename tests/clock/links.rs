@@ -1,4 +1,4 @@
-//! Three robots in three processes that are linked over TCP, on the clock.
+//! Tests three robots in three processes that are linked over TCP, by the clock.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -14,7 +14,7 @@ use mdle_tests::executable::{folder, mdle};
 
 const NAMES: [&str; 3] = ["ada", "bob", "eve"];
 
-/// Writes the file of each robot's link; returns their addresses.
+/// Writes the link file of each robot, and returns the addresses of the robots. `key_of_eve` is the key of `eve`.
 fn with_links(folder: &Path, key_of_eve: &str) -> [SocketAddr; 3] {
     let addresses = super::addresses();
     for (name, address) in NAMES.into_iter().zip(addresses) {
@@ -36,7 +36,7 @@ fn begin(folder: &Path, name: &str, plan: &str) -> Child {
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// The report and the messages of a robot whose plan is over.
+/// Returns the report and the messages of a robot, and asserts that its plan is over.
 fn ended(child: Child) -> String {
     let Output { status, stdout, stderr } = child.wait_with_output().unwrap();
     let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
@@ -103,7 +103,7 @@ fn a_plan_with_unknown_robots_is_refused() {
     }
 }
 
-/// Returns the time in ticks that a process has used of all cores.
+/// Returns the processor time that a process has used on all cores, in ticks.
 fn used(process: u32) -> u64 {
     let text = fs::read_to_string(format!("/proc/{process}/stat")).unwrap();
     // The name of the program may contain blanks.

@@ -1,5 +1,5 @@
-//! Executables on emulated robots by the clock: signals, suspension and faults. No other program of tests runs beside
-//! them, as they mostly wait.
+//! Tests of executables on emulated robots by the clock: signals, suspension and faults. No other test program runs at
+//! the same time, and these tests mostly wait.
 
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::atomic::{AtomicU16, Ordering};
@@ -16,8 +16,8 @@ mod sent_plans;
 mod signalled;
 mod stands;
 
-/// The rules for robots whose executables are built, which takes long where none was built before: in one test, so that
-/// the others do not wait for that.
+/// Tests of robots whose executables are built first, which can take long. They are a single test, so that other tests
+/// do not wait for the build.
 #[test]
 fn a_built_robot_stands_after_faults() {
     at_once(&[
@@ -27,7 +27,7 @@ fn a_built_robot_stands_after_faults() {
     ]);
 }
 
-/// The rules for robots whose programs are linked: in one test, as each of them waits for most of its time.
+/// Tests of robots whose programs are linked. They are a single test, because each of them waits most of the time.
 #[test]
 fn linked_robots_go_by_the_clock() {
     at_once(&[
@@ -46,13 +46,13 @@ fn linked_robots_go_by_the_clock() {
     ]);
 }
 
-/// Runs these at the same time: for most of their time they wait.
+/// Runs these tests at the same time, because each of them waits most of the time.
 fn at_once(rules: &[fn()]) {
     thread::scope(|scope| rules.iter().for_each(|rule| drop(scope.spawn(rule))));
 }
 
-/// Returns addresses at which nobody listens. Their host is that of one test, as others would get ports of it that are
-/// free, but not yet taken by the robots.
+/// Returns addresses at which nobody listens. Each call uses a different host, because another test could otherwise get
+/// one of these free ports before the robots use it.
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 fn addresses<const COUNT: usize>() -> [SocketAddr; COUNT] {
     static HOST: AtomicU16 = AtomicU16::new(2);

@@ -1,5 +1,5 @@
-//! Signals at the engine and at the process group of a module, in each phase of a turn: how many turns pass until the
-//! robot stands.
+//! Tests signals to the engine and to the process group of a module in each phase of a turn, and counts the turns until
+//! the robot is at rest.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "how many turns it took is seen with --nocapture")]
 
@@ -19,23 +19,23 @@ use mdle_tests::executable::folder;
 
 use super::signalled::run::{Ran, Robot, distance, drove, ran_by, send};
 
-/// Drives while a module says something.
+/// A plan that drives while a module publishes.
 const PLAN: &str = "{ Listen (age(ears module) > 500ms OR wait 20s) (Atom (null) (go 20 0)) }\n";
-/// A child process that says something at each break, and notes its number.
+/// A child process that publishes a bearing at each turn break, and writes its process number to a file.
 const EARS: &str = "echo $$ > $1; echo '{\"publishes\": {\"bearing\": \"deg\"}}'\n\
                     while read line; do echo '{\"bearing\": 0}'; done\n";
 const PERIOD: Duration = Duration::from_millis(100);
-/// Times from a command to the signal, in milliseconds: during the exchange, in a turn, of which a module takes 40 ms,
-/// at its break, and while the engine waits for the next.
+/// Times from a command to the signal, in milliseconds: during the exchange, during the turn, of which a module takes
+/// 40 ms, at the turn break, and while the engine waits for the next turn.
 const MOMENTS: [u64; 6] = [0, 10, 30, 45, 60, 80];
-/// Time for which the robot drives before.
+/// Time for which the robot drives before the signal.
 const DRIVES: Duration = Duration::from_millis(500);
-/// Maximum movement of a robot that stands, in a step, in metres.
+/// Maximum movement in a step of a robot that is at rest, in metres.
 const STANDS: f64 = 1e-5;
 /// Number of runs at the same time.
 const AT_A_TIME: usize = 12;
 
-/// Something that is killed or asked to end.
+/// A signal and its receiver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Blow {
     /// SIGKILL to the engine.
@@ -49,7 +49,7 @@ enum Blow {
 impl Blow {
     const ALL: [Self; 3] = [Self::KillsEngine, Self::EndsEngine, Self::KillsModule];
 
-    /// Strikes; `pid` is the file with the number of the module's process.
+    /// Sends the signal. `pid` is the file with the process number of the module.
     fn strike(self, engine: u32, pid: &Path) {
         match self {
             Self::KillsEngine => send(9, engine),
@@ -65,7 +65,8 @@ impl Blow {
     }
 }
 
-/// Runs the plan, and strikes this long after a command; returns the run, and the turns until the robot stood.
+/// Runs the plan, and sends the signal when the time `moment` has passed since a command. Returns the run, and the
+/// number of turns until the robot was at rest.
 fn struck<R: Robot>(folder: &Path, blow: Blow, moment: Duration) -> (Ran<R>, u32) {
     let pid = folder.join(format!("{blow:?}-{}", moment.as_millis()));
     let mut command = Command::new(env!("CARGO_BIN_EXE_ahead"));
@@ -104,7 +105,8 @@ fn struck<R: Robot>(folder: &Path, blow: Blow, moment: Duration) -> (Ran<R>, u32
     (ran, u32::try_from(turns).unwrap())
 }
 
-/// Asserts that a robot stands after every blow in every phase; returns a line for each blow.
+/// Asserts that a robot comes to rest after every signal in every phase, within at most the turns that `most` gives for
+/// each kind of signal. Returns a line for each kind of signal.
 fn every_phase<R: Robot>(most: [u32; 3]) -> String {
     let folder = folder(&format!("phases_{}", R::NAME));
     fs::write(folder.join("plan.mdle"), PLAN).unwrap();
@@ -135,7 +137,7 @@ fn every_phase<R: Robot>(most: [u32; 3]) -> String {
     lines.concat()
 }
 
-/// Asserts what the program left.
+/// Asserts the exit status, the messages and the last commands of the program after the signal.
 fn assert_end<R: Robot>(blow: Blow, ran: &Ran<R>) {
     let (status, errors) = (ran.output.status.code(), ran.errors());
     let bytes = &ran.received.bytes;

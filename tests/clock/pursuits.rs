@@ -1,5 +1,5 @@
-//! Local pursuit by three programs that are linked over TCP (paper, section IV-D): simulated robots on a line that
-//! loses and delays states, and emulated Scouts in one world, one of which may lose its program.
+//! Tests local pursuit by three programs that are linked over TCP (paper, section IV-D): simulated robots on a line
+//! that loses and delays states, and emulated Scouts in one world, of which one program may be killed.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test tells")]
 
@@ -25,7 +25,8 @@ use mdle_tests::ways::{Place, excess};
 use crate::bad_line::Line;
 
 const PERIOD: Duration = Duration::from_millis(100);
-/// The robots: name, plan, start on the first axis, and the option by which it records its ways.
+/// The robots, each with its name, its plan, its start on the first axis in metres, and the option by which it records
+/// its paths.
 const ROBOTS: [(&str, &str, f64, &str); 3] = [
     ("robot1", "first_robot", 0.0, " --records lastPath --paths robot1"),
     ("robot2", "second_robot", -0.95, ""),
@@ -33,13 +34,13 @@ const ROBOTS: [(&str, &str, f64, &str); 3] = [
 ];
 const FLOOR: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[-6, -6], [9, -6], [9, 6], [-6, 6], [-6, -6]]";
-/// Time that a robot's step takes in real time at least.
+/// Minimum real time that a step of an emulated robot takes.
 const SLOWER: Duration = Duration::from_millis(2);
-/// The maximum time for which programs may run, in real time.
+/// Maximum real time for which the programs may run.
 const LONGEST: Duration = Duration::from_secs(400);
 
-/// A folder with the plans, for this number of laps and with this timer, and with the file of each robot's link, by
-/// lines with these faults.
+/// Returns a folder with the plans and the link file of each robot. The plans drive `laps` laps and have the timer
+/// `timer`; the links use lines with the faults `line`.
 fn prepared(test: &str, laps: u64, timer: &str, line: Option<Line>, seed: u64) -> PathBuf {
     let folder = folder(test);
     let plans = root().join("plans/pursuit");
@@ -66,7 +67,7 @@ fn prepared(test: &str, laps: u64, timer: &str, line: Option<Line>, seed: u64) -
     folder
 }
 
-/// Starts the program of a robot with these options of its target.
+/// Starts the program of a robot, with options for its target.
 fn begin(folder: &Path, number: usize, options: &str) -> Child {
     let (name, plan, _, records) = ROBOTS[number];
     let _ = fs::remove_file(folder.join(format!("{name}.mcap")));
@@ -80,12 +81,12 @@ fn begin(folder: &Path, number: usize, options: &str) -> Child {
 struct Course {
     status: Option<i32>,
     report: String,
-    /// For each trip, if the robot led it, and its places by odometry.
+    /// For each trip, `true` if the robot led it, and the robot's places by odometry.
     trips: Vec<(bool, Vec<Place>)>,
 }
 
 impl Course {
-    /// Returns the run of a program that has ended, or has been killed.
+    /// Waits for the end of a program, and returns its run. Asserts that the record of the run replays to the bit.
     fn of(folder: &Path, number: usize, child: Child) -> Self {
         let Output { status, stdout, stderr } = child.wait_with_output().unwrap();
         let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
@@ -104,7 +105,8 @@ impl Course {
     }
 }
 
-/// Returns the ways of `path` and `Follow` by the report of a run, and its places over time.
+/// Returns the trips that a robot made by `path` and `Follow` according to its report. `places` are its places over
+/// time.
 fn trips(report: &str, places: &[(f64, Place)]) -> Vec<(bool, Vec<Place>)> {
     let lines: Vec<(f64, &str)> = report
         .lines()
@@ -120,7 +122,7 @@ fn trips(report: &str, places: &[(f64, Place)]) -> Vec<(bool, Vec<Place>)> {
     lines.windows(2).filter_map(trip).collect()
 }
 
-/// Checks that the ways of three robots became straight, and prints how straight.
+/// Asserts that the paths of the robots have become straight, and prints by how much they exceed a straight line.
 fn assert_converge(test: &str, courses: &[Course; 3], laps: u64) {
     let all = courses.iter().map(|course| course.report.as_str()).collect::<Vec<_>>().join("\n");
     for course in courses {
@@ -157,10 +159,10 @@ pub(crate) fn simulated_robots_learn_over_a_bad_line() {
     }
 }
 
-/// A robot whose program is killed: its number, and the time of its world.
+/// A robot whose program is killed: its number, and the time in its world.
 type Victim = (usize, Duration);
 
-/// An emulated Scout that tells the time of its world.
+/// An emulated Scout that adds the time of its steps to `time`.
 struct Timed {
     scout: Scout,
     time: Rc<Cell<Duration>>,
@@ -205,8 +207,8 @@ impl Embodied for Timed {
     }
 }
 
-/// Runs the plans on three emulated Scouts in one world; returns their runs. Programs that do not end in time are
-/// killed.
+/// Runs the plans on three emulated Scouts in one world, and returns their runs. Programs that do not end within
+/// [`LONGEST`] are killed.
 fn on_scouts(folder: &Path, pace: Pace, seed: u64, victim: Option<Victim>) -> [Course; 3] {
     let (world, time) = (World::parse("floor", FLOOR).unwrap(), Rc::new(Cell::new(Duration::ZERO)));
     let seat = |number: usize| {
@@ -263,7 +265,7 @@ pub(crate) fn a_program_that_dies_leaves_no_scout_waiting() {
     }
 }
 
-/// Asserts that two Scouts go on or end their plans after the program of the third is killed at this time.
+/// Asserts that two Scouts continue or end their plans after the program of the third one was killed at this time.
 fn killed(run: u64, time: Duration) {
     let folder = prepared(&format!("scouts_killed_{}", run % 2), 2, "2min", None, 0);
     let victim = run as usize % 3;

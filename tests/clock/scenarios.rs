@@ -1,4 +1,4 @@
-//! A signal during a scenario: it ends in order, with all that was written so far.
+//! Tests a signal during a scenario: the scenario ends in order, and everything written so far is complete.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -1,4 +1,4 @@
-//! Attributes of modules and plans between two processes that are linked over TCP, on the clock.
+//! Tests attributes of modules and plans between two processes that are linked over TCP, by the clock.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,7 +10,7 @@ use mdle_tests::executable::{folder, mdle};
 
 use super::addresses;
 
-/// Writes the link files of `ada` and `bob`, with these keys besides those that every file has, for the robot and for
+/// Writes the link files of `ada` and `bob`. `keys` are additional entries for each file: for the robot itself and for
 /// its peer.
 fn with_links(folder: &Path, keys: [(&str, &str); 2]) {
     let [ada, bob] = addresses();
@@ -24,14 +24,14 @@ fn with_links(folder: &Path, keys: [(&str, &str); 2]) {
     }
 }
 
-/// Begins `mdle` with these words.
+/// Starts `mdle` with these arguments.
 fn begin(folder: &Path, words: &[&str]) -> Child {
     let mut command = Command::new(mdle());
     let command = command.args(words).args(["--target", "sim", "--world", "room"]).current_dir(folder);
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// The report and the messages of a robot, with its exit status.
+/// Returns the report and the messages of a robot, with its exit status.
 fn ended(child: Child) -> String {
     let Output { status, stdout, stderr } = child.wait_with_output().unwrap();
     let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
@@ -58,7 +58,8 @@ pub(crate) fn a_plan_reads_a_module_of_another_process() {
     assert!(text.starts_with("the same to the bit, "), "{text}");
 }
 
-/// Lets `ada` send a plan to `bob`, with these keys of the peers; returns the outputs of both.
+/// Runs a session of `ada`, which sends a plan to `bob`. `of_ada` and `of_bob` are additional entries for the peers.
+/// Returns the outputs of both.
 fn send(test: &str, [of_ada, of_bob]: [&str; 2], plan: &str) -> [String; 2] {
     let folder = folder(test);
     with_links(&folder, [("", of_ada), ("", of_bob)]);

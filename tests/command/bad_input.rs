@@ -1,5 +1,5 @@
-//! Messages of `mdlec` about bad input, through the real binary: each has a code or a hint and sets the exit status,
-//! and no partial file is left.
+//! Tests the messages of `mdlec` about bad input, through the real binary: each message has a code or a hint, the exit
+//! status is set, and no partial file is left.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -7,10 +7,10 @@ use std::path::Path;
 
 use mdle_tests::executable::{folder, run_mdlec};
 
-/// A plan that is good.
+/// A plan without errors.
 const REST: &str = "{ Rest (Atom (wait 1ms) stop) }\n";
 
-/// Returns the exit status and standard error, as a person sees them.
+/// Returns a command, its standard error and its exit status, as a user sees them.
 fn transcript(folder: &Path, arguments: &[&str]) -> String {
     let before = listing(folder);
     let output = run_mdlec(folder, arguments);
@@ -277,7 +277,7 @@ fn more_passes_than_can_be_counted_are_an_error() {
     }
 }
 
-/// The inputs of a command that writes, each with the plan's file or one that it uses as the output.
+/// Arguments of commands that write, each with the plan's file or a file that it uses as the output.
 const OVER_AN_INPUT: [&[&str]; 9] = [
     &["plan.mdle", "--target", "sim", "-o", "legs.mdle"],
     &["plan.mdle", "--target", "sim", "-o", "./folder/../plan.mdle"],

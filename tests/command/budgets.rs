@@ -1,7 +1,8 @@
-//! Inputs that ask for more than any computer has, through the real binaries: each ends within stated memory and time,
-//! with a result or with a message that names the limit.
+//! Tests inputs that need more resources than any computer has, through the real binaries. Each command ends within
+//! stated memory and time, with a result or with a message that names the limit.
 //!
-//! Plans just within the limits take an unoptimized mdlec two minutes: without `MDLE_LONG` the plans here are smaller.
+//! For plans just within the limits, an unoptimized mdlec needs two minutes; without `MDLE_LONG` the plans here are
+//! smaller.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::ffi::OsStr;
@@ -12,12 +13,13 @@ use std::process::{Command, Output};
 use mdle_tests::chance::sized;
 use mdle_tests::executable::{cache, folder, mdlec, run_mdlec};
 
-/// The address space that a process gets, in KiB: 1 GB.
+/// Maximum address space of a process, in KiB: 1 GB.
 const MEMORY: u32 = 1 << 20;
-/// The processor time that a process gets, in seconds: generous, since tests run unoptimised code at the same time.
+/// Maximum processor time of a process, in seconds. It is generous, because several tests run unoptimised code at the
+/// same time.
 const SECONDS: u32 = 60;
 
-/// A program in `folder` under both limits.
+/// Runs a program in `folder` with both limits.
 fn limited(folder: &Path, program: &Path, arguments: &[impl AsRef<OsStr>]) -> Output {
     let limits = format!("ulimit -v {MEMORY} && ulimit -t {SECONDS} && exec \"$0\" \"$@\"");
     let mut command = Command::new("sh");
@@ -25,14 +27,14 @@ fn limited(folder: &Path, program: &Path, arguments: &[impl AsRef<OsStr>]) -> Ou
     command.current_dir(folder).env("MDLEC_CACHE", cache()).output().expect("a shell")
 }
 
-/// The exit status and the messages of a command, whose output may be anything.
+/// Returns the exit status and the messages of a command, whatever its output is.
 fn judged(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     let output = limited(folder, mdlec(), arguments);
     (output.status.code(), String::from_utf8(output.stderr).expect("UTF-8"))
 }
 
-/// Returns a plan `P` that uses a plan `uses[0]` times, which uses another plan `uses[1]` times, and so on down to
-/// `inmost`, in which `NAME` is its own name.
+/// Returns a plan `P` that uses a plan `uses[0]` times, which uses another plan `uses[1]` times, and so on. The
+/// innermost plan is `inmost`, with its own name in place of `NAME`.
 fn multiplied(uses: &[usize], inmost: &str) -> String {
     let name = |level: usize| if level == 0 { "P".to_owned() } else { format!("L{level}") };
     let levels = uses.iter().enumerate().map(|(level, uses)| {
@@ -48,7 +50,7 @@ fn operands(count: usize) -> String {
     operands.join(" OR ")
 }
 
-/// Commands that read a plan, except those that only read its text.
+/// Commands that read a plan, except commands that only parse its text.
 const COMMANDS: [&[&str]; 14] = [
     &["check"],
     &["check", "--target", "all"],
@@ -73,7 +75,7 @@ fn with_plan(test: &str, plan: &str) -> std::path::PathBuf {
     folder
 }
 
-/// Asserts that every command prints this message about a plan, and no other.
+/// Asserts that every command refuses a plan with E0501 and this message.
 fn assert_refused(test: &str, plan: &str, message: &str) {
     let folder = with_plan(test, plan);
     for command in COMMANDS {
@@ -130,7 +132,7 @@ fn arguments_that_plans_multiply_are_limited() {
     assert_refused("arguments", &plan, "bytes of text");
 }
 
-/// Asserts that a plan has no error, and that these commands print a result or name a limit.
+/// Asserts that a plan has no errors, and that each of these commands prints a result or names a limit.
 fn assert_ends(test: &str, plan: &str, commands: &[&[&str]]) {
     let folder = with_plan(test, plan);
     let (status, messages) = judged(&folder, &["check", "plan.mdle"]);
@@ -223,7 +225,7 @@ fn limits_are_asked_before_a_plan_is_lowered() {
     assert_is_asked("rust", &long, &[RUST], "Rust is emitted for 262144 in all");
 }
 
-/// Returns an image of this size, black where `stands` returns `true`.
+/// Returns an image of this size in the format PGM. A pixel is black if `stands` returns `true` for its column and row.
 fn image(width: usize, height: usize, stands: impl Fn(usize, usize) -> bool) -> Vec<u8> {
     let mut bytes = format!("P5\n{width} {height}\n255\n").into_bytes();
     let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
@@ -231,7 +233,7 @@ fn image(width: usize, height: usize, stands: impl Fn(usize, usize) -> bool) -> 
     bytes
 }
 
-/// Walls of 200 km, so far from one to the next, in metres.
+/// Returns the text of `count` parallel walls of 200 km, at a distance of `apart` metres.
 fn long_walls(count: usize, apart: f64) -> String {
     let wall = |number: usize| {
         let x = 5.0 + number as f64 * apart;

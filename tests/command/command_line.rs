@@ -1,4 +1,4 @@
-//! Output of `mdlec` without errors, through the real binary.
+//! Tests the output of `mdlec` without errors, through the real binary.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::BTreeSet;
@@ -15,7 +15,8 @@ use mdle_tests::golden::{judge, rust};
 use mdle_tests::repository::{TextFile, root};
 use serde_json::Value;
 
-/// A plan in which each stage differs from the one before it: a unit, a plan by name, a repeated interrupt, a loop.
+/// A plan in which each stage differs from the previous one: it has a unit, a plan by name, a repeated interrupt, and a
+/// loop.
 const PLAN: &str = "\
 /// Ahead, then a shake.
 { Outing (bumper)
@@ -25,7 +26,7 @@ const PLAN: &str = "\
 { Shake (wait 15s) ((Atom (wait 500ms) (go 5 0)) (Atom (bumper) rotate 90))^2 }
 ";
 
-/// The kinds of `--emit` that are text.
+/// Kinds of `--emit` whose output is text.
 const KINDS: [&str; 6] = ["tree", "plan", "nondegenerate", "expanded", "fsm", "rust"];
 
 /// A script (docs/src/reference/interfaces.md, 3).
@@ -33,7 +34,7 @@ const SCRIPT: &str = r#"{"t": 0.0, "fired": [], "completed": []}
 {"t": 0.1, "fired": ["atIsection 0100", "bumper"], "completed": ["align 7 9"]}
 "#;
 
-/// Trace (docs/src/reference/interfaces.md, 4) of the plan from lab 2 to lab 1 on the script.
+/// The trace (docs/src/reference/interfaces.md, 4) of the plan from lab 2 to lab 1 on the script.
 const TRACE: &str = r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}
 {"turn":1,"t":0.1,"state":9,"law":null,"fired":[{"from":1,"level":0,"by":"bumper","operands":["bumper"]}]}
 "#;
@@ -44,7 +45,7 @@ fn with_plan(test: &str, plan: &str) -> PathBuf {
     folder
 }
 
-/// Standard output of a command that succeeds.
+/// Returns standard output of a command that succeeds.
 fn printed(output: Output) -> String {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).expect("UTF-8")
@@ -60,7 +61,7 @@ fn emitted(folder: &Path, kind: &str) -> String {
     printed(run_mdlec(folder, &["plan.mdle", "--target", "sim", "--emit", kind]))
 }
 
-/// Asserts that all four machines have this trace of a plan, one line for each turn.
+/// Asserts that all four machines print this trace of a plan, one line for each turn.
 fn assert_trace(folder: &Path, expected: &str) {
     for machine in [None, Some("tree"), Some("table"), Some("matrix"), Some("counted")] {
         let machine = machine.map_or(vec![], |machine| vec!["--machine", machine]);

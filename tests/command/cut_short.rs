@@ -1,5 +1,5 @@
-//! Tests of `mdlec` when it cannot go on: a signal, a reader that goes away, no room; through the real binary. No file
-//! is left, and the next build works.
+//! Tests of `mdlec` when it cannot continue, because of a signal, a closed pipe or a full disk, through the real
+//! binary. No file is left, and the next build works.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::ffi::OsString;
@@ -15,7 +15,7 @@ use mdle_tests::executable::{cache, command, folder, mdlec, run_mdlec, without_w
 
 const PLAN: &str = "plan.mdle";
 
-/// A cargo that reports that it is at work, with a child of its own, and never ends by itself.
+/// A cargo that reports that it is at work, has a child process, and never ends by itself.
 const CARGO: &str = "#!/bin/sh\nexec 3> \"$AT_WORK\"\necho at work >&3\nsleep 900 &\nwait\necho survived >&3\n";
 
 fn with_plan(test: &str) -> PathBuf {
@@ -30,7 +30,7 @@ fn listing(folder: &Path) -> Vec<OsString> {
     names
 }
 
-/// Returns the exit status and standard error, without lines about the builds of other tests.
+/// Returns the exit status and standard error, without messages about the builds of other tests.
 fn report(output: &Output) -> (Option<i32>, String) {
     let message = String::from_utf8(output.stderr.clone()).expect("UTF-8");
     assert!(!message.contains("panicked"), "{message}");
@@ -44,8 +44,8 @@ fn assert_builds(folder: &Path) {
     assert_eq!(run.stdout, b"0.1 s  plan over: wait 1ms (plan.mdle:1)\n");
 }
 
-/// Starts `mdlec` in `folder` with [`CARGO`] at work; returns it, the pipe that reports the work, and a thread that
-/// returns the output of `mdlec` after its end.
+/// Starts `mdlec` in `folder`, and waits until [`CARGO`] is at work. Returns the process, the pipe to which `CARGO`
+/// reports, and a thread that returns standard error of `mdlec` after its end.
 fn with_cargo_at_work(folder: &Path) -> (Child, BufReader<File>, JoinHandle<String>) {
     let tools = folder.join("tools");
     fs::create_dir(&tools).unwrap();
@@ -106,7 +106,7 @@ fn a_signal_ends_mdlec_and_its_cargo() {
     }
 }
 
-/// `mdlec`, which may write files of this many blocks.
+/// Runs `mdlec` with a limit on the size of files, in blocks. Returns the exit status and standard error.
 fn limited(folder: &Path, blocks: usize, arguments: &[&str], cache: &Path) -> (Option<i32>, String) {
     let script = format!("ulimit -f {blocks}; exec \"$0\" \"$@\"");
     let mut command = Command::new("sh");

@@ -1,4 +1,4 @@
-//! `mdlec lsp` and `mdlec dap`: the real binary on its standard input and output. The features are tested in
+//! Tests `mdlec lsp` and `mdlec dap` as the real binary, on its standard input and output. The features are tested in
 //! `editors/server` and `editors/debugger`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -15,7 +15,7 @@ use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::repository::root;
 use serde_json::{Value, json};
 
-/// A running server.
+/// A running `mdlec` that serves an editor.
 struct Server {
     child: Child,
     input: Option<ChildStdin>,
@@ -27,7 +27,7 @@ impl Server {
         Self::of(test, "lsp")
     }
 
-    /// Starts a command that serves an editor.
+    /// Starts the command `name` of `mdlec`, which serves an editor.
     fn of(test: &str, name: &str) -> Self {
         let mut command = command(&folder(test), &[name]);
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -36,7 +36,7 @@ impl Server {
         Self { child, input, output }
     }
 
-    /// Starts a server with these settings, and waits for its answer.
+    /// Starts a server with these settings, and waits for its answer to `initialize`.
     fn with_options(test: &str, options: &Value) -> Self {
         let mut server = Self::started(test);
         let params = json!({ "capabilities": {}, "initializationOptions": options });
@@ -74,7 +74,7 @@ impl Server {
         serde_json::from_slice(&text).unwrap()
     }
 
-    /// Waits for the diagnostics of this version: code, severity and start of each.
+    /// Waits for the diagnostics of this version of the document. Returns the code, the severity and the start of each.
     fn diagnostics(&mut self, version: u64) -> Vec<(String, u64, u64, u64)> {
         loop {
             let Value::Object(message) = self.receive() else { panic!("no object") };
@@ -92,7 +92,7 @@ impl Server {
         }
     }
 
-    /// Closes the connection; returns exit status and messages.
+    /// Closes the connection; returns the exit status and standard error.
     fn end(mut self) -> (Option<i32>, String) {
         drop(self.input.take());
         let mut rest = Vec::new();
@@ -157,7 +157,7 @@ fn a_debugger_ends_with_its_client() {
     assert!(message.starts_with("error: the client does not speak the Debug Adapter Protocol: `hello`"), "{message}");
 }
 
-/// Diagnostics of the compiler: code, severity and start of each, in UTF-16.
+/// Returns the diagnostics of the compiler: the code, the severity and the start of each, in UTF-16.
 fn expected(text: &str) -> Vec<(String, u64, u64, u64)> {
     let one = |(found, range): (Diagnostic, Range<usize>)| {
         let before = &text[..range.start];
@@ -169,11 +169,11 @@ fn expected(text: &str) -> Vec<(String, u64, u64, u64)> {
     diagnostics(text).into_iter().map(one).collect()
 }
 
-/// Texts that an edit inserts.
+/// Texts that a random edit inserts.
 const INSERTED: [&str; 14] =
     ["", "", "(", ")", "{", "}", " OR ", "𝒜", "\n", "null", "Atom", "a: ", "// ü\n", "{ P (Atom (a) idle) }\n"];
 
-/// Makes a random edit: returns it in the words of the protocol.
+/// Makes a random edit of `text`, and returns the edit in the form of the protocol.
 fn edited(text: &mut String, chance: &mut Chance) -> Value {
     let bounds: Vec<usize> = (0..=text.len()).filter(|at| text.is_char_boundary(*at)).collect();
     let first = chance.below(bounds.len());

@@ -1,4 +1,5 @@
-//! `mdlec explain`: each code has a text, and its two examples are what they claim to be, through the real binary.
+//! Tests `mdlec explain`, through the real binary: each code has a text, the wrong example causes exactly this code,
+//! and the right example causes no message.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::BTreeSet;
@@ -9,17 +10,17 @@ use mdle_compiler::diagnostic::{Code, Example};
 use mdle_tests::executable::{folder, run_mdlec};
 use serde_json::Value;
 
-/// Code of a defect of the compiler, which no plan causes, so that it has no examples.
+/// Code of a defect of the compiler. It has no examples, because no plan causes it.
 const WITHOUT_EXAMPLES: Code = Code::E0901;
 
-/// The codes that have examples.
+/// Returns the codes that have examples.
 fn with_examples() -> impl Iterator<Item = Code> {
     let explanation = WITHOUT_EXAMPLES.explanation();
     assert_eq!((explanation.wrong(), explanation.right()), (None, None));
     Code::ALL.iter().copied().filter(|code| *code != WITHOUT_EXAMPLES)
 }
 
-/// Returns the messages about an example, for people or as JSON.
+/// Returns the messages about an example, in the format `human` or `json`.
 fn messages(folder: &Path, example: &Example, format: &str) -> String {
     // What an example calls `\xDF` is that byte.
     let bytes = example.text.split("\\xDF").map(str::as_bytes).collect::<Vec<_>>().join(&b'\xDF');
@@ -29,7 +30,7 @@ fn messages(folder: &Path, example: &Example, format: &str) -> String {
     String::from_utf8(run_mdlec(folder, &arguments).stderr).expect("UTF-8")
 }
 
-/// Writes the files that examples name.
+/// Writes the files that examples use.
 fn write_files(folder: &Path) {
     fs::write(folder.join("corridors.mdle"), "{ Corridor (Atom (wait 5) (go 20 0)) }\n").unwrap();
     fs::create_dir_all(folder.join("cart")).unwrap();

@@ -1,4 +1,5 @@
-//! The texts of `--help`: one line per command and option, an imperative for a command and a noun phrase for an option.
+//! Tests the texts of `--help`: each command and each option has a single line, which is an imperative for a command
+//! and a noun phrase for an option.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
@@ -8,7 +9,7 @@ use std::process::{Command, Output};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::root;
 
-/// The commands of `mdlec`; the first is the bare form, which builds.
+/// Commands of `mdlec`. The first one is `mdlec` without a command, which builds.
 const COMMANDS: [&str; 20] = [
     "",
     "build",
@@ -32,17 +33,17 @@ const COMMANDS: [&str; 20] = [
     "man",
 ];
 
-/// First words that make a reader ask what the line is about.
+/// First words with which a line must not begin, because they do not say what the line is about.
 const OPENERS: [&str; 13] =
     ["What", "How", "Whether", "Where", "Which", "When", "Its", "The", "Says", "Lists", "Runs", "Finds", "Writes"];
 
-/// Help on standard output, with nothing on standard error.
+/// Returns the help on standard output, and asserts that standard error is empty.
 fn text(output: Output) -> String {
     assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]));
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The descriptions in a short help text: the right column of its lists of commands and options.
+/// Returns the descriptions in a short help text, which are the right column of its lists of commands and options.
 fn descriptions(help: &str) -> impl Iterator<Item = &str> {
     let lines = help
         .lines()

@@ -1,5 +1,5 @@
-//! Text that would command a terminal or reverse lines, in plans, file names, options and machines: `mdlec` never
-//! prints it.
+//! Tests that `mdlec` never prints text that could control a terminal or reverse lines, from plans, file names, options
+//! and machines.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -15,14 +15,15 @@ use mdle_tests::executable::{command, folder};
 use mdle_tests::golden::alphabet;
 use mdle_tests::xml;
 
-/// Colours and clears a terminal, renames its window, rings, returns to the start of the line, and reverses text.
+/// A text that colours and clears a terminal, renames its window, rings the bell, returns to the start of the line, and
+/// reverses text.
 const HOSTILE: &str = "a\u{1b}[2J\u{1b}]0;x\u{7}\u{9b}31m\r\u{202e}\u{2066}\u{200f}\u{2028}\u{7f}z";
 
 fn hostile(text: &str) -> String {
     text.replace("HOSTILE", HOSTILE)
 }
 
-/// Runs a command in this folder; what it prints must be printable.
+/// Runs a command in this folder, and asserts that its output contains only printable characters.
 fn printable(folder: &Path, arguments: &[&str]) -> Output {
     let output = command(folder, arguments).output().expect("mdlec runs");
     assert_printable(&output, arguments);
@@ -39,11 +40,11 @@ fn assert_printable(output: &Output, arguments: &[&str]) {
     }
 }
 
-/// A plan that nothing is wrong with but what its names and comments hold.
+/// A plan that is valid, but has hostile comments and a hostile file name.
 const GOOD: &str =
     "// HOSTILE\n/// HOSTILE\n{ P (bumper OR wait 1)\n  // HOSTILE\n  (Atom (wait 2) path \"HOSTILE\")\n}\n";
 
-/// The files of a test: plans, machines, alphabets and scripts.
+/// Returns a folder with the files of a test: plans, machines, alphabets and scripts.
 fn prepared(test: &str) -> std::path::PathBuf {
     let folder = folder(test);
     let write = |name: &str, text: &str| fs::write(folder.join(hostile(name)), hostile(text)).unwrap();

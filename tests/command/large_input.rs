@@ -1,5 +1,5 @@
-//! Plans that nobody writes by hand, through the real binary: too deep nesting is one error that names the limit, and
-//! plans that are only long are processed.
+//! Tests plans of a size that nobody writes by hand, through the real binary: nesting that is too deep is a single
+//! error that names the limit, and plans that are only long are processed.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -11,7 +11,7 @@ use mdle_tests::executable::{folder, run_mdlec};
 /// Number of repetitions.
 const MANY: usize = 100_000;
 
-/// Arguments of every command, for a plan called `P`.
+/// Arguments of commands that read the plan `plan.mdle`.
 const COMMANDS: [&[&str]; 5] = [
     &["check", "plan.mdle"],
     &["fmt", "--check", "plan.mdle"],
@@ -20,7 +20,7 @@ const COMMANDS: [&[&str]; 5] = [
     &["analyze", "plan.mdle"],
 ];
 
-/// The exit status, standard output and standard error of a command.
+/// Returns the exit status, standard output and standard error of a command on a plan.
 fn messages(folder: &Path, plan: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
     fs::write(folder.join("plan.mdle"), plan).unwrap();
     fs::write(folder.join("script.jsonl"), "{\"t\": 0}\n{\"t\": 0.5}\n").unwrap();
@@ -29,7 +29,7 @@ fn messages(folder: &Path, plan: &str, arguments: &[&str]) -> (Option<i32>, Stri
     (output.status.code(), text(output.stdout), text(output.stderr))
 }
 
-/// Returns a text with nested parts that are closed, and the text with parts that are not.
+/// Returns two texts with deeply nested parts: one in which all parts are closed, and one in which no part is closed.
 fn nested(before: &str, opened: &str, inside: &str, closed: &str, behind: &str) -> [String; 2] {
     let open = format!("{before}{}{inside}", opened.repeat(MANY));
     [format!("{open}{}{behind}", closed.repeat(MANY)), format!("{open}{behind}")]

@@ -1,4 +1,4 @@
-//! The command line of `mdlec`: options, output, messages and limits, through the real binary.
+//! Tests of the command line of `mdlec`: options, output, messages and limits, through the real binary.
 
 mod bad_input;
 mod budgets;

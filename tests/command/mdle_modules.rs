@@ -1,4 +1,4 @@
-//! Modules in `mdle shell`: their attributes and settings, and how they are stopped, unloaded and loaded.
+//! Tests of modules in `mdle shell`: their attributes and settings, and how they are stopped, unloaded and loaded.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 use mdle_tests::executable::folder;
 
-/// The dialogue with the program that has modules, what standard error has, and the exit status.
+/// Returns the dialogue with the program that has modules, its standard error, and its exit status.
 fn dialogue(test: &str, options: &[&str], commands: &str) -> String {
     let folder = folder(test);
     fs::write(folder.join("plan.mdle"), "{ Ahead (wait 60s)\n  (Atom (range(heading module) < 1m) (go 60 0))\n}\n")

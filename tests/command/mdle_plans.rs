@@ -1,4 +1,4 @@
-//! Plans and modules in `mdle shell`: loaded, replaced and refused while the robot drives.
+//! Tests of plans and modules in `mdle shell` that are loaded, replaced and refused while the robot drives.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use crate::mdle_shell::{Left, dialogue, piped};
 use mdle_tests::executable::folder;
 
-/// A folder with a plan that turns on the spot, and others to replace it.
+/// Returns a folder with a plan that turns on the spot, and with other plans to replace it.
 fn with_plans(test: &str) -> PathBuf {
     let folder = folder(test);
     let files = [

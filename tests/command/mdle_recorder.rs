@@ -1,4 +1,4 @@
-//! The recorder of a session: a record that begins and ends while the robot drives.
+//! Tests of the recorder of a session: a record begins and ends while the robot drives.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -9,7 +9,7 @@ use mdle_tests::executable::{folder, mdle};
 
 use crate::mdle_shell::dialogue;
 
-/// The lines that `mdle log export --csv` prints of a record, without its head.
+/// Returns the lines that `mdle log export --csv` prints for a record, without the header.
 fn rows(folder: &Path, record: &str) -> Vec<String> {
     let output = Command::new(mdle()).args(["log", "export", "--csv", record]).current_dir(folder).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

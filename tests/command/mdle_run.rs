@@ -1,4 +1,4 @@
-//! `mdle run`: what its command line answers, and the exit statuses of what does not run.
+//! Tests of `mdle run`: the answers of its command line, and its exit statuses if nothing runs.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -15,7 +15,7 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// Both streams of `mdle` with these arguments, and its exit status.
+/// Returns standard output and standard error of `mdle` with these arguments, and its exit status.
 fn report(folder: &Path, line: &str) -> String {
     let Output { status, stdout, stderr } = run(folder, &line.split(' ').collect::<Vec<_>>());
     let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
@@ -70,7 +70,7 @@ fn help_names_every_option() {
     assert!(help.contains("--start-noise") && help.ends_with("[0]\n"), "{help}");
 }
 
-/// All commands about records have one rule for exit statuses.
+/// All commands about records have the same exit statuses.
 #[test]
 fn commands_about_records_describe_themselves() {
     let folder = folder("record-help");

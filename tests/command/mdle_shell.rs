@@ -1,4 +1,4 @@
-//! `mdle shell`: whole dialogues in stepped time, and what is wrong with commands.
+//! Tests of `mdle shell`: complete dialogues in stepped time, and messages about wrong commands.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -30,7 +30,7 @@ fn with_plan(test: &str) -> PathBuf {
     folder
 }
 
-/// Starts a session on the simulated robot, whose clock stands.
+/// Starts a session on the simulated robot, with its clock paused.
 fn started(folder: &Path, options: &[&str]) -> Child {
     let mut command = Command::new(mdle());
     command.args(["shell", "plan.mdle", "--target", "sim", "--world", "hall", "--speed", "max", "--paused"]);
@@ -38,7 +38,7 @@ fn started(folder: &Path, options: &[&str]) -> Child {
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Lets a session take these bytes as its standard input.
+/// Runs a session with these bytes as its standard input.
 pub(crate) fn piped(folder: &Path, options: &[&str], input: &[u8]) -> Left {
     let mut child = started(folder, options);
     // A session may end before it has read everything.
@@ -48,7 +48,7 @@ pub(crate) fn piped(folder: &Path, options: &[&str], input: &[u8]) -> Left {
     Left { out, err, status: output.status.code() }
 }
 
-/// The dialogue, what standard error has, and the exit status.
+/// Returns the dialogue of a session, its standard error, and its exit status.
 pub(crate) fn dialogue(folder: &Path, options: &[&str], commands: &str) -> String {
     let Left { out, err, status } = piped(folder, &[&["-x"], options].concat(), commands.as_bytes());
     format!("{out}---\n{err}[{}]\n", status.unwrap())

@@ -1,5 +1,5 @@
-//! `mdle shell` at a pseudo-terminal: the line that is being typed, its completion and history, and what is printed
-//! above it.
+//! Tests of `mdle shell` at a pseudo-terminal: the line that is being typed, its completion and history, and the text
+//! that is printed above it.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs::{self, File};
@@ -15,7 +15,7 @@ use mdle_tests::executable::{folder, mdle};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{Termios, Winsize, tcgetattr, tcsetwinsize};
 
-/// Maximum wait for what has to appear.
+/// Maximum wait for an expected text.
 const LONG: Duration = Duration::from_secs(60);
 
 /// A program at a terminal.
@@ -24,13 +24,13 @@ struct AtTerminal {
     keys: File,
     /// The program's end of the terminal.
     screen: File,
-    /// The way in which the terminal was read before.
+    /// Modes of the terminal before the program started.
     before: Termios,
     shown: Arc<Mutex<Vec<u8>>>,
 }
 
 impl AtTerminal {
-    /// Starts a session with this plan, whose time is as fast as real time.
+    /// Starts a session with this plan in real time.
     fn start(folder: &Path, plan: &str) -> Self {
         fs::write(folder.join("plan.mdle"), plan).unwrap();
         let keys = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
@@ -66,7 +66,8 @@ impl AtTerminal {
         String::from_utf8_lossy(&self.shown.lock().unwrap()).into_owned()
     }
 
-    /// Waits until all these texts have appeared after each other, from this place on; returns the place after them.
+    /// Waits until all these texts have appeared in order, from the position `from` in the output on; returns the
+    /// position after them.
     fn wait_for(&self, from: usize, texts: &[&str]) -> usize {
         let begun = Instant::now();
         loop {
@@ -82,7 +83,7 @@ impl AtTerminal {
         }
     }
 
-    /// Waits for the end of the program, and checks that the terminal is read as it was before.
+    /// Waits for the end of the program, and checks that the modes of the terminal are restored.
     fn end(mut self) -> (ExitStatus, String) {
         let status = self.child.wait().unwrap();
         let after = tcgetattr(&self.screen).unwrap();

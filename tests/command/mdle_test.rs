@@ -1,4 +1,5 @@
-//! `mdle test`: tests that fail and their messages, test files that have errors, and the tests of our own plans.
+//! Tests of `mdle test`: tests that fail and their messages, test files that have errors, and the tests of the plans in
+//! `plans/`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -19,14 +20,14 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(mdle()).arg("test").args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// Both streams of `mdle test` with these arguments, and its exit status.
+/// Returns standard output and standard error of `mdle test` with these arguments, and its exit status.
 fn report(folder: &Path, arguments: &[&str]) -> String {
     let Output { status, stdout, stderr } = run(folder, arguments);
     let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     format!("$ mdle test {}\n{out}{err}[{}]\n", arguments.join(" "), status.code().unwrap())
 }
 
-/// A folder with this plan and these tests beside it.
+/// Returns a folder with this plan, and these tests beside it.
 fn with(name: &str, plan: &str, tests: &str) -> PathBuf {
     let folder = folder(name);
     fs::write(folder.join("dock.mdle"), plan).unwrap();
@@ -34,7 +35,7 @@ fn with(name: &str, plan: &str, tests: &str) -> PathBuf {
     folder
 }
 
-/// The report of one test of the plan [`DOCK`].
+/// Returns the report of a single test of the plan [`DOCK`].
 fn of_one(name: &str, test: &str) -> String {
     report(&with(name, DOCK, &format!("[[test]]\nname = \"one\"\n{test}")), &[])
 }
@@ -227,7 +228,7 @@ fn faulty_files_of_tests_have_a_help() {
     insta::assert_snapshot!(reports.join("\n"));
 }
 
-/// The plan's name, its file and the target have a place in the test file.
+/// A message about a plan's name, its file or a target that does not exist names the line in the test file.
 #[test]
 fn what_tests_name_in_vain_has_its_place() {
     let heads = ["plan = \"nix.mdle\"", "plan = \".\"", "name = \"Dokc\"", "target = \"smi\"", "target = \"../robot\""];
@@ -239,7 +240,7 @@ fn what_tests_name_in_vain_has_its_place() {
     insta::assert_snapshot!(reports.join("\n"));
 }
 
-/// The time of a fault is that of the turn that has no answer.
+/// The time of a fault is the time of the turn in which the robot does not answer.
 #[test]
 fn a_fault_has_the_time_of_its_turn() {
     let fault = "faults = [{ fault = \"robot\", from = \"2s\" }]";

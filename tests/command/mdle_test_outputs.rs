@@ -1,5 +1,5 @@
-//! `mdle test`: coverage, pictures, results for programs, recorded expectations, repeated runs, and faults that are
-//! planted in plans of the book.
+//! Tests of `mdle test`: coverage, pictures, results for programs, recorded expectations, repeated runs, and faults
+//! that are inserted into plans of the book.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -134,8 +134,7 @@ fn tests_run_again_when_a_file_changes() {
     child.wait().unwrap();
 }
 
-/// A fault in a plan of the book: the plan, the text that is replaced and the text that replaces it, and the test that
-/// has to fail.
+/// A fault in a plan of the book: the plan, the text that is replaced, its replacement, and the test that must fail.
 const FAULTS: [[&str; 4]; 4] = [
     ["patrol", "Leg(180deg, 3m, 40cm/s)", "Leg(100deg, 3m, 40cm/s)", "three rounds up and down the hall"],
     ["wall_following", "(r2 < 1m OR r0 < 70cm)", "(r2 < 1m)", "it bears left to the wall, and right off it"],

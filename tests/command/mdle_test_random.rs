@@ -1,4 +1,5 @@
-//! `mdle test` refuses no expectation that a run meets: those of random plans on random scripts, by another machine.
+//! Tests that `mdle test` accepts every expectation that a run meets. The expectations are those of random plans on
+//! random scripts, computed by another machine.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
@@ -20,8 +21,8 @@ const PLANS: u64 = 60;
 /// Number of scripts of each plan.
 const SCRIPTS: usize = 4;
 
-/// Returns a test that expects what the plan does on a script, with the number of transitions that it expects; `None`
-/// if a turn is cut, since then an atom is entered whose law is not applied.
+/// Returns a test that expects the behavior of a plan on a script, and the number of transitions that it expects.
+/// Returns `None` if a turn is cut, because an atom is then entered whose law is not applied.
 fn test(compiled: &Compiled, number: usize, script: &str) -> Option<(String, usize)> {
     let (mut atoms, mut transitions) = (Vec::new(), Vec::new());
     let mut before: Option<String> = None;
@@ -48,7 +49,7 @@ fn test(compiled: &Compiled, number: usize, script: &str) -> Option<(String, usi
     Some((text, transitions.len()))
 }
 
-/// Returns a line of a script as TOML, with those texts alone that the plan has.
+/// Returns a line of a script as TOML, with only those texts that occur in the plan.
 fn turn(compiled: &Compiled, line: &str) -> String {
     let line: Value = serde_json::from_str(line).unwrap();
     let [fired, completed] = ["fired", "completed"].map(|key| {

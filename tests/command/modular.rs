@@ -8,10 +8,10 @@ use std::time::Duration;
 use mdle::engine::{Background, Declare, Exchange, Fault, In, Module, Out, Turn};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, Sensed};
 
-/// Name with which a module never returns from its turn.
+/// Value of the setting `name` with which a module never returns from its turn.
 const HANGS: &str = "for ever";
 
-/// Publishes the way to a point ahead, and copies what it is set to.
+/// A module that publishes the bearing and range of a point ahead, and a copy of its settings.
 struct Heading {
     ahead: In<Meters>,
     bearing: Out<Radians>,
@@ -66,7 +66,7 @@ impl Module<Sensed> for Heading {
     }
 }
 
-/// Counts its exchanges.
+/// A background module that counts its exchanges.
 struct Counter(Out<i64>);
 
 impl Background for Counter {

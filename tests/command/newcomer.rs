@@ -1,4 +1,4 @@
-//! The mistakes of someone who has just begun: each message, for people and as JSON, names what to type instead.
+//! Tests typical mistakes of a beginner: each message, as text and as JSON, names what to type instead.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -6,7 +6,7 @@ use std::fs;
 use mdle_tests::executable::{folder, run_mdlec};
 use serde_json::Value;
 
-/// A plan with each mistake, and a part of the hint that ends it.
+/// Mistakes, each with a plan that contains it, and a part of the hint that corrects it.
 const MISTAKES: &[(&str, &str, &str)] = &[
     ("a missing `)`", "{ Dock (bumper)\n  (Atom (wait 20) (go 20 0)\n  (Atom (wait 5) stop)\n}\n", "a `)` is missing"),
     ("a name with a letter too few", "{ Dock (bumpr)\n  (Atom (wait 20) (go 20 0))\n}\n", "did you mean `bumper`?"),

@@ -1,11 +1,12 @@
-//! `--machine`: executables for machines other than this one. `.ci/cross` builds some and runs them.
+//! Tests `--machine`: executables for machines other than this one. `.ci/cross` builds and runs some of them.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fs;
 
 use mdle_tests::executable::{folder, run_mdlec};
 
-/// Returns what mdlec prints when it is asked for an executable with these arguments, which must fail with status 2.
+/// Returns the message of mdlec about a build with these arguments, which must fail with exit status 2 and write
+/// nothing.
 fn refusal(test: &str, arguments: &[&str]) -> String {
     let folder = folder(test);
     fs::write(folder.join("plan.mdle"), "{ P (bumper) (Atom (wait 1s) (go 20 0)) }\n").unwrap();

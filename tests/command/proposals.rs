@@ -1,12 +1,12 @@
-//! Mistakes with the text that a writer meant: a message proposes what leads to that text, and nothing that compiles
-//! into another mission.
+//! Tests messages about mistakes of which the intended text is known. A message must propose an edit that leads to this
+//! text, and no edit that leads to a valid plan with another meaning.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
 
 use mdle_tests::executable::{folder, run_mdlec};
 
-/// A plan with each mistake, a part of the help, a text that must not be proposed, and the plan that was meant.
+/// Plans with a mistake, each with a part of the help, a text that must not be proposed, and the intended plan.
 const PROPOSALS: &[(&str, &str, &str, &str)] = &[
     (
         "{ P (bumper) FRAME 90 deg (Atom (null) rotate 0) }",

@@ -1,4 +1,5 @@
-//! On any bytes `mdlec` ends by itself with a message; through the real binary, as a stack overflow cannot be caught.
+//! Tests that `mdlec` ends by itself with a message on any bytes, through the real binary, because a stack overflow
+//! cannot be caught.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -60,7 +61,7 @@ const WORDS: [&str; 48] = [
     "[[[[",
 ];
 
-/// Number of files of each sort.
+/// Number of random files of each kind.
 const FILES: u64 = 14;
 
 fn bytes(chance: &mut Chance) -> Vec<u8> {
@@ -73,7 +74,7 @@ fn words(chance: &mut Chance) -> Vec<u8> {
     (0..count).map(|_| chance.pick(&WORDS)).collect::<Vec<_>>().join(" ").into_bytes()
 }
 
-/// A good file with a few bytes changed, and cut off or repeated somewhere.
+/// Returns a good file in which a few bytes are changed, and whose end may be cut off or repeated.
 fn spoilt(good: &[u8], chance: &mut Chance) -> Vec<u8> {
     let mut bytes = good.to_vec();
     for _ in 0..1 + chance.below(4) {
@@ -88,7 +89,7 @@ fn spoilt(good: &[u8], chance: &mut Chance) -> Vec<u8> {
     bytes
 }
 
-/// Runs mdlec, which has to end with one of these.
+/// Runs mdlec, and asserts that it ends with one of these exit statuses.
 fn assert_ends(folder: &Path, arguments: &[&str], statuses: &[i32], seed: u64) {
     let output = run_mdlec(folder, arguments);
     let message = String::from_utf8(output.stderr).expect("UTF-8");

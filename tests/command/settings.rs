@@ -1,4 +1,5 @@
-//! `mdle.toml` beside a plan (docs/src/reference/interfaces.md, 1.4): what commands take from it, and its errors.
+//! Tests `mdle.toml` beside a plan (docs/src/reference/interfaces.md, 1.4): the settings that commands take from it,
+//! and its errors.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs::{self, File};
@@ -10,13 +11,13 @@ use mdle_tests::executable::{folder, run_mdlec};
 /// A plan that any robot with a bumper can run.
 const PLAN: &str = "{ P (bumper)\n  (Atom (wait 1s) (go 20 0))\n}\n";
 
-/// A robot of one's own, without a bumper.
+/// A third-party robot without a bumper.
 const CART: &str = "target cart : crate cart, period 100ms;\ncapability diff_drive, odometry;\nuse atoms;\n";
 
-/// A world whose start is unlike that of any other.
+/// A world whose start differs from that of all other worlds.
 const WORLD: &str = "start = { x = 7.25, y = 1.5, heading = 90 }\n";
 
-/// A folder with the folder `home`, which has a plan, a robot, a world and these settings.
+/// Returns a folder that contains the folder `home` with a plan, a robot, a world and these settings.
 fn home(test: &str, settings: &str) -> PathBuf {
     let folder = folder(test);
     for (name, text) in [("plan.mdle", PLAN), ("cart/alphabet.mdle", CART), ("rooms/own.toml", WORLD)] {
@@ -28,7 +29,7 @@ fn home(test: &str, settings: &str) -> PathBuf {
     folder
 }
 
-/// Standard error and exit status, without what depends on earlier builds.
+/// Returns standard error and the exit status, without the parts that depend on earlier builds.
 fn message(folder: &Path, arguments: &[&str]) -> String {
     let output = run_mdlec(folder, arguments);
     assert_eq!(String::from_utf8_lossy(&output.stdout), "", "{arguments:?}");
@@ -42,7 +43,7 @@ fn assert_success(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Returns the pose in the first turn of a run, from its trail.
+/// Returns the line about the first turn of a run in its trail, which contains the pose.
 fn first_pose(folder: &Path) -> String {
     let trail = fs::read_to_string(folder.join("trail.csv")).unwrap();
     trail.lines().nth(1).unwrap().to_owned()

@@ -1,4 +1,4 @@
-//! Files that are not plain files, or endless ones, wherever a command or an executable reads one: refused at once.
+//! Tests that special files and endless files are refused at once, wherever a command or an executable reads a file.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs::{self, File};
@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 
 use mdle_tests::executable::{self, command, folder, run_mdlec};
 
-/// Far longer than a refusal takes, far shorter than for ever.
+/// Time after which a command counts as hanging, far longer than a refusal takes.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Runs a command that has to end by itself.
+/// Runs a command, and panics if it hangs.
 fn ended(mut command: Command) -> Output {
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let begun = Instant::now();
@@ -28,7 +28,8 @@ fn ended(mut command: Command) -> Output {
     child.wait_with_output().unwrap()
 }
 
-/// A folder with files of every kind that is not read, in `strange`, and a good plan, script and machine.
+/// Returns a folder that contains files of every refused kind in the folder `strange`, and a good plan, script and
+/// machine.
 fn prepared(test: &str) -> PathBuf {
     let folder = folder(test);
     let strange = folder.join("strange");
@@ -48,7 +49,7 @@ fn prepared(test: &str) -> PathBuf {
 
 const KINDS: [&str; 5] = ["folder.toml", "zero.toml", "pipe.toml", "kmsg.toml", "sparse.toml"];
 
-/// Asserts the kind of a refusal, without the name of the file.
+/// Asserts that a file of this kind was refused with a message that names the kind and the file.
 fn assert_refused(output: &Output, kind: &str) {
     let error = String::from_utf8(output.stderr.clone()).unwrap();
     let expected = match kind.split('.').next().unwrap() {
@@ -121,7 +122,7 @@ fn a_pipe_in_the_place_of_a_plan_is_answered_with_what_to_type() {
     assert_eq!(String::from_utf8(error).unwrap(), expected);
 }
 
-/// The executable of a plan, in the folder of a test.
+/// Builds the executable of a plan in the folder of a test, and returns its path.
 fn built(folder: &Path, target: &str) -> PathBuf {
     let output = run_mdlec(folder, &["plan.mdle", "--target", target, "-o", target]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

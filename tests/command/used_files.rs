@@ -1,4 +1,4 @@
-//! Plans that use other files, through the real binary: paths are looked up from the file that names them.
+//! Tests plans that use other files, through the real binary: paths are relative to the file that names them.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -21,7 +21,7 @@ fn with_files(test: &str, files: &[(&str, &str)]) -> PathBuf {
     folder
 }
 
-/// Returns the output of mdlec in this folder, and its exit status.
+/// Returns standard output and standard error of mdlec in this folder, and its exit status.
 fn message(folder: &std::path::Path, arguments: &[&str]) -> String {
     let output = run_mdlec(folder, arguments);
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();

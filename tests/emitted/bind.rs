@@ -1,4 +1,4 @@
-//! Tests of `mdlec bind`: a target must match its alphabet, and a plan both, through the real binary.
+//! Tests `mdlec bind`, through the real binary: a target must match its alphabet, and a plan must match both.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -13,7 +13,7 @@ const MANIFEST: &str = "[workspace]\n\n[package]\nname = \"mdle-rover\"\nversion
                         [dependencies]\nmdle-runtime = \"0.2\"\nmdle-host = \"0.2\"\n";
 const PLAN: &str = "{ Main (low 11) (Atom (low 13) count -3) (Atom (low) count 5) }\n";
 
-/// Returns a folder with a plan, and beside it the target `rover` with this alphabet, without bindings.
+/// Returns a folder with a plan and, beside it, the target `rover` with this alphabet and without bindings.
 fn with_rover(test: &str, alphabet: &str) -> PathBuf {
     let folder = folder(test);
     fs::create_dir_all(folder.join("rover/src")).unwrap();

@@ -1,4 +1,4 @@
-//! Rust that `mdlec` writes: its text, names and bindings.
+//! Tests of the Rust that `mdlec` writes: its text, names and bindings.
 
 mod bind;
 mod names;

@@ -1,4 +1,5 @@
-//! The names in an emitted file and in a bound alphabet: no name hides another, with any names of plans and quarks.
+//! Tests the names in an emitted file and in a bound alphabet: no name hides another one, whatever the names of plans
+//! and quarks are.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -49,7 +50,8 @@ fn a_quark_may_be_called_as_any_constant_of_the_file_is() {
     assert_eq!(all.len(), 2 * own.len() + 1, "{all:?}");
 }
 
-/// Returns every name that a file gives to its functions, arguments and variables, if a scope could have this name.
+/// Returns the names that a file gives to its functions, arguments and variables, as far as a scope could have the same
+/// name.
 fn names_of_its_own(rust: &str) -> Vec<&str> {
     // Functions further in are methods, which hide nothing.
     let functions = rust.lines().filter_map(|line| line.strip_prefix("    fn ")?.split('(').next());
@@ -77,13 +79,14 @@ fn a_scope_may_be_called_as_anything_in_its_file_is() {
     }
 }
 
-/// The code of a file without its comments.
+/// Returns the text of a file without the lines that are comments.
 fn code(rust: &str) -> String {
     let lines = rust.lines().filter(|line| !line.trim_start().starts_with("//"));
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Returns the types of a file, and names written like types, that occur without the path that they belong to.
+/// Returns the types in a file, and names that are written like types, if they occur without the path to which they
+/// belong.
 fn types(code: &str) -> BTreeSet<&str> {
     let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
     // What is written large is a constant.

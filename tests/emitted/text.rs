@@ -1,12 +1,12 @@
-//! The text of an emitted file: arguments, conditions and tables (`machines.rs` tests what it does).
+//! Tests the text of an emitted file: arguments, conditions and tables. `machines.rs` tests its behavior.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_compiler::rust::{Shape, bind};
 use mdle_tests::emission::{alphabet, emitted, emitted_as, emitted_for};
 
-/// Returns the text without white space, and without a comma after the last argument, so that line breaks do not
-/// matter.
+/// Returns the text without white space, and without a comma after the last argument, so that line breaks have no
+/// effect on comparisons.
 fn one_line(rust: &str) -> String {
     rust.split_whitespace().collect::<String>().replace(",)", ")")
 }
@@ -134,7 +134,7 @@ fn a_condition_of_many_operands_has_sixty_four_at_each_depth() {
     }
 }
 
-/// Maximum number of operands of `|` between two parentheses.
+/// Returns the maximum number of operands of `|` that are directly between two parentheses.
 fn operands_at_one_depth(text: &str) -> usize {
     let mut open = vec![1];
     let mut most = 1;

@@ -1,4 +1,4 @@
-//! A robot as a third party would write it: its battery runs down by a volt a turn.
+//! A robot as a third party would write it. Its battery loses a volt in each turn.
 #![forbid(unsafe_code)]
 
 pub mod alphabet;
@@ -17,7 +17,7 @@ pub use Sensed as Output;
 /// Input of the rover: a number.
 pub type Input = i64;
 
-/// The robot.
+/// The robot, with the voltage of its battery.
 #[derive(Debug)]
 pub struct Rover(Volts);
 

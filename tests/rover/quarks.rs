@@ -4,7 +4,7 @@ use mdle_runtime::{Begin, Control, Interrupt, Law, Nanos, Volts};
 
 use crate::Sensed;
 
-/// `low`.
+/// The interrupt `low`.
 #[derive(Debug)]
 pub struct Low(Volts);
 
@@ -21,7 +21,7 @@ impl Interrupt<Sensed> for Low {
     }
 }
 
-/// `count`.
+/// The law `count`.
 #[derive(Debug, Clone, Copy)]
 pub struct Count(i64);
 

@@ -1,5 +1,5 @@
-//! Result of each fault, on each robot: the output of the executable, its exit status, and how far the body moves on.
-//! The book's page about faults is written here.
+//! Tests each fault on each robot: the output of the executable, its exit status, and the distance that the body moves
+//! on. Compares the results with the book's page about faults, or writes this page.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "how long it took is seen with --nocapture")]
 
@@ -29,12 +29,12 @@ use self::watched::{BEGINS, Happening, Nature, Watched, Way};
 
 const PERIOD: Duration = Duration::from_millis(100);
 const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
-/// Plan of a robot that drives at a wall, and is to stop half a metre before it.
+/// Plan of a robot that drives towards a wall and should stop half a metre before it.
 const PLAN: &str = "{ Approach (bumper OR wait 20s) (Atom (r0 < 50cm) (go 20 0)) }\n";
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[3, -2], [3, 2], [-2, 2], [-2, -2], [3, -2]]";
 
-/// The faults that `--fault` offers in lockstep.
+/// Faults that `--fault` offers in lockstep, each with its description.
 const ON_COMMAND: [(&str, &str); 23] = [
     ("noise", "bytes that mean nothing before each frame"),
     ("dribble", "frames come byte by byte"),
@@ -60,7 +60,7 @@ const ON_COMMAND: [(&str, &str); 23] = [
     ("leap", "each position is 3 m away from the one before"),
     ("hang", "the robot repeats the same data"),
 ];
-/// Events other than faults given with `--fault`.
+/// Events that `--fault` does not offer, each with its description.
 const BESIDES: [(Happening, &str); 4] = [
     (Happening::Garbage, "nothing but garbage for a minute"),
     (Happening::WrongAnswers, "answers to other commands"),
@@ -68,9 +68,9 @@ const BESIDES: [(Happening, &str); 4] = [
     (Happening::Killed, "the program is killed (SIGKILL)"),
 ];
 
-/// Makes an emulated robot.
+/// Function that returns an emulated robot with its properties.
 type MakeRobot<R> = fn(Pace) -> (R, Nature<R>);
-/// A case of the table: it lets an event happen.
+/// A case of the table. The function runs the executable with an event, and returns the row.
 type Case<'r> = Box<dyn FnOnce() -> Row + Send + 'r>;
 
 /// The executable of the plan for a target.
@@ -91,20 +91,21 @@ impl Robot {
         Self(folder.join("approach"))
     }
 
-    /// Starts the executable on this device.
+    /// Starts the executable with this device.
     fn started(&self, device: &Path, pace: Pace) -> RefCell<Child> {
         let mut command = Command::new(&self.0);
         let command = command.arg("--device").arg(device).args((pace == IN_LOCKSTEP).then_some("--lockstep"));
         RefCell::new(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap())
     }
 
-    /// Returns the row of a device that is not a line, or that has no robot.
+    /// Returns the row for a device that is not a serial line, or to which no robot is connected.
     fn without(&self, device: &Path) -> Row {
         let still = Way { metres: 0.0, time: Duration::ZERO };
         Row::of(self.started(device, IN_LOCKSTEP).into_inner().wait_with_output().unwrap(), still, None)
     }
 
-    /// Returns the row of an event on a connected robot, and how long after its beginning the executable has ended.
+    /// Returns the row for an event on a connected robot, and the time from the beginning of the event to the end of
+    /// the executable.
     fn with<R: Emulated>(
         &self,
         made: MakeRobot<R>,
@@ -149,7 +150,8 @@ fn atrv(pace: Pace) -> (Atrv, Nature<Atrv>) {
     (Atrv::new(body(Body::Atrv, step(pace)), step(pace), false).unwrap(), nature)
 }
 
-/// Everything that happens, in the order of the table.
+/// Returns all cases with their descriptions, in the order of the table. `on_another` is the case in which the device
+/// belongs to another robot.
 fn cases<R: Emulated + 'static>(
     robot: &Robot,
     made: MakeRobot<R>,
@@ -175,7 +177,7 @@ fn cases<R: Emulated + 'static>(
     cases
 }
 
-/// Returns the rows of these cases, which run at the same time, as a driver without an answer takes long.
+/// Returns the rows of these cases, which run at the same time, because a driver without an answer waits long.
 fn rows(cases: Vec<(String, Case<'_>)>) -> Vec<(String, Row)> {
     thread::scope(|scope| {
         let rows: Vec<_> = cases.into_iter().map(|(what, of)| (what, scope.spawn(of))).collect();
@@ -214,16 +216,17 @@ pub(crate) fn each_fault_stops_the_robot_or_is_borne() {
     assert!(committed == text, "INSTA_UPDATE=always writes docs/src/faults.md\n{text}");
 }
 
-/// Maximum distance in metres by which a body moves further by the clock than in lockstep: a fault may come a turn
-/// later after the last answer, and so may the command before it.
+/// Maximum distance in metres that a body moves further by the clock than in lockstep. By the clock a fault may come a
+/// turn later after the last answer, and so may the command before it.
 const FURTHER: f64 = 0.05;
 /// Maximum time from a fault to the end of the program, in seconds.
 const SOON: f64 = 1.5;
 
-/// The fault that ends a run, the time limit, and the distance that the body may move further than in lockstep.
+/// A fault and an event that end a run, the maximum time until the end in seconds, and the maximum distance in metres
+/// that the body moves further by the clock than in lockstep.
 type End = (Option<Fault>, Happening, f64, f64);
 
-/// Faults, each of which ends a run in another way on both robots.
+/// Faults and events that end a run on both robots, each in a different way.
 const ENDS: [End; 6] = [
     (Some(Fault::Silence), Happening::OnCommand, SOON, FURTHER),
     (Some(Fault::Check), Happening::OnCommand, SOON, FURTHER),
@@ -232,16 +235,16 @@ const ENDS: [End; 6] = [
     (None, Happening::WrongAnswers, SOON, FURTHER),
     (None, Happening::DeadForAWhile, SOON, FURTHER),
 ];
-/// Faults that an ATRV's driver notices later: a missing bumper report after a second, a question without an answer
-/// after two, of which the last may have been answered just before.
+/// Faults that an ATRV's driver notices later: a missing bumper report after a second, and unanswered questions after
+/// two, because the last question may have been answered just before the fault.
 const LATER: [End; 3] = [
     (Some(Fault::Body(Ailment::NoBumpers)), Happening::OnCommand, 2.0, 0.1),
     (Some(Fault::Body(Ailment::NoStatus)), Happening::OnCommand, 3.0, 0.25),
     (Some(Fault::Body(Ailment::Deaf)), Happening::OnCommand, 3.0, FURTHER),
 ];
 
-/// Asserts that the executable ends in time. By the clock the minimum of a few tries counts, as a busy machine can only
-/// increase it.
+/// Asserts that the executable ends in time. By the clock, the minimum of a few attempts counts, because a busy machine
+/// can only increase the time.
 fn assert_ends<R: Emulated>(robot: &Robot, made: MakeRobot<R>, (fault, happening, soon, further): End) {
     let by_the_clock = || robot.with(made, Pace::Real, fault, happening);
     let (in_lockstep, first) = thread::scope(|scope| {

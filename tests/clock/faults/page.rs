@@ -1,4 +1,4 @@
-//! The page of the book that has the table.
+//! Writes the page of the book that contains the tables of faults.
 
 use std::fmt::Write;
 use std::process::Output;
@@ -11,15 +11,16 @@ use super::watched::Way;
 #[derive(Debug)]
 pub(crate) struct Row {
     pub(crate) message: String,
-    /// `None` if the executable was killed.
+    /// Exit status of the executable; `None` if it was killed.
     pub(crate) status: Option<i32>,
     pub(crate) way: Way,
-    /// The last order that the robot received.
+    /// Last order that the robot received.
     pub(crate) order: Option<Order>,
 }
 
 impl Row {
-    /// The executable has ended like this after this last order, and the body has gone that way since.
+    /// Returns the row for an executable with this output, whose body has moved on by `way` and has received `order`
+    /// last.
     pub(crate) fn of(output: Output, way: Way, order: Option<Order>) -> Self {
         let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
         let message = match err.strip_prefix("error: ") {

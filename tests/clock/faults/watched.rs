@@ -9,71 +9,73 @@ use mdle_runtime::Pose;
 
 use super::PERIOD;
 
-/// Time of the robot's world at which an event begins: it drives by then.
+/// Time of the robot's world at which an event begins; the robot drives at this time.
 pub(crate) const BEGINS: Duration = Duration::from_secs(4);
-/// Duration of garbage; `GARBAGE_A_SECOND` bytes come a second: as many as the slower line carries.
+/// Duration of garbage. `GARBAGE_A_SECOND` is the number of garbage bytes per second, as many as the slower line can
+/// carry.
 const GARBAGE: Duration = Duration::from_secs(60);
 const GARBAGE_A_SECOND: u32 = 3840;
-/// Time for which a line is dead that comes back.
+/// Time for which an interrupted line is dead.
 const DEAD: Duration = Duration::from_secs(2);
-/// Time that distinguishes drivers in lockstep: without an answer they wait longer, with answers much less.
+/// Wait by which drivers in lockstep are distinguished: without an answer a driver waits longer, and with answers it
+/// waits much less.
 const IN_VAIN: Duration = Duration::from_millis(2000);
-/// Maximum movement in a period of a body that counts as still, in metres.
+/// Maximum movement in a step of a body that counts as still, in metres.
 const STANDS: f64 = 1e-4;
-/// Number of periods without movement after which the body remains still: no watchdog takes longer.
+/// Number of steps without movement after which the body certainly remains still, because no watchdog takes longer.
 const FOR_GOOD: usize = 30;
 
 /// Event that happens to the robot, its line or its driver.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Happening {
-    /// No event: the robot was the wrong one from the start.
+    /// No event: the device has belonged to another robot from the start.
     Nothing,
-    /// The fault given with `--fault` to the robot or its line, if any.
+    /// The fault that `--fault` gives to the robot or its line, if there is one.
     OnCommand,
-    /// Nothing but garbage comes for a minute.
+    /// The line carries nothing but garbage for a minute.
     Garbage,
     /// The answers belong to other commands.
     WrongAnswers,
-    /// The line dies in the middle of a frame, and comes back.
+    /// The line is interrupted in the middle of a frame, and comes back.
     DeadForAWhile,
     /// The program is killed.
     Killed,
 }
 
-/// Distance that the body moved on, in metres, and the duration of this movement.
+/// Distance that the body moves on, in metres, and the duration of this movement.
 #[derive(Debug)]
 pub(crate) struct Way {
     pub(crate) metres: f64,
     pub(crate) time: Duration,
 }
 
-/// Properties in which robots differ.
+/// Properties of a robot that the tests need.
 pub(crate) struct Nature<R> {
-    /// True pose of the robot.
+    /// Returns the true pose of the robot.
     pub(crate) pose: fn(&R) -> Pose,
-    /// The orders that have reached the robot.
+    /// Returns the orders that have reached the robot.
     pub(crate) orders: fn(&R) -> &Orders,
     /// Changes a frame of the robot into the answer to another command.
     pub(crate) wrong: fn(&[u8]) -> Vec<u8>,
-    /// Number of additional periods for which a driver without an answer waits, while the world of an emulator in
-    /// lockstep pauses.
+    /// Number of additional periods for which the robot moves while a driver waits without an answer, because the world
+    /// of an emulator in lockstep pauses during this wait.
     pub(crate) waits: u32,
     /// Step by which the robot's time advances.
     pub(crate) step: Duration,
 }
 
-/// The robot.
+/// The emulated robot, whose poses are recorded and to which an event happens.
 pub(crate) struct Watched<'a, R> {
     robot: Faulty<R>,
     happening: Happening,
     nature: Nature<R>,
     child: &'a RefCell<Child>,
-    /// Time at which the event began, by the clock.
+    /// Time of the clock at which the event began; `None` before.
     pub(crate) begun: Option<Instant>,
     age: Duration,
     /// Pose of the robot at the end of each step.
     poses: Vec<(Duration, Pose)>,
-    /// Time of the last bytes to the robot.
+    /// Time at which the robot last received bytes.
     last_command: Option<Instant>,
     garbage: Vec<u8>,
 }
@@ -84,8 +86,8 @@ impl<'a, R: Emulated> Watched<'a, R> {
         Self { robot, happening, nature, child, begun: None, age, poses, last_command: None, garbage }
     }
 
-    /// Lets the robot move on without commands until its watchdog stops it. Returns how far that was, from the last
-    /// answer before the event.
+    /// Lets the robot move on without commands until its watchdog stops it. Returns the distance and the duration of
+    /// the movement since the last answer before the event.
     pub(crate) fn left_alone(mut self) -> Way {
         while !self.stands() {
             // A closed line does not stop the world.
@@ -100,7 +102,7 @@ impl<'a, R: Emulated> Watched<'a, R> {
         })
     }
 
-    /// The last order that the robot received.
+    /// Returns the last order that the robot received.
     pub(crate) fn order(&self) -> Option<Order> {
         (self.nature.orders)(self.robot.robot()).last().map(|(_, order)| order)
     }
@@ -109,13 +111,13 @@ impl<'a, R: Emulated> Watched<'a, R> {
         self.poses.len() > FOR_GOOD && self.poses.windows(2).rev().take(FOR_GOOD).all(|two| moved(two) <= STANDS)
     }
 
-    /// Returns `true` if this event is now happening; it lasts for `lasts`.
+    /// Returns `true` if the event is `happening` and now in progress; `lasts` is its duration.
     fn is(&self, happening: Happening, lasts: Duration) -> bool {
         self.happening == happening && self.age.checked_sub(BEGINS).is_some_and(|since| since < lasts)
     }
 
-    /// Keeps the robot moving while a driver waits without an answer by its own clock, although in lockstep no command
-    /// lets time pass. The driver waits for an end of garbage as for an end of silence, and gives up the first time.
+    /// Keeps the robot moving while a driver waits for an answer by its own clock, because in lockstep only commands
+    /// let time pass. For the driver, garbage is like silence; during garbage it gives up after the first wait.
     fn waited(&mut self) {
         let in_vain = self.last_command.replace(Instant::now()).is_some_and(|time| time.elapsed() >= IN_VAIN);
         if in_vain || self.is(Happening::Garbage, GARBAGE) {
@@ -124,7 +126,7 @@ impl<'a, R: Emulated> Watched<'a, R> {
     }
 }
 
-/// Returns the distance between two poses.
+/// Returns the distance between two poses, in metres.
 fn moved(two: &[(Duration, Pose)]) -> f64 {
     libm::hypot(two[1].1.x.0 - two[0].1.x.0, two[1].1.y.0 - two[0].1.y.0)
 }

@@ -1,5 +1,5 @@
-//! A plan that drives ahead for a second, as the executables of two robots; the variable `ROBOT` selects the robot.
-//! Called as `ahead run PLAN`, it is `mdle` with a module that takes 40 ms of each turn.
+//! A plan that drives ahead for a second, as an executable for two robots; the variable `ROBOT` selects the robot.
+//! Called as `ahead run PLAN`, the program is `mdle` with a module that takes 40 ms of each turn.
 
 use std::process::ExitCode;
 use std::thread;
@@ -22,7 +22,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Takes its time.
+/// A module that takes 40 ms of each turn.
 struct Slow;
 
 impl Module<Sensed> for Slow {
@@ -32,7 +32,7 @@ impl Module<Sensed> for Slow {
     }
 }
 
-/// `{ Ahead (wait 1s) (Atom (null) go 20 0) }`.
+/// The plan `{ Ahead (wait 1s) (Atom (null) go 20 0) }`.
 struct Ahead;
 
 const SECOND: Nanos = Nanos(1_000_000_000);

@@ -1,5 +1,5 @@
-//! Every signal that can be caught, at twenty moments of a run on both robots: the robot is at rest, as its last
-//! command asks, and the exit status names the cause.
+//! Tests every signal that can be caught, at twenty points of a run on both robots: the robot is at rest, as its last
+//! command requires, and the exit status names the cause.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 pub(crate) mod run;
@@ -21,22 +21,22 @@ use mdle_tests::executable::folder;
 use self::run::{AT_REST, LOCKSTEP, Ran, Robot, drove, ran, send};
 use super::at_once;
 
-/// The signals that end a program by default and can be caught, without SIGUSR1, SIGPIPE and SIGXFSZ, and a real-time
+/// Signals that end a program by default and can be caught, except SIGUSR1, SIGPIPE and SIGXFSZ, and a real-time
 /// signal.
 const SIGNALS: [i32; 17] = [1, 2, 3, 5, 6, 7, 12, 14, 15, 16, 24, 26, 27, 29, 30, 31, 40];
-/// The moments of a run: before the first command, after the last one, and between.
+/// Number of points of a run at which signals are sent: before the first command, after the last one, and between them.
 const MOMENTS: usize = 20;
-/// The number of runs at the same time.
+/// Number of runs at the same time.
 const AT_A_TIME: usize = 8;
 
-/// Returns a configuration in which all sonars of a Scout have pinged soon.
+/// Writes a configuration with which all sonars of a Scout ping early in the run, and returns its path.
 fn config(folder: &Path, robot: &str) -> std::path::PathBuf {
     let file = folder.join(robot);
     std::fs::write(&file, if robot == Scout::NAME { "gap = 4\n" } else { "" }).unwrap();
     file
 }
 
-/// Returns the run in which this signal comes after this number of commands, if one comes at all.
+/// Returns a run in which a signal is sent after a number of commands; `None` for a run without a signal.
 fn signalled<R: Robot>(config: &Path, pace: Pace, signal: Option<(i32, usize)>) -> Ran<R> {
     let mut left = signal;
     ran::<R>(config, pace, None, &mut |_, received, _| {
@@ -46,7 +46,7 @@ fn signalled<R: Robot>(config: &Path, pace: Pace, signal: Option<(i32, usize)>) 
     })
 }
 
-/// Returns what is wrong with a run, if anything is.
+/// Returns a description of what is wrong with a run, or `None` if nothing is wrong.
 fn wrong<R: Robot>(signal: i32, ran: &Ran<R>) -> Option<String> {
     let (status, errors) = (ran.output.status, ran.errors());
     let is_commanded = !ran.received.bytes.is_empty();
@@ -72,7 +72,7 @@ fn wrong<R: Robot>(signal: i32, ran: &Ran<R>) -> Option<String> {
     (!wrong.is_empty()).then_some(wrong)
 }
 
-/// Asserts that every signal at every moment of a run stops the robot as it should.
+/// Asserts that every signal at every point of a run stops the robot correctly.
 fn every_signal<R: Robot>() {
     let folder = folder(&format!("signalled_{}", R::NAME));
     let config = config(&folder, R::NAME);
@@ -111,7 +111,7 @@ fn every_signal_at_every_moment_stops_an_atrv() {
     every_signal::<Atrv>();
 }
 
-/// Asserts that a signal by the clock, once the robot drives, stops it as it should.
+/// Asserts that a signal stops a driving robot correctly by the clock.
 fn by_the_clock<R: Robot>() {
     let folder = folder(&format!("signalled_by_the_clock_{}", R::NAME));
     let mut left = true;

@@ -1,4 +1,4 @@
-//! A run of the program on an emulated robot that a test looks at.
+//! A run of the program on an emulated robot that a test observes.
 
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -11,13 +11,13 @@ use mdle_runtime::Pose;
 use mdle_scout_emulator::scout::Scout;
 use mdle_sim::{Body, Make, Simulated, World};
 
-/// The period of the program's turns.
+/// Period of the program's turns.
 const PERIOD: Duration = Duration::from_millis(100);
-/// Pace of the emulator: a command lets a period pass, and no machine is too slow.
+/// Pace of the emulator: each command lets a period pass, so that no machine is too slow.
 pub(crate) const LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
-/// A robot that moves less than this in a period is at rest, in metres.
+/// Maximum movement in a period of a robot that is at rest, in metres.
 pub(crate) const AT_REST: f64 = 0.001;
-/// Time after which a test fails; every machine is faster.
+/// Time after which a test fails; on any machine a run takes less.
 const SLOW: Duration = Duration::from_secs(120);
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[9, -9], [9, 9], [-9, 9], [-9, -9], [9, -9]]";
@@ -29,8 +29,8 @@ pub(crate) trait Robot: Emulated + Sized {
     fn new(pace: Pace) -> Self;
     fn pose(&self) -> Pose;
     fn orders(&self) -> &Orders;
-    /// Returns `true` if the robot is as it should be after a run that was stopped, and these bytes were the last that
-    /// it received.
+    /// Returns `true` if the robot is in the correct state after a run that was stopped. `bytes` are all bytes that it
+    /// has received.
     fn is_secured(&self, bytes: &[u8]) -> bool;
 }
 
@@ -54,7 +54,7 @@ impl Robot for Scout {
         self.orders()
     }
 
-    /// ST, its state until it is at rest, LP.
+    /// Returns `true` if the bytes end with ST, the question for the state until the robot is at rest, and LP.
     fn is_secured(&self, bytes: &[u8]) -> bool {
         use mdle_scout::Command::{Limp, State, Stop};
         let [stop, state, limp] = [Stop, State, Limp].map(|command| command.frame().bytes().to_vec());
@@ -79,8 +79,7 @@ impl Robot for Atrv {
         self.orders()
     }
 
-    /// Returns `true` if the bytes end with both axes at rest, the brake and the question for it, and the end of all
-    /// reports.
+    /// Returns `true` if the bytes end with commands that stop both axes, set and check the brake, and end all reports.
     fn is_secured(&self, bytes: &[u8]) -> bool {
         use mdle_atrv::Command::{Brake, Deaf, Defaults, Inputs, Reports, Status};
         let frames = |commands: &[mdle_atrv::Command]| -> Vec<u8> {
@@ -96,13 +95,13 @@ impl Robot for Atrv {
     }
 }
 
-/// Returns `true` if the frame commands an axis to stop. After the axis come four bytes of its speed; a frame may need
-/// one unit, of which a metre has 139,655, so that no byte of it has to be escaped.
+/// Returns `true` if the frame commands an axis to stop. The axis is followed by four bytes of speed. The speed may be
+/// one unit instead of zero, so that no byte has to be escaped; a metre has 139,655 units.
 fn is_rest(axis: u8, frame: &[u8]) -> bool {
     frame.starts_with(&[0x1B, 0x02, 2, 0, 7, 14, axis, 0, 0, 0]) && frame.get(10).is_some_and(|speed| *speed <= 1)
 }
 
-/// Returns `bytes` without all repetitions of `frame` at the end.
+/// Returns `bytes` without any repetitions of `frame` at the end.
 fn without<'b>(mut bytes: &'b [u8], frame: &[u8]) -> &'b [u8] {
     while let Some(before) = bytes.strip_suffix(frame) {
         bytes = before;
@@ -110,21 +109,22 @@ fn without<'b>(mut bytes: &'b [u8], frame: &[u8]) -> &'b [u8] {
     bytes
 }
 
-/// Data that a robot has received.
+/// Data that a robot has received so far.
 #[derive(Default)]
 pub(crate) struct Received {
-    /// The program that drives it.
+    /// Process number of the program that drives the robot.
     pub(crate) process: u32,
     pub(crate) bytes: Vec<u8>,
     pub(crate) commands: usize,
 }
 
-/// A robot at which a test looks after each command and each step of time, which is handed over.
+/// A robot that a test observes. `look` is called after each command, and after each step with the duration of the
+/// step.
 struct Watched<'l, R> {
     robot: R,
     received: Received,
     look: &'l mut dyn FnMut(&R, &Received, Duration),
-    /// The type of the answers that it does not give.
+    /// Type of the answers that the robot does not send; `None` if it sends all answers.
     mute: Option<u8>,
 }
 
@@ -164,12 +164,12 @@ impl<R: Robot> Emulated for Watched<'_, R> {
     }
 }
 
-/// The end of a run.
+/// The result of a run.
 pub(crate) struct Ran<R> {
     pub(crate) robot: R,
     pub(crate) output: Output,
     pub(crate) received: Received,
-    /// The distance in metres that the robot moved in a period after the program had ended.
+    /// Distance that the robot moves in the period after the end of the program, in metres.
     pub(crate) moves: f64,
 }
 
@@ -190,8 +190,8 @@ pub(crate) fn send(signal: i32, process: u32) {
     assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
 }
 
-/// Gives SIGHUP its default effect in the programs that this one starts, also under `nohup`, which ignores it in all of
-/// them: a signal that is caught has its default effect again in another program.
+/// Gives SIGHUP its default effect in the programs that this one starts, even under `nohup`, which makes all of them
+/// ignore it: if this program catches a signal, the signal has its default effect in the programs that it starts.
 fn catch_hang_up() {
     static CAUGHT: Once = Once::new();
     CAUGHT.call_once(|| {
@@ -199,8 +199,8 @@ fn catch_hang_up() {
     });
 }
 
-/// Runs the program with this configuration on a robot that gives no answers of the type `mute`. `look` is called once
-/// before the first command.
+/// Runs the program with this configuration on a robot that sends no answers of the type `mute`. `look` is also called
+/// once before the first command.
 pub(crate) fn ran<R: Robot>(
     config: &Path,
     pace: Pace,
@@ -212,7 +212,7 @@ pub(crate) fn ran<R: Robot>(
     ran_by::<R>(command, pace, mute, look)
 }
 
-/// Runs the program of this command, as [`ran`] does.
+/// Runs the program of this command in the same way as [`ran`].
 pub(crate) fn ran_by<R: Robot>(
     mut command: Command,
     pace: Pace,

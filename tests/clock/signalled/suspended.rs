@@ -1,5 +1,5 @@
-//! A program that is suspended while its robot drives or is opened, and goes on much later: the robot does not drive
-//! off again.
+//! Tests that a robot does not drive off again if its program is suspended while the robot drives or is being opened,
+//! and continues much later.
 
 use std::time::Duration;
 
@@ -13,14 +13,13 @@ use crate::at_once;
 
 use super::run::{AT_REST, Ran, Robot, distance, drove, ran, send};
 
-/// The robot drives once it has gone this far, in metres.
+/// Distance after which the robot counts as driving, in metres.
 const DRIVES: f64 = 0.03;
-/// The time for which the program is suspended: longer than the timeout of any robot's watchdog and the braking after
-/// it.
+/// Time for which the program is suspended, longer than the timeout of any robot's watchdog and the braking after it.
 const SUSPENDED: Duration = Duration::from_millis(2500);
 
-/// Returns the run in which the program is suspended when `begins` returns `true`, and the pose of the robot when the
-/// program goes on.
+/// Returns a run in which the program is suspended once `begins` returns `true`, and the pose of the robot when the
+/// program continues.
 fn suspended<R: Robot>(name: &str, begins: fn(&R) -> bool) -> (Ran<R>, Option<Pose>) {
     let folder = folder(&format!("suspended_{name}_{}", R::NAME));
     let config = folder.join("config.toml");
@@ -52,7 +51,8 @@ fn is_not_driven_off_again<R: Robot>() {
     assert!(ran.errors().contains("a fault stopped the robot: "), "{}", ran.errors());
 }
 
-/// Suspends the program after its first motion command, which is to stop.
+/// Asserts that a program that is suspended after its first motion command, which stops the robot, refuses to drive and
+/// prints `words`.
 fn is_not_driven<R: Robot>(words: &str) {
     let (ran, resumed) = suspended::<R>("opening", |robot| robot.orders().last().is_some());
     assert!(resumed.is_some() && !drove(&ran.robot), "{:?}", ran.robot.orders());

@@ -1,6 +1,6 @@
-//! A robot that does not hear, does not obey, answers late or no longer reports something, and a program that was
-//! suspended: the executable on an emulated robot, by the clock. The test checks the last command that the robot
-//! received, and that it does not move.
+//! Tests executables on an emulated robot that receives nothing, does not obey, answers late or no longer reports
+//! something, and programs that were suspended, by the clock. The tests check the last command that the robot received,
+//! and that it does not move.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "how long it took is seen with --nocapture")]
 
@@ -39,7 +39,7 @@ pub(crate) fn robots_stand_at_every_end_of_a_run() {
     ]);
 }
 
-/// Returns the results of these runs on both robots, which go on at the same time.
+/// Returns the results of these runs on both robots, which take place at the same time.
 fn both(scout: impl FnOnce() -> Ran<Scout> + Send, atrv: impl FnOnce() -> Ran<Atrv> + Send) -> (Ran<Scout>, Ran<Atrv>) {
     thread::scope(|scope| {
         let scout = scope.spawn(scout);
@@ -157,7 +157,7 @@ fn noise_on_the_line_of_a_scout_is_borne() {
     ran.assert(0, &["plan over"], &[Order::Drive, Order::Stand, Order::LetGo]);
 }
 
-/// Stops the program for longer than any watchdog waits, and lets it go on.
+/// Suspends the program for longer than the timeout of any watchdog, and then continues it.
 fn suspended(child: &Child, begun: Instant) {
     let signal = |signal| kill_process(Pid::from_child(child), signal).unwrap();
     thread::sleep(BEGINS.saturating_sub(begun.elapsed()));

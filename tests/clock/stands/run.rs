@@ -18,16 +18,16 @@ use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
 use rustix::fs::OFlags;
 
-/// A plan that drives, rests for a while, and is over.
+/// A plan that drives, stops for a while, and is over.
 const PLAN: &str = "{ Drive (bumper OR wait 6s) (Atom (wait 4s) (go 20 0)) (Atom (null) stop) }\n";
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -2], [4, 2], [-2, 2], [-2, -2], [4, -2]]";
-/// Time of the robot's world at which faults begin: it drives by then, and for two seconds more.
+/// Time of the robot's world at which faults begin. The robot drives at this time and for about two more seconds.
 pub(crate) const BEGINS: Duration = Duration::from_millis(3500);
-/// Time after which a test fails; every machine is faster.
+/// Time after which a test fails; on any machine a run takes less.
 const SLOW: Duration = Duration::from_secs(30);
 
-/// An emulated robot with what a test asks of it.
+/// An emulated robot with the properties that a test reads.
 pub(crate) trait Robot: Emulated + Send + Sized {
     const TARGET: &'static str;
 
@@ -73,7 +73,7 @@ impl Robot for Atrv {
     }
 }
 
-/// The executable of the plan for this robot, built once.
+/// Returns the executable of the plan for this robot, which is built once.
 pub(crate) fn executable<R: Robot>() -> &'static Path {
     static BUILT: [OnceLock<PathBuf>; 2] = [OnceLock::new(), OnceLock::new()];
     BUILT[usize::from(R::TARGET == "atrv")].get_or_init(|| {
@@ -87,23 +87,24 @@ pub(crate) fn executable<R: Robot>() -> &'static Path {
 
 /// The result of a run.
 pub(crate) struct Ran<R> {
-    /// The program's messages at the end.
+    /// Report and messages of the program.
     output: String,
     status: Option<i32>,
-    /// The time from the beginning of the fault to the end of the run.
+    /// Time from the beginning of the fault to the end of the run.
     took: Duration,
     pub(crate) robot: R,
 }
 
 impl<R: Robot> Ran<R> {
-    /// The last orders that the robot received, repeated ones once.
+    /// Returns the orders that the robot received, without consecutive repetitions.
     fn last_orders(&self) -> Vec<Order> {
         let mut orders: Vec<Order> = self.robot.orders().iter().map(|(_, order)| order).collect();
         orders.dedup();
         orders
     }
 
-    /// Asserts that the run ended with this status and these words, and that the robot received these orders last.
+    /// Asserts that the run ended with this exit status, that its output contains these words, and that the robot
+    /// received these orders last.
     pub(crate) fn assert(&self, status: i32, words: &[&str], orders: &[Order]) {
         println!("{} s after the fault: {}", self.took.as_secs_f64(), self.output);
         assert_eq!(self.status, Some(status), "{}", self.output);
@@ -113,8 +114,8 @@ impl<R: Robot> Ran<R> {
     }
 }
 
-/// Runs the executable on a robot with these faults. `meanwhile` gets the running program, and the moment at which the
-/// robot was switched on.
+/// Runs the executable on a robot with these faults. `meanwhile` is called with the running program and the time at
+/// which the robot was switched on.
 pub(crate) fn ran<R: Robot>(
     faults: &[&str],
     arguments: &[&str],
@@ -157,11 +158,11 @@ pub(crate) enum Way {
     Terminal,
     /// TCP.
     Tcp,
-    /// TCP whose end at the robot is shut down when faults begin: the robot still receives.
+    /// TCP whose sending direction from the robot is closed when faults begin, while the robot still receives.
     HalfClosed,
 }
 
-/// An address that leads to this device over TCP, for one connection.
+/// Returns an address that leads to this device over TCP, for a single connection.
 fn bridged(device: &Path, way: Way) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap();
@@ -181,7 +182,7 @@ fn bridged(device: &Path, way: Way) -> String {
     format!("tcp:{address}")
 }
 
-/// Passes bytes on until either end is closed, or until `limit` has passed.
+/// Copies bytes until either end is closed, or until `limit` has passed.
 fn pumped(mut from: impl Read, mut to: impl Write, limit: Duration) {
     let (begun, mut chunk) = (Instant::now(), [0; 256]);
     while let Ok(count @ 1..) = from.read(&mut chunk) {
