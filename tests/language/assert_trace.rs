@@ -1,13 +1,14 @@
-//! Asserts that every machine has a trace that was written out by hand from the rules.
+//! Asserts that all machines print a trace that was written by hand from the rules.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_compiler::trace::Script;
 use mdle_tests::pipeline::{Machines, compile};
 
-/// Reports of a turn: time, interrupts and completed laws, separated by commas.
+/// Reports of a turn: the time in seconds, the interrupts that have fired, and the laws that have completed, both
+/// separated by commas.
 pub(crate) type Turn = (f64, &'static str, &'static str);
 
-/// Asserts that every machine has this trace, one line for each turn.
+/// Asserts that all machines print this trace, one line for each turn.
 pub(crate) fn assert_trace(plan: &str, script: &[Turn], expected: &[&str]) {
     let compiled = compile(plan).unwrap_or_else(|report| panic!("{report}"));
     let script = Script::read(&written(script)).expect("a script");

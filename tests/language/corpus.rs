@@ -1,4 +1,4 @@
-//! Every text that fuzzing found, and every plan of this repository, has the properties of all texts.
+//! Tests that every text that fuzzing has found, and every plan of this repository, has the properties of all texts.
 //!
 //! libFuzzer runs the same functions (`tests/fuzz`).
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
@@ -11,7 +11,7 @@ use mdle_compiler::syntax::{Arena, parse};
 use mdle_tests::repository::root;
 use mdle_tests::{any_bytes, any_file, any_text, texts};
 
-/// Asserts that every text has this property.
+/// Asserts that every text of the corpus has this property.
 fn assert_holds(property: fn(&str)) {
     let texts = texts::kept();
     assert!(texts.len() > 200, "{} texts", texts.len());
@@ -56,7 +56,8 @@ fn texts_of_the_benchmarks_have_no_errors() {
     }
 }
 
-/// Returns the inputs of robots' lines that fuzzing found, and inputs that make a reader keep more than it needs.
+/// Returns the inputs of robots' lines that fuzzing has found, and long inputs that could make a reader keep more bytes
+/// than it needs.
 fn lines() -> Vec<Vec<u8>> {
     let kept = fs::read_dir(root().join("tests/fuzz/lines")).unwrap();
     let kept = kept.map(|entry| fs::read(entry.unwrap().path()).unwrap());
@@ -78,7 +79,7 @@ fn both_ends_of_a_line_read_on() {
     }
 }
 
-/// Assertion about a text of the corpus.
+/// A function that panics if the bytes of a file do not have a property.
 type Property = fn(&[u8]);
 
 #[test]

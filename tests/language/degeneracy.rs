@@ -1,5 +1,5 @@
-//! Removing degeneracy and writing loops out commute, and neither changes a trace (docs/src/reference/semantics.md,
-//! 6.3, 7.4 and 8.1): random plans.
+//! Tests with random plans that removing degeneracy and expanding loops commute, and that neither changes a trace
+//! (docs/src/reference/semantics.md, 6.3, 7.4 and 8.1).
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -12,11 +12,11 @@ use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 
-/// Number of plans that are tried, and the maximum number of states of a plan that is written out.
+/// Number of random plans. `STATES` is the maximum number of states of a plan whose loops are expanded.
 const PLANS: u64 = 170;
 const STATES: u64 = 2000;
 
-/// Properties of the plans, counted.
+/// Counts of plans with certain properties.
 #[derive(Debug, Default)]
 struct Seen {
     tried: u64,
@@ -48,7 +48,8 @@ fn removing_degeneracy_and_writing_loops_out_commute_and_change_no_trace() {
     assert!(seen.tried > plans / 10 * 9 && seen.both > plans / 10, "{seen:?}");
 }
 
-/// Checks the property for a plan; returns whether the plan repeats interrupts, and whether it has loops to write out.
+/// Checks the properties for a plan. Returns `true` twice if the plan repeats interrupts, and if it has loops to
+/// expand.
 fn hold(compiled: &Compiled, script: &Script, text: &str) -> (bool, bool) {
     let Compiled { plan, nondegenerate, .. } = compiled;
     let expanded = Plan { root: written_out(&plan.root), quarks: plan.quarks.clone() };
@@ -69,14 +70,14 @@ fn hold(compiled: &Compiled, script: &Script, text: &str) -> (bool, bool) {
     (nondegenerate.plan() != plan, &expanded != plan)
 }
 
-/// Returns a scope with its finite loops written out, nested ones as well.
+/// Returns a scope in which all finite loops are expanded, nested ones included.
 fn written_out(scope: &Scope) -> Scope {
     let mut body = Vec::new();
     scope.body.iter().for_each(|node| write_out(node, &mut body));
     Scope { body, ..scope.clone() }
 }
 
-/// Adds an element with its finite loops written out.
+/// Appends an element in which all finite loops are expanded.
 fn write_out(node: &Node, all: &mut Vec<Node>) {
     match node {
         Node::Atom(_) => all.push(node.clone()),

@@ -1,4 +1,4 @@
-//! `mdlec fmt`: the canonical layout of random plans, and what the command does, through the real binary.
+//! Tests `mdlec fmt`: the canonical layout of random plans, and the effects of the command, through the real binary.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -13,11 +13,11 @@ use mdle_tests::executable::{folder, run_mdlec, run_mdlec_reading};
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::repository::{files, root};
 
-/// A plan in bad layout, and in the right layout.
+/// A plan in a bad layout; `LAID_OUT` is the same plan in the canonical layout.
 const ODD: &str = "{P(bumper)\n(Atom(wait 1 or bumper)stop)// one\r\n\n\n(Atom (wait 2) stop)\n}";
 const LAID_OUT: &str = "{ P (bumper)\n  (Atom (wait 1 OR bumper) stop)    // one\n\n  (Atom (wait 2) stop)\n}\n";
 
-/// The tree of a text, places left out.
+/// Returns the tree of a text, without places.
 fn tree(text: &str) -> String {
     let arena = Arena::new();
     let (file, found) = parse(SourceId(0), text, &arena);
@@ -25,8 +25,8 @@ fn tree(text: &str) -> String {
     outline(&file)
 }
 
-/// Returns the text with each space and line break replaced by other separators, such as comments that are numbered
-/// from 0, and the number of comments.
+/// Returns the text with each space and line break replaced by random separators, and the number of comments among
+/// them. The comments are numbered from 0.
 fn disordered(text: &str, chance: &mut Chance) -> (String, usize) {
     let (mut disordered, mut comments) = (String::new(), 0);
     for character in text.chars() {
@@ -58,7 +58,7 @@ fn disordered(text: &str, chance: &mut Chance) -> (String, usize) {
     (disordered, comments)
 }
 
-/// The numbers of the comments, in order.
+/// Returns the numbers of the comments, in order.
 fn numbers(text: &str) -> Vec<usize> {
     text.split('#').skip(1).map(|rest| rest.split('.').next().unwrap().parse().unwrap()).collect()
 }

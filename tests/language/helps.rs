@@ -1,5 +1,4 @@
-//! Each text that a help proposes is right: inserted in its place, it removes the error; and each text that a help
-//! quotes can be parsed.
+//! Tests the help of diagnostics: each proposed edit removes its error, and each text that a help quotes can be parsed.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::BTreeSet;
@@ -14,7 +13,7 @@ use mdle_tests::texts;
 
 static EVERYTHING: LazyLock<Alphabet> = LazyLock::new(|| alphabet(None));
 
-/// The diagnostics of a text, and the file in which their places are.
+/// Returns the diagnostics of a text, and the identifier of the file that contains it.
 fn judged(text: &str) -> (SourceId, Vec<Diagnostic>) {
     let mut sources = Sources::default();
     for file in builtin::alphabets() {
@@ -29,7 +28,8 @@ fn all_texts() -> BTreeSet<String> {
     texts.filter(|text| text.len() < 20_000).collect()
 }
 
-/// The place of a diagnostic once an edit has been made: that of the edit, if they touch.
+/// Returns the place of a diagnostic after an edit whose replacement has the length `length`. If the place touches the
+/// edit, it is the place of the replacement.
 fn moved(place: &Range<usize>, edit: &Range<usize>, length: usize) -> Range<usize> {
     if place.end <= edit.start && place.start < edit.start {
         return place.clone();
@@ -41,7 +41,8 @@ fn moved(place: &Range<usize>, edit: &Range<usize>, length: usize) -> Range<usiz
     edit.start..edit.start + length
 }
 
-/// The diagnostic that an edit should have ended, if it is there still.
+/// Returns a diagnostic that remains after an edit although the edit should have removed it, with the edited text;
+/// `None` if there is none.
 fn remaining(
     text: &str,
     id: SourceId,
@@ -90,7 +91,8 @@ fn edits_end_the_defect() {
     assert!(edits > 300, "{edits} edits");
 }
 
-/// Returns `true` if a quoted text is MDLe in its place: a file, an element, a header, a condition or a law.
+/// Returns `true` if a quoted text is valid MDLe in some place of a plan: as a file, an element, a header, a condition
+/// or a law.
 fn can_be_read(quoted: &str) -> bool {
     let fillings = [" (Atom (wait 5) stop) ", " (wait 5) stop", "wait 5", "stop"];
     let places = [

@@ -1,5 +1,5 @@
-//! The rules of loops (docs/src/reference/semantics.md, 6) and of the limit of a turn (docs/src/reference/semantics.md,
-//! 5.5), each by its smallest plan.
+//! Tests the rules of loops (docs/src/reference/semantics.md, 6) and of the limit of a turn
+//! (docs/src/reference/semantics.md, 5.5), each by a minimal plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -152,7 +152,7 @@ fn passes_of_a_loop_without_end_share_their_states() {
     );
 }
 
-/// The `fired` list of transitions by `a` from atoms of level 1.
+/// Returns the list `fired` of transitions by the interrupt `a`, from atoms of level 1.
 fn by_a(from: impl Iterator<Item = u64>) -> String {
     let mut list = String::new();
     for from in from {

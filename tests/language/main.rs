@@ -1,4 +1,4 @@
-//! The language: the meaning of plans, each rule by its smallest plan, and texts of every notation.
+//! Tests of the language: the meaning of plans, each rule by a minimal plan, and texts in every notation.
 
 mod assert_trace;
 mod corpus;

@@ -1,13 +1,13 @@
-//! The rules of RISING (docs/src/reference/semantics.md, 2.2) and of `after` (docs/src/reference/semantics.md, 2.3),
-//! each by its smallest plan.
+//! Tests the rules of RISING (docs/src/reference/semantics.md, 2.2) and of `after` (docs/src/reference/semantics.md,
+//! 2.3), each by a minimal plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use super::assert_trace::{Turn, assert_trace};
 use mdle_compiler::trace::COMPLETED;
 
-/// Returns a line of a trace: the state and the law that it ends with, and the transitions as `from level by`, with the
-/// operands that had fired where these are not the whole condition: `a OR b | b`.
+/// Returns a line of a trace. `fired` contains the transitions, each as the state that was left, the level, and the
+/// condition. If the operands that have fired are not the whole condition, they follow it, as in `a OR b | b`.
 fn line(turn: usize, t: &str, state: u64, law: Option<&str>, fired: &[(u64, usize, &str)]) -> String {
     let law = law.map_or("null".to_owned(), |law| format!("{law:?}"));
     let fired = fired.iter().map(|(from, level, by)| {
@@ -20,10 +20,12 @@ fn line(turn: usize, t: &str, state: u64, law: Option<&str>, fired: &[(u64, usiz
     format!("{{\"turn\":{turn},\"t\":{t},\"state\":{state},\"law\":{law},\"fired\":[{}]}}", fired.join(","))
 }
 
-/// A line of a trace: the state, the law, and the transitions with the state left, the level and the cause.
+/// An expected line of a trace: the state, the law, and the transitions, each with the state that was left, the level
+/// and the cause.
 type Expected<'t> = (u64, Option<&'t str>, &'t [(u64, usize, &'t str)]);
 
-/// Asserts the behavior of the plan in turns at 0, 1, 2 … seconds, in which these interrupts fire and laws complete.
+/// Asserts the behavior of a plan in turns at 0, 1, 2 … seconds. `turns` contains the interrupts that fire and the laws
+/// that complete in each turn.
 fn assert_turns(plan: &str, turns: &[(&'static str, &'static str)], expected: &[Expected<'_>]) {
     let script: Vec<Turn> =
         turns.iter().enumerate().map(|(turn, (fired, completed))| (turn as f64, *fired, *completed)).collect();

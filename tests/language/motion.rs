@@ -1,12 +1,12 @@
-//! The rules of `way` (docs/src/reference/semantics.md, 3.3), of `FRAME here` (docs/src/reference/semantics.md, 3.4)
-//! and of `stuck` (docs/src/reference/semantics.md, 3.5), each by its smallest plan.
+//! Tests the rules of `way` (docs/src/reference/semantics.md, 3.3), of `FRAME here` (docs/src/reference/semantics.md,
+//! 3.4) and of `stuck` (docs/src/reference/semantics.md, 3.5), each by a minimal plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_compiler::trace::Script;
 use mdle_tests::pipeline::{Machines, compile};
 
-/// Holds every machine to the trace, one line a turn.
+/// Asserts that all machines print this trace, one line for each turn.
 fn assert_trace(plan: &str, script: &[&str], expected: &[&str]) {
     let compiled = compile(plan).unwrap_or_else(|report| panic!("{report}"));
     let script = Script::read(&script.join("\n")).expect("a script");
@@ -150,7 +150,8 @@ fn a_string_or_a_pass_in_a_frame_here_is_a_scope() {
     );
 }
 
-/// The law of the second atom has not run in the turn in which the first one ends: it is not stuck because that was.
+/// In the turn in which the first atom ends, the law of the second atom has not run yet. The second atom is therefore
+/// not stuck, although the first one was.
 #[test]
 fn stuck_counts_from_its_own_scope_at_the_earliest() {
     assert_trace(

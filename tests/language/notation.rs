@@ -1,5 +1,5 @@
-//! Formal notation (docs/src/reference/language.md, 3.2) means what the same plan in the notation of the experiments
-//! means.
+//! Tests that formal notation (docs/src/reference/language.md, 3.2) has the same meaning as the notation of the
+//! experiments.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

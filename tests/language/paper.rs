@@ -1,4 +1,4 @@
-//! The paper's own listings, as printed: typesetting marks and all.
+//! Tests the paper's own listings exactly as printed, including typesetting marks.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -6,7 +6,7 @@ use std::fs;
 use mdle_tests::golden::judge;
 use mdle_tests::repository::{TextFile, root};
 
-/// The first words of each listing, with the file that holds it and the number of its repeated interrupts.
+/// Listings, each with its first words, the name of its file, and the number of its repeated interrupts.
 const LISTINGS: [(&str, &str, usize); 5] = [
     (r"$\Gamma_{lab2}^{lab1} = \{$", "lab2_to_lab1", 0),
     (r"$\Gamma_{lab}^{office} = \{$", "lab1_to_office", 0),
@@ -15,7 +15,7 @@ const LISTINGS: [(&str, &str, usize); 5] = [
     (r"$$\Gamma_{\text{soundFollow}} = \{", "sound_following", 0),
 ];
 
-/// Returns the listing that begins with `first`: up to the end of its block, or of the line if it is set as a formula.
+/// Returns the listing that begins with `first`. It ends with its block or, if it is a formula, with its line.
 fn cut<'p>(paper: &'p str, first: &str) -> &'p str {
     if first.starts_with("$$") {
         return paper.lines().find(|line| line.starts_with(first)).expect(first);
@@ -24,7 +24,8 @@ fn cut<'p>(paper: &'p str, first: &str) -> &'p str {
     block.trim_matches('\n')
 }
 
-/// The text of the paper lies beside a checkout, or does not; the listings are in `plans/paper/` either way.
+/// Returns the text of the paper if it is available beside the checkout. The listings are in `plans/paper/` in any
+/// case.
 fn paper() -> Option<String> {
     let folder = root().join("../shared/paper");
     let file = fs::read_dir(folder).ok()?.find_map(|entry| Some(entry.ok()?.path()).filter(|path| path.is_file()))?;

@@ -1,4 +1,4 @@
-//! The rules of plans with parameters (docs/src/reference/language.md, 3.4), each by its smallest plan.
+//! Tests the rules of plans with parameters (docs/src/reference/language.md, 3.4), each by a minimal plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

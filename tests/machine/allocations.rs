@@ -1,4 +1,5 @@
-//! A turn in which nothing is loaded or asked allocates no memory: plan, modules, turn break and safety rules.
+//! Tests that a turn in which nothing is loaded and no request arrives allocates no memory: neither the plan, nor
+//! modules, the turn break or safety rules.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -17,14 +18,14 @@ use mdle_sim::{Simulated, World};
 use mdle_tests::golden;
 
 const PERIOD: Duration = Duration::from_secs(1);
-/// A plan with timers, a memory, a label, a loop, a frame, a law with a map, and numbers of a module.
+/// A plan with timers, a memory, a label, a loop, a frame, a law with a map, and numbers from a module.
 const PLAN: &str = "{ Rounds (null)\n  ((Atom (wait 3s OR way > 2m) (go 10 0.2))\n   \
                     turned: FRAME here (Atom (RISING bearing(filter module) > 10deg OR wait 7s) (goAvoid 0 100))\n   \
                     (Atom (after turned AND stuck 3s OR wait 5s) (go 0 -0.3)))^inf\n}\n";
-/// Rules that limit and hold now and then.
+/// Safety rules that sometimes limit the robot's speed and sometimes hold the robot.
 const RULES: &str = "[limits]\nspeed = \"15cm/s\"\nacceleration = \"1m/s2\"\n\n[contact]\nthen = \"hold forward\"\n\n\
                      [guards.far]\nwhen = \"theta > 30deg AND bearing(ears module) > 20deg\"\nthen = \"hold\"\n";
-/// Number of turns before memory has its final size, and of turns that are counted.
+/// Number of turns after which all memory should have been allocated; the same number of turns is counted afterwards.
 const TURNS: u64 = 400;
 
 thread_local! {
@@ -32,7 +33,7 @@ thread_local! {
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// The allocator of the system, which counts allocations.
+/// The allocator of the system, with a count of the allocations.
 struct Counter;
 
 #[allow(unsafe_code, reason = "an allocator is unsafe by its interface; all calls go to that of the system")]
@@ -60,7 +61,7 @@ unsafe impl GlobalAlloc for Counter {
 #[global_allocator]
 static COUNTER: Counter = Counter;
 
-/// A module that turns with its turns.
+/// A module that publishes a bearing that changes with each turn.
 struct Ears(Out<Radians>);
 
 impl Module<Sensed> for Ears {
@@ -110,7 +111,8 @@ fn rules() -> (Rules, Conditions<Alphabet>) {
     (rules, conditions.expect("conditions"))
 }
 
-/// Returns the turns that allocated, and the number of transitions, of a run after its first turns.
+/// Returns the turns that allocated memory, without the first [`TURNS`] turns of the run, and the number of transitions
+/// in the other turns.
 fn turns_that_allocate(time: Time) -> (Vec<u64>, usize) {
     let terms = RunTerms { time, period: PERIOD, request: StopRequest::default(), microphones: Microphones::default() };
     let (rules, conditions) = rules();

@@ -1,5 +1,5 @@
-//! Tests of `mdlec analyze`: of random plans against brute force, in which nothing happens that the analysis excludes;
-//! of the plans in `plans/`; and of the size of a machine, against rustc.
+//! Tests `mdlec analyze`: random plans are compared with brute force, in which nothing may happen that the analysis
+//! excludes; plans in `plans/` have expected results; and the size of a machine is compared with rustc.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -22,7 +22,7 @@ use mdle_tests::random_script::script;
 use mdle_tests::repository::{TextFile, files, root};
 use mdle_tests::signals::Values;
 
-/// The Rust of two plans, as it is recorded and compiled.
+/// Recorded Rust of two plans, which is compiled here.
 mod recorded {
     pub(crate) mod lab_tour {
         include!("snapshots/machine__golden__rust-lab_tour.snap.rs");
@@ -34,12 +34,14 @@ mod recorded {
 
 /// Number of random plans.
 const PLANS: u64 = 350;
-/// Maximum number of combinations of quark values of which all are tried; of more, this many random ones are tried.
+/// Maximum number of combinations of quark values of a plan. If there are more combinations, this many random ones are
+/// tried.
 const CHOICES: usize = 16;
-/// Maximum number of situations of a plan, if all choices are tried, and if they are not.
+/// Maximum number of situations of a plan, first if all combinations of quark values are tried, and then if they are
+/// not.
 const SITUATIONS: [usize; 2] = [1000, 80];
-/// Steps between turns, in nanoseconds: zero, one shorter than the shortest timer, timers' own lengths and windows, and
-/// one longer than all timers.
+/// Steps between turns, in nanoseconds: zero, a step shorter than the shortest timer, the lengths of timers and
+/// windows, and a step longer than all timers.
 const STEPS: [u64; 5] = [0, 40_000_000, 100_000_000, 1_000_000_000, 5_000_000_000];
 
 /// Counts over all plans.
@@ -48,13 +50,14 @@ struct Count {
     plans: usize,
     turns: usize,
     over: usize,
-    /// Plans of which every situation was tried.
+    /// Plans all of whose situations were tried.
     whole: usize,
-    /// Atoms of these plans: all, those that never run, and those for which the analysis excludes it.
+    /// Atoms of these plans. `idle` counts those that never run, and `predicted` those that the analysis predicts never
+    /// to run.
     atoms: usize,
     idle: usize,
     predicted: usize,
-    /// Operands that never end their scope, as predicted.
+    /// Operands that never end their scope, as the analysis predicts.
     never: usize,
     bounded: usize,
 }
@@ -109,7 +112,7 @@ struct Trial<'c> {
     text: &'c str,
     compiled: &'c Compiled,
     analysis: Analysis,
-    /// The atom or the scope of each part, in pre-order.
+    /// Atom or scope of each part of the plan, in pre-order.
     parts: Vec<Part>,
 }
 
@@ -168,14 +171,15 @@ impl<'c> Trial<'c> {
         }
     }
 
-    /// Returns `true` if two atoms have one law that completes: what is tried lets both of them complete, or neither.
+    /// Returns `true` if two atoms have the same law and this law completes. In the turns that are tried, either both
+    /// of them complete or neither does.
     fn laws_complete_together(&self) -> bool {
         let mut laws = BTreeSet::new();
         let mut completing = self.compiled.machine.atoms().map(|atom| atom.law()).filter(|law| law.completes);
         !completing.all(|law| laws.insert(&law.text))
     }
 
-    /// Compares the analysis of a plan with one of its turns.
+    /// Checks that a turn does not contradict the analysis.
     fn check(&self, explorer: &Explorer<'_>, turn: &Turn, run: &Run) {
         for part in &turn.current {
             let Part::Atom(atom) = self.parts[*part] else { panic!("an atom is current") };
@@ -251,8 +255,8 @@ fn runs_last_as_long_as_analysis_computes() {
     assert!(over > 165 && bounded > 65, "{over} plans are over, {bounded} of them with a longest time");
 }
 
-/// Returns combinations of quark values of a plan, and `true` if these are all. Signals have values, so that their
-/// comparisons agree.
+/// Returns combinations of quark values of a plan, and `true` if these are all combinations. Comparisons of the same
+/// signal are consistent, because each signal has a value.
 fn choices(plan: &Plan, chance: &mut Chance) -> (Vec<QuarkValues>, bool) {
     let is_free = |quark: &Quark| quark.completes || INTERRUPTS.contains(&quark.text.as_str());
     let bits: Vec<usize> = (0..plan.quarks.len()).filter(|number| is_free(&plan.quarks[*number])).collect();
@@ -342,7 +346,7 @@ fn an_analysis_is_printed_for_people_and_for_programs() {
     );
 }
 
-/// Compares the sizes in the analysis of a plan with those of its compiled Rust.
+/// Asserts that the sizes in the analysis of a plan are those of its compiled Rust.
 fn assert_bytes<P: mdle_runtime::Plan>(path: &str, plan: &P) {
     let bytes = analysis(path).bytes;
     let cursor = size_of::<Cursor<P::Entered, P::Left>>();

@@ -1,4 +1,4 @@
-//! Random plans on random scripts: every machine prints the same trace, and so do plans loaded at run time
+//! Tests random plans on random scripts: all machines print the same trace, and so do plans that are loaded at run time
 //! (docs/src/reference/semantics.md, 9).
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
@@ -24,7 +24,7 @@ use mdle_tests::random_script::script;
 /// Number of random plans.
 const PLANS: u64 = 3_400;
 
-/// Events in the runs of random plans, to check that they include all that the test is meant to try.
+/// Counts of events in the runs of random plans, which show that the runs cover everything that should be tested.
 #[derive(Debug, Default)]
 struct Seen {
     plans: usize,
@@ -35,11 +35,12 @@ struct Seen {
     chains: usize,
     completions: usize,
     repeated: usize,
-    /// Turns in which a condition with RISING, with `after`, or with a comparison ended something.
+    /// Number of transitions that are caused by a condition with RISING; `after` and `compared` count those by `after`
+    /// and by comparisons.
     rising: usize,
     after: usize,
     compared: usize,
-    /// Number of times that each production of the grammar, and each unit, occurred in a plan that was run.
+    /// Number of occurrences of each production of the grammar, and of each unit, in the plans that were run.
     productions: Productions,
 }
 
@@ -89,9 +90,10 @@ fn every_machine_prints_the_same_trace() {
     assert!(rare.iter().all(|count| *count > seen.plans / 10), "{seen:?}");
 }
 
-/// Units of which no parameter of the robot's quarks is.
+/// Units that no parameter of the robot's quarks has.
 const UNMET_UNITS: &[&str] = &["Hz"];
-/// Parts of the head of a group's plan, which is not run itself: the plans of its robots are (`robots formation::`).
+/// Parts of the head of a group's plan. They do not occur here, because a group's plan is not run itself; the plans of
+/// its robots are tested in `robots formation::`.
 const GROUPS: &[&str] = &["Head = \"Group\" \"[\" ArgList? \"]\" Name Params? HeadCondition?", "Head … ArgList?"];
 
 /// Asserts that every production, every optional part, and every unit occurs in some plan.
@@ -109,7 +111,7 @@ fn assert_every_production_is_met(counts: &Productions) {
     assert!(unknown.is_empty(), "the grammar does not have {unknown:#?}");
 }
 
-/// Tries every `step`th seed, from `first` on.
+/// Tests every `step`th seed, beginning with `first`.
 fn seeds(first: usize, step: usize) -> Seen {
     let mut seen = Seen::default();
     for seed in (first as u64..repeated(PLANS)).step_by(step) {
@@ -125,8 +127,8 @@ fn seeds(first: usize, step: usize) -> Seen {
     seen
 }
 
-/// Compares the traces of the machines, and of the plan when it is loaded, with or without the successors of scopes in
-/// its rows.
+/// Compares the traces of all machines, and of the loaded plan. With `foresight`, the rows of the loaded plan contain
+/// the successors of scopes.
 fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen) {
     let compiled = match compile(text) {
         Ok(compiled) => compiled,
@@ -177,7 +179,7 @@ fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen
     }
 }
 
-/// Returns the first lines in which two traces differ, with the plan and the script.
+/// Returns the first lines that differ in two traces, with the plan and the script.
 fn difference(one: (&str, &[TraceLine<'_>]), other: (&str, &[TraceLine<'_>]), text: &str, script: &str) -> String {
     let turn = one.1.iter().zip(other.1).take_while(|(one, other)| one == other).count();
     let line = |trace: &[TraceLine<'_>]| trace.get(turn).map_or("(no line)".into(), ToString::to_string);

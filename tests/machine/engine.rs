@@ -1,4 +1,5 @@
-//! Plans that are replaced while the robot runs: when the new one takes over, trial, and the way back.
+//! Tests plans that are replaced while the robot runs: the time at which the new plan begins, its trial, and the return
+//! to the previous plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -13,13 +14,13 @@ use mdle_scripted::alphabet::Alphabet;
 use mdle_scripted::{INTERRUPTS, LAWS, Output};
 use mdle_tests::pipeline::{compile, scripted, sources};
 
-/// Loads the plan `Main` of a text.
+/// Compiles and loads the plan `Main` of a text.
 pub(crate) fn loaded(text: &str) -> Result<Arc<Loaded<Alphabet>>, String> {
     let machine = compile(text)?.machine;
     load::load(&machine, &sources(text), scripted()).map(Arc::new).map_err(|error| error.to_string())
 }
 
-/// An engine in stepped time.
+/// A run of an engine in stepped time.
 pub(crate) struct Run {
     pub(crate) engine: Engine<Alphabet>,
     pub(crate) turns: u64,
@@ -47,8 +48,8 @@ impl Run {
         self.engine.plans_mut()
     }
 
-    /// Makes a turn in which this interrupt fires, and returns the law that is applied: the time at which its atom
-    /// began by the clock of its plan, and the number of inputs that it has computed.
+    /// Runs a turn in which this interrupt fires. Returns the number of the plan, the law that is applied, the time at
+    /// which the law's atom began by the clock of its plan, and the number of inputs that the law has computed.
     pub(crate) fn turn(&mut self, interrupt: &str) -> String {
         let bit = INTERRUPTS.iter().position(|known| *known == interrupt);
         let y = Output { fired: bit.map_or(0, |bit| 1 << bit), way: self.way, ..Output::default() };
@@ -67,13 +68,13 @@ impl Run {
         }
     }
 
-    /// Makes a turn after the robot has driven this far.
+    /// Runs a turn after the robot has driven this distance.
     fn drive(&mut self, millimetres: u64) -> String {
         self.way = Nanometers(self.way.0 + millimetres * 1_000_000);
         self.turn("")
     }
 
-    /// Makes turns in which nothing fires.
+    /// Runs turns in which no interrupt fires; returns the result of the last one.
     pub(crate) fn turns(&mut self, count: u64) -> String {
         (0..count).map(|_| self.turn("")).last().unwrap()
     }
@@ -173,7 +174,7 @@ fn typed(text: &str) -> PlanSource {
     PlanSource::Text(text.to_owned())
 }
 
-/// Makes turns until the compiler has answered.
+/// Runs turns until the compiler has answered; returns the answer.
 fn answer(run: &mut Run) -> PlanEvent {
     loop {
         run.turn("");

@@ -1,4 +1,4 @@
-//! FSM files of loops without end: their moves written out by hand from the rules (docs/src/reference/semantics.md,
+//! Tests FSM files of endless loops. Their moves were written by hand from the rules (docs/src/reference/semantics.md,
 //! 8.3).
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -13,7 +13,7 @@ fn file(plan: &str) -> FsmFile {
     fsm_file(&compiled[0].nondegenerate).unwrap()
 }
 
-/// Asserts the states in the file of a plan, and a line for each interrupt: name, text and moves.
+/// Asserts the states in the FSM file of a plan, and a line for each interrupt, with its name, text and moves.
 fn assert_moves(plan: &str, states: &[&str], expected: &[&str]) {
     let file = file(plan);
     assert_eq!(file.states, states, "{plan}");

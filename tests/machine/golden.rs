@@ -1,8 +1,8 @@
-//! Every plan in `plans/`: tree, machine and Rust as snapshots where `sim` can run it, and the messages for other
-//! robots.
+//! Snapshot tests of every plan in `plans/`: the tree, the machine and the Rust if `sim` can run the plan, and the
+//! messages for other robots.
 //!
-//! The Rust is a file of its own beside its snapshot, `snapshots/machine__golden__rust-….snap.rs`, to be opened and
-//! read as one.
+//! The Rust is in a separate file beside its snapshot, `snapshots/machine__golden__rust-….snap.rs`, so that it can be
+//! opened as a Rust file.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_compiler::Compiled;
@@ -12,7 +12,7 @@ use mdle_tests::golden::{alphabet, judge, machine, rust, tree};
 use mdle_tests::pipeline::scripted;
 use mdle_tests::repository::{TextFile, files, root};
 
-/// The recorded Rust, compiled as it is under the lints of this workspace.
+/// Recorded Rust, which is compiled without changes under the lints of this workspace.
 mod recorded {
     pub(crate) mod lab_tour {
         include!("snapshots/machine__golden__rust-lab_tour.snap.rs");
@@ -37,7 +37,7 @@ fn plans() -> Vec<TextFile> {
     plans
 }
 
-/// `plans/paper/first_robot.mdle` as `paper-first_robot`.
+/// Returns the name of a plan in snapshots, such as `paper-first_robot` for `plans/paper/first_robot.mdle`.
 fn name(file: &TextFile) -> String {
     file.path.trim_start_matches("plans/").trim_end_matches(".mdle").replace('/', "-")
 }

@@ -1,4 +1,4 @@
-//! Plans that are loaded at run time: what they own, and what is refused.
+//! Tests plans that are loaded at run time: the memory that they own, and the plans that are refused.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,7 +10,7 @@ use mdle_runtime::Plan as _;
 use mdle_scripted::alphabet::Alphabet;
 use mdle_tests::pipeline::{compile, scripted, sources};
 
-/// Loads the plan `Main` of a text.
+/// Compiles and loads the plan `Main` of a text.
 fn loaded(text: &str) -> Result<Arc<Loaded<Alphabet>>, LoadError> {
     let machine = compile(text).expect("a plan").machine;
     load::load(&machine, &sources(text), scripted()).map(Arc::new)

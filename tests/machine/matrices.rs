@@ -1,5 +1,5 @@
-//! Matrices that are read back from the output and the files of `--emit matrices` make the same transitions as the
-//! machine `table` (paper, Eqs. 2 to 4), and the command reports which of the two forms it chose.
+//! Tests that matrices that are read back from the output and the files of `--emit matrices` make the same transitions
+//! as the machine `table` (paper, Eqs. 2 to 4), and that the command reports which of the two forms it has chosen.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::BTreeMap;
@@ -16,20 +16,20 @@ use serde_json::Value;
 
 /// Number of random plans.
 const PLANS: u64 = 140;
-/// Plans of more states are left out: each matrix is read as a whole.
+/// Maximum number of states of a plan that is tested, because each matrix is read as a whole.
 const STATES: u64 = 300;
 
-/// A matrix as it was read: for each column the row of its one, from 1, and its name, text and places.
+/// A matrix that was read back: its name, its text, the row of the 1 in each column, from 1, and its scopes.
 #[derive(Debug)]
 struct Read {
     name: String,
     text: String,
     rows: Vec<usize>,
-    /// The number of the interrupt, the first and the last state of each place.
+    /// For each scope, the number of its interrupt, its first state and its last state.
     places: Vec<(usize, usize, usize)>,
 }
 
-/// The matrices of a plan, as they were read.
+/// All matrices of a plan that were read back.
 #[derive(Debug, Default)]
 struct Matrices {
     live: Vec<Read>,
@@ -37,7 +37,7 @@ struct Matrices {
 }
 
 impl Matrices {
-    /// The numbers of the interrupts whose scopes hold a state, outermost first.
+    /// Returns the numbers of the interrupts of all scopes that contain a state, outermost first.
     fn around(&self, state: usize) -> Vec<usize> {
         let all = self.live.iter().chain(&self.never).filter(|read| read.name != "completed");
         let places = all.flat_map(|read| &read.places);
@@ -46,7 +46,8 @@ impl Matrices {
         numbers
     }
 
-    /// Follows a trace by the product of the matrices of what fired; how many there were.
+    /// Asserts that the product of the matrices of fired interrupts makes the transitions of a trace; returns the
+    /// number of transitions.
     fn follow(&self, trace: &[TraceLine<'_>], combined: bool) -> usize {
         let (mut e, mut count) = (1, 0);
         for TraceLine { turn, outcome, .. } in trace {
@@ -73,7 +74,8 @@ fn holds(place: &(usize, usize, usize), state: usize) -> bool {
     (place.1..=place.2).contains(&state)
 }
 
-/// Reads a MatrixMarket coordinate file: square, each column with a single one.
+/// Reads a MatrixMarket coordinate file of a square matrix with a single 1 in each column. Returns the row of the 1 in
+/// each column.
 fn read_market(text: &str) -> Vec<usize> {
     assert!(text.lines().all(|line| line.len() <= 1024));
     let mut lines = text.lines();
@@ -92,10 +94,10 @@ fn read_market(text: &str) -> Vec<usize> {
     )
 }
 
-/// Returns the row of the one in each column. `ones` are rows and columns of all ones.
+/// Returns the row of the 1 in each column. `ones` contains the row and the column of every 1.
 ///
 /// # Panics
-/// A column does not hold exactly one.
+/// If a column does not contain exactly one 1.
 fn columns(states: usize, ones: impl Iterator<Item = (usize, usize)>) -> Vec<usize> {
     let mut rows = vec![0; states];
     for (row, column) in ones {
@@ -106,7 +108,7 @@ fn columns(states: usize, ones: impl Iterator<Item = (usize, usize)>) -> Vec<usi
     rows
 }
 
-/// Reads the list and the files.
+/// Reads the matrices from the list of files and the files.
 fn read_files(list: &str, files: &BTreeMap<String, String>) -> Matrices {
     let list: Value = serde_json::from_str(list).unwrap();
     let number = |value: &Value| value.as_u64().unwrap() as usize;
@@ -127,7 +129,7 @@ fn read_files(list: &str, files: &BTreeMap<String, String>) -> Matrices {
     Matrices { live: entries("matrices"), never: entries("never") }
 }
 
-/// Reads the equation in the paper's notation, with the meaning of its symbols.
+/// Reads the matrices from the equation in the paper's notation, which is followed by the meaning of its symbols.
 fn read_equation(text: &str) -> Matrices {
     let (sum, symbols) = text.split_once("where the state is one of\n").unwrap();
     let mut rows = BTreeMap::new();
@@ -153,7 +155,8 @@ fn read_equation(text: &str) -> Matrices {
     matrices
 }
 
-/// `2  bumper, at e1…e2 of Q (2), e3 (5)`.
+/// Reads a line about a symbol, such as `2  bumper, at e1…e2 of Q (2), e3 (5)`, and takes the matrix of the symbol from
+/// `rows`.
 fn read_symbol(line: &str, rows: &mut BTreeMap<String, Vec<usize>>) -> Read {
     let (symbol, what) = line.split_once(' ').unwrap();
     let (text, places) = what.trim_start().rsplit_once(", at ").unwrap();

@@ -1,4 +1,4 @@
-//! Plans of the operator and of other robots at the same time: the operator's come first.
+//! Tests plans from the operator and from other robots at the same time: the operator's plans take precedence.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -1,5 +1,5 @@
-//! Pictures of random plans: complete, within their edges, with every condition somewhere, and with the transitions
-//! that the plan has; and plans that are too large for a picture.
+//! Tests pictures of random plans: they are complete, nothing leaves their edges, they contain every condition, and
+//! they show the transitions of the plan. Also tests plans that are too large for a picture.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "who reads a failure wants the seed and the plan")]
 
@@ -26,7 +26,7 @@ use mdle_tests::xml::{Element, read};
 /// Number of random plans.
 const PLANS: u64 = 100;
 
-/// Random plans, each with its seed and a script.
+/// Returns random plans, each with its seed and a random script.
 fn plans() -> impl Iterator<Item = (u64, Compiled, String)> {
     (0..repeated(PLANS)).filter_map(|seed| {
         let mut chance = Chance::new(seed);
@@ -50,13 +50,14 @@ fn is_inside(inner: Edges, outer: Edges) -> bool {
     inner[0] >= outer[0] && inner[1] >= outer[1] && inner[2] <= outer[2] && inner[3] <= outer[3]
 }
 
-/// The boxes of a picture in the order of their brackets.
+/// Returns the boxes of a picture in the order of their brackets, each with its edges.
 fn boxes(picture: &Element) -> Vec<(&Element, Edges)> {
     let groups = picture.children.iter().filter(|child| child.name == "g");
     groups.map(|group| (group, edges(&group.children[1]))).collect()
 }
 
-/// Asserts that a picture is well drawn.
+/// Asserts that a picture has a box for each element, inside the box of the enclosing element and apart from the boxes
+/// beside it, that texts and lines stay within their edges, and that the picture contains each condition.
 fn assert_well_drawn(machine: &Machine, picture: &Element) {
     let whole = edges(picture);
     let boxes = boxes(picture);
@@ -145,7 +146,7 @@ fn a_long_condition_is_whole_in_its_tooltip() {
     assert!(text.len() < 20_000 && text.contains("more characters"), "{} bytes", text.len());
 }
 
-/// The edges by which a state can be left for another.
+/// Returns `true` if an edge leads from the state `from`, or from a cluster that contains it, to the state `to`.
 fn leads(graph: &Graph, from: &str, to: &str) -> bool {
     graph.edges.iter().any(|(tail, head, attributes)| {
         let cluster = attributes.get("class").map(|name| &graph.clusters[name]);
@@ -219,7 +220,7 @@ fn diagrams_have_every_atom_and_lead_nowhere_outside() {
     }
 }
 
-/// A plan with a behavior, loops of both sorts, and texts that have to be escaped.
+/// A plan with a behavior, both kinds of loops, and texts that must be escaped.
 const PLAN: &str = "{ Patrol (bumper OR wait 600)\n  s1: (Atom (r_3 < 40cm) (goAvoid 90 40 20))\n  ({ Leg (wait 30) \
                     (Atom (wait 1) (go 20 0)) ((Atom (wait 2) (go 5 0)) (Atom (null) turn 90))^3 }\n   (Atom (after s1) \
                     stop))^inf\n}\n";

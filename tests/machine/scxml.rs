@@ -1,5 +1,5 @@
-//! The SCXML machine of a plan behaves as the plan: run by an interpreter of SCXML, it leaves the same states in the
-//! same turns as the machine `table`, and ends each turn with the same law.
+//! Tests that the SCXML machine of a plan behaves like the plan: in an SCXML interpreter, it leaves the same states in
+//! the same turns as the machine `table`, and ends each turn with the same law.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_compiler::picture::scxml;
@@ -17,10 +17,10 @@ use mdle_tests::xml::read;
 
 /// Number of random plans.
 const PLANS: u64 = 50;
-/// Plans of more states are left out.
+/// Maximum number of states of a plan that is tested.
 const STATES: u64 = 150;
 
-/// Events in the runs of the random plans.
+/// Counts of events in the runs of the random plans.
 #[derive(Debug, Default)]
 struct Seen {
     plans: usize,
@@ -32,7 +32,7 @@ struct Seen {
     done: usize,
 }
 
-/// A line of a script as the data of an event.
+/// Returns a line of a script as the data of an SCXML event.
 fn data(line: &str) -> Value {
     fn value(json: &serde_json::Value) -> Value {
         match json {
@@ -49,7 +49,7 @@ fn data(line: &str) -> Value {
     value(&serde_json::from_str(line).unwrap())
 }
 
-/// Runs a plan against a script, as SCXML and as a table.
+/// Compares a plan as an SCXML machine with the machine `table` on a script.
 fn compare(plan: &Nondegenerate, script: &str, seen: &mut Seen) {
     let document = read(&scxml(plan).expect("a small plan"));
     let mut machine = Machine::new(&document);

@@ -1,4 +1,4 @@
-//! Plans that other robots send while the robot runs: who they replace, and what is answered.
+//! Tests plans that other robots send while the robot runs: the plans that they replace, and the answers.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -14,7 +14,7 @@ use mdle_scripted::alphabet::Alphabet;
 
 use crate::engine::{Run, loaded};
 
-/// The letters of one robot.
+/// Letters to and from a robot.
 #[derive(Default)]
 struct Mail {
     arrived: Vec<Letter>,
@@ -22,7 +22,7 @@ struct Mail {
     sent: Vec<Letter>,
 }
 
-/// A link over which a test sends letters.
+/// A link on which a test puts letters for a robot and reads the robot's letters.
 struct Post(Arc<Mutex<Mail>>);
 
 impl Link for Post {
@@ -44,7 +44,7 @@ impl Link for Post {
     }
 }
 
-/// The robot `bob`, who runs a plan and takes plans of `ada`.
+/// The robot `bob`, which runs a plan and accepts plans from `ada`.
 pub(crate) struct Bob {
     pub(crate) run: Run,
     mail: Arc<Mutex<Mail>>,
@@ -81,7 +81,7 @@ impl Bob {
         bob
     }
 
-    /// Returns the robot with a compiler that sends a message when it begins, and compiles when it gets one.
+    /// Returns the robot with a compiler that sends a message when it begins, and compiles when it receives a message.
     pub(crate) fn compiling_for(begun: Sender<()>, gate: Receiver<()>) -> Self {
         let mut bob = Self::new();
         let compile = move |source: &PlanSource| {
@@ -92,14 +92,15 @@ impl Bob {
         bob
     }
 
-    /// Lets a plan of `ada` arrive before the end of the next turn.
+    /// Delivers a plan from `ada` before the end of the next turn.
     pub(crate) fn gets(&mut self, text: &str, when: When) {
         self.letters += 1;
         let content = Content::Plan { when, text: text.to_owned() };
         self.mail.lock().unwrap().arrived.push(Letter { from: "ada".to_owned(), number: self.letters, content });
     }
 
-    /// Returns the answers since the last call, each with the number of the plan and `true` if the plan is accepted.
+    /// Returns the answers since the last call, each with the number of the plan, `true` if the plan is accepted, and
+    /// the robot's sentence.
     pub(crate) fn answers(&mut self) -> Vec<(u64, bool, String)> {
         let sent: Vec<_> = self.mail.lock().unwrap().sent.drain(..).collect();
         let answer = |letter: Letter| match letter.content {
@@ -109,18 +110,18 @@ impl Bob {
         sent.into_iter().map(answer).collect()
     }
 
-    /// Makes a turn; returns its law.
+    /// Runs a turn; returns its law.
     pub(crate) fn turn(&mut self) -> String {
         let turn = self.run.turn("");
         turn.split(' ').nth(1).unwrap_or(&turn).to_owned()
     }
 
-    /// Makes turns until an answer has been sent; returns the answer.
+    /// Runs turns until an answer has been sent; returns the answer.
     pub(crate) fn answered(&mut self) -> (u64, bool, String) {
         self.until(|bob| bob.answers().pop())
     }
 
-    /// Makes turns until `find` returns a value, after each turn; returns the value.
+    /// Runs turns until `find`, which is called after each turn, returns a value; returns this value.
     pub(crate) fn until<T>(&mut self, find: impl Fn(&mut Self) -> Option<T>) -> T {
         let turns = (0..10_000).find_map(|_| {
             self.turn();
@@ -131,12 +132,12 @@ impl Bob {
         turns.expect("something happens within ten seconds")
     }
 
-    /// Makes turns until this event has been reported.
+    /// Runs turns until this event has been reported.
     pub(crate) fn until_event(&mut self, event: &PlanEvent) {
         self.until(|bob| bob.run.journal.contains(event).then_some(()));
     }
 
-    /// Lets a safety rule replace the plan.
+    /// Replaces the plan as a safety rule does.
     pub(crate) fn retreats(&mut self) {
         let y = Output::default();
         let t = Nanos(self.run.turns * 100_000_000);
@@ -144,7 +145,7 @@ impl Bob {
     }
 }
 
-/// The refusal of a plan.
+/// Returns the answer that refuses the plan with number `of`.
 pub(crate) fn refused(of: u64, reason: &str) -> (u64, bool, String) {
     (of, false, reason.to_owned())
 }
@@ -263,7 +264,7 @@ fn a_robot_takes_one_plan_a_second_of_another() {
     assert_eq!(accepted(100).iter().filter(|is_accepted| **is_accepted).count(), 10);
 }
 
-/// The acceptance of a plan.
+/// Returns the answer that accepts the plan with number `of`.
 pub(crate) fn accepted(of: u64, sentence: &str) -> (u64, bool, String) {
     (of, true, sentence.to_owned())
 }

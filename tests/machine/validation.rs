@@ -1,4 +1,5 @@
-//! Machines that do not match their plan are distinguished from those that do: 500 mutations of random machines.
+//! Tests that validation distinguishes machines that do not match their plan from machines that do, on mutations of
+//! random machines.
 
 use std::collections::BTreeMap;
 
@@ -12,10 +13,10 @@ use mdle_tests::random_plan::RandomPlan;
 /// Number of mutated machines.
 const MUTATIONS: u64 = 170;
 
-/// Makes a machine wrong in a place that chance picks, or leaves it as it is.
+/// A function that makes a random part of a machine wrong, or leaves the machine unchanged.
 type Mutation = fn(&mut Draft, &mut Chance);
 
-/// Mutations of a machine.
+/// Mutations of a machine, each with its description.
 const WRONG: &[(&str, Mutation)] = &[
     ("extent, its first atom", |machine, chance| {
         let bracket = pick(&mut machine.brackets, chance);
@@ -92,7 +93,7 @@ fn pick<'a, T>(all: &'a mut [T], chance: &mut Chance) -> &'a mut T {
     &mut all[place]
 }
 
-/// Another number, most often a neighbour.
+/// Returns another number, which in most cases is a neighbour of `number`.
 fn other(number: u32, chance: &mut Chance) -> u32 {
     match chance.below(3) {
         0 => number.wrapping_sub(1),

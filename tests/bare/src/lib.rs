@@ -1,6 +1,7 @@
-//! A robot without std and without an allocator, for plans whose executable links only if no path of it panics.
+//! A robot without std and without an allocator, for plans whose executables link only if no code path can panic.
 //!
-//! Its output is read, and the input that the plan computes is printed, so that the optimiser can leave nothing out.
+//! The robot's output is read from standard input, and the input that the plan computes is printed, so that the
+//! optimizer cannot remove any code of the plan.
 #![no_std]
 
 pub mod alphabet;

@@ -1,4 +1,4 @@
-//! Runs a plan on the outputs that are read, and prints what it did.
+//! Runs a plan on outputs from standard input, and prints its turns.
 
 use core::ffi::c_int;
 use core::fmt::{self, Write};
@@ -10,8 +10,9 @@ use crate::sensed::Sensed;
 use crate::system::{Printed, bytes};
 use crate::{Input, Output};
 
-/// Runs `plan` until it is over or no output is left, and prints two lines a turn: that of a trace, then the input as
-/// `u` and two whole numbers, in mm/s and mrad/s. Returns the exit status: 0 where all could be printed.
+/// Runs `plan` until it is over or no output is left. For each turn, prints the line of a trace, and a line with `u`
+/// and the input as two integers, in mm/s and mrad/s. Returns the exit status: 0 if everything could be printed,
+/// otherwise 1.
 pub fn run(plan: impl Plan<Output = Output, Input = Input>) -> c_int {
     match turns(plan) {
         Ok(()) => 0,
@@ -47,15 +48,15 @@ fn turns(plan: impl Plan<Output = Output, Input = Input>) -> fmt::Result {
     Ok(())
 }
 
-/// The first transitions of a turn.
+/// The first 8 transitions of a turn.
 #[derive(Default)]
 struct Transitions {
-    /// The operands of the next one.
+    /// Operands that have fired since the last transition.
     operands: [Option<u32>; 8],
     made: [Option<ReportedTransition>; 8],
 }
 
-/// A transition, and the numbers of the first operands that have fired.
+/// A transition, with the numbers of the first 8 operands that fired.
 struct ReportedTransition {
     transition: Transition,
     operands: [Option<u32>; 8],

@@ -1,5 +1,5 @@
-//! The bytes in which `desk` records what a robot senses, for `board`: the shape of its body, then for each turn the
-//! new pings and the rest. Numbers are little-endian, in SI units.
+//! Format of the file in which `desk` records what a robot senses, for `board`: the shape of the robot's body, and then
+//! each turn, followed by its new pings. Numbers are little-endian, in SI units.
 
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{
@@ -7,7 +7,7 @@ use mdle_runtime::{
     Volts,
 };
 
-/// The numbers of a record, one after the other.
+/// Reader of the numbers of a record, in order.
 struct Numbers<'r>(&'r [u8]);
 
 impl Numbers<'_> {
@@ -34,21 +34,21 @@ impl Numbers<'_> {
     }
 }
 
-/// Number of bytes of the shape of a body.
+/// Number of bytes of the record of a body.
 pub const BEGIN: usize = 56;
-/// Number of bytes of a turn, before its pings.
+/// Number of bytes of the record of a turn, without its pings.
 pub const TURN: usize = 80;
-/// Number of bytes of a ping.
+/// Number of bytes of the record of a ping.
 pub const PING: usize = 56;
 
-/// The record of a body.
+/// The record of a body's shape.
 pub type Begin = [u8; BEGIN];
-/// The record of a turn: the time, the pose, the velocity, the switches, the supply, the number of pings.
+/// The record of a turn: time, pose, velocity, switches, power supply, and number of pings.
 pub type Turn = [u8; TURN];
-/// The record of a ping: its sonar, its range (NaN without an echo), its time, its pose, its mount.
+/// The record of a ping: sonar, range (NaN without an echo), time, pose, and mount of the sonar.
 pub type Ping = [u8; PING];
 
-/// Reads the shape of a body.
+/// Returns the shape of a body.
 #[must_use]
 pub fn shape(record: &Begin) -> Shape {
     let mut numbers = Numbers(record);
@@ -67,7 +67,7 @@ pub fn shape(record: &Begin) -> Shape {
     }
 }
 
-/// Reads a turn; returns its time, and the number of pings that follow.
+/// Stores a turn in `y`; returns the time of the turn, and the number of pings that follow.
 pub fn turn(record: &Turn, y: &mut Sensed) -> (Nanos, u64) {
     let mut numbers = Numbers(record);
     y.at = Nanos(numbers.whole());
@@ -80,7 +80,7 @@ pub fn turn(record: &Turn, y: &mut Sensed) -> (Nanos, u64) {
     (y.at, numbers.whole())
 }
 
-/// Reads a ping.
+/// Stores a ping in `y`.
 pub fn ping(record: &Ping, y: &mut Sensed) {
     let mut numbers = Numbers(record);
     let sonar = SonarId::new(numbers.whole() as u8);
@@ -93,7 +93,7 @@ pub fn ping(record: &Ping, y: &mut Sensed) {
     }
 }
 
-/// Takes in the pings of a turn, once all are read.
+/// Updates the compass of `y` with the pings of a turn, once all of them have been read.
 pub fn hear(y: &mut Sensed) {
     let Sensed { compass, pings, odometry, shape, .. } = y;
     compass.take(pings, *odometry, shape);

@@ -1,5 +1,5 @@
-//! Entry point on the microcontroller. Its files are those of the machine to which a debugger, or QEMU, connects it: it
-//! senses what `sensed` contains, and prints to `board.out`.
+//! Entry point on the microcontroller. Its files are on the computer to which a debugger, or QEMU, connects it: the
+//! robot senses what the file `sensed` contains, and the output goes to `board.out`.
 #![allow(unsafe_code, reason = "semihosting and the linker's symbols have addresses only")]
 
 use core::fmt::{self, Write};
@@ -13,11 +13,11 @@ use static_cell::StaticCell;
 
 use crate::lab_tour::LabTour;
 
-/// The plan with its machine, and the robot's output: not on the stack.
+/// The plan with its machine. Like the robot's output, it is static, so that it is not on the stack.
 static MACHINE: StaticCell<Machine<LabTour>> = StaticCell::new();
 static SENSED: StaticCell<Output> = StaticCell::new();
 
-/// The word with which `cortex-m-rt` paints the stack.
+/// Word with which `cortex-m-rt` fills the unused stack.
 const PAINT: u32 = cortex_m_rt::STACK_PAINT_VALUE;
 
 unsafe extern "C" {
@@ -37,13 +37,13 @@ fn main() -> ! {
     end(if is_complete { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE })
 }
 
-/// The robot's output before the first cycle.
+/// Returns the robot's output before the first cycle.
 #[inline(never)]
 fn sensed(begin: &record::Begin) -> &'static mut Output {
     SENSED.init_with(|| at_rest(record::shape(begin)))
 }
 
-/// The robot whose cycles were recorded.
+/// A robot whose cycles are read from a record.
 struct Recorded(File);
 
 impl Robot for Recorded {
@@ -67,17 +67,17 @@ impl Robot for Recorded {
     fn drive(&mut self, _: Input) {}
 }
 
-/// A file of the machine beside the board.
+/// A file on the computer to which the board is connected.
 struct File(usize);
 
 impl File {
-    /// Opens a file, whose name ends with a zero.
+    /// Opens a file. `name` must end with a zero byte.
     fn open(name: &str, mode: usize) -> Self {
         // SAFETY: the name outlives the call.
         Self(unsafe { syscall!(OPEN, name.as_ptr(), mode, name.len().saturating_sub(1)) })
     }
 
-    /// Fills `bytes`; `false` if the file ends before.
+    /// Fills `bytes` from the file; returns `false` if the file ends before `bytes` is full.
     fn read(&mut self, bytes: &mut [u8]) -> bool {
         // SAFETY: at most as many bytes are written as there are.
         unsafe { syscall!(READ, self.0, bytes.as_mut_ptr(), bytes.len()) == 0 }
@@ -94,7 +94,7 @@ impl fmt::Write for File {
     }
 }
 
-/// Returns the greatest number of bytes that the stack has had.
+/// Returns the maximum size that the stack has reached, in bytes.
 fn deepest() -> usize {
     let (end, start) = (&raw const _stack_end, &raw const _stack_start);
     let mut at = end;
@@ -105,7 +105,7 @@ fn deepest() -> usize {
     start.addr().saturating_sub(at.addr())
 }
 
-/// Ends the emulator.
+/// Ends the emulator with this exit status.
 fn end(status: debug::ExitStatus) -> ! {
     loop {
         debug::exit(status);

@@ -1,4 +1,4 @@
-//! The simulated robot, whose cycles are recorded.
+//! Runs the tour on the simulated robot, and records its cycles.
 
 use std::error::Error;
 use std::fs;
@@ -13,9 +13,9 @@ use crate::lab_tour::LabTour;
 
 static MACHINE: StaticCell<Machine<LabTour>> = StaticCell::new();
 
-/// The period of a turn, as in `alphabet.mdle`.
+/// Period of a turn, as in `alphabet.mdle`.
 const PERIOD: Duration = Duration::from_millis(100);
-/// A tour takes less time.
+/// Maximum number of turns, more than a tour takes.
 const TURNS: usize = 6000;
 
 /// Runs the tour, and writes both files.
@@ -41,10 +41,10 @@ pub(crate) fn tour() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The robot, and the record of its cycles.
+/// The simulated robot, with the record of its cycles.
 struct Recorder {
     robot: Simulated,
-    /// Speeds of the last cycle.
+    /// Speeds that were sent in the last cycle.
     input: Input,
     last: Option<Output>,
     turns: usize,
@@ -71,7 +71,7 @@ impl Robot for Recorder {
     }
 }
 
-/// The record of a body.
+/// Returns the record of a body.
 fn begin(shape: &Shape) -> Vec<u8> {
     let Shape { body_radius, half_length, half_width, wheel_base, ring_radius, sonars_apart, confirmation, .. } =
         *shape;
@@ -81,7 +81,7 @@ fn begin(shape: &Shape) -> Vec<u8> {
     whole.flat_map(u64::to_le_bytes).collect()
 }
 
-/// The record of a turn, without its pings.
+/// Returns the record of a turn, without its pings.
 fn turn(y: &Output, pings: u64) -> record::Turn {
     let bits = |numbers: [f64; 3]| numbers.map(f64::to_bits);
     let [x, along, theta] = bits([y.odometry.x.0, y.odometry.y.0, y.odometry.theta.0]);
@@ -91,7 +91,7 @@ fn turn(y: &Output, pings: u64) -> record::Turn {
     bytes(&whole)
 }
 
-/// The bytes of numbers, one after the other.
+/// Returns the bytes of the numbers in order.
 fn bytes<const N: usize>(whole: &[u64]) -> [u8; N] {
     let mut record = [0; N];
     for (place, number) in record.as_chunks_mut().0.iter_mut().zip(whole) {
@@ -100,7 +100,8 @@ fn bytes<const N: usize>(whole: &[u64]) -> [u8; N] {
     record
 }
 
-/// Returns the records of the pings that are newer than those of the previous output, the oldest ping of a sonar first.
+/// Returns the records of the pings that the previous output does not contain, for each sonar from the oldest to the
+/// newest.
 fn new_pings(y: &Output, before: Option<&Output>) -> Vec<record::Ping> {
     let mut records = Vec::new();
     for (sonar, pings) in (0_u64..).zip(&y.pings) {

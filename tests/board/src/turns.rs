@@ -1,4 +1,4 @@
-//! The loop of a plan, and the story of its turns.
+//! Runs the turns of a plan, and prints them.
 
 use core::fmt::{self, Write};
 
@@ -9,19 +9,19 @@ use mdle_runtime::{
 };
 use static_cell::StaticCell;
 
-/// Most transitions of a turn that are printed.
+/// Maximum number of transitions of a turn that are printed.
 const PRINTED: usize = 4;
 
 /// The hardware of a robot.
 pub trait Robot {
-    /// Waits for the next cycle, and updates what is sensed; returns its time, `None` after the last cycle.
+    /// Waits for the next cycle, and updates `y`. Returns the time of the cycle, or `None` after the last one.
     fn sense(&mut self, y: &mut Sensed) -> Option<Nanos>;
 
     /// Sends speeds to the motors.
     fn drive(&mut self, input: Twist);
 }
 
-/// The output of a robot of this shape before it has sensed anything.
+/// Returns the output of a robot of this shape before it has sensed anything.
 #[must_use]
 pub fn at_rest(shape: Shape) -> Sensed {
     Sensed {
@@ -39,10 +39,11 @@ pub fn at_rest(shape: Shape) -> Sensed {
     }
 }
 
-/// Runs a plan on a robot until one of them ends; prints the line of a trace and the bits of the speeds for each turn.
+/// Runs a plan on a robot until the plan is over or the robot has no further cycle. For each turn, prints the line of a
+/// trace and the bits of the speeds.
 ///
 /// # Errors
-/// Fails if `out` does not take the text.
+/// Fails if `out` cannot be written.
 pub fn run<P: Plan<Output = Sensed, Input = Twist> + 'static>(
     cell: &'static StaticCell<Machine<P>>,
     plan: fn() -> P,
@@ -69,7 +70,7 @@ pub fn run<P: Plan<Output = Sensed, Input = Twist> + 'static>(
     }
 }
 
-/// Begins the plan where it stays.
+/// Begins the plan in the static memory `cell`.
 #[inline(never)]
 fn begin<P: Plan<Output = Sensed, Input = Twist>>(
     cell: &'static StaticCell<Machine<P>>,
@@ -80,7 +81,7 @@ fn begin<P: Plan<Output = Sensed, Input = Twist>>(
     cell.init_with(|| Machine::begin(plan(), y, t))
 }
 
-/// Prints a turn.
+/// Prints a turn as two lines.
 #[inline(never)]
 fn tell<P: Plan<Output = Sensed, Input = Twist>>(
     machine: &Machine<P>,
@@ -102,7 +103,7 @@ fn tell<P: Plan<Output = Sensed, Input = Twist>>(
     writeln!(out, "u {:016x} {:016x}", v.0.to_bits(), omega.0.to_bits())
 }
 
-/// The first transitions of a turn.
+/// The first transitions of a turn, at most [`PRINTED`].
 #[derive(Debug, Default)]
 struct Story([Option<Transition>; PRINTED]);
 

@@ -1,4 +1,4 @@
-//! Any machine as a plan with `after`: it and the machine itself side by side, turn by turn.
+//! Tests the conversion of any machine to a plan with `after`: the plan and the machine are compared in each turn.
 
 use mdle_compiler::alphabet;
 use mdle_compiler::diagnostic::{SourceId, Sources};
@@ -8,14 +8,14 @@ use mdle_theory::theorem::{Machine, augment};
 
 use super::machines::{Row, Table, likely, machine};
 
-/// Number of machines that are tried, each with a script of `TURNS` turns.
+/// Number of random machines, each with a script of `TURNS` turns.
 const MACHINES: u64 = 170;
 const TURNS: usize = 60;
 
-/// Returns the trace of a machine, directly from its definition: in each turn it goes on by the first interrupt that
-/// has fired until no interrupt has fired.
+/// Returns the trace of a machine, computed directly from its definition: in each turn the machine follows the first
+/// interrupt that has fired, until no interrupt has fired.
 ///
-/// The states are their places; the trace ends before the first turn that would enter a state twice.
+/// States are indices. The trace ends before the first turn that would enter a state twice.
 fn states(atoms: usize, rows: &[Row], fired: &[Vec<bool>]) -> Vec<usize> {
     let (mut state, mut trace) = (0, Vec::new());
     for fired in fired {
@@ -38,7 +38,7 @@ fn states(atoms: usize, rows: &[Row], fired: &[Vec<bool>]) -> Vec<usize> {
     trace
 }
 
-/// A robot whose laws and interrupts are those of the machine, and what every robot has.
+/// Returns the alphabet of a robot with the laws and interrupts of the machine, and with `stop` and `wait`.
 fn alphabet(machine: &Machine) -> alphabet::Alphabet {
     let mut text = "target machine : crate none, period 100ms;\ncontrol stop;\n".to_owned();
     text += "interrupt wait(duration: time s in 0..1e10);\n";

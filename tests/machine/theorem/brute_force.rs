@@ -1,4 +1,4 @@
-//! The theorem against its statement: all small machines, and samples of larger ones.
+//! Compares the theorem with its statement, on all small machines and on random larger ones.
 
 use std::sync::LazyLock;
 use std::time::Instant;
@@ -9,13 +9,13 @@ use mdle_theory::theorem::{Answer, STEPS, State, decompile};
 use super::definition::{Definition, assert_is_string};
 use super::machines::{Row, Table, likely, machine};
 
-/// The definition for up to four atoms.
+/// Definitions for one to four atoms.
 static DEFINITIONS: LazyLock<Vec<Definition>> = LazyLock::new(|| (1..=4).map(Definition::new).collect());
 
-/// Number of samples of each size.
+/// Number of random machines of each size.
 const SAMPLES: u64 = 34_000;
 
-/// Numbers of machines that were compared, that have a string, and that have a string with a loop.
+/// Numbers of compared machines, of machines with a string, and of machines whose string has a loop.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 struct Count {
     machines: usize,
@@ -49,7 +49,7 @@ fn compare(atoms: usize, rows: &[Row], start: Option<usize>, count: &mut Count) 
     }
 }
 
-/// Deals work out to the cores.
+/// Runs `work` on every core, with the number of the core and the number of cores, and returns the sum of the results.
 fn on_all_cores(work: impl Fn(usize, usize) -> Count + Sync) -> Count {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| {
@@ -69,8 +69,8 @@ fn on_all_cores(work: impl Fn(usize, usize) -> Count + Sync) -> Count {
     })
 }
 
-/// Compares every machine with this number of atoms and interrupts. The order of the interrupts does not matter, so
-/// that their rows are ascending.
+/// Compares every machine with these numbers of atoms and interrupts. The rows of a machine are ascending, because the
+/// order of the interrupts has no effect.
 fn exhaust(atoms: usize, interrupts: usize, start: Option<usize>) -> Count {
     let rows = Table::rows(atoms);
     on_all_cores(|hand, cores| {

@@ -12,11 +12,11 @@ const FIG_4: &str = r#"{"states": ["s1", "s2", "s3", "s4"], "interrupts": [
   {"name": "ξ12", "moves": {"s1": "s2"}}, {"name": "ξ13", "moves": {"s1": "s3"}},
   {"name": "ξ2", "moves": {"s2": "s4"}}, {"name": "ξ3", "moves": {"s3": "s4"}}]}"#;
 
-/// The paper's Fig. 3 with one state for the atom that comes twice.
+/// The paper's Fig. 3 with a single state for the atom that occurs twice.
 const FIG_3: &str = r#"{"states": ["u1", "u2", "end"], "interrupts": [
   {"name": "ξ1", "moves": {"u1": "u2"}}, {"name": "ξ2", "moves": {"u2": "u1"}}, {"name": "ξ3", "moves": {"u1": "end"}}]}"#;
 
-/// Eq. 6.
+/// Matrices of the paper's Eq. 6.
 const EQUATION_6: [&str; 4] = [
     "       [0 0 0 0]       [0 0 0 0]       [1 0 0 0]      [1 0 0 0]",
     "Π(t) = [1 1 0 0] ξ12 + [0 1 0 0] ξ13 + [0 0 0 0] ξ2 + [0 1 0 0] ξ3",
@@ -30,7 +30,7 @@ fn with_file(test: &str, text: &str) -> PathBuf {
     folder
 }
 
-/// Returns the output and the messages about a file, and the exit status.
+/// Returns the output and the messages of `mdlec decompile` about a file, and the exit status.
 fn message(test: &str, text: &str, options: &[&str]) -> (String, Option<i32>) {
     let output = run_mdlec(&with_file(test, text), &[&["decompile", "fsm.json"], options].concat());
     let [out, err] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
@@ -162,8 +162,8 @@ fn a_file_that_cannot_be_read_is_wrong_usage() {
     assert_eq!(both.status.code(), Some(2));
 }
 
-/// Returns a chain of `states` states, in nested scopes that begin with each of the first `depth` states and end with
-/// the last.
+/// Returns a machine that is a chain of `states` states. Each of the first `depth` states begins a nested scope, and
+/// all of these scopes end with the last state.
 fn chain(states: usize, depth: usize) -> String {
     let names: Vec<_> = (1..=states).map(|number| format!("\"s{number}\"")).collect();
     let mut interrupts: Vec<_> = (1..states)

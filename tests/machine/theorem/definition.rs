@@ -1,29 +1,29 @@
-//! Theorem 1 straight from its statement (docs/src/reference/semantics.md, 8.5): every numbering, every cut into runs,
-//! every family of loops.
+//! Implements Theorem 1 directly from its statement (docs/src/reference/semantics.md, 8.5), by trying every numbering,
+//! every cut into runs, and every family of loops.
 //!
-//! It shares nothing with the compiler. What depends on the number of atoms only is written out once.
+//! It shares no code with the compiler. Everything that depends only on the number of atoms is computed once.
 
 use mdle_theory::theorem::{Found, Machine};
 
 use super::machines::Table;
 
-/// The first and the last place of a run or a loop.
+/// First and last position of a run or a loop.
 type Interval = (usize, usize);
 
-/// A set of intervals, by their places in the list of all.
+/// A set of intervals: bit `i` stands for the interval with index `i` in the list of all intervals.
 type Set = u32;
 
-/// Everything that the statement says about machines with this number of atoms.
+/// All consequences of the statement for machines with a certain number of atoms.
 pub(crate) struct Definition {
     atoms: usize,
     intervals: Vec<Interval>,
     /// For each interval, the intervals that are neither nested with it nor disjoint.
     crossing: Vec<Set>,
-    /// For each family of loops, and each row of destinations, the sets of runs that it can be cut into.
+    /// For each family of loops and each row of destinations, the sets of runs into which the row can be cut.
     cuts: Vec<Vec<Vec<Set>>>,
-    /// Ways to cut each row of destinations, as families of sets.
+    /// For each row of destinations, the families of loops with which it can be cut, one bit per family.
     families: Vec<Vec<u64>>,
-    /// For each numbering, the place of each atom, and the renumbered row of each row.
+    /// For each numbering, the position of each atom, and the renumbered form of each row.
     numberings: Vec<(Vec<usize>, Vec<usize>)>,
 }
 
@@ -32,8 +32,9 @@ fn nest_or_are_disjoint(one: Interval, other: Interval) -> bool {
     holds(one, other) || holds(other, one) || one.1 < other.0 || other.1 < one.0
 }
 
-/// Returns the destinations that the interrupt of a run may have: after all loops that end with it, or at the start of
-/// the innermost loop outside it. A loop that is equal to the run may be on either side.
+/// Returns the destinations that the interrupt of a run may have: the start of the innermost loop that encloses the run
+/// and ends with it or, if there is none, the position after the run. A loop that is equal to the run may be the inner
+/// or the outer one, so both destinations are returned.
 fn destinations(run: Interval, loops: &[Interval]) -> Vec<usize> {
     let ends_with = |inner: bool| {
         let around = loops.iter().filter(|around| around.1 == run.1 && around.0 <= run.0);
@@ -84,8 +85,8 @@ impl Definition {
         Self { numberings: numberings.collect(), atoms, intervals, crossing, cuts, families }
     }
 
-    /// Returns `true` if a machine, given as the number of a row of destinations for each interrupt, has a string that
-    /// begins with `start`.
+    /// Returns `true` if a machine has a string that begins with `start`. The machine is given as the number of a row
+    /// of destinations for each interrupt.
     pub(crate) fn has_string(&self, rows: &[usize], start: Option<usize>) -> bool {
         let mut numberings = self.numberings.iter().filter(|(places, _)| start.is_none_or(|start| places[start] == 0));
         numberings.any(|(_, renumbered)| {
@@ -118,7 +119,7 @@ fn is_laminar(set: Set, crossing: &[Set]) -> bool {
     crossing.iter().enumerate().all(|(place, crossing)| set >> place & 1 == 0 || set & crossing == 0)
 }
 
-/// The sets of runs that a row of destinations can be cut into.
+/// Returns the sets of runs into which a row of destinations can be cut.
 fn cuts(row: &[Option<usize>], intervals: &[Interval], leads: &[Vec<usize>]) -> Vec<Set> {
     let mut found = vec![(0, 0)];
     let mut whole = Vec::new();
@@ -150,7 +151,7 @@ fn permutations(atoms: usize) -> Vec<Vec<usize>> {
     })
 }
 
-/// A row with the atoms in other places; the termination state keeps its own.
+/// Returns a row with the atoms at other positions; the termination state keeps its position.
 fn renumbered(row: &[Option<usize>], places: &[usize]) -> Vec<Option<usize>> {
     let mut renumbered = vec![None; row.len()];
     for (atom, to) in row.iter().enumerate() {
@@ -159,7 +160,7 @@ fn renumbered(row: &[Option<usize>], places: &[usize]) -> Vec<Option<usize>> {
     renumbered
 }
 
-/// Asserts that a decompiled string fulfils the statement.
+/// Asserts that a decompiled string satisfies the statement.
 pub(crate) fn assert_is_string(machine: &Machine, found: &Found) {
     let size = machine.states().len();
     let mut sorted: Vec<_> = found.order.iter().map(|state| state.0 as usize).collect();

@@ -1,4 +1,4 @@
-//! Random plans of loops without end in one another, all interrupts different.
+//! Generates random plans of nested endless loops, in which all interrupts differ.
 
 use mdle_tests::chance::Chance;
 

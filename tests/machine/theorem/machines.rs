@@ -1,12 +1,13 @@
-//! Small machines, as numbers: for each interrupt a row with the destination of each atom, if it has one.
+//! Small machines as numbers. For each interrupt, a machine has a row with the destination of each atom, if there is
+//! one.
 
 use mdle_tests::chance::Chance;
 use mdle_theory::theorem::{Machine, Named, State};
 
-/// A row: where an interrupt leads from each atom.
+/// A row: the destination to which an interrupt leads from each atom; `None` if it leads nowhere.
 pub(crate) type Row = Vec<Option<usize>>;
 
-/// The rows of machines with a given number of atoms.
+/// All rows of machines with a given number of atoms, which are numbered from 0.
 pub(crate) struct Table;
 
 impl Table {
@@ -20,7 +21,7 @@ impl Table {
         (0..Self::count(atoms)).map(|number| Self::row(number, atoms)).collect()
     }
 
-    /// The row of this number.
+    /// Returns the row with this number.
     pub(crate) fn row(mut number: usize, atoms: usize) -> Row {
         let mut row = Vec::new();
         for _ in 0..atoms {
@@ -30,13 +31,13 @@ impl Table {
         row
     }
 
-    /// The number of a row.
+    /// Returns the number of a row.
     pub(crate) fn number(row: &[Option<usize>]) -> usize {
         row.iter().rev().fold(0, |number, to| number * (row.len() + 2) + to.map_or(0, |to| to + 1))
     }
 }
 
-/// The machine of these rows: states `s1`, `s2`, …, interrupts `x1`, `x2`, ….
+/// Returns the machine with these rows. Its states are `s1`, `s2`, …, and its interrupts are `x1`, `x2`, ….
 pub(crate) fn machine(atoms: usize, rows: &[Row]) -> Machine {
     let states = (1..=atoms + 1).map(|number| format!("s{number}")).collect();
     let state = |place: usize| State(u32::try_from(place).unwrap());
@@ -47,8 +48,8 @@ pub(crate) fn machine(atoms: usize, rows: &[Row]) -> Machine {
     Machine::new(states, interrupts.collect())
 }
 
-/// Returns the rows of a machine that often has a string, and otherwise is similar to one that has: scopes and loops
-/// that nest, the atoms in disorder.
+/// Returns the rows of a random machine with nested scopes and loops and with its atoms in random order. The machine
+/// often has a string; otherwise it is similar to a machine with a string.
 pub(crate) fn likely(chance: &mut Chance, atoms: usize, interrupts: usize) -> Vec<Row> {
     let (mut loops, mut runs) = (Vec::new(), Vec::new());
     enclose(chance, 0, atoms, &mut loops, &mut runs);
@@ -81,7 +82,7 @@ pub(crate) fn likely(chance: &mut Chance, atoms: usize, interrupts: usize) -> Ve
     disordered
 }
 
-/// Encloses atoms in scopes and loops; each atom has at least a scope of its own.
+/// Encloses atoms in random scopes and loops; each atom has at least a scope of its own.
 fn enclose(
     chance: &mut Chance,
     first: usize,

@@ -1,4 +1,4 @@
-//! Theorem 1 both ways: against brute force, as the inverse of Algorithm 1, and through the real binary.
+//! Tests Theorem 1 in both directions: against brute force, as the inverse of Algorithm 1, and through the real binary.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod augmented;

@@ -1,5 +1,5 @@
-//! The printed conditions against their words: every numbering, on whole matrices; and where they differ from the exact
-//! ones.
+//! Compares the check of the printed conditions with their wording, on whole matrices and with every numbering. Also
+//! tests where they differ from the exact conditions.
 
 use mdle_tests::chance::{Chance, repeated};
 use mdle_theory::theorem::{Answer, Machine, Named, STEPS, State, as_printed, decompile};
@@ -9,10 +9,11 @@ use super::machines::{Row, Table, likely, machine};
 /// Number of random machines of each kind.
 const MACHINES: u64 = 7_000;
 
-/// The row in which a column of a matrix has its 1.
+/// A matrix, as the row of the 1 in each column.
 type Matrix = Vec<usize>;
 
-/// R1 and R2 as they are printed, R3 where the two overlap (`k1 < p2`); R4 speaks of what R2 forbids.
+/// Returns `true` if R1 and R2 hold as printed, and R3 holds where two runs overlap (`k1 < p2`). R4 is not checked,
+/// because R2 forbids the moves that it is about.
 fn hold(matrices: &[Matrix]) -> bool {
     let states = matrices[0].len();
     let moves = |matrix: &Matrix| -> Vec<_> { (0..states).filter(|column| matrix[*column] != *column).collect() };
@@ -38,7 +39,7 @@ fn hold(matrices: &[Matrix]) -> bool {
     first && second && third
 }
 
-/// Returns `true` if the printed conditions hold in some numbering, with the termination state last.
+/// Returns `true` if the printed conditions hold in some numbering in which the termination state is the last state.
 fn hold_somewhere(atoms: usize, rows: &[Row]) -> bool {
     let mut numberings = vec![vec![]];
     for place in 0..atoms {
@@ -101,8 +102,8 @@ fn they_are_judged_in_the_one_numbering_in_which_they_can_hold() {
 /// A move: its interrupt, the state that it leaves, and the state that it enters.
 type Move = (usize, usize, usize);
 
-/// Checks conditions R2 and R3 by their printed wording, exhaustively, for states in the order of the file. Returns
-/// for each the violation that was found first, or `None` if it holds.
+/// Checks conditions R2 and R3 by their printed wording, exhaustively, for states in the order of the file. Returns for
+/// each condition the violation that was found first, or `None` if the condition holds.
 fn sentences(atoms: usize, rows: &[Row]) -> [Option<String>; 2] {
     let row = |interrupt: usize, column: usize| rows[interrupt].get(column).copied().flatten().unwrap_or(column);
     let all = (0..atoms).flat_map(|from| (0..rows.len()).map(move |interrupt| (interrupt, from)));

@@ -1,5 +1,5 @@
-//! The theorem as the inverse of Algorithm 1: a plan's machine, its states in disorder, has a string, and the string
-//! has the same machine.
+//! Tests the theorem as the inverse of Algorithm 1: a plan's machine, whose states were shuffled, has a string, and the
+//! string has the same machine.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use mdle_theory::theorem::{Answer, augment, decompile, read, string};
 use super::definition::assert_is_string;
 use super::loops::plan_of_loops;
 
-/// Number of plans that make the round trip.
+/// Number of plans that are decompiled and compiled again.
 const PLANS: u64 = 340;
 
 /// Number of hostile texts.
@@ -32,13 +32,13 @@ struct Seen {
     plans: usize,
     states: usize,
     with_loops: usize,
-    /// Plans that use `after`, for which an FSM file lacks information.
+    /// Plans that use `after`. An FSM file does not contain enough information to compile them again.
     asking: usize,
     /// Plans for which the search takes too long.
     stopped: usize,
 }
 
-/// The machine with its states in another order.
+/// Returns the machine with its states in random order.
 fn disordered(file: &FsmFile, chance: &mut Chance) -> FsmFile {
     let mut file = file.clone();
     for place in (1..file.laws.len()).rev() {
@@ -49,7 +49,8 @@ fn disordered(file: &FsmFile, chance: &mut Chance) -> FsmFile {
     file
 }
 
-/// Returns the meaning of a machine, its states named by their places: the laws, and the moves of each condition.
+/// Returns the meaning of a machine, with positions instead of the names of its states: the laws, and the moves of each
+/// condition.
 fn meaning(file: &FsmFile, place: &BTreeMap<String, usize>) -> (Vec<String>, Vec<(String, usize, usize)>) {
     let mut laws = vec![String::new(); file.laws.len()];
     for (state, law) in file.states.iter().zip(&file.laws) {
@@ -64,7 +65,8 @@ fn meaning(file: &FsmFile, place: &BTreeMap<String, usize>) -> (Vec<String>, Vec
     (laws, moves)
 }
 
-/// The plan of a machine in disorder, and its machine again.
+/// Decompiles a machine whose states were shuffled, compiles the resulting plan, and asserts that its machine has the
+/// same meaning.
 fn go_round(file: &FsmFile, chance: &mut Chance, what: &str, seen: &mut Seen) {
     let disordered = disordered(file, chance);
     let machine = read(&disordered.to_json()).unwrap_or_else(|error| panic!("{what}: {error:?}"));
@@ -133,7 +135,7 @@ fn plans_of_loops_without_end_go_round() {
     assert!(seen.with_loops > plans / 2, "{seen:?}");
 }
 
-/// Pieces of laws and conditions, good ones and such as reach beyond their place.
+/// Parts of laws and conditions: valid parts, and parts that could change the text around them.
 const PIECES: [&str; 20] = [
     "idle",
     "drift",
@@ -157,7 +159,7 @@ const PIECES: [&str; 20] = [
     "\n",
 ];
 
-/// The transitions by interrupts, from state to state in their order.
+/// Returns the transitions by interrupts, as pairs of states in ascending order.
 fn moves(file: &FsmFile) -> Vec<(usize, usize)> {
     let place: BTreeMap<_, _> = file.states.iter().zip(0..).collect();
     // Whether a law completes is its own matter.

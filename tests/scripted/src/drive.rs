@@ -9,11 +9,11 @@ use mdle_runtime::{Frame, Machine, Measured, Nanos, Plan, Transition, Turn, Watc
 
 use crate::{Input, LAWS, Output};
 
-/// Writes the trace of `plan` over a script: one JSON object for each turn, to the turn in which the plan is over.
+/// Writes the trace of `plan` on a script: one JSON object for each turn, up to the turn in which the plan is over.
 ///
-/// `law` comes from the input, not from the plan's own texts. If these two differ, if the law was not created when its
-/// atom began, or if a machine without an observer behaves differently, `law` is `broken`, so that a comparison fails
-/// there.
+/// The field `law` comes from the input, not from the plan's own texts. It is `broken`, so that a comparison fails, in
+/// three cases: the input and the text differ, the law was not created when its atom began, or a machine without an
+/// observer behaves differently.
 ///
 /// # Errors
 /// Fails if `trace` cannot be written.
@@ -60,7 +60,8 @@ where
     Ok(())
 }
 
-/// The law that computed this input, if it is the one named and was made when its atom began.
+/// Returns the law that computed this input. Returns `broken` if it is not the law `named`, or was not created when its
+/// atom began.
 fn applied(input: Input, named: &str, began: Nanos, computed: u32) -> &'static str {
     match input.law.and_then(|law| LAWS.get(law)) {
         Some(law) if *law == named && input.began == began && input.computed == computed => law,
@@ -68,7 +69,7 @@ fn applied(input: Input, named: &str, began: Nanos, computed: u32) -> &'static s
     }
 }
 
-/// The transitions of a turn, each with the numbers of the operands that have fired.
+/// Transitions of a turn, each with the numbers of the operands that fired.
 struct Transitions {
     /// Operands of the next transition.
     operands: Vec<u32>,

@@ -1,6 +1,7 @@
-//! A robot that is only a script: its output contains the report of each quark, its input the law that was applied.
+//! A robot that consists only of a script: its output contains the report about each quark, and its input contains the
+//! law that was applied.
 //!
-//! Emitted Rust is compiled against it as against any target, so that its behavior can be compared with other machines.
+//! Emitted Rust is compiled for it as for any target, so that its behavior can be compared with other machines.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! The quarks of `alphabet.mdle`: interrupts that read the script, laws that leave their number in the input.
+//! The quarks of `alphabet.mdle`: interrupts that read the script, and laws that write their number to the input.
 
 use mdle_runtime::{
     Begin, Bits, Completes, Control, Interrupt, Law, Meters, MetersPerSecond, Nanos, Radians, RadiansPerSecond, Signal,
@@ -57,7 +57,7 @@ interrupts! {
 pub struct R(SonarId);
 
 impl R {
-    /// The signal of this sonar.
+    /// Returns the signal `r` of this sonar.
     #[must_use]
     pub const fn new(which: SonarId) -> Self {
         Self(which)
@@ -104,7 +104,7 @@ signals! {
     V "v";
 }
 
-/// Declares laws as interrupts are declared, each with the type that it has while its atom runs.
+/// Declares laws in the form of `interrupts!`, each with the type of the law while its atom runs.
 macro_rules! laws {
     ($($name:ident $text:literal ($($arg:ident: $type:ty),*) [$($value:expr),*] $law:ident;)*) => {$(
         #[doc = concat!("The law `", $text, "`.")]
@@ -149,7 +149,7 @@ laws! {
 #[derive(Debug, Clone, Copy)]
 pub struct Endless(Input);
 
-/// A law that runs until the script reports that it is done.
+/// A law that runs until the script reports that it has completed.
 #[derive(Debug, Clone, Copy)]
 pub struct Finite(Input);
 

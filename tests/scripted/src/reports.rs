@@ -1,8 +1,8 @@
-//! Reports of a script, and inputs of the robot, as numbers of quark texts.
+//! Reports of a script, and inputs of the robot. Quarks are represented by the indices of their texts.
 
 use mdle_runtime::{Nanometers, Nanos, Pose, Radians};
 
-/// The quark texts of every interrupt that a script can report, with arguments where it takes some.
+/// Texts of all interrupts that a script can report, with arguments for interrupts that take arguments.
 pub const INTERRUPTS: &[&str] = &[
     "a",
     "b",
@@ -34,7 +34,7 @@ pub const INTERRUPTS: &[&str] = &[
     "stuck 1",
 ];
 
-/// The quark texts of every law.
+/// Texts of all laws.
 pub const LAWS: &[&str] = &[
     "seek",
     "climb",
@@ -53,21 +53,21 @@ pub const LAWS: &[&str] = &[
     "chase sun module",
 ];
 
-/// The signals that have a value; other sonars see nothing.
+/// Signals that have a value; all other sonars have no echo.
 pub const SIGNALS: [&str; 5] = ["r3", "r5", "x", "theta", "v"];
 
-/// The output of a turn: what the script reports in it.
+/// Output of a turn: the reports of the script.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Output {
-    /// Bit `i`: `INTERRUPTS[i]` has fired.
+    /// Interrupts that have fired: bit `i` stands for `INTERRUPTS[i]`.
     pub fired: u64,
-    /// Bit `i`: `LAWS[i]` is done.
+    /// Laws that have completed: bit `i` stands for `LAWS[i]`.
     pub completed: u64,
-    /// The values of [`SIGNALS`], in SI units.
+    /// Values of [`SIGNALS`], in SI units.
     pub signals: [f64; SIGNALS.len()],
-    /// The reading of the odometer.
+    /// Reading of the odometer.
     pub way: Nanometers,
-    /// The heading by odometry.
+    /// Heading by odometry.
     pub heading: Radians,
 }
 
@@ -82,37 +82,37 @@ impl mdle_runtime::Output for Output {
 }
 
 impl Output {
-    /// Returns `true` if the interrupt of this name with these arguments, in its default units, has fired.
+    /// Returns `true` if the interrupt with this name and these arguments, in its default units, has fired.
     pub(crate) fn has_fired(&self, name: &str, arguments: &[Argument]) -> bool {
         number(INTERRUPTS, name, arguments).is_some_and(|bit| self.fired >> bit & 1 == 1)
     }
 
-    /// The value of a signal.
+    /// Returns the value of a signal; infinity for a signal without a value.
     pub(crate) fn signal(&self, name: &str) -> f64 {
         let known = SIGNALS.iter().zip(self.signals).find(|(signal, _)| **signal == name);
         known.map_or(f64::INFINITY, |(_, value)| value)
     }
 
-    /// Returns `true` if the law of this number is done.
+    /// Returns `true` if the law with this number has completed.
     pub(crate) fn is_completed(&self, law: usize) -> bool {
         self.completed >> law & 1 == 1
     }
 }
 
-/// The input of a turn: the law that computed it.
+/// Input of a turn, which identifies the law that computed it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Input {
-    /// Number of the law among [`LAWS`]; `None` is the null input.
+    /// Index of the law in [`LAWS`]; `None` for the null input.
     pub law: Option<usize>,
     /// Time at which the law's atom began.
     pub began: Nanos,
-    /// The frame in which it began.
+    /// Frame in which the law's atom began.
     pub frame: Radians,
     /// Number of inputs that the law has computed since the atom began, this one included.
     pub computed: u32,
 }
 
-/// An argument in its default unit.
+/// Argument of a quark, in its default unit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Argument {
     /// A number.
@@ -138,8 +138,8 @@ pub(crate) fn duration(time: Nanos) -> f64 {
     if time == Nanos::MAX { f64::INFINITY } else { time.seconds() }
 }
 
-/// Returns the number of the text of this name with these arguments. Numbers went through SI units, so they are
-/// compared with a tolerance.
+/// Returns the index of the text with this name and these arguments. Numbers are compared with a tolerance, because
+/// they were converted to SI units and back.
 pub(crate) fn number(texts: &[&str], name: &str, arguments: &[Argument]) -> Option<usize> {
     texts.iter().position(|text| {
         let mut words = text.split(' ').filter(|word| *word != "module");

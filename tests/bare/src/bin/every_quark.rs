@@ -1,4 +1,4 @@
-//! The plan `EveryQuark`.
+//! Runs the plan `EveryQuark`.
 #![no_std]
 #![no_main]
 
@@ -9,7 +9,7 @@ mod plan {
     include!(concat!(env!("PLANS"), "/every_quark.rs"));
 }
 
-/// Entry point, which the C library calls.
+/// Entry point, called by the C library.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "no other function has this name")]
 extern "C" fn main() -> c_int {

@@ -1,10 +1,10 @@
-//! Executable that must not link: it has an unchecked index.
+//! Executable that must not link, because it contains an index that may be out of bounds.
 #![no_std]
 #![no_main]
 
 use core::ffi::c_int;
 
-/// Entry point, which the C library calls.
+/// Entry point, called by the C library.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "no other function has this name")]
 #[allow(clippy::indexing_slicing, reason = "that this is noticed is what is tested")]

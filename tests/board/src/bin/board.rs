@@ -1,4 +1,4 @@
-//! The lab tour on a Cortex-M.
+//! Runs the lab tour on a Cortex-M.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 /// The emitted plan, which `.ci/cross` writes to the folder `PLANS`.
@@ -10,6 +10,6 @@ mod lab_tour {
 #[path = "../semihosted.rs"]
 mod semihosted;
 
-/// Nothing runs here: the executable of this machine is `desk`.
+/// Does nothing, because the executable for this machine is `desk`.
 #[cfg(not(target_os = "none"))]
 fn main() {}

@@ -1,6 +1,7 @@
-//! The lab tour of the simulated robot on the desk: writes what it senses to `sensed`, and prints to `desk.out`.
+//! Runs the lab tour of the simulated robot on this machine. Writes what the robot senses to `sensed`, and prints to
+//! `desk.out`.
 //!
-//! `desk BODY SEED` selects the body.
+//! `desk BODY SEED` selects the body and the random seed.
 
 /// The emitted plan, which `.ci/cross` writes to the folder `PLANS`.
 #[cfg(not(target_os = "none"))]
