@@ -1,6 +1,6 @@
-//! `mdlec` as a process: how long it works and how much memory it takes for long plans.
+//! Measures the time and the memory that `mdlec` takes as a process for long plans.
 //!
-//! The fastest of some runs counts. User time is counted by the system, in steps of 10 ms.
+//! The result is that of the fastest run. User time is measured by the system, in steps of 10 ms.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::unwrap_used, reason = "a benchmark fails by panicking")]
 
@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 /// Number of times that each plan is compiled.
 const RUNS: usize = 5;
-/// Time between two readings of memory.
+/// Time between two measurements of the memory.
 const LOOK: Duration = Duration::from_millis(2);
 
 /// Cost of a run.
@@ -49,7 +49,7 @@ fn main() {
     fs::remove_dir_all(folder).expect("the folder of this run");
 }
 
-/// Returns `bytes` bytes of plans as people write them, without errors.
+/// Returns at least `bytes` bytes of error-free plans in the style of plans that people write.
 fn small_plans(bytes: usize) -> String {
     let mut plans = String::with_capacity(bytes + 1000);
     for number in 0.. {
@@ -67,7 +67,7 @@ fn small_plans(bytes: usize) -> String {
     plans
 }
 
-/// Returns a plan of atoms one after another.
+/// Returns a plan that is a sequence of atoms, whose conditions differ if `differ` is `true`.
 fn written_out(atoms: usize, differ: bool) -> String {
     let mut plan = String::from("{ P (bumper)\n");
     for atom in 0..atoms {
@@ -77,7 +77,7 @@ fn written_out(atoms: usize, differ: bool) -> String {
     plan + "}\n"
 }
 
-/// Loops of two atoms.
+/// Returns a plan of `number` loops with two atoms and `count` passes each.
 fn loops(number: usize, count: usize) -> String {
     let mut plan = String::from("{ P (bumper)\n");
     for number in 0..number {
@@ -106,14 +106,15 @@ fn run(mdlec: &Path, file: &Path, arguments: &[&str]) -> Cost {
     Cost { wall: start.elapsed(), user: used_by_children() - used, memory }
 }
 
-/// Maximum memory that a process has had, in kB, if it still runs.
+/// Returns the maximum memory that a running process has used so far, in kB; `None` if it has ended.
 fn most_memory(process: u32) -> Option<u64> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     line.trim().strip_suffix(" kB")?.parse().ok()
 }
 
-/// The user time of all children so far, in seconds; field 16 of `/proc/self/stat`, in hundredths of a second.
+/// Returns the user time of all children so far, in seconds. It is field 16 of `/proc/self/stat`, in hundredths of a
+/// second.
 fn used_by_children() -> f64 {
     let stat = fs::read_to_string("/proc/self/stat").expect("Linux");
     let after_name = stat.rsplit(')').next().expect("a name in brackets");
@@ -121,7 +122,7 @@ fn used_by_children() -> f64 {
     ticks.parse::<f64>().expect("a number") / 100.0
 }
 
-/// The compiler as users have it.
+/// Builds the compiler as users have it, and returns its path.
 fn mdlec() -> PathBuf {
     let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/../../Cargo.toml");
     let mut command = Command::new(env!("CARGO"));

@@ -1,6 +1,6 @@
-//! Crowds of Scouts, whose sonars fire in turn and whose plan drives by `goAvoid` or by `go`: microseconds of the
-//! processor for a robot and a second, times real time, and memory, beside the rays of its sonars alone; and the
-//! bytes of runs with several numbers of threads.
+//! Measures crowds of Scouts, whose sonars ping one after another and whose plan drives by `goAvoid` or by `go`. Prints
+//! the processor time per robot and simulated second, the speed relative to real time, and the memory, beside the
+//! processor time of the sonar rays alone. Also checks that runs with different numbers of threads have equal results.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -14,19 +14,19 @@ use mdle_sim::{Place, Walls, World};
 use mdle_tests::executable::target;
 use mdle_tests::repository::root;
 
-/// Numbers of robots, and simulated seconds of their runs.
+/// Numbers of robots, each with the duration of the run in simulated seconds.
 const CROWDS: [(u32, u32); 5] = [(1, 8_000), (10, 1_600), (100, 200), (1_000, 40), (10_000, 10)];
-/// Numbers of threads whose runs are compared.
+/// Numbers of threads of the runs that must be equal.
 const THREADS: [u32; 3] = [1, 2, 4];
-/// Number of robots, and simulated seconds, of those runs.
+/// Number of robots in the runs that must be equal, and the duration of these runs in simulated seconds.
 const COMPARED: (u32, u32) = (1_000, 5);
-/// Rays of a Scout in a second: seven for each ping, one ping in 60 ms.
+/// Number of rays of a Scout per second: seven for each ping, and one ping every 60 ms.
 const RAYS: f64 = 7.0 / 0.06;
 /// Maximum range of a Scout's sonars, in metres.
 const REACH: f64 = 6.477;
 /// Distance between two robots at the start, in metres.
 const SPACING: f64 = 2.0;
-/// Exit status of a run whose time is over.
+/// Exit status of a run that ends at its time limit.
 const TIMED_OUT: i32 = 4;
 
 fn main() {
@@ -51,7 +51,7 @@ fn main() {
     }
 }
 
-/// Builds the program; returns its path.
+/// Builds `mdle`, and returns its path.
 fn built() -> PathBuf {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut build = Command::new(cargo);
@@ -60,7 +60,7 @@ fn built() -> PathBuf {
     Path::new(&target()).join("release/mdle")
 }
 
-/// Asserts that a crowd drives the same ways with each number of threads.
+/// Asserts that the trail of a crowd does not depend on the number of threads.
 fn compare(mdle: &Path) {
     let (robots, seconds) = COMPARED;
     write("goAvoid 0 40 20", robots);
@@ -76,17 +76,17 @@ fn compare(mdle: &Path) {
     println!("{robots} robots: the same {} bytes with {THREADS:?} threads", trails[0].len());
 }
 
-/// Figures of a run.
+/// Measurements of a run.
 struct Run {
-    /// Seconds of all processors.
+    /// Processor time in seconds, the sum of all cores.
     processor: f64,
-    /// Seconds of the clock.
+    /// Wall-clock time in seconds.
     wall: f64,
     /// Maximum memory, in megabytes.
     memory: f64,
 }
 
-/// Writes a crowd of this number of robots, which drive by this law.
+/// Writes a crowd of `robots` robots whose plan drives by the law `law`.
 fn write(law: &str, robots: u32) {
     let folder = target();
     let plan = format!(
@@ -98,14 +98,14 @@ fn write(law: &str, robots: u32) {
     fs::write(folder.join("crowd-benchmark.toml"), crowd).expect("a folder to write to");
 }
 
-/// Returns the command of a run of this many simulated seconds.
+/// Returns the command that runs the crowd for `seconds` simulated seconds.
 fn command(mdle: &Path, seconds: u32) -> Command {
     let mut command = Command::new(mdle);
     command.args(["run", "crowd-benchmark.toml", "--timeout", &seconds.to_string()]).current_dir(target());
     command
 }
 
-/// Runs a crowd with this law.
+/// Runs a crowd of `robots` robots with the law `law` for `seconds` simulated seconds.
 fn run(mdle: &Path, law: &str, robots: u32, seconds: u32) -> Run {
     write(law, robots);
     let mut command = command(mdle, seconds);
@@ -123,7 +123,7 @@ fn run(mdle: &Path, law: &str, robots: u32, seconds: u32) -> Run {
     Run { processor, wall: begun.elapsed().as_secs_f64(), memory }
 }
 
-/// Returns the seconds of the processor that a process has taken; `None` once it has ended.
+/// Returns the processor time that a process has taken, in seconds; `None` once it has ended.
 fn seconds_of(process: u32) -> Option<f64> {
     let stat = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     let (_, fields) = stat.rsplit_once(") ")?;
@@ -132,15 +132,15 @@ fn seconds_of(process: u32) -> Option<f64> {
     Some((ticks(11)? + ticks(12)?) / 100.0).filter(|seconds| *seconds > 0.0)
 }
 
-/// Returns the greatest memory of a process so far, in megabytes.
+/// Returns the maximum memory of a process so far, in megabytes; `None` once it has ended.
 fn memory_of(process: u32) -> Option<f64> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     Some(line.trim().split(' ').next()?.parse::<f64>().ok()? / 1000.0)
 }
 
-/// Returns the seconds of the processor that the rays of a robot and a second take, in the hall of a crowd without
-/// other robots.
+/// Returns the processor time, in seconds, of all rays of a robot in a second, in the hall of a crowd without other
+/// robots.
 fn rays(robots: u32) -> f64 {
     let rows = f64::from(robots).sqrt().ceil();
     let side = rows * SPACING;

@@ -1,8 +1,8 @@
-//! Answers of the language server, beside the same work by the compiler alone.
+//! Measures the answers of the language server, beside the same work by the compiler alone.
 //!
-//! A client in the same process types a digit, and waits for the diagnostics; asks for a completion and a hover; and
-//! makes ten thousand edits, between which the memory of the process is read. The server waits 5 ms for more
-//! keystrokes before it checks, which is in the time.
+//! A client in the same process types a digit and waits for the diagnostics, requests a completion and a hover, and
+//! makes ten thousand edits, between which the memory of the process is measured. The times include the 5 ms for which
+//! the server waits for more keystrokes before it checks.
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::panic, reason = "this is what a benchmark is for")]
 
 use std::fs;
@@ -18,9 +18,9 @@ use serde_json::{Value, json};
 
 /// Number of times that each answer is measured.
 const TIMES: usize = 300;
-/// Number of edits between the two readings of the memory.
+/// Number of edits between the first and the last measurement of the memory.
 const EDITS: usize = 10_000;
-/// Document of the client, in no file.
+/// URI of the client's document, which is not in a file.
 const URI: &str = "untitled:plan";
 
 fn main() {
@@ -31,7 +31,7 @@ fn main() {
     memory();
 }
 
-/// A plan with this many atoms in behaviors of ten, one in each line.
+/// Returns a plan of `atoms` atoms, one per line, in behaviors of ten atoms each.
 fn plan(atoms: usize) -> String {
     let atom = |number: usize| format!("    (Atom (bumper OR wait {}s) (go 20 0))\n", number % 50 + 1);
     let behavior = |number: usize| {
@@ -40,7 +40,7 @@ fn plan(atoms: usize) -> String {
     format!("{{ P (wait 600min)\n{}}}\n", (0..atoms / 10).map(behavior).collect::<String>())
 }
 
-/// Prints the times of the answers about a plan.
+/// Measures and prints the times of the answers about a plan of `atoms` atoms.
 fn answers(atoms: usize) {
     let text = plan(atoms);
     let robot = alphabet(Some("sim"));
@@ -57,7 +57,7 @@ fn answers(atoms: usize) {
     }
 }
 
-/// Prints the memory of the process before and after the edits.
+/// Prints the memory of the process before, between and after the edits.
 fn memory() {
     let mut client = Client::new(&plan(1_000));
     let line = 500;
@@ -75,7 +75,7 @@ fn memory() {
     );
 }
 
-/// Resident memory of this process.
+/// Returns the resident memory of this process, in megabytes.
 fn megabytes() -> f64 {
     let status = fs::read_to_string("/proc/self/status").unwrap();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
@@ -98,7 +98,7 @@ fn print(atoms: usize, name: &str, mut times: Vec<Duration>) {
 struct Client {
     connection: Connection,
     version: i64,
-    /// `true` if the digit that was typed last is in the text.
+    /// `true` if the text contains the digit that the client types and deletes.
     has_digit: bool,
 }
 
@@ -128,7 +128,7 @@ impl Client {
         }
     }
 
-    /// Waits for the diagnostics of the newest version.
+    /// Waits for the diagnostics of the document's current version.
     fn diagnostics(&mut self) {
         loop {
             if let Message::Notification(notification) = self.connection.receiver.recv().unwrap()
@@ -139,7 +139,8 @@ impl Client {
         }
     }
 
-    /// Types a digit into the time of the atom in a line, or deletes it, and waits for the diagnostics.
+    /// Types a digit into the time of the atom in a line or, if the digit is there already, deletes it. Waits for the
+    /// diagnostics.
     fn type_digit(&mut self, line: u32) {
         self.version += 1;
         let at = |character: u32| json!({ "line": line, "character": character });

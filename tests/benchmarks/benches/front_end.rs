@@ -1,8 +1,8 @@
-//! Text to tree, in bytes a second.
+//! Measures the parser, from text to tree, in megabytes per second.
 //!
-//! Both kinds of runs take turns, and the fastest of each counts. `used` puts each tree into an arena that has been
-//! used before, so that the parser is measured; `new` into a new one, so that the time is in it which the system takes
-//! to hand out memory. Trees are taken down outside of the measured time.
+//! Two kinds of runs alternate, and the fastest run of each kind counts. `used` puts each tree into an arena that was
+//! used before, which measures the parser alone. `new` puts each tree into a new arena, which includes the time that
+//! the system takes to provide memory. The time in which trees are dropped is not measured.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 
 use std::hint::black_box;
@@ -12,7 +12,7 @@ use mdle_benchmarks::front_end::{one_megabyte, plans, ten_megabytes};
 use mdle_compiler::diagnostic::SourceId;
 use mdle_compiler::syntax::{Arena, arena_for, parse};
 
-/// Number of bytes that each parser reads in all its runs.
+/// Number of bytes that are parsed in all runs of a kind.
 const BYTES: usize = 200_000_000;
 
 fn main() {
@@ -28,7 +28,7 @@ fn main() {
     }
 }
 
-/// Returns the time of the fastest run: in an arena that has been used, in new ones.
+/// Returns the time of the fastest run in a used arena, and of the fastest run in new arenas.
 fn fastest(texts: &[String], runs: usize, repeats: usize) -> [Duration; 2] {
     let mut fastest = [Duration::MAX; 2];
     let mut used = Arena::new();

@@ -1,6 +1,6 @@
-//! `mdle run`, which loads a plan, beside the plan's executable: turns a second of a simulated robot as fast as
-//! possible, and the instructions of both, which Callgrind counts; and the time from a text to its first turn. Both
-//! programs are built with `--release`, which takes minutes the first time.
+//! Compares `mdle run`, which loads a plan, with the plan's executable: the time of runs at maximum speed in the
+//! simulator, and the number of instructions, which Callgrind counts. Also measures the time from a text to its first
+//! turn. Both programs are built with `--release`, which takes minutes the first time.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -17,13 +17,14 @@ use mdle_tests::repository::root;
 struct Workload {
     name: &'static str,
     text: &'static str,
-    /// World, and end of a run that is timed and of one whose instructions are counted.
+    /// Name of the world. `timed` and `counted` are the time limits of a run whose duration is measured and of a run
+    /// whose instructions are counted.
     world: &'static str,
     timed: &'static str,
     counted: &'static str,
 }
 
-/// The plans: two go on until a time is over.
+/// The plans. Two of them continue until the time limit of the run.
 const WORKLOADS: [Workload; 3] = [
     Workload {
         name: "one law",
@@ -47,9 +48,9 @@ const WORKLOADS: [Workload; 3] = [
         counted: "1h",
     },
 ];
-/// Maximum number of runs of each; the fastest counts.
+/// Maximum number of timed runs of each program; the fastest run counts.
 const RUNS: usize = 7;
-/// Minimum number of runs of each, however long they take.
+/// Minimum number of timed runs of each program, however long they take.
 const FEWEST: usize = 3;
 /// Time after which no further runs of a plan begin.
 const LONGEST: Duration = Duration::from_secs(20);
@@ -85,7 +86,7 @@ fn main() {
     }
 }
 
-/// Returns a plan of this number of atoms.
+/// Returns the text of a plan of `atoms` atoms.
 fn long(atoms: usize) -> String {
     let mut text = String::from("{ Long (bumper)\n");
     for atom in 0..atoms {
@@ -94,7 +95,7 @@ fn long(atoms: usize) -> String {
     text + "}\n"
 }
 
-/// Builds a binary of the workspace, with cargo's own reports; returns its path.
+/// Builds a binary of the workspace, shows cargo's output, and returns the path of the binary.
 fn built(binary: &str) -> PathBuf {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut build = Command::new(cargo);
@@ -103,7 +104,8 @@ fn built(binary: &str) -> PathBuf {
     Path::new(&target()).join("release").join(binary)
 }
 
-/// Runs two programs by turns until this time of the run; returns the seconds that the fastest run of each took.
+/// Runs two programs alternately, each with the time limit `timeout`. Returns the duration of the fastest run of each,
+/// in seconds.
 fn seconds(programs: &[Vec<PathBuf>], timeout: &str) -> [f64; 2] {
     let mut times = [Duration::MAX; 2];
     let begun = Instant::now();
@@ -118,7 +120,7 @@ fn seconds(programs: &[Vec<PathBuf>], timeout: &str) -> [f64; 2] {
     times.map(|time| time.as_secs_f64())
 }
 
-/// Runs a program until this time of the run; returns the time that it took.
+/// Runs a program with the time limit `timeout`, and returns the duration of the run.
 fn run(words: &[PathBuf], timeout: &str) -> Duration {
     let mut command = Command::new(&words[0]);
     command.args(&words[1..]).arg(timeout);
@@ -127,7 +129,7 @@ fn run(words: &[PathBuf], timeout: &str) -> Duration {
     begun.elapsed()
 }
 
-/// Runs a program under Callgrind until this time of the run; returns its instructions, in millions.
+/// Runs a program under Callgrind with the time limit `timeout`, and returns the number of instructions, in millions.
 fn instructions(words: &[PathBuf], timeout: &str) -> f64 {
     let mut command = Command::new("valgrind");
     command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).args(words).arg(timeout);
@@ -136,7 +138,7 @@ fn instructions(words: &[PathBuf], timeout: &str) -> f64 {
     collected.unwrap_or_else(|| panic!("{report}")) / 1e6
 }
 
-/// Runs a command to its end; returns its messages.
+/// Runs a command to its end, and returns its messages. Panics if the run fails.
 fn ended(mut command: Command) -> String {
     let output = command.stdout(Stdio::null()).stderr(Stdio::piped()).current_dir(root()).output().expect("a run");
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -145,5 +147,5 @@ fn ended(mut command: Command) -> String {
     errors
 }
 
-/// Exit status of a run whose time is over.
+/// Exit status of a run that ends at its time limit.
 const TIMED_OUT: i32 = 4;

@@ -1,7 +1,9 @@
-//! Turns of eight modules at 1 kHz on two workers, each busy for 2, 10 or 50 µs, beside a bare loop of
-//! `clock_nanosleep` with the same privileges: lateness, missed turns, the time of a turn and that of its break.
+//! Measures the turns of eight modules at 1 kHz on two workers, each busy for 2, 10 or 50 µs, beside a bare loop of
+//! `clock_nanosleep` with the same privileges: lateness, missed turns, the duration of a turn, and the duration of a
+//! turn break.
 //!
-//! Each is a process of its own, this program with a role, and they take turns; the figures are of all rounds together.
+//! Each measurement runs in a separate process of this program, which a role in the environment selects. The processes
+//! alternate, and the results include all rounds.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -26,7 +28,7 @@ const TURNS: usize = 5000;
 const ROUNDS: usize = 4;
 /// Number of modules.
 const MODULES: usize = 8;
-/// Work of each module in a turn.
+/// Work of each module in a turn, in microseconds; each number is measured separately.
 const WORK: [u64; 3] = [2, 10, 50];
 /// Environment variable with the role of a process: the work of its modules in microseconds, or `bare`.
 const ROLE: &str = "MDLE_MODULES_ROLE";
@@ -39,7 +41,7 @@ fn main() {
     }
 }
 
-/// Runs all in turns, and prints their figures.
+/// Runs the processes of all roles alternately, and prints their results.
 fn compare() {
     println!(
         "{:<12}{:>12}{:>8}{:>8}{:>8}{:>12}{:>8}{:>12}{:>8}",
@@ -68,7 +70,7 @@ fn compare() {
     }
 }
 
-/// The figures of a role, in nanoseconds.
+/// Measurements of a role, in nanoseconds, except `missed`, which is a number of turns.
 #[derive(Default)]
 struct Round {
     late: Vec<i64>,
@@ -78,7 +80,7 @@ struct Round {
 }
 
 impl Round {
-    /// Adds a round.
+    /// Runs a round of a role, and adds its measurements.
     fn add(&mut self, role: &str) {
         let program = env::current_exe().expect("this program");
         let arguments = ["--period", &PERIOD.as_secs_f64().to_string(), "--turns", &TURNS.to_string()];
@@ -102,14 +104,14 @@ impl Round {
     }
 }
 
-/// Returns median, 99th percentile and maximum, in microseconds; zero without numbers.
+/// Returns the median, the 99th percentile and the maximum, in microseconds; zeros if there are no numbers.
 fn quantiles(nanos: &mut [i64]) -> [f64; 3] {
     nanos.sort_unstable();
     let at = |place: usize| nanos.get(place).map_or(0.0, |nanos| *nanos as f64 / 1e3);
     [at(nanos.len() / 2), at(nanos.len() * 99 / 100), at(nanos.len().saturating_sub(1))]
 }
 
-/// Makes the turns of modules that are busy for this time.
+/// Runs the turns of modules, each of which is busy for the duration `work`.
 fn turns(work: Duration) {
     let pilot = |_: &RunTerms| -> Result<Eight, Refusal> {
         let mut modules = Modules::new(Threads::Workers(2, claim_for_worker), Service::WhenReady).expect("threads");
@@ -130,7 +132,7 @@ fn turns(work: Duration) {
     run_piloted::<Stopwatch, _>("rest", call, &|| Rest, pilot, None);
 }
 
-/// A module that reads its neighbour, and is busy for a time.
+/// A module that reads the attribute of another module, and is busy for a certain time.
 struct Busy {
     read: In<f64>,
     out: Out<f64>,
@@ -149,7 +151,8 @@ impl Module<Nothing> for Busy {
     }
 }
 
-/// Eight modules as the pilot of a run, with the times of their turns and breaks in nanoseconds.
+/// Pilot of a run that executes eight modules, and records the durations of their turns and turn breaks, in
+/// nanoseconds.
 struct Eight {
     modules: Modules<Nothing>,
     turns: Vec<u128>,

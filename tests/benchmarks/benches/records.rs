@@ -1,7 +1,8 @@
-//! Records of an hour of a robot at ten turns a second, with sixteen sonars and the channels of viewers: their size,
-//! the time that a turn costs the thread that drives, and the speed of `mdle replay` and `mdle why`.
+//! Measures the record of an hour of a robot at ten turns a second, with sixteen sonars and the channels of viewers:
+//! the size of the record, the time that a turn costs the control thread, and the speed of `mdle replay` and `mdle
+//! why`.
 //!
-//! `mdle` is a process of its own: this program with a role.
+//! `mdle` runs in a separate process of this program, which the environment selects.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -15,14 +16,14 @@ use std::time::{Duration, Instant};
 use mdle_record::frames::Frames;
 use mdle_record::{Records, TurnMade};
 
-/// Number of turns of an hour.
+/// Number of turns in an hour.
 const TURNS: u32 = 36_000;
-/// Environment variable with the role of a process.
+/// Environment variable that makes this program run as `mdle`.
 const ROLE: &str = "MDLE_RECORDS_ROLE";
-/// Number of rounds, of which the fastest counts.
+/// Number of rounds; the fastest round counts.
 const ROUNDS: usize = 3;
 
-/// A plan that drives round a square for an hour.
+/// A plan that drives around a square for an hour.
 const PLAN: &str = "{ Hour (wait 1h)
   ((Atom (wait 5s OR r0 < 60cm) (go 20 0)) (Atom (null) turn 90))^inf
 }
@@ -50,12 +51,12 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Returns the least time of a few rounds.
+/// Returns the shortest time of [`ROUNDS`] rounds.
 fn fastest(round: impl Fn() -> Duration) -> Duration {
     (0..ROUNDS).map(|_| round()).min().unwrap_or_default()
 }
 
-/// Returns the time that `mdle` takes with these arguments.
+/// Returns the time that a run of `mdle` with these arguments takes.
 fn mdle(folder: &Path, arguments: &str) -> Duration {
     let program = env::current_exe().expect("this program");
     let mut command = Command::new(program);
@@ -67,7 +68,7 @@ fn mdle(folder: &Path, arguments: &str) -> Duration {
     passed
 }
 
-/// Returns the time in which the thread that drives encodes a turn of the record.
+/// Returns the average time in which the control thread encodes a turn of the record.
 fn encoding(record: &Path) -> Duration {
     let file = File::open(record).expect("the record");
     let (_, records) = Records::open(BufReader::new(file)).expect("a record");

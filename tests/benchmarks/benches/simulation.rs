@@ -1,4 +1,4 @@
-//! Speed of the simulator: rays beside a bare traversal of cells, and a whole robot.
+//! Measures the speed of the simulator: of rays, beside a bare traversal of cells, and of a whole robot.
 #![allow(clippy::expect_used, reason = "a benchmark of a world that is not there fails by panicking")]
 
 use std::hint::black_box;
@@ -11,14 +11,15 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 /// Maximum range of a Scout's sonars, in metres.
 const REACH: f64 = 6.477;
-/// Rays of one measurement.
+/// Number of rays of one measurement.
 const RAYS: usize = 10_000;
 
 fn uniform(random: &mut ChaCha8Rng) -> f64 {
     (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Walls of half a metre to two, scattered over a square; as many to the square metre as in a furnished room.
+/// Returns a world with walls of 0.5 to 2 m that are scattered over a square with the given side, and random rays in
+/// it.
 fn scattered(walls: usize, side: f64) -> (World, Vec<(Place, Place)>) {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut text = String::new();
@@ -37,7 +38,7 @@ fn scattered(walls: usize, side: f64) -> (World, Vec<(Place, Place)>) {
     (World::parse("scattered", &text).expect("a good world"), rays)
 }
 
-/// Minimum work of any grid: a step from cell to cell until one is taken.
+/// Grid for the minimum work of any search in a grid: a ray steps from cell to cell until it reaches an occupied cell.
 struct Cells {
     taken: Vec<bool>,
     count: usize,
@@ -109,7 +110,7 @@ fn rays(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// A second of a robot that turns on the spot in hallway A of the office: ten turns.
+/// Measures a second, which is ten turns, of a robot that turns on the spot in hallway A of the office.
 fn robot(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("robot, one second");
     let world = World::office().expect("our own floor");
@@ -130,7 +131,7 @@ fn robot(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Measures the start: from the text of a world to a robot in it.
+/// Measures the start, from the text of a world to a robot in this world.
 fn start(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("start");
     group.sample_size(10);

@@ -1,5 +1,6 @@
-//! Plans of 10,000 atoms that are compiled and swapped in four times a second, in an engine at 1 kHz on two workers:
-//! the time of a turn in which a plan takes over, beside that of any other turn, and the time from the request to it.
+//! Measures plans of 10,000 atoms that are compiled and swapped in four times a second, in an engine at 1 kHz on two
+//! workers: the duration of a turn in which a new plan begins, beside that of all other turns, and the time from a
+//! request to the first turn of its plan.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -23,7 +24,7 @@ const PERIOD: Duration = Duration::from_millis(1);
 const ATOMS: usize = 10_000;
 /// Number of turns between two requests.
 const EACH: u64 = 250;
-/// Number of plans that are swapped in.
+/// Number of plans that the benchmark requests to swap in.
 const SWAPS: u64 = 80;
 
 fn main() {
@@ -54,8 +55,8 @@ fn main() {
     println!("p99 of a turn with a swap: {:.2} times that of any other", swap[1] / other[1]);
 }
 
-/// Makes the turns, with a request each [`EACH`] turns; returns the times of turns in which a plan takes over, of
-/// all other turns, and from each request to its plan's first turn, in nanoseconds.
+/// Runs the turns, with a request every [`EACH`] turns. Returns, in nanoseconds, the durations of turns in which a new
+/// plan begins, the durations of all other turns, and the times from each request to the first turn of its plan.
 fn turns(engine: &mut Engine<Alphabet>, texts: Vec<String>) -> [Vec<u64>; 3] {
     let world = World::named("hall").expect("a world").expect("a good world");
     let mut robot = Simulated::new(&world, world.start, Some(1), PERIOD).expect("a robot");
@@ -100,7 +101,7 @@ fn turns(engine: &mut Engine<Alphabet>, texts: Vec<String>) -> [Vec<u64>; 3] {
     [swaps, others, waits]
 }
 
-/// Returns a plan of many atoms, which differs from that of any other number.
+/// Returns the text of a plan of [`ATOMS`] atoms; each `number` gives a different plan.
 fn text(number: u64) -> String {
     let mut text = String::from("{ Swapped (bumper)\n");
     for atom in 0..ATOMS {
@@ -128,7 +129,7 @@ fn loaded(text: &str) -> Result<Arc<Loaded<Alphabet>>, String> {
     load::load(&plan.machine, &sources, &alphabet).map(Arc::new).map_err(|error| error.to_string())
 }
 
-/// Returns median, 99th percentile and maximum.
+/// Returns the median, the 99th percentile and the maximum; zeros if there are no numbers.
 fn quantiles(nanos: &mut [u64]) -> [f64; 3] {
     nanos.sort_unstable();
     let at = |place: usize| nanos.get(place).map_or(0.0, |nanos| *nanos as f64);

@@ -1,5 +1,5 @@
-//! The picture of two turns on two cores in docs/src/engine.md: `cargo bench -p mdle-benchmarks --bench two_turns`
-//! prints it, of a run with five modules at 500 Hz.
+//! Draws the picture of two turns on two cores in docs/src/engine.md, from a run with five modules at 500 Hz. `cargo
+//! bench -p mdle-benchmarks --bench two_turns` prints it.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, reason = "a benchmark fails by panicking")]
 
@@ -16,13 +16,14 @@ use rustix::thread::sched_getcpu;
 const PERIOD: Duration = Duration::from_millis(2);
 /// Number of turns of the run.
 const TURNS: u64 = 2000;
-/// Modules: the name, the work of a turn in microseconds, and the priority. The plan is a module, and is taken first.
+/// Modules, each with its name, its work in a turn in microseconds, and its priority. The plan is a module, and runs
+/// first.
 const MODULES: [(&str, u64, i32); 5] =
     [("plan", 180, i32::MAX), ("ears", 90, 0), ("heading", 120, 0), ("map", 400, 0), ("recorder", 200, 0)];
-/// Name of the part of the control thread between the turns.
+/// Name of the part between two turns, which the control thread runs.
 const BREAK: &str = "break";
 
-/// Part of a turn on a core.
+/// Part of a turn that ran on a core.
 #[derive(Debug, Clone)]
 struct Part {
     turn: u64,
@@ -32,7 +33,7 @@ struct Part {
     ended: Instant,
 }
 
-/// A module that is busy for a time, and notes when and where.
+/// A module that is busy for a certain time, and records when and on which core it runs.
 struct Busy {
     name: &'static str,
     work: Duration,
@@ -72,7 +73,7 @@ fn main() {
     print!("{}", drawn(pair));
 }
 
-/// Makes the turns; returns their parts.
+/// Runs the turns, and returns their parts.
 fn run() -> Vec<Part> {
     let mut modules = Modules::new(Threads::Workers(2, claim_for_worker), Service::WhenReady).expect("threads");
     let (notes, parts) = channel();
@@ -101,7 +102,7 @@ fn run() -> Vec<Part> {
     parts.try_iter().collect()
 }
 
-/// Returns the picture of these parts of two turns.
+/// Returns the picture of two turns, given their parts, as SVG.
 fn drawn(parts: &[Part]) -> String {
     let zero = parts.iter().map(|part| part.begun).min().expect("a part");
     let micros = |at: Instant| (at - zero).as_secs_f64() * 1e6;

@@ -1,6 +1,7 @@
-//! Lateness of turns on a real clock, beside a bare loop of `clock_nanosleep` with the same privileges.
+//! Measures the lateness of turns on a real clock, beside a bare loop of `clock_nanosleep` with the same privileges.
 //!
-//! Both are processes of their own, this program with a role, and take turns; the figures are of all rounds together.
+//! Both run in separate processes of this program, which a role in the environment selects. The processes alternate,
+//! and the results include all rounds.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -30,7 +31,7 @@ fn main() {
     }
 }
 
-/// Runs both in turns, and prints their latenesses.
+/// Runs both processes alternately, and prints the lateness of their turns.
 fn compare() {
     let (mut turns, mut bare) = (Vec::new(), Vec::new());
     for _ in 0..ROUNDS {

@@ -4,23 +4,24 @@ use mdle_tests::repository::files;
 
 use crate::plan_text::plan_text;
 
-/// A name, and the files of this workload.
+/// A workload: its name, and the texts of its files.
 pub type Workload = (&'static str, Vec<String>);
 
-/// The plans of the repository.
+/// Returns the plans of the repository.
 #[must_use]
 pub fn plans() -> Workload {
     let plans = files(&[".mdle"]).into_iter().filter(|file| file.path.starts_with("plans/"));
     ("plans", plans.map(|file| file.text).collect())
 }
 
-/// One megabyte of plans in one file.
+/// Returns one megabyte of plans in one file.
 #[must_use]
 pub fn one_megabyte() -> Workload {
     ("1 MB", vec![plan_text(1, 1_000_000)])
 }
 
-/// Ten times as much: what is linear is no slower here.
+/// Returns ten megabytes of plans in one file. A parser whose time is linear reads them as fast, in bytes per second,
+/// as one megabyte.
 #[must_use]
 pub fn ten_megabytes() -> Workload {
     ("10 MB", vec![plan_text(10, 10_000_000)])

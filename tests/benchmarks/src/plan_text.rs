@@ -1,10 +1,11 @@
-//! Plans of any length as people write them: laid out in lines, with comments, behaviors in behaviors and loops.
+//! Generates plans of any length in the style of plans that people write: with line breaks, comments, nested behaviors
+//! and loops.
 
 use std::fmt::Write;
 
 use mdle_tests::chance::Chance;
 
-/// Interrupts and comparisons.
+/// Interrupts and comparisons, as operands of conditions.
 const TESTS: &[&str] = &[
     "bumper",
     "bumper",
@@ -74,7 +75,7 @@ const COUNTS: &[&str] = &["2", "3", "3", "5", "10", "inf"];
 /// Maximum depth of nested behaviors and loops.
 const DEPTH: usize = 6;
 
-/// Returns the plans of this seed, of at least `bytes` bytes.
+/// Returns generated plans of at least `bytes` bytes. Equal seeds give equal plans.
 #[must_use]
 pub fn plan_text(seed: u64, bytes: usize) -> String {
     let mut writer = Writer { text: String::with_capacity(bytes + 10_000), chance: Chance::new(seed), depth: 0 };
@@ -99,7 +100,7 @@ impl Writer {
         writeln!(self.text, "{:indent$}{}{gap}{comment}", "", line.trim_end()).unwrap();
     }
 
-    /// A plan of its own, with a doc comment.
+    /// Writes a plan at the top level of the file, with a doc comment.
     fn plan(&mut self) {
         self.text.push('\n');
         self.text.push_str("/// From the rear lab door to the front one, and on.\n");
@@ -155,7 +156,7 @@ impl Writer {
         }
     }
 
-    /// Writes a plan by its name.
+    /// Writes a reference to a plan by its name.
     fn reference(&mut self) {
         let how = self.chance.pick(&["", "FRAME 180deg ", "ExecPlan 3 "]);
         let arguments = if self.chance.percent(30) { "(15cm/s, 0100)" } else { "" };
@@ -170,7 +171,7 @@ impl Writer {
         self.line(&format!("{label}(Atom {condition} {law})"));
     }
 
-    /// Returns a condition in parentheses, with at most `nested` nested parentheses.
+    /// Returns a condition in parentheses, inside which parentheses are nested at most `nested` deep.
     fn condition(&mut self, nested: usize) -> String {
         let mut text = format!("({}", self.operand(nested));
         while self.chance.percent(25) {

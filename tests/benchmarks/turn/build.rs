@@ -1,4 +1,5 @@
-//! Writes what the benchmarks compare: the Rust that mdlec emits for T(N), and the same machine for each of the peers.
+//! Writes the code that the benchmarks compare: the Rust that mdlec emits for T(N), and the same machine in the form of
+//! each peer.
 
 #[path = "build/peers.rs"]
 mod peers;

@@ -1,4 +1,4 @@
-//! A text has plans or errors, for every robot.
+//! Fuzzes the compiler: for every robot, a text has plans or errors.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,5 @@
-//! A configuration is read or has an error, and is shown as it is.
+//! Fuzzes the parser of a robot's configuration: a file is read or has an error, and a configuration that is shown can
+//! be read back unchanged.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

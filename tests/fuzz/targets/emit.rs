@@ -1,4 +1,4 @@
-//! The Rust of a plan is Rust.
+//! Fuzzes code generation: the code that is emitted for a plan is valid Rust syntax.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

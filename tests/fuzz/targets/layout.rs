@@ -1,4 +1,4 @@
-//! The canonical layout of a text is the same text.
+//! Fuzzes the formatter: the canonical layout of a text has the same tree and comments.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

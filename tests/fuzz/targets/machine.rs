@@ -1,4 +1,4 @@
-//! Theorem 1 has an answer for every machine.
+//! Fuzzes Theorem 1: the theorem has an answer for every machine.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

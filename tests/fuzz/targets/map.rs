@@ -1,4 +1,4 @@
-//! A map is read or has an error, and can be looked at.
+//! Fuzzes the reader of maps: a map is read as a world or has an error, and rays can be cast in the world.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

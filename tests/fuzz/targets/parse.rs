@@ -1,4 +1,4 @@
-//! A text has a tree or errors.
+//! Fuzzes the parser: a text has a tree or errors.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! A path is read or has an error, and goes on in time.
+//! Fuzzes the reader of paths: a path is read or has an error, and the times of its setpoints increase.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! All machines do the same.
+//! Fuzzes the interpreters: all machines of a plan print the same trace.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! A script is read or has an error, and can be run.
+//! Fuzzes the parser of scripts: a script is read or has an error, and a plan can be run on it.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! A world is read or has an error, and can be looked at.
+//! Fuzzes the parser of worlds: a world is read or has an error, and rays can be cast in it.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

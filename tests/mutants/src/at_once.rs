@@ -1,4 +1,4 @@
-//! All mutants before the tests: they are built together, and each trial only runs what is there already.
+//! Builds all mutants together before the tests run, so that each trial only starts an existing executable.
 
 use std::collections::BTreeMap;
 use std::os::unix::process::ExitStatusExt;
@@ -12,17 +12,17 @@ use crate::refusals::{Executable, Refusal, executables, refusals};
 use crate::schemata::{Body, Schema, VARIABLE};
 use crate::trial::{FAST, Outcome, RUNTIME, TESTS, cargo, environment};
 
-/// A test that works longer than this and three times its duration without a fault hangs. This is processor time, so
-/// that other programs may run at the same time.
+/// Processor time that a test may take in addition to three times its duration without a fault; a test that takes
+/// longer hangs. Processor time is limited so that other programs may run at the same time.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Duration of a wait after which a test hangs.
+/// Wall-clock time after which a test hangs.
 const ENDLESS: Duration = Duration::from_secs(1800);
 /// Maximum memory of a process, in KiB.
 const MEMORY: &str = "6291456";
 const KILLED: i32 = 9;
 const OUT_OF_TIME: i32 = 24;
 
-/// The mutants in their builds.
+/// All mutants, which have been built together.
 #[derive(Debug)]
 pub(crate) struct AtOnce<'m> {
     checkout: Checkout,
@@ -30,7 +30,7 @@ pub(crate) struct AtOnce<'m> {
     tests: Vec<Test>,
 }
 
-/// State of a mutant after all were built.
+/// State of a mutant after the common build.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum BuildState {
     Built,
@@ -39,18 +39,18 @@ pub(crate) enum BuildState {
     Apart,
 }
 
-/// A test executable: its place in the list of tests, and how long it may work.
+/// A test executable, with its index in the list of tests and its maximum processor time.
 #[derive(Debug)]
 struct Test {
     number: usize,
     executable: Executable,
-    /// The names of the tests that are run, or parts of these names; all tests if there are none.
+    /// Names, or parts of names, of the tests that are run; empty to run all tests.
     filters: &'static [&'static str],
     limit: Duration,
 }
 
 impl<'m> AtOnce<'m> {
-    /// Builds these mutants of these files, and runs every test without a fault.
+    /// Builds the mutants of these files, and runs every test without a fault.
     pub(crate) fn prepare(checkout: Checkout, sources: &[Source], mutants: &[&'m Mutant]) -> Self {
         let mutants = mutants.iter().map(|mutant| (BuildState::Built, *mutant)).collect();
         let mut this = Self { checkout, mutants, tests: Vec::new() };
@@ -74,12 +74,12 @@ impl<'m> AtOnce<'m> {
         this
     }
 
-    /// Returns each mutant with its place and state, in the given order.
+    /// Returns each mutant with its index and its state, in the given order.
     pub(crate) fn mutants(&self) -> impl Iterator<Item = (usize, BuildState, &'m Mutant)> {
         self.mutants.iter().enumerate().map(|(place, (standing, mutant))| (place, *standing, *mutant))
     }
 
-    /// Tries the mutant in this place, which is built.
+    /// Runs the tests on the mutant with this index, which must be built.
     pub(crate) fn run(&self, place: usize) -> Outcome {
         let (_, mutant) = self.mutants[place];
         let is_runtime = mutant.file.starts_with("runtime/");
@@ -95,13 +95,13 @@ impl<'m> AtOnce<'m> {
         Outcome::Survived
     }
 
-    /// Gives the copy back, its files as they were.
+    /// Restores the original files of the copy, and returns the copy.
     pub(crate) fn restored(self, sources: &[Source]) -> Checkout {
         sources.iter().for_each(|source| self.checkout.write(&source.file, &source.text));
         self.checkout
     }
 
-    /// Marks the mutants that are not valid syntax: each of them would make the whole file invalid.
+    /// Marks the mutants that are not valid syntax, each of which would make the whole file invalid.
     fn refuse_what_is_no_syntax(&mut self, source: &Source) {
         for (standing, mutant) in self.mutants.iter_mut().filter(|(_, mutant)| mutant.file == source.file) {
             if syn::parse_file(&mutant.apply(&source.text)).is_err() {
@@ -110,8 +110,8 @@ impl<'m> AtOnce<'m> {
         }
     }
 
-    /// Returns `true` if rustc accepts the files with all mutants that are left. Mutants that it refuses are left out
-    /// afterwards.
+    /// Returns `true` if rustc accepts the files with all remaining mutants. Otherwise removes the mutants that rustc
+    /// rejects from the next build.
     fn is_built(&mut self, sources: &[Source]) -> bool {
         let schemata: BTreeMap<_, _> =
             sources.iter().map(|source| (source.file.clone(), self.schema(source))).collect();
@@ -130,7 +130,7 @@ impl<'m> AtOnce<'m> {
         false
     }
 
-    /// Writes a file with its mutants; mutants that cannot be chosen at run time are set apart.
+    /// Writes a file with its mutants. Mutants that cannot be selected at run time are marked as [`BuildState::Apart`].
     fn schema(&mut self, source: &Source) -> Schema {
         let built =
             self.mutants().filter(|(_, standing, mutant)| *standing == BuildState::Built && mutant.file == source.file);
@@ -155,7 +155,7 @@ impl<'m> AtOnce<'m> {
         }
     }
 
-    /// Runs cargo in the copy; returns `true` if it succeeded, and its output.
+    /// Runs cargo in the copy; returns `true` if it succeeded, and its standard output.
     fn cargo(&self, arguments: &[&[&str]]) -> (bool, String) {
         let mut command = Command::new(cargo());
         environment(&mut command, &self.checkout);
@@ -164,7 +164,7 @@ impl<'m> AtOnce<'m> {
         (output.status.success(), String::from_utf8(output.stdout).expect("cargo prints UTF-8"))
     }
 
-    /// Runs a test with this mutant.
+    /// Runs a test with the mutant `number`, or without a fault if `number` is 0.
     fn executed(&self, test: &Test, number: u32) -> ExitStatus {
         let mut command = Command::new("sh");
         environment(&mut command, &self.checkout);
@@ -186,12 +186,12 @@ impl<'m> AtOnce<'m> {
     }
 }
 
-/// The number of the mutant in this place.
+/// Returns the number of the mutant with this index.
 fn number(place: usize) -> u32 {
     u32::try_from(place).ok().and_then(|place| place.checked_add(1)).expect("mutants can be counted")
 }
 
-/// The place of the mutant with this number.
+/// Returns the index of the mutant with this number.
 fn place(number: u32) -> usize {
     number as usize - 1
 }

@@ -1,4 +1,4 @@
-//! A copy of this checkout, with a target folder of its own that is kept, where mutants are built and tested.
+//! A copy of this checkout, in which mutants are built and tested. Its target folder is kept between runs.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,14 +11,14 @@ pub(crate) fn root() -> &'static Path {
     package.ancestors().nth(2).expect("the package lies two folders deep")
 }
 
-/// The copy.
+/// The copy of the checkout.
 #[derive(Debug)]
 pub(crate) struct Checkout {
     folder: PathBuf,
 }
 
 impl Checkout {
-    /// Brings the copy up to date: files that git knows or would add, and no others.
+    /// Updates the copy so that it contains exactly the files that git tracks or would add.
     pub(crate) fn copy() -> Self {
         let this = std::env::current_exe().expect("a program has a path");
         // TARGET/PROFILE/mdle-mutants
@@ -47,7 +47,7 @@ impl Checkout {
         self.folder.join("checkout")
     }
 
-    /// Returns the folder with cargo's builds of the copied files.
+    /// Returns the folder of cargo's build results for the copied files.
     pub(crate) fn target(&self) -> PathBuf {
         self.folder.join("target")
     }
@@ -68,7 +68,7 @@ pub(crate) fn git(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("names of files are UTF-8")
 }
 
-/// Removes all files below this folder but these.
+/// Removes all files below this folder except `files`.
 fn remove_others(folder: &Path, files: &BTreeSet<PathBuf>) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries {

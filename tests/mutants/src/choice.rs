@@ -1,4 +1,4 @@
-//! Choice of mutants, by a seed, and the files from which they are taken.
+//! Selects mutants by a random seed, and lists the files from which they are taken.
 
 use std::fs;
 
@@ -8,7 +8,8 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use crate::checkout::{git, root};
 use crate::mutant::{Mutant, mutants};
 
-/// Areas that are mutated: files and folders. A few mutants are taken from each area in turn, however large it is.
+/// Areas that are mutated, each a list of files and folders. Mutants are taken from each area in turn, regardless of
+/// its size.
 const AREAS: &[&[&str]] = &[
     &[
         "runtime/core/src/condition.rs",
@@ -35,7 +36,7 @@ pub(crate) struct Source {
     pub(crate) text: String,
 }
 
-/// The files of all areas.
+/// Returns the files of all areas.
 pub(crate) fn sources() -> Vec<Source> {
     let mut sources = Vec::new();
     for (area, paths) in AREAS.iter().enumerate() {
@@ -51,7 +52,7 @@ pub(crate) fn sources() -> Vec<Source> {
     sources
 }
 
-/// The Rust files in a folder, tests aside.
+/// Returns the Rust files in a folder, except tests.
 fn in_folder(folder: &str) -> Vec<String> {
     let names = fs::read_dir(root().join(folder)).expect("a folder").map(|entry| entry.expect("an entry").file_name());
     let names = names.map(|name| name.into_string().expect("a name in UTF-8"));
@@ -68,7 +69,7 @@ pub(crate) fn all(sources: &[Source]) -> Vec<Mutant> {
     found.flatten().collect()
 }
 
-/// The mutants in the order in which this seed tries them, one of each area at a time.
+/// Returns the mutants in a random order that depends on `seed`. The order takes a mutant from each area in turn.
 pub(crate) fn shuffled(mutants: &[Mutant], seed: u64) -> Vec<&Mutant> {
     let mut chance = ChaCha8Rng::seed_from_u64(seed);
     let mut areas: Vec<Vec<(u64, &Mutant)>> = vec![Vec::new(); AREAS.len()];
@@ -84,7 +85,7 @@ pub(crate) fn shuffled(mutants: &[Mutant], seed: u64) -> Vec<&Mutant> {
     ranked.into_iter().map(|(_, mutant)| mutant).collect()
 }
 
-/// A seed that is another one in every commit.
+/// Returns a random seed that differs in every commit.
 pub(crate) fn seed_of_commit() -> u64 {
     let commit = git(&["rev-parse", "HEAD"]);
     commit.get(..15).and_then(|start| u64::from_str_radix(start, 16).ok()).expect("the hash of a commit")

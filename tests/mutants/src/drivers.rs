@@ -1,8 +1,8 @@
-//! Faults in the drivers of robots, from the list in `drivers.toml`: the conformance of the robots has to catch each
-//! fault.
+//! Faults in the drivers of robots, from the list in `drivers.toml`. The conformance tests of the robots must catch
+//! each fault.
 //!
-//! All are built together. An expression becomes `match __fault() { 17 => { the expression with fault 17 } _ => { it }
-//! }`, and the variable chooses one when the test starts.
+//! All faults are built together. An expression becomes `match __fault() { 17 => { the expression with fault 17 } _ =>
+//! { the original expression } }`, and an environment variable selects a fault when the test starts.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -18,22 +18,22 @@ use crate::refusals::{Executable, executables};
 use crate::schemata::VARIABLE;
 use crate::trial::{cargo, environment};
 
-/// The list, as it was when this was built.
+/// Text of the list, included at build time.
 const LIST: &str = include_str!("../drivers.toml");
 
-/// The tests that have to catch them.
+/// Arguments of cargo for the test executables that must catch the faults.
 const TESTS: [&str; 6] = ["--package", "mdle-scout-emulator", "--package", "mdle-atrv-emulator", "--test", "trials"];
 
-/// The one of these tests that has to catch them.
+/// Name of the test that must catch the faults.
 const TEST: &str = "the_driver_conforms";
 
 /// Number of faults that are tried at the same time.
 const AT_ONCE: usize = 2;
 
-/// Number of seconds after which a test hangs: without a fault it takes two.
+/// Time in seconds after which a test hangs; without a fault it takes two seconds.
 const PATIENCE: &str = "120";
 
-/// Code appended to each file, which selects the mutant to run.
+/// Code that is added to each file. It selects the fault.
 const CHOICE: &str = r#"
 fn __fault() -> u32 {
     static CHOSEN: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
@@ -42,14 +42,14 @@ fn __fault() -> u32 {
 }
 "#;
 
-/// All faults.
+/// Content of the list.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Faults {
     fault: Vec<Fault>,
 }
 
-/// An expression of a file of a driver, and a wrong one.
+/// An expression in a file of a driver, and a wrong expression that replaces it.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Fault {
@@ -91,7 +91,7 @@ pub(crate) fn all_are_caught() -> bool {
     survived == 0
 }
 
-/// The text of a file with all faults of it, each with its number in the list, from 1 on.
+/// Returns the text of a file with all of its faults. The number of a fault is its position in the list, from 1.
 fn with_faults(file: &str, text: &str, faults: &[Fault]) -> Result<String, String> {
     let (code, tests) = text.split_at(text.find("#[cfg(test)]").unwrap_or(text.len()));
     let mut expressions = BTreeMap::<usize, (&str, String)>::new();
@@ -111,7 +111,7 @@ fn with_faults(file: &str, text: &str, faults: &[Fault]) -> Result<String, Strin
     Ok([&mutated, &code[end..], CHOICE, tests].concat())
 }
 
-/// Builds the tests in the copy.
+/// Builds the tests in the copy, and returns their executables.
 fn built(checkout: &Checkout) -> Vec<Executable> {
     let mut command = Command::new(cargo());
     environment(&mut command, checkout);
@@ -123,7 +123,7 @@ fn built(checkout: &Checkout) -> Vec<Executable> {
     executables(&printed)
 }
 
-/// Returns the first check that a fault breaks; `None` if all hold.
+/// Returns the first check that fails with a fault, and the reason; `None` if no check fails.
 fn tried(tests: &[Executable], number: u32, fault: &Fault) -> Option<String> {
     // targets/ROBOT/emulator tests the driver in targets/ROBOT.
     let robot = Path::new(&fault.file).components().nth(1).expect("a file of a driver");
@@ -138,7 +138,7 @@ fn tried(tests: &[Executable], number: u32, fault: &Fault) -> Option<String> {
     Some(format!("{}\n    {}", name.trim_start_matches("BROKEN").trim(), why.trim()))
 }
 
-/// Runs a test with this fault.
+/// Runs a test with the fault `number`, or without a fault if `number` is 0.
 fn executed(test: &Executable, number: u32) -> Output {
     let mut command = Command::new("timeout");
     command.arg("--signal=KILL").arg(PATIENCE).arg(&test.path).current_dir(&test.folder);

@@ -1,13 +1,13 @@
-//! The mutants that change nothing, each with the reason: `equivalent.toml`.
+//! Equivalent mutants, which do not change the behavior of the code, each with the reason: `equivalent.toml`.
 
 use serde::Deserialize;
 
 use crate::mutant::Mutant;
 
-/// The list, as it was when this was built.
+/// Text of the list, included at build time.
 const LIST: &str = include_str!("../equivalent.toml");
 
-/// All entries.
+/// Content of the list.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Equivalents {
@@ -15,7 +15,7 @@ pub(crate) struct Equivalents {
     equivalent: Vec<Equivalent>,
 }
 
-/// A mutant, by its file, its function and its change, and why no test can find it.
+/// A mutant, identified by its file, its function and its change, with the reason why no test can find it.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Equivalent {
@@ -31,12 +31,12 @@ impl Equivalents {
         toml::from_str(LIST).expect("tests/mutants/equivalent.toml is as its head says")
     }
 
-    /// The entry of this mutant.
+    /// Returns the entry of this mutant; `None` if the mutant is not in the list.
     pub(crate) fn find(&self, mutant: &Mutant) -> Option<&Equivalent> {
         self.equivalent.iter().find(|entry| entry.is(mutant))
     }
 
-    /// The entries to which no mutant belongs any more, and those without a reason.
+    /// Returns the entries to which no mutant belongs any more, and the entries without a reason.
     pub(crate) fn stale<'e>(&'e self, mutants: &'e [Mutant]) -> impl Iterator<Item = &'e Equivalent> {
         let is_stale = |entry: &&Equivalent| entry.reason.is_empty() || !mutants.iter().any(|mutant| entry.is(mutant));
         self.equivalent.iter().filter(is_stale)

@@ -1,4 +1,4 @@
-//! Places of a file that a mutant can change: expressions and statements outside its tests.
+//! Finds the parts of a file that a mutant can change: expressions and statements outside its tests.
 
 use std::ops::Range;
 
@@ -11,16 +11,16 @@ use crate::operators::{can_be_left_out, mistaken, neighbours, other_operator};
 use crate::pieces::{can_be_deleted, is_alike, is_test, leaves};
 use crate::template;
 
-/// A change: the text in this range of bytes becomes `new`.
+/// A change: `new` replaces the text in the range `place`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Change {
     pub(crate) place: Range<usize>,
     pub(crate) new: String,
-    /// The function or constant that it is in.
+    /// Name of the function or constant that contains the change.
     pub(crate) function: String,
 }
 
-/// All changes of a file.
+/// Returns all changes of a file.
 ///
 /// # Errors
 /// Fails if the text is not Rust.
@@ -38,7 +38,7 @@ struct Finder<'t> {
 }
 
 impl Finder<'_> {
-    /// Notes a change, unless the text remains the same.
+    /// Records a change, unless the text remains the same.
     fn change(&mut self, place: Range<usize>, new: impl Into<String>) {
         let change = Change { place, new: new.into(), function: self.function.clone() };
         if !self.changes.contains(&change) && self.text[change.place.clone()] != change.new {
@@ -46,7 +46,7 @@ impl Finder<'_> {
         }
     }
 
-    /// Returns the current text of a node.
+    /// Returns the original text of a node.
     fn old(&self, node: &impl Spanned) -> String {
         self.text[range(node)].to_owned()
     }
@@ -58,7 +58,7 @@ impl Finder<'_> {
         self.function = around;
     }
 
-    /// Exchanges two adjacent operands or statements.
+    /// Records the exchange of two adjacent operands or statements.
     fn exchange(&mut self, one: &impl Spanned, other: &impl Spanned) {
         let (start, end) = (range(one), range(other));
         let between = self.text[start.end..end.start].to_owned();
@@ -73,7 +73,8 @@ impl Finder<'_> {
         }
     }
 
-    /// Exchanges the values of two arms of a `match`: a block needs no comma after it, and its replacement does.
+    /// Records the exchange of the values of two arms of a `match`. A block needs no comma after it, but an expression
+    /// that replaces it does.
     fn exchange_bodies(&mut self, one: &Expr, other: &Expr) {
         let (start, end) = (range(one), range(other));
         let (old, new) = (self.old(one), self.old(other));
@@ -84,7 +85,8 @@ impl Finder<'_> {
         }
     }
 
-    /// A condition that is neither a comparison nor negated, of which each part changes anyway, becomes its opposite.
+    /// Records the negation of a condition, unless it is a comparison or already negated, because the parts of such a
+    /// condition are changed anyway.
     fn negate(&mut self, condition: &Expr) {
         if !matches!(condition, Expr::Let(_) | Expr::Binary(_) | Expr::Unary(_) | Expr::Paren(_) | Expr::Lit(_)) {
             self.change(range(condition), format!("(!{})", self.old(condition)));
@@ -263,7 +265,7 @@ impl<'ast> Visit<'ast> for Finder<'_> {
     }
 }
 
-/// Returns the range of a node, in bytes.
+/// Returns the byte range of a node.
 fn range(node: &impl Spanned) -> Range<usize> {
     node.span().byte_range()
 }

@@ -1,4 +1,4 @@
-//! Tries mutants, one by one or all together, reports the result of each, and counts.
+//! Tries mutants, one by one or all together, and reports and counts the results.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use crate::mutant::Mutant;
 use crate::report::{self, Report};
 use crate::trial::{Outcome, Trials};
 
-/// Data that exist before mutants are tried.
+/// Data that are needed to try mutants.
 pub(crate) struct Judge<'a> {
     pub(crate) sources: &'a [Source],
     pub(crate) equivalents: &'a Equivalents,
@@ -24,7 +24,8 @@ impl Judge<'_> {
         report
     }
 
-    /// Tries all these mutants: together in one build, and one by one what cannot be, and what survives there.
+    /// Tries all these mutants in a common build. Mutants that cannot be built there, and mutants that survive there,
+    /// are tried one by one.
     pub(crate) fn all(&self, chosen: &[&Mutant]) -> Report {
         let mut report = Report::default();
         let at_once = AtOnce::prepare(Checkout::copy(), self.sources, chosen);

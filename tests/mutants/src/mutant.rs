@@ -1,4 +1,4 @@
-//! A mutant: one file of the checkout with one small fault in it.
+//! A mutant: a single small fault in a file of the checkout.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,22 +9,22 @@ use crate::finder;
 /// A fault in the code.
 #[derive(Debug, Clone)]
 pub(crate) struct Mutant {
-    /// The place of the mutant's area in the list of areas.
+    /// Index of the mutant's area in the list of areas.
     pub(crate) area: usize,
-    /// File of the mutant, from the root.
+    /// Path of the mutated file from the root of the repository.
     pub(crate) file: String,
-    /// The function or constant that changes.
+    /// Name of the function or constant that changes.
     pub(crate) function: String,
-    /// The change in words, which no other of this function has.
+    /// Description of the change, which is unique in the function.
     pub(crate) change: String,
     line: usize,
-    /// Range of bytes whose text becomes `new`.
+    /// Range of bytes whose text `new` replaces.
     pub(crate) place: Range<usize>,
     pub(crate) new: String,
 }
 
 impl Mutant {
-    /// The text of the file with the fault in it.
+    /// Returns the text of the file with the fault.
     pub(crate) fn apply(&self, text: &str) -> String {
         [&text[..self.place.start], &self.new, &text[self.place.end..]].concat()
     }
@@ -36,7 +36,7 @@ impl fmt::Display for Mutant {
     }
 }
 
-/// Every mutant of a file.
+/// Returns all mutants of a file.
 ///
 /// # Errors
 /// Fails if the text is not Rust.
@@ -54,7 +54,8 @@ pub(crate) fn mutants(area: usize, file: &str, text: &str) -> syn::Result<Vec<Mu
     Ok(mutants.collect())
 }
 
-/// Returns a description of the change and its line: a key that remains valid after changes elsewhere.
+/// Returns a description of the change with the text of its line. The description remains valid if other parts of the
+/// file change.
 fn in_words(text: &str, line: usize, found: &finder::Change) -> String {
     let old = short(&text[found.place.clone()]);
     let line = short(text.lines().nth(line - 1).unwrap_or_default());
@@ -63,7 +64,7 @@ fn in_words(text: &str, line: usize, found: &finder::Change) -> String {
     if line == old { format!("`{old}` {becomes}") } else { format!("`{old}` {becomes} in `{line}`") }
 }
 
-/// A text on one line, its middle left out where it is long.
+/// Returns a text on a single line; if it is long, without its middle part.
 fn short(text: &str) -> String {
     const ENDS: usize = 45;
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -79,7 +80,7 @@ fn short(text: &str) -> String {
 mod tests {
     use super::mutants;
 
-    /// The text with each change in turn, on one line.
+    /// Returns the texts that result from each change, each on a line.
     fn changed(text: &str) -> String {
         let texts = mutants(0, "file.rs", text).unwrap().into_iter().map(|mutant| mutant.apply(text));
         texts.map(|text| text.split_whitespace().collect::<Vec<_>>().join(" ") + "\n").collect()

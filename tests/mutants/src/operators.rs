@@ -1,9 +1,9 @@
-//! Operators and methods that are exchanged for each other, and methods that can be left out, where the type stays the
+//! Operators and methods that are exchanged for each other, and methods that can be left out because the type stays the
 //! same.
 
 use syn::BinOp;
 
-/// Methods, fields and names that are easily mistaken for each other, both ways.
+/// Pairs of methods, fields and names that are easily mistaken for each other.
 const MISTAKEN: &[(&str, &str)] = &[
     ("all", "any"),
     ("checked_add", "checked_mul"),
@@ -45,7 +45,7 @@ const LEFT_OUT: &[&str] = &[
     "to_ascii_uppercase",
 ];
 
-/// The name that this one is mistaken for.
+/// Returns the name for which `name` is easily mistaken.
 pub(crate) fn mistaken(name: &str) -> Option<&'static str> {
     MISTAKEN.iter().find_map(|&(one, other)| match name {
         _ if name == one => Some(other),
@@ -59,7 +59,7 @@ pub(crate) fn can_be_left_out(method: &str) -> bool {
     LEFT_OUT.contains(&method)
 }
 
-/// The operator that this one is mistaken for.
+/// Returns the operator for which `operator` is easily mistaken.
 pub(crate) fn other_operator(operator: &BinOp) -> Option<&'static str> {
     Some(match operator {
         BinOp::Add(_) => "-",
@@ -84,7 +84,7 @@ pub(crate) fn other_operator(operator: &BinOp) -> Option<&'static str> {
     })
 }
 
-/// The numbers next to this one, with its suffix.
+/// Returns the numbers before and after a number, with its suffix.
 pub(crate) fn neighbours(digits: &str, suffix: &str) -> Vec<String> {
     let Ok(number) = digits.parse::<u64>() else { return Vec::new() };
     let both = [number.checked_sub(1), number.checked_add(1)];

@@ -1,9 +1,9 @@
-//! Pieces of syntax that can be exchanged for each other, or deleted.
+//! Parts of syntax that can be exchanged for each other, or deleted.
 
 use syn::{Attribute, Expr, Ident, Lit, Stmt};
 
-/// Returns `true` if two expressions are of one simple kind, and so may be of one type: names, numbers, references to
-/// either.
+/// Returns `true` if two expressions are of the same simple kind, and so may have the same type: names, numbers, or
+/// references to either.
 pub(crate) fn is_alike(one: &Expr, other: &Expr) -> bool {
     let is_variable = |expression: &Expr| match expression {
         Expr::Path(path) => path.path.get_ident().is_some_and(|name| !name.to_string().starts_with(char::is_uppercase)),
@@ -17,8 +17,8 @@ pub(crate) fn is_alike(one: &Expr, other: &Expr) -> bool {
     }
 }
 
-/// Returns `true` if a statement has an effect of its own. Statements in a block are deleted one by one, so of
-/// statements with blocks only an `if` that leaves counts, as its content can seldom be missing.
+/// Returns `true` if a statement has an effect of its own. The only statement with a block that is deleted is an `if`
+/// that leaves the function or loop, because the statements in other blocks are deleted one by one.
 pub(crate) fn can_be_deleted(statement: &Stmt) -> bool {
     let Stmt::Expr(expression, end) = statement else { return false };
     match expression {

@@ -1,10 +1,10 @@
-//! JSON output of cargo: the places where rustc refused the text, and the test executables.
+//! Reads the JSON output of cargo: the errors of rustc with their places, and the test executables.
 
 use std::path::PathBuf;
 
 use serde::Deserialize;
 
-/// A line of cargo's output, as far as it is read here.
+/// A line of cargo's output, with the fields that are used here.
 #[derive(Debug, Deserialize)]
 struct CargoMessage {
     reason: String,
@@ -45,18 +45,18 @@ struct Expansion {
 pub(crate) struct Refusal {
     /// Text of the error as rustc prints it.
     pub(crate) text: String,
-    /// The places that it is about, the most important one first: a file, and a byte of it.
+    /// Places that the error is about, the most important one first, each as a file and a byte offset.
     pub(crate) places: Vec<(String, usize)>,
 }
 
-/// A test executable and the folder that it runs in.
+/// A test executable, and the folder in which it runs.
 #[derive(Debug)]
 pub(crate) struct Executable {
     pub(crate) path: PathBuf,
     pub(crate) folder: PathBuf,
 }
 
-/// The errors in what cargo printed.
+/// Returns the errors in the output of cargo.
 pub(crate) fn refusals(printed: &str) -> Vec<Refusal> {
     let errors = lines(printed).filter_map(|line| line.message).filter(|message| message.level == "error");
     let refusals = errors.map(|message| {
@@ -70,7 +70,7 @@ pub(crate) fn refusals(printed: &str) -> Vec<Refusal> {
     refusals.filter(|refusal| !refusal.places.is_empty()).collect()
 }
 
-/// The test executables in what cargo printed.
+/// Returns the test executables in the output of cargo.
 pub(crate) fn executables(printed: &str) -> Vec<Executable> {
     let tests = lines(printed).filter(|line| line.profile.as_ref().is_some_and(|profile| profile.test));
     let tests = tests.filter_map(|line| {
@@ -85,7 +85,8 @@ fn lines(printed: &str) -> impl Iterator<Item = CargoMessage> {
     lines.filter(|line| matches!(&*line.reason, "compiler-message" | "compiler-artifact"))
 }
 
-/// Adds the places to which a message points, and for a place in a macro the places of its calls.
+/// Adds the places to which a message points. For a place inside a macro, also adds the places at which the macro is
+/// called.
 fn places_of(message: &Message, is_primary: bool, places: &mut Vec<(String, usize)>) {
     for span in message.spans.iter().filter(|span| span.is_primary == is_primary) {
         let mut inside = Some(span);

@@ -7,7 +7,7 @@ use crate::equivalent::Equivalent;
 use crate::mutant::Mutant;
 use crate::trial::{self, Outcome};
 
-/// The counts, and the complaints about survivors and wrong entries.
+/// Counts of mutants, and complaints about survivors and wrong entries.
 #[derive(Debug, Default)]
 pub(crate) struct Report {
     files: BTreeMap<String, Counts>,
@@ -15,7 +15,7 @@ pub(crate) struct Report {
     complaints: Vec<String>,
 }
 
-/// The mutants of a file.
+/// Counts of the mutants of a file.
 #[derive(Debug, Default)]
 struct Counts {
     not_compiled: usize,
@@ -51,7 +51,7 @@ impl Report {
         self.files.values().map(|counts| counts.caught + counts.hanging + counts.equivalent + counts.survived).sum()
     }
 
-    /// Returns `true` if each mutant was caught, or is rightly listed.
+    /// Returns `true` if each mutant was caught, or survived and is listed in `equivalent.toml`.
     pub(crate) fn is_good(&self) -> bool {
         self.complaints.is_empty()
     }
@@ -74,7 +74,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// Returns an outcome as words of a report.
+/// Returns the text of an outcome for a report.
 pub(crate) fn verdict(outcome: Outcome) -> String {
     match outcome {
         Outcome::DoesNotCompile => "does not compile".to_owned(),
@@ -84,7 +84,7 @@ pub(crate) fn verdict(outcome: Outcome) -> String {
     }
 }
 
-/// An entry as a mutant is printed.
+/// Returns the text of an entry, in the form in which a mutant is printed.
 pub(crate) fn name(entry: &Equivalent) -> String {
     format!("{} {}: {}", entry.file, entry.function, entry.change)
 }

@@ -1,7 +1,9 @@
-//! Mutant schemata: a file in which every function holds its mutants beside itself, and one is chosen when it runs.
+//! Mutant schemata: a file in which every function contains its mutants beside its original body. A mutant is selected
+//! at run time.
 //!
-//! A body becomes `match __mutant() { 17 => { the body with change 17 }, _ => { the body } }`, so that one build is
-//! enough for all mutants. Code that rustc evaluates cannot choose: constants, and functions that return `impl Trait`.
+//! A body becomes `match __mutant() { 17 => { the body with change 17 }, _ => { the original body } }`, so that a
+//! single build suffices for all mutants. This is impossible for code that rustc evaluates and for functions that
+//! return `impl Trait`.
 
 use std::ops::Range;
 
@@ -11,10 +13,11 @@ use syn::{Block, ReturnType, Signature, TypeImplTrait};
 
 use crate::mutant::Mutant;
 
-/// The variable with the number of the chosen mutant; without it no mutant is chosen.
+/// Environment variable with the number of the selected mutant. Without it, no mutant is selected.
 pub(crate) const VARIABLE: &str = "MDLE_MUTANT";
 
-/// Code that is added after each file. It reads the variable once, without `std`, which the runtime does not have.
+/// Code that is added to each file. It reads the environment variable once, without `std`, which is not available in
+/// the runtime.
 const CHOICE: &str = r#"
 fn __mutant() -> u32 {
     use core::ffi::{CStr, c_char};
@@ -32,14 +35,14 @@ fn __mutant() -> u32 {
 }
 "#;
 
-/// A file with mutants in it.
+/// A file that contains mutants.
 #[derive(Debug)]
 pub(crate) struct Schema {
     pub(crate) text: String,
     variants: Vec<Variant>,
 }
 
-/// A body in the text.
+/// A version of a function's body, with its place in the text.
 #[derive(Debug)]
 struct Variant {
     place: Range<usize>,
@@ -49,14 +52,14 @@ struct Variant {
 /// Version of a function's body.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Body {
-    /// The body of this mutant.
+    /// Body with the change of this mutant.
     Changed(u32),
-    /// The original body, beside the bodies of these mutants.
+    /// Original body, beside the bodies of these mutants.
     Original(Vec<u32>),
 }
 
 impl Schema {
-    /// The text with these mutants, each with its number, from 1 on. They are of this file.
+    /// Returns the text of a file with these mutants of the file, each with its number, from 1.
     ///
     /// # Errors
     /// Fails if the text is not Rust.
@@ -97,7 +100,7 @@ impl Schema {
         self.text.push('\n');
     }
 
-    /// Returns `true` if this mutant is in the text.
+    /// Returns `true` if the text contains this mutant.
     pub(crate) fn holds(&self, number: u32) -> bool {
         self.variants.iter().any(|variant| variant.body == Body::Changed(number))
     }
@@ -112,7 +115,8 @@ fn contains(outer: &Range<usize>, inner: &Range<usize>) -> bool {
     outer.start <= inner.start && inner.end <= outer.end
 }
 
-/// The bodies of functions that can choose when they run, in the order of the file. Those in modules are left out.
+/// Bodies of functions that can select a mutant at run time, in the order of the file. Functions in modules are left
+/// out.
 #[derive(Debug, Default)]
 struct Bodies {
     places: Vec<Range<usize>>,
@@ -144,7 +148,7 @@ impl<'ast> Visit<'ast> for Bodies {
     }
 }
 
-/// Returns `true` if the return type contains `impl Trait`, so that every body has a type of its own.
+/// Returns `true` if the return type contains `impl Trait`, because each body would then have a different type.
 fn is_opaque(output: &ReturnType) -> bool {
     #[derive(Default)]
     struct Opaque(bool);

@@ -1,4 +1,4 @@
-//! A mutant before the tests: they run one after another, and the first that fails ends the trial.
+//! Tries a mutant with the tests, which run one after another; the first test that fails ends the trial.
 
 use std::ffi::OsString;
 use std::process::{Command, Stdio};
@@ -7,12 +7,13 @@ use std::time::{Duration, Instant};
 use crate::checkout::Checkout;
 use crate::mutant::Mutant;
 
-/// Packages that are built together, as what cargo builds of one depends on which others it is asked for.
+/// Packages that are built together. They must be built together because cargo's build of a package depends on the
+/// other packages that are requested.
 pub(crate) type Packages = &'static [&'static str];
 pub(crate) const RUNTIME: Packages = &["--package", "mdle-runtime"];
 const COMPILER: Packages = &["--package", "mdle-compiler", "--package", "mdle-tests"];
 
-/// The tests, as `cargo test` takes them: those first that catch much and are fast.
+/// Arguments of `cargo test` for each test. Tests that are fast and catch many mutants come first.
 pub(crate) const TESTS: &[(Packages, &[&str])] = &[
     (RUNTIME, &["--lib"]),
     (COMPILER, &["--test", "machine", "--test", "emitted", "--", "golden::", "fsm_files::", "names::", "text::"]),
@@ -22,7 +23,7 @@ pub(crate) const TESTS: &[(Packages, &[&str])] = &[
     (COMPILER, &["--test", "compiled", "--", "machines::"]),
 ];
 
-/// The tests of the rules of plans, each by its smallest plan.
+/// Arguments for the tests of the rules of plans, each by a minimal plan.
 const RULES: &[&str] = &[
     "--test",
     "language",
@@ -37,36 +38,36 @@ const RULES: &[&str] = &[
     "signals::",
 ];
 
-/// Number of tests that take seconds. The others take minutes, and the last one has rustc compile a runtime.
+/// Number of tests that take seconds. The other tests take minutes; in the last one, rustc compiles a runtime.
 pub(crate) const FAST: usize = 4;
 
-/// The command line of a test.
+/// Returns the command line of a test.
 pub(crate) fn name(test: usize) -> String {
     let (packages, targets) = TESTS[test];
     format!("cargo test {}", [packages, targets].concat().join(" "))
 }
 
-/// A test that takes longer than this and three times what it takes without a fault hangs.
+/// Time that a test may take in addition to three times its duration without a fault; a test that takes longer hangs.
 const PATIENCE: Duration = Duration::from_secs(30);
-/// A build that takes longer hangs.
+/// Time after which a build hangs.
 const BUILD: Duration = Duration::from_secs(600);
-/// Maximum memory of a process, in KiB: a fault may fill all there is.
+/// Maximum memory of a process, in KiB. Without a limit, a fault could use all memory.
 const MEMORY: &str = "8388608";
 
-/// Result of a mutant.
+/// Result of trying a mutant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// The mutant is not a valid program, so no test has to find it.
     DoesNotCompile,
-    /// The test of this index failed.
+    /// The test with this index failed.
     Caught(usize),
-    /// The test of this index did not end.
+    /// The test with this index did not end.
     Hangs(usize),
     /// No test failed.
     Survived,
 }
 
-/// Runner of the trials.
+/// Runner that tries mutants one by one.
 #[derive(Debug)]
 pub(crate) struct Trials {
     checkout: Checkout,
@@ -96,7 +97,7 @@ impl Trials {
         trials
     }
 
-    /// Tries a mutant of the file with this text.
+    /// Tries a mutant of the file whose original text is `text`.
     pub(crate) fn run(&self, mutant: &Mutant, text: &str) -> Outcome {
         let changed = if mutant.file.starts_with("runtime/") { RUNTIME } else { COMPILER };
         self.checkout.write(&mutant.file, &mutant.apply(text));
@@ -106,7 +107,8 @@ impl Trials {
         outcome
     }
 
-    /// Returns the result of the tests on the copy as it is, with a fault in one of these packages.
+    /// Runs the tests on the current state of the copy, which has a fault in one of these packages, and returns the
+    /// result.
     fn tested(&self, changed: Packages) -> Outcome {
         for (number, ((packages, targets), limit)) in TESTS.iter().zip(&self.limits).enumerate() {
             if *packages == RUNTIME && changed != RUNTIME {
@@ -124,7 +126,7 @@ impl Trials {
         Outcome::Survived
     }
 
-    /// Runs cargo in the copy. What it starts dies with it when its time is up.
+    /// Runs cargo in the copy. After the time `limit`, cargo is killed.
     fn cargo(&self, arguments: &[&[&str]], limit: Duration) -> Ended {
         let mut command = Command::new("sh");
         environment(&mut command, &self.checkout);
@@ -147,7 +149,7 @@ impl Trials {
     }
 }
 
-/// The cargo that runs this.
+/// Returns the cargo that runs this program.
 pub(crate) fn cargo() -> OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }

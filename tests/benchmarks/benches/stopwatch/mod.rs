@@ -1,4 +1,5 @@
-//! A robot that notes when its turns begin, beside a bare loop of `clock_nanosleep` with the same privileges.
+//! A robot that records when its turns begin, and a bare loop of `clock_nanosleep` with the same privileges for
+//! comparison.
 
 use std::convert::Infallible;
 use std::time::{Duration, Instant};
@@ -26,7 +27,7 @@ fn tell(begins: &[Duration]) {
     begins.iter().for_each(|begun| println!("begun {}", begun.as_nanos()));
 }
 
-/// The floor: nothing but sleep, for this number of periods.
+/// Runs the bare loop, which only sleeps, for `turns` periods, and prints when each period begins.
 pub(crate) fn bare(period: Duration, turns: usize) {
     let realtime = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     let priority = ThreadPriority::try_from(50).expect("a priority");
@@ -48,7 +49,7 @@ pub(crate) fn bare(period: Duration, turns: usize) {
 /// Maximum number of turns of a round.
 const MOST: usize = 100_000;
 
-/// A robot that notes when it is asked for its output.
+/// A robot that records the times of its exchanges.
 pub(crate) struct Stopwatch {
     origin: Instant,
     begins: Vec<Duration>,
@@ -86,7 +87,7 @@ impl Target for Stopwatch {
     }
 }
 
-/// `{ Rest (Atom (null) stop) }`.
+/// The plan `{ Rest (Atom (null) stop) }`.
 pub(crate) struct Rest;
 
 impl Plan for Rest {

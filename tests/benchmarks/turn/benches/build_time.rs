@@ -1,4 +1,4 @@
-//! Build time of emitted Rust: against the number of atoms written out, and against the count of a loop.
+//! Measures the build time of emitted Rust, as the number of written-out atoms grows, and as the count of a loop grows.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,7 +8,7 @@ use std::{env, fs};
 /// Number of times that each file is compiled; the fastest counts.
 const RUNS: usize = 5;
 
-/// The files that the build script has written, and what they are.
+/// Files that the build script has written, each with its description.
 const PLANS: &[(&str, &str)] = &[
     ("plan_8.rs", "8 atoms written out"),
     ("plan_100.rs", "100 atoms written out"),
@@ -19,7 +19,8 @@ const PLANS: &[(&str, &str)] = &[
     ("looped_1000000000.rs", "10^9 passes through 2 atoms"),
 ];
 
-/// Code that is added after an emitted file: a generic turn is compiled where it is used, so that its time counts too.
+/// Code that is added to an emitted file. A generic turn is compiled only where it is used, and its compile time must
+/// be included.
 const TURN: &str = "
 pub fn turn(
     machine: &mut ::mdle_runtime::Machine<T>,
@@ -51,7 +52,7 @@ fn main() {
     fs::remove_dir_all(folder).expect("the folder of this run");
 }
 
-/// The libraries that an emitted file uses, as cargo has built them, by their names.
+/// Returns the libraries that an emitted file uses, each with its name and the file that cargo has built.
 fn libraries() -> Vec<(&'static str, PathBuf)> {
     let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
     let output = Command::new(env!("CARGO"))
@@ -71,7 +72,7 @@ fn libraries() -> Vec<(&'static str, PathBuf)> {
     ["mdle_runtime", "mdle_workload"].map(|name| (name, file(name).expect("a library"))).into()
 }
 
-/// Compiles a library as cargo does for a plan: the time that passed and the time on a processor, in milliseconds.
+/// Compiles a library as cargo does for a plan. Returns the wall-clock time and the user time, in milliseconds.
 fn compile(source: &Path, folder: &Path, libraries: &[(&str, PathBuf)]) -> (f64, f64) {
     let mut command = Command::new("rustc");
     command.args(["--edition=2024", "--crate-type=lib", "--emit=link", "-Copt-level=3", "-Ccodegen-units=1"]);
@@ -87,7 +88,8 @@ fn compile(source: &Path, folder: &Path, libraries: &[(&str, PathBuf)]) -> (f64,
     (start.elapsed().as_secs_f64() * 1e3, used_by_children() - used)
 }
 
-/// The user time of all children so far, in milliseconds; field 16 of `/proc/self/stat`, in hundredths of a second.
+/// Returns the user time of all children so far, in milliseconds. It is field 16 of `/proc/self/stat`, in hundredths of
+/// a second.
 fn used_by_children() -> f64 {
     let stat = fs::read_to_string("/proc/self/stat").expect("Linux");
     let after_name = stat.rsplit(')').next().expect("a name in brackets");

@@ -1,4 +1,5 @@
-//! Instructions for 10,000 turns, in each of the three cases, of each machine: the same on every run.
+//! Counts the instructions of 10,000 turns of each machine in each of the three cases. The numbers are equal in every
+//! run.
 
 use gungraun::prelude::*;
 use gungraun::{Callgrind, EntryPoint};
@@ -9,7 +10,7 @@ use mdle_workload::machines::plan::{Plan8, Plan1000, Plan100000};
 use mdle_workload::machines::smlang::{Smlang8, Smlang1000};
 use mdle_workload::machines::statig::{Statig8, Statig1000};
 
-/// A whole number of passes through 8 and through 1,000 atoms.
+/// Number of turns, a whole number of passes through 8 and through 1,000 atoms.
 const TURNS: u32 = 10_000;
 
 /// A benchmark for each machine.
@@ -47,7 +48,8 @@ machines! {
     table_100000: Table<100_000>,
 }
 
-/// Counts the instructions of a machine's turn only, without the loop that calls it and the machine's beginning.
+/// Returns a configuration that counts only the instructions of a machine's turn, without those of its beginning and of
+/// the loop that calls it.
 fn turn_alone() -> LibraryBenchmarkConfig {
     let turn = EntryPoint::Custom("*as mdle_workload::machines::Robot>::turn".to_owned());
     LibraryBenchmarkConfig::default().tool(Callgrind::default().entry_point(turn)).clone()

@@ -1,5 +1,6 @@
-//! Instructions of a turn of rows that are loaded, beside those of emitted rows: counted by Callgrind in the turn
-//! alone, without the loop that calls it and without the plan's beginning; the same on every run. Needs Valgrind.
+//! Compares the instructions of a turn of loaded rows with those of emitted rows. Callgrind counts them in the turn
+//! alone, without the loop that calls it and without the plan's beginning; the numbers are equal in every run. Needs
+//! Valgrind.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -11,11 +12,11 @@ use mdle_workload::cases::{Case, run};
 use mdle_workload::machines::loaded::{Loaded8, LoadedRising8};
 use mdle_workload::machines::plan::{Rows8, RowsRising8};
 
-/// A whole number of passes through 8 atoms.
+/// Number of turns, a whole number of passes through 8 atoms.
 const TURNS: u32 = 10_000;
-/// Environment variable with the role of a process: the numbers of a machine and of a case.
+/// Environment variable with the role of a process: the numbers of a pair, of a machine of the pair, and of a case.
 const ROLE: &str = "MDLE_LOADED_ROWS_ROLE";
-/// The pairs that are compared: their name, the emitted machine, and the loaded one.
+/// Pairs of machines that are compared, each with its name, the emitted machine, and the loaded machine.
 const PAIRS: [(&str, fn(Case) -> f64, fn(Case) -> f64); 2] = [
     ("T(8)", |case| run::<Rows8>(case, TURNS), |case| run::<Loaded8>(case, TURNS)),
     ("T(8), RISING", |case| run::<RowsRising8>(case, TURNS), |case| run::<LoadedRising8>(case, TURNS)),
@@ -33,7 +34,7 @@ fn main() {
     }
 }
 
-/// Counts each machine in each case, and prints the instructions of a turn.
+/// Measures each machine in each case, and prints the number of instructions per turn.
 fn compare() {
     println!("{:<16}{:<8}{:>12}{:>12}{:>8}", "instructions", "", "emitted", "loaded", "ratio");
     for (pair, (name, ..)) in PAIRS.iter().enumerate() {
@@ -45,7 +46,7 @@ fn compare() {
     }
 }
 
-/// Returns the instructions of a turn of the process with this role.
+/// Returns the number of instructions per turn of a process with this role.
 fn counted(role: &str) -> f64 {
     let mut valgrind = Command::new("valgrind");
     valgrind.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]);

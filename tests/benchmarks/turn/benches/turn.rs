@@ -1,4 +1,4 @@
-//! Time for a turn, in each of the three cases, of each machine.
+//! Measures the time per turn of each machine in each of the three cases.
 
 use std::hint::black_box;
 
@@ -10,7 +10,7 @@ use mdle_workload::machines::smlang::{Smlang8, Smlang1000};
 use mdle_workload::machines::statig::{Statig8, Statig1000};
 use mdle_workload::machines::{Nothing, Robot};
 
-/// A whole number of passes through 8 and through 1,000 atoms.
+/// Number of turns, a whole number of passes through 8 and through 1,000 atoms.
 const TURNS: u32 = 10_000;
 
 fn measure<M: Robot>(criterion: &mut Criterion, name: &str) {

@@ -1,16 +1,16 @@
-//! The peers of T(N) as source: what a person would write by hand, a line or a few for each atom.
+//! Source text of the peers of T(N): code that a person could write by hand, with a few lines for each atom.
 
-/// Returns the texts of all atoms, one after another.
+/// Returns the concatenated texts of all atoms.
 fn each(atoms: u32, text: impl Fn(u32) -> String) -> String {
     (0..atoms).map(text).collect()
 }
 
-/// The numbers of an atom's law, as a literal.
+/// Returns the input that an atom's law writes, as Rust text.
 fn law(atom: u32) -> String {
     format!("Input {{ left: {}.25, right: {atom}.5 }}", atom + 1)
 }
 
-/// A `match` over the number of the current atom.
+/// Returns a machine that is a `match` over the number of the current atom.
 pub fn matching(atoms: u32) -> String {
     let arms = each(atoms, |atom| {
         format!(
@@ -39,7 +39,7 @@ impl Robot for Match {{
     )
 }
 
-/// States of the crate statig: its macro makes the machine from a function for each state.
+/// Returns a machine of the crate statig, whose macro generates the machine from a function for each state.
 pub fn statig(atoms: u32) -> String {
     let states = each(atoms, |atom| {
         let next = if atom + 1 == atoms { "over".to_owned() } else { format!("atom_{}", atom + 1) };
@@ -71,7 +71,7 @@ impl Chart {{
     )
 }
 
-/// Transitions of the crate smlang, and the guards and actions that they name.
+/// Returns a machine of the crate smlang: the transitions, and the guards and actions that they name.
 pub fn smlang(atoms: u32) -> String {
     let transitions = each(atoms, |atom| {
         let (start, state) = (if atom == 0 { "*" } else { "" }, format!("Atom{atom} + Turn(&'a Output)"));

@@ -1,4 +1,4 @@
-//! From the text of a plan for the workload's robot to the Rust that mdlec emits for it.
+//! Compiles plans for the workload's robot, from their text to the Rust that mdlec emits.
 
 use std::fmt::Write;
 
@@ -8,17 +8,18 @@ use mdle_compiler::rust::{Header, Shape, emit_as};
 
 const ALPHABET: &str = include_str!("../alphabet.mdle");
 
-/// The text of T(N): a plan-level interrupt over N atoms, each with an end condition and a law that writes two numbers.
+/// Returns the text of T(N): a plan with an interrupt and N atoms, each with an end condition and a law that writes two
+/// numbers.
 pub fn written_out(atoms: u32) -> String {
     format!("{{ T (halt)\n{}}}\n", lines(0..atoms))
 }
 
-/// The text of T(N) in which the plan's interrupt fires only where the switch is turned on.
+/// Returns the text of T(N) in which the plan's interrupt fires only when the switch is turned on.
 pub fn rising(atoms: u32) -> String {
     format!("{{ T (RISING halt)\n{}}}\n", lines(0..atoms))
 }
 
-/// The text of a plan that passes `passes` times through two atoms.
+/// Returns the text of a plan with a loop of `passes` passes through two atoms.
 pub fn looped(passes: u64) -> String {
     format!("{{ T (halt)\nExecPlan {passes} {{\n{}}}\n}}\n", lines(0..2))
 }
@@ -38,12 +39,12 @@ fn robot() -> Alphabet {
     alphabet
 }
 
-/// The Rust of plan T of this text, in the shape that suits its size.
+/// Returns the Rust of the plan `T` in `text`, in the shape that suits its size.
 pub fn emitted(text: &str) -> String {
     emitted_as(None, text)
 }
 
-/// The Rust of plan T of this text, as rows of tables.
+/// Returns the Rust of the plan `T` in `text`, as rows of tables.
 pub fn rows(text: &str) -> String {
     emitted_as(Some(Shape::Rows), text)
 }

@@ -1,4 +1,4 @@
-//! The three cases that are measured, and the loop that makes the turns.
+//! The three cases that are measured, and the loop that runs the turns.
 
 use core::hint::black_box;
 
@@ -7,14 +7,14 @@ use mdle_runtime::{Nanos, Turn};
 use crate::Output;
 use crate::machines::Robot;
 
-/// Events that the robot meets.
+/// A case: the sequence of outputs on which a machine runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Case {
-    /// No condition fires: the first atom's law writes, turn after turn.
+    /// No condition fires, and the law of the first atom writes in every turn.
     Steady,
-    /// In each turn the current atom ends and the next one writes; after the last the plan begins again.
+    /// In each turn the current atom ends and the next one writes. After the last atom the plan restarts.
     Each,
-    /// In each turn the plan's own interrupt ends the plan, which then begins again.
+    /// In each turn the plan's own interrupt ends the plan, which then restarts.
     Halt,
 }
 
@@ -32,9 +32,10 @@ impl Case {
     }
 }
 
-/// Makes `turns` turns, and begins the plan again each time it is over. Returns the sum of all that was written.
+/// Runs `turns` turns, and restarts the plan each time it is over. Returns the sum of all numbers that were written.
 ///
-/// The loop knows nothing of the cases but two numbers, so that it costs the same in all of them.
+/// The loop depends on the case only by the first output and the growth of the measurement, so that it costs the same
+/// in all cases.
 pub fn run<M: Robot>(case: Case, turns: u32) -> f64 {
     let (first, step) = case.outputs();
     let (mut y, mut sum) = (first, 0.0);

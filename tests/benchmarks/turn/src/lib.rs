@@ -1,4 +1,5 @@
-//! The robot of workload T(N), one measurement, one switch, two numbers to write, and the machines compared on it.
+//! The robot of the workload T(N), with one measurement, one switch and two numbers to write, and the machines that are
+//! compared on it.
 #![forbid(unsafe_code)]
 
 // What mdlec emits names this crate as any other package would.
@@ -23,8 +24,8 @@ impl mdle_runtime::Output for Output {}
 /// Input that a turn writes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Input {
-    /// First number of the command: what the law of an atom writes.
+    /// First number that the law of an atom writes.
     pub left: f64,
-    /// Second number of the command.
+    /// Second number that the law of an atom writes.
     pub right: f64,
 }

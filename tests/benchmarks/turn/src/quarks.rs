@@ -1,10 +1,10 @@
-//! The quarks of the workload: a comparison, a switch, two numbers.
+//! The quarks of the workload: a comparison, a switch, and a law that writes two numbers.
 
 use mdle_runtime::{Begin, Control, Interrupt, Law, Nanos};
 
 use crate::{Input, Output};
 
-/// `reached limit`.
+/// The interrupt `reached limit`.
 #[derive(Debug, Clone, Copy)]
 pub struct Reached(f64);
 
@@ -22,7 +22,7 @@ impl Interrupt<Output> for Reached {
     }
 }
 
-/// `halt`.
+/// The interrupt `halt`.
 #[derive(Debug, Clone, Copy)]
 pub struct Halt;
 
@@ -41,12 +41,12 @@ impl Interrupt<Output> for Halt {
     }
 }
 
-/// `write left right`.
+/// The law `write left right`.
 #[derive(Debug, Clone, Copy)]
 pub struct Write(Input);
 
 impl Write {
-    /// Creates an input of two numbers.
+    /// Returns a law that writes two numbers.
     #[must_use]
     pub const fn new(left: f64, right: f64) -> Self {
         Self(Input { left, right })

@@ -1,4 +1,5 @@
-//! All machines of a size write the same, turn by turn: otherwise a comparison would be meaningless.
+//! Tests that all machines with the same number of atoms write the same numbers in every turn; otherwise comparing them
+//! would be meaningless.
 
 use mdle_runtime::{Nanos, Turn};
 use mdle_workload::machines::Robot;
@@ -9,8 +10,8 @@ use mdle_workload::machines::smlang::Smlang8;
 use mdle_workload::machines::statig::Statig8;
 use mdle_workload::{Input, Output};
 
-/// Returns for each turn the growth of the measurement, always less than `leap`, and the switch: conditions fire or
-/// not, several in a turn too, and the plan ends by itself or by the switch.
+/// Returns, for each turn, the growth of the measurement, which is less than `leap`, and the switch. Turns with no, one
+/// or several transitions occur, and the plan ends by itself or by the switch.
 fn script(leap: u32) -> Vec<(f64, bool)> {
     let mut seed = 1_u32;
     let mut draw = |below: u32| {
@@ -20,8 +21,8 @@ fn script(leap: u32) -> Vec<(f64, bool)> {
     (0..5_000).map(|_| (f64::from(draw(2 * leap)) / 2.0, draw(501) == 0)).collect()
 }
 
-/// Returns the result of a machine in each turn. When it is over it begins again, and so does the measurement: a plan
-/// makes a limited number of transitions in a turn, and the other machines have no such limit.
+/// Returns the result of a machine in each turn. When the plan is over, both the plan and the measurement restart:
+/// mdlec's machines limit the number of transitions in a turn, and the other machines do not.
 fn turns<M: Robot>(script: &[(f64, bool)]) -> Vec<Turn<Input>> {
     let mut y = Output::default();
     let mut machine = M::begin(&y, Nanos(0));
@@ -37,7 +38,7 @@ fn turns<M: Robot>(script: &[(f64, bool)]) -> Vec<Turn<Input>> {
     (0..).zip(script).map(turn).collect()
 }
 
-/// Asserts that a machine gives the results of the table, and that these cover all cases.
+/// Asserts that a machine has the same results as the table, and that these results include all kinds of turns.
 fn assert_same<M: Robot, const N: usize>(leap: u32) {
     let script = script(leap);
     let expected = turns::<Table<N>>(&script);

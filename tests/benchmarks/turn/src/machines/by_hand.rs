@@ -1,4 +1,4 @@
-//! T(N) as one would write it by hand: a `match`, and a table with a loop over it.
+//! T(N) as a person would write it by hand: as a `match`, and as a table with a loop over it.
 
 use mdle_runtime::{Nanos, Turn};
 
@@ -57,7 +57,7 @@ mod thousand {
 #[cfg(feature = "thousands")]
 pub use thousand::Match as Match1000;
 
-/// T(8) in the other way to write the arms, the one of [`Match1000`].
+/// T(8) as a `match` whose arms are written like those of `Match1000`.
 mod eight {
     use super::{Input, Nanos, Output, Robot, Turn};
 

@@ -1,4 +1,4 @@
-//! T(8) as rows that are loaded from its text, as `mdle` runs a plan.
+//! T(8) as rows that are loaded from the text of the plan, as `mdle` loads a plan.
 
 use std::sync::{Arc, LazyLock};
 
@@ -11,7 +11,7 @@ use super::Robot;
 use crate::alphabet::Alphabet;
 use crate::{Input, Output};
 
-/// Each plan that is loaded: the machine that runs it, and the file of its text.
+/// Declares machines that run loaded plans, each with the file of the plan's text.
 macro_rules! loaded {
     ($($(#[$doc:meta])* $machine:ident $file:literal),+ $(,)?) => {$(
         $(#[$doc])*
@@ -40,13 +40,13 @@ loaded!(
     LoadedRising8 "/rows_rising_8.mdle",
 );
 
-/// Makes a turn of any loaded plan: they have one type, so the machine's turn is inlined here alone.
+/// Runs a turn of any loaded plan. All loaded plans have the same type, so the machine's turn is inlined only here.
 #[inline(never)]
 fn turn(machine: &mut Machine<LoadedPlan<Alphabet>>, y: &Output, t: Nanos) -> Turn<Input> {
     machine.turn(y, t, &mut ())
 }
 
-/// Returns the plan of this text.
+/// Compiles and loads the plan in `text`.
 fn plan(text: &str) -> Arc<Loaded<Alphabet>> {
     let mut sources = Sources::default();
     let source = sources.add("alphabet.mdle", ALPHABET);

@@ -1,4 +1,4 @@
-//! T(N) in several forms: each machine does the same job, as `tests/same.rs` asserts.
+//! T(N) in several forms. All machines behave equally, as `tests/same.rs` asserts.
 
 pub mod by_hand;
 pub mod loaded;
@@ -10,15 +10,17 @@ use mdle_runtime::{Nanos, Turn};
 
 use crate::{Input, Output};
 
-/// A machine that runs T(N). Its turn is not inlined into the loop that calls it, as a robot's driver would not be.
+/// A machine that runs T(N). Its turn is not inlined into the loop that calls it, because it would not be inlined into
+/// a robot's driver.
 pub trait Robot {
-    /// The plan at its first atom.
+    /// Returns the plan at its first atom.
     fn begin(y: &Output, t: Nanos) -> Self;
-    /// Makes transitions, the plan's own interrupt first, until no condition fires; then the current atom's law writes.
+    /// Makes transitions until no condition fires; the plan's own interrupt takes precedence. Then applies the law of
+    /// the current atom.
     fn turn(&mut self, y: &Output, t: Nanos) -> Turn<Input>;
 }
 
-/// Does nothing, to measure the cost of the loop that calls a machine.
+/// A machine that does nothing, to measure the cost of the loop that calls a machine.
 #[derive(Debug)]
 pub struct Nothing;
 

@@ -1,11 +1,11 @@
-//! T(N) as mdlec emits it: with entry times, laws that may keep a state, and a limit on the transitions of a turn.
+//! T(N) as mdlec emits it, with entry times, laws that may have a state, and a limit on the transitions of a turn.
 
 use mdle_runtime::{Machine, Nanos, Plan, Turn};
 
 use super::Robot;
 use crate::{Input, Output};
 
-/// Each emitted file, in a module of its own.
+/// Includes each emitted file as a separate module.
 macro_rules! emitted {
     ($($module:ident $file:literal),+) => {$(
         #[allow(missing_docs, reason = "mdlec wrote it")]
@@ -32,7 +32,7 @@ pub type RowsRising8 = Compiled<rows_rising_8::T>;
 /// T(1000): emitted as rows of tables.
 #[cfg(feature = "thousands")]
 pub type Plan1000 = Compiled<plan_1000::T>;
-/// T(100000): the same.
+/// T(100000): emitted as rows of tables.
 #[cfg(feature = "thousands")]
 pub type Plan100000 = Compiled<plan_100000::T>;
 

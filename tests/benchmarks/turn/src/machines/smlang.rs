@@ -1,4 +1,5 @@
-//! T(N) as transitions of the crate smlang: an event is a look at the output, the context what an action has written.
+//! T(N) as transitions of the crate smlang. An event contains the robot's output, and the context contains the result
+//! of an action.
 
 use mdle_runtime::{Nanos, Turn};
 
@@ -11,7 +12,7 @@ pub struct Context {
     turn: Option<Turn<Input>>,
 }
 
-/// Each generated machine in a module of its own, with the turn that runs it.
+/// Includes each generated machine as a separate module, with the type that runs its turns.
 macro_rules! machines {
     ($($module:ident $machine:ident $file:literal),+) => {$(
         #[allow(missing_docs, clippy::result_unit_err, reason = "as smlang has it")]

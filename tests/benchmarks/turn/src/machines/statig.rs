@@ -1,4 +1,5 @@
-//! T(N) as states of the crate statig. An event is a look at the output, the context is what a state has written.
+//! T(N) as states of the crate statig. An event contains the robot's output, and the context contains the result of a
+//! state.
 
 use mdle_runtime::{Nanos, Turn};
 use statig::blocking::InitializedStateMachine;
@@ -7,7 +8,7 @@ use statig::prelude::*;
 use super::Robot;
 use crate::{Input, Output};
 
-/// Each generated chart in a module of its own, with the turn that runs it.
+/// Includes each generated state chart as a separate module, with the type that runs its turns.
 macro_rules! charts {
     ($($module:ident $machine:ident $file:literal),+) => {$(
         mod $module {
