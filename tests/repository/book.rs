@@ -1,4 +1,4 @@
-//! The book: its pages are linked, its links lead somewhere, and its examples behave as their pages claim.
+//! Tests the book: its pages are linked, its links lead to existing pages, and its examples behave as the pages claim.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::BTreeSet;
@@ -51,7 +51,7 @@ fn messages_are_as_they_are_explained() {
     assert!(committed == messages(), "INSTA_UPDATE=always writes docs/src/messages.md");
 }
 
-/// A page's folder, into which its examples are written one after the other.
+/// The examples of a page, which are written one after the other into a folder.
 struct Walk<'p> {
     page: &'p TextFile,
     folder: PathBuf,
@@ -91,7 +91,8 @@ impl Walk<'_> {
         }
     }
 
-    /// Replaces lines of a file, as a reader does: those marked `-` by those marked `+` after them.
+    /// Changes a file as a reader does: replaces the lines that are marked `-` by the lines after them that are marked
+    /// `+`.
     fn patch(&self, fence: &Fence) {
         let path = self.folder.join(fence.file().expect("a file to change"));
         let mut text = fs::read_to_string(&path).unwrap();
@@ -107,7 +108,7 @@ impl Walk<'_> {
         fs::write(path, text).unwrap();
     }
 
-    /// Compares a file, if the block has one, with the text that the page shows.
+    /// If the block names a file, compares the file with the text on the page.
     fn compare(&self, fence: &Fence) {
         let Some(file) = fence.file() else { return };
         assert_eq!(fs::read_to_string(self.folder.join(file)).unwrap(), fence.text, "{}: {file}", self.page.path);
@@ -124,7 +125,7 @@ impl Walk<'_> {
         assert_eq!(codes.collect::<BTreeSet<_>>(), expected, "{}\n{}\n{answer}", self.page.path, fence.text);
     }
 
-    /// Asserts that every machine has this trace of the last plan with the last script.
+    /// Asserts that all machines print this trace of the last plan with the last script.
     fn trace(&self, expected: &str) {
         for machine in ["tree", "table", "matrix", "counted"] {
             let arguments = ["trace", &self.plan, "--script", &self.script, "--machine", machine];
@@ -134,8 +135,8 @@ impl Walk<'_> {
         }
     }
 
-    /// Runs a command, as a reader types it, and compares its output with the page; without output on the page, asserts
-    /// success.
+    /// Runs a command as a reader types it, and compares its output with the page. If the page shows no output, asserts
+    /// that the command succeeds.
     fn run(&self, command: &str) {
         let (command, expected) = command.split_once('\n').unwrap();
         let words = words(command);
@@ -155,7 +156,7 @@ impl Walk<'_> {
 }
 
 impl Walk<'_> {
-    /// Compares the pictures of the page with those that its commands have drawn.
+    /// Compares the pictures on the page with the pictures that the page's commands have drawn.
     fn pictures(&self) {
         for picture in
             links(self.page).into_iter().filter(|link| link.ends_with(".svg") && self.folder.join(link).exists())
@@ -170,7 +171,7 @@ impl Walk<'_> {
     }
 }
 
-/// The words of a command, as a shell takes them: quotes hold a word together.
+/// Returns the words of a command as a shell splits them; a quoted text is a single word.
 fn words(command: &str) -> Vec<&str> {
     let mut is_quoted = false;
     let ends = command.split(|letter: char| {
@@ -209,7 +210,7 @@ fn examples_do_what_the_book_says() {
     assert!(traces >= 20, "the book has {traces} traces");
 }
 
-/// Asserts that the examples of a page do what it says; returns the number of its traces.
+/// Asserts that the examples of a page behave as the page claims; returns the number of its traces.
 fn walked(page: &TextFile) -> usize {
     let folder = folder(&format!("book_{}", name(page)));
     let mut walk = Walk { page, folder, plan: String::new(), script: String::new() };

@@ -1,15 +1,16 @@
-//! Circles of modules: modules of one folder that use each other, directly or by way of others, can only be understood
-//! together, so there are to be none.
+//! Tests that modules have no circular dependencies: modules of a folder that use each other, directly or through other
+//! modules, can only be understood together.
 //!
-//! A module counts with all below it, and a file without the tests in it. What it takes from its parent is what the
-//! parent has from another of its modules; what the parent has itself is not a circle, as a room's types are where its
-//! modules meet.
+//! A module includes all modules below it, and a file counts without its tests. If a module takes a name from its
+//! parent, and the parent has it from another module, the module depends on that other module. If the parent itself
+//! defines the name, there is no circle, because the modules of a folder share the types of their parent.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use mdle_tests::repository::{TextFile, files, names_from};
 
-/// The modules of a folder: for each its text, with all modules below it, and how far below each text is.
+/// The modules of a folder. Each has its text and the texts of all modules below it, each with its depth below the
+/// module.
 type Modules = BTreeMap<String, Vec<(usize, String)>>;
 
 #[test]
@@ -25,7 +26,7 @@ fn modules_use_each_other_in_no_circle() {
     assert_eq!(found, [""; 0], "move what both need into a module of its own, or into the parent");
 }
 
-/// The file without its tests; `None` for a test file, and for a file outside of every package's `src`.
+/// Returns the file without its tests; `None` for a test file, and for a file outside the `src` of any package.
 fn without_tests(file: TextFile) -> Option<TextFile> {
     let is_test =
         file.path.ends_with("/tests.rs") || file.path.contains("/tests/") || file.path.ends_with("/samples.rs");
@@ -33,7 +34,7 @@ fn without_tests(file: TextFile) -> Option<TextFile> {
     (file.path.contains("/src/") && !is_test).then_some(TextFile { text, ..file })
 }
 
-/// The circles among the modules of a folder.
+/// Returns the circles among the modules of a folder.
 fn circles(folder: &str, sources: &[TextFile]) -> Vec<String> {
     let mut modules = Modules::new();
     let mut parent = String::new();
@@ -75,7 +76,7 @@ fn circles(folder: &str, sources: &[TextFile]) -> Vec<String> {
     circles.into_iter().map(|circle| format!("{folder}: {}", circle.join(", "))).collect()
 }
 
-/// The modules that a module uses, directly or by way of others.
+/// Returns the modules that a module uses, directly or through other modules.
 fn reached<'m>(from: &str, uses: &BTreeMap<&'m str, BTreeSet<&'m str>>) -> BTreeSet<&'m str> {
     let mut reached = BTreeSet::new();
     let mut left: Vec<_> = uses[from].iter().copied().collect();

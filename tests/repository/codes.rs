@@ -1,11 +1,11 @@
-//! The codes of diagnostics are well-formed, and a test causes each code.
+//! Tests that the codes of diagnostics are well-formed, and that a test causes each code.
 
 use std::collections::BTreeSet;
 
 use mdle_compiler::diagnostic::{Code, Severity};
 use mdle_tests::repository::{TextFile, files};
 
-/// Codes that no test can bring about, each with the reason.
+/// Codes that no test can cause, each with the reason.
 const UNTESTED: &[(Code, &str)] = &[];
 
 #[test]
@@ -35,7 +35,8 @@ fn no_code_is_without_a_test() {
     }
 }
 
-/// Returns the tests in a file: all of a snapshot or of a test, and of other Rust the part with its tests.
+/// Returns the tests in a file: the whole text of a snapshot or of a test file, and the part with the tests of any
+/// other file. Returns `None` if there are none.
 fn what_is_tested(file: &TextFile) -> Option<String> {
     let is_test = file.path.starts_with("tests/")
         || file.path.contains("/tests/")

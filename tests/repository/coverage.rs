@@ -1,5 +1,5 @@
-//! The table `coverage.toml` is complete and true: each production of the grammar, each rule of the meaning of plans,
-//! and each code of a diagnostic has a test that exists.
+//! Tests that the table `coverage.toml` is complete and correct: each production of the grammar, each rule of the
+//! meaning of plans, and each code of a diagnostic has a test that exists.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,7 +13,7 @@ use mdle_tests::productions::{Productions, count};
 use mdle_tests::repository::{TextFile, files, root};
 use serde::Deserialize;
 
-/// The table.
+/// Content of `coverage.toml`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Table {
@@ -22,7 +22,7 @@ struct Table {
     codes: BTreeMap<String, Vec<String>>,
 }
 
-/// Productions that the same tests cover.
+/// Productions that are covered by the same tests.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Covered {
@@ -30,7 +30,7 @@ struct Covered {
     covers: Vec<String>,
 }
 
-/// A rule of what a plan means, and its tests.
+/// A rule of the meaning of plans, with its tests.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Rule {
@@ -43,7 +43,7 @@ fn table() -> Table {
     toml::from_str(&std::fs::read_to_string(root().join("tests/coverage.toml")).unwrap()).expect("the table")
 }
 
-/// The tests of the repository's files, by `path: name`, with their text.
+/// Returns the texts of all tests in the repository. The keys have the form `path: name`.
 fn tests() -> BTreeMap<String, String> {
     let mut tests = BTreeMap::new();
     for TextFile { path, text } in files(&[".rs"]) {
@@ -63,7 +63,7 @@ fn assert_none(breaches: &[String]) {
     assert!(breaches.is_empty(), "{}", breaches.join("\n"));
 }
 
-/// Returns the names that the table lacks, has twice, or has although they do not exist.
+/// Returns a message for each name that is missing in the table, is in it twice, or does not exist.
 fn differences<'a>(all: impl Iterator<Item = &'a str>, listed: impl Iterator<Item = &'a str>) -> Vec<String> {
     let all: BTreeSet<_> = all.collect();
     let mut seen = BTreeSet::new();
@@ -129,7 +129,7 @@ fn every_rule_has_tests_and_the_rules_are_in_order() {
     assert_eq!(table.rules.iter().map(|rule| &rule.says).collect::<BTreeSet<_>>().len(), table.rules.len());
 }
 
-/// Productions that occur only in texts with errors are not looked for: trees do not show them.
+/// Productions that occur only in texts with errors are not checked, because trees do not contain them.
 #[test]
 fn a_production_stands_in_a_plan_of_its_tests() {
     let (table, tests) = (table(), tests());
@@ -150,7 +150,7 @@ fn a_production_stands_in_a_plan_of_its_tests() {
     assert_none(&breaches);
 }
 
-/// The texts between quotes in the body of a test.
+/// Returns the texts between quotes in the body of a test.
 fn texts(body: &str) -> Vec<String> {
     let mut texts = Vec::new();
     let mut rest = body;

@@ -1,4 +1,5 @@
-//! The directions of the architecture: who may use whom, between packages and between the rooms of the compiler.
+//! Tests the dependency rules of the architecture, between packages and between the rooms of the compiler
+//! (ARCHITECTURE.md).
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -8,7 +9,7 @@ use std::process::Command;
 use crate::packages::PACKAGES;
 use mdle_tests::repository::{TextFile, files, names_from, root};
 
-/// Packages that need no operating system, so that a browser or a robot's own program can have them.
+/// Packages that need no operating system, so that they can be used in a browser or in the program of a robot.
 const PURE: &[&str] = &[
     "runtime/core",
     "runtime/quantity",
@@ -22,7 +23,7 @@ const PURE: &[&str] = &[
     "web/module",
 ];
 
-/// Packages of the operating system, and of what asks it for arguments, signals, threads and folders.
+/// Packages that need an operating system, or that use its arguments, signals, threads or folders.
 const OF_THE_SYSTEM: &[&str] = &[
     "clap",
     "clap_builder",
@@ -38,11 +39,12 @@ const OF_THE_SYSTEM: &[&str] = &[
     "windows-sys",
 ];
 
-/// Folders of the compiler's rooms, with their packages as Rust names them.
+/// Folders that contain the compiler's rooms, each with the name of its package in Rust code.
 const ROOM_FOLDERS: &[(&str, &str)] =
     &[("mdlec/compiler/src/", "mdle_compiler"), ("mdlec/theory/src/", "mdle_theory"), ("mdlec/src/", "mdlec")];
 
-/// Rooms of the compiler that each room may use. `crate` is the text of a `lib.rs` itself.
+/// Rooms of the compiler, each with the rooms that it may use. A room is a top-level module of a package. `crate`
+/// stands for the code in `lib.rs` itself.
 const ROOMS: &[(&str, &[&str])] = &[
     ("diagnostic", &[]),
     ("alphabet", &["diagnostic"]),
@@ -81,7 +83,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("main", &["cli"]),
 ];
 
-/// The rooms that may read files and the environment.
+/// Rooms that may read files and the environment.
 const WITH_IO: &[&str] = &["main", "cli", "link"];
 
 #[test]
@@ -136,7 +138,8 @@ fn emulators_are_built_on_the_libraries_of_executables() {
     }
 }
 
-/// Returns the packages that the package in `folder` is built with, itself among them, on Linux or in a browser.
+/// Returns the packages with which the package in `folder` is built on Linux or in a browser, including the package
+/// itself.
 fn needed(folder: &str) -> BTreeSet<String> {
     let packages = tree(folder, "{p}", &["x86_64-unknown-linux-gnu", "wasm32-unknown-unknown"]);
     packages
@@ -147,7 +150,7 @@ fn needed(folder: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// Returns a line in this format for each package that the package in `folder` is built with on these targets.
+/// Returns a line in the format `format` for each package with which the package in `folder` is built on these targets.
 fn tree(folder: &str, format: &str, targets: &[&str]) -> String {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
@@ -159,7 +162,7 @@ fn tree(folder: &str, format: &str, targets: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("names")
 }
 
-/// Returns the packages of the workspace that a manifest names as dependencies, of any sort.
+/// Returns the packages of the workspace that a manifest lists as dependencies of any kind.
 fn ours(manifest: &TextFile) -> impl Iterator<Item = &str> {
     let mut in_dependencies = false;
     manifest.text.lines().filter_map(move |line| {
@@ -204,8 +207,8 @@ struct Room {
     file: TextFile,
 }
 
-/// Returns the files of the compiler's rooms without tests. A `lib.rs`, which shows them on one screen, belongs to no
-/// room, nor do files that only tests share.
+/// Returns the files of the compiler's rooms without their tests. A `lib.rs` belongs to no room, because it shows all
+/// stages on one screen. Files that only tests share belong to no room either.
 fn rooms() -> impl Iterator<Item = Room> {
     files(&[".rs"]).into_iter().filter_map(|file| {
         let inside = ROOM_FOLDERS.iter().find_map(|(folder, _)| file.path.strip_prefix(folder))?.to_owned();
@@ -217,7 +220,8 @@ fn rooms() -> impl Iterator<Item = Room> {
     })
 }
 
-/// A line whose `super::` lead out of the room, where the names of other rooms could be had without `crate::`.
+/// Returns the first line in which `super::` leads out of the room. Such a line could use other rooms without naming
+/// `crate::`.
 fn climbs_to_the_root<'f>(inside: &str, file: &'f TextFile) -> Option<&'f str> {
     let folders = inside.matches('/').count();
     // room.rs and room/mod.rs are one step below the root.
@@ -307,7 +311,7 @@ fn the_host_is_generic_in_few_files() {
     assert_eq!(breaches, [""; 0]);
 }
 
-/// The lines that take an entry of a machine's tables by its number.
+/// Returns the lines that access an entry of a machine's tables by its index.
 fn indexed(text: &str) -> impl Iterator<Item = &str> {
     let tables = ["brackets", "scopes", "atoms", "laws"];
     let takes = ["[", ".get(", ".get_mut("];

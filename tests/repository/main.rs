@@ -1,4 +1,4 @@
-//! The repository: its files, its directions, its book, and the table of what tests cover.
+//! Tests of the repository: its files, its dependency rules, its book, and the table of what tests cover.
 
 mod book;
 mod circles;

@@ -1,5 +1,5 @@
-//! Targets that a manifest leaves out of `cargo test` have no tests: each would be compiled and linked once more, and
-//! rustdoc would read each library.
+//! Tests that targets that a manifest excludes from `cargo test` contain no tests. Without the exclusion, each target
+//! would be compiled and linked once more, and rustdoc would read each library.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_tests::repository::files;
@@ -9,18 +9,18 @@ use toml::Table;
 struct Target {
     /// Path of its root file from the root of the repository.
     path: String,
-    /// Flags of its table in the manifest.
+    /// The target's table in the manifest.
     table: Table,
 }
 
 impl Target {
-    /// Returns `true` if its table sets this flag to `false`.
+    /// Returns `true` if the target's table sets this flag to `false`.
     fn is_without(&self, flag: &str) -> bool {
         self.table.get(flag).and_then(toml::Value::as_bool) == Some(false)
     }
 }
 
-/// Returns the libraries, or the programs, whose manifests have tables for them.
+/// Returns the targets of this kind, `lib` or `bin`, that have a table in a manifest.
 fn targets(kind: &str) -> Vec<Target> {
     let mut targets = Vec::new();
     for manifest in files(&["Cargo.toml"]) {
@@ -39,13 +39,13 @@ fn targets(kind: &str) -> Vec<Target> {
     targets
 }
 
-/// Returns `true` if a file has a test.
+/// Returns `true` if a file contains a test.
 fn has_tests(text: &str) -> bool {
     text.lines().any(|line| line.trim_start() == "#[test]")
 }
 
-/// Returns `true` if the documentation in a file has an example that rustdoc compiles: a block without a language, of
-/// Rust, or with an attribute such as `no_run`.
+/// Returns `true` if the documentation in a file contains an example that rustdoc compiles: a block without a language,
+/// in Rust, or with an attribute such as `no_run`.
 fn has_examples(text: &str) -> bool {
     let lines = text.lines().map(str::trim_start);
     let documentation = lines.filter_map(|line| line.strip_prefix("///").or_else(|| line.strip_prefix("//!")));
@@ -54,7 +54,8 @@ fn has_examples(text: &str) -> bool {
     fences.step_by(2).any(|language| !["text", "mdle", "toml", "console"].contains(&language))
 }
 
-/// Asserts that no file of these targets is as a flag says that it is not.
+/// Asserts that `has` is `false` for all files of the targets that set `flag` to `false`. `is_in` returns `true` if a
+/// path is a file of a target.
 fn assert_none(targets: &[Target], flag: &str, is_in: fn(&Target, &str) -> bool, has: fn(&str) -> bool) {
     let left_out: Vec<_> = targets.iter().filter(|target| target.is_without(flag)).collect();
     assert!(left_out.len() > 3, "{} targets without {flag}", left_out.len());

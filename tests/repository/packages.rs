@@ -1,6 +1,7 @@
-//! The packages of the workspace, and the packages that each may use.
+//! The packages of the workspace, with the packages that each of them may use.
 
-/// Packages of the workspace that each package may use. A folder that is not listed may not hold a package.
+/// Folders of the packages of the workspace, each with the packages of the workspace that it may use. Any other folder
+/// must not contain a package.
 pub(crate) const PACKAGES: &[(&str, &[&str])] = &[
     ("runtime/core", &[]),
     ("runtime/quantity", &["mdle-runtime"]),

@@ -1,4 +1,5 @@
-//! The README and ARCHITECTURE.md agree with the repository: the first plan, the first command, links and rooms.
+//! Tests that the README and ARCHITECTURE.md agree with the repository: the first plan, the first command, links and
+//! rooms.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -18,7 +19,7 @@ fn its_first_plan_is_the_one_in_plans() {
     assert_eq!(code(shown), code(&plan));
 }
 
-/// A plan without its comments and blank lines.
+/// Returns the lines of a plan without its comments and empty lines.
 fn code(plan: &str) -> Vec<&str> {
     let lines = plan.lines().map(|line| line.split("//").next().unwrap_or_default().trim_end());
     lines.filter(|line| !line.is_empty()).collect()
@@ -58,7 +59,7 @@ fn links_of_documents_outside_the_book_lead_to_files() {
     assert!(count > 10, "{count} links");
 }
 
-/// The folder that a document's links start from.
+/// Returns the folder to which a document's links are relative.
 fn folder(document: &TextFile) -> std::path::PathBuf {
     root().join(&document.path).parent().unwrap().to_owned()
 }

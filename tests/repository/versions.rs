@@ -1,4 +1,4 @@
-//! One version number: that of the workspace is the number of all packages, of the CHANGELOG and of the book.
+//! Tests that all packages, the CHANGELOG and the book have the version number of the workspace.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -6,13 +6,13 @@ use std::fs;
 use mdle_tests::repository::{files, root};
 use toml::{Table, Value};
 
-/// The version of the workspace, which this package has too.
+/// Version of the workspace, which is also that of this package.
 const NUMBER: &str = env!("CARGO_PKG_VERSION");
 
-/// Packages that users copy or write, and number themselves.
+/// Packages that users copy or write, and for which they choose a version.
 const OF_USERS: [&str; 3] = ["runtime/template/", "targets/template/", "tests/application/"];
 
-/// Packages of the editors; each has its number in the first `"version"`.
+/// Files of the editors' packages; each has its version in the first `"version"`.
 const EDITORS: [&str; 3] =
     ["editors/test/package.json", "editors/tree-sitter/tree-sitter.json", "editors/vscode/package.json"];
 

@@ -1,7 +1,8 @@
-//! Properties of all bytes on a robot's line, at either end: libFuzzer searches for bytes that break them, and a test
-//! tries all bytes that were kept.
+//! Properties of any bytes on a robot's line, at either end. libFuzzer searches for bytes that violate them, and a test
+//! checks all bytes of the corpus.
 //!
-//! Each function panics where a property does not hold. The first byte determines the pieces in which the others come.
+//! Each function panics if a property does not hold. The first byte determines the length of the pieces in which all
+//! other bytes arrive.
 
 use mdle_atrv::{Packet, Reader, Report};
 use mdle_atrv_emulator::wire as rflex;
@@ -11,7 +12,7 @@ use mdle_scout_emulator::wire;
 /// Maximum number of bytes that a reader keeps of an incomplete message.
 const KEPT: usize = 1100;
 
-/// Splits all bytes but the first, which gives the length of a piece less 1.
+/// Splits all bytes after the first one into pieces. Their length is 1 plus the first byte modulo 100.
 fn in_pieces(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let (size, stream) =
         bytes.split_first().map_or((1, bytes), |(size, stream)| (1 + usize::from(*size) % 100, stream));
@@ -39,7 +40,7 @@ pub fn scout(bytes: &[u8]) {
     assert_eq!(requests(&mut robot, [frame.bytes().as_slice()].into_iter()), [asked]);
 }
 
-/// Reads them as the driver does.
+/// Reads the bytes as the Scout's driver does, and asserts the properties of the answers.
 fn answers(bytes: &[u8]) {
     let whole: Vec<u8> = in_pieces(bytes).flatten().copied().collect();
     let mut reader = Answers::default();

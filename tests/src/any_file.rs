@@ -1,6 +1,5 @@
-//! The properties of all bytes of a file that is not a plan: an alphabet, a machine, a script, a world, a map, a path,
-//! a robot's configuration, a record. libFuzzer searches for bytes without these properties, and a test tries the
-//! corpus.
+//! Properties of any bytes of a file that is not a plan: an alphabet, a machine, a script, a world, a map, a path, a
+//! robot's configuration, or a record. libFuzzer searches for bytes that violate them, and a test checks the corpus.
 //!
 //! Each function panics if a property does not hold.
 
@@ -31,13 +30,14 @@ static SHARED: LazyLock<Vec<AlphabetFile>> = LazyLock::new(|| {
     shared.filter_map(|file| alphabet::read(SourceId(0), file.text).0).collect()
 });
 
-/// A plan that scripts are run against.
+/// Plan that is run on scripts.
 static PLAN: LazyLock<Vec<Compiled>> = LazyLock::new(|| {
     let plan = "{ P (a) ExecPlan inf { (Atom (b OR wait 1) idle) (Atom (RISING c) idle) } }";
     compile(SourceId(0), plan, scripted(), None).0
 });
 
-/// An alphabet is read or has errors that can be shown; one without errors is bound as Rust.
+/// Asserts that an alphabet is read or has errors that can be shown, and that an alphabet without errors can be bound
+/// as Rust.
 pub fn alphabet(bytes: &[u8]) {
     let text = text(bytes);
     let mut sources = Sources::default();
@@ -56,8 +56,8 @@ pub fn alphabet(bytes: &[u8]) {
     }
 }
 
-/// A machine is read or has an error; for a machine that is read, Theorem 1 has an answer, and a plan can be made with
-/// `after`.
+/// Asserts that a machine is read or has an error. For a machine that is read, Theorem 1 must have an answer, and a
+/// plan with `after` must exist.
 pub fn machine(bytes: &[u8]) {
     let Ok(machine) = theorem::read(&text(bytes)) else { return };
     let answer = theorem::decompile(&machine, STEPS);
@@ -71,7 +71,8 @@ pub fn machine(bytes: &[u8]) {
     assert!(!theorem::augment(&machine).is_empty());
 }
 
-/// A script is read or has an error; one that is read can be run, and its time never goes back.
+/// Asserts that a script is read or has an error, that the time of a script never decreases, and that a plan can be run
+/// on it.
 pub fn script(bytes: &[u8]) {
     let Ok(script) = Script::read(&text(bytes)) else { return };
     assert!(script.turns().is_sorted_by_key(|turn| turn.t), "{script:?}");
@@ -81,14 +82,14 @@ pub fn script(bytes: &[u8]) {
     }
 }
 
-/// A world is read or has an error; in one that is read, distances are numbers.
+/// Asserts that a world is read or has an error, and that distances in the world are valid numbers.
 pub fn world(bytes: &[u8]) {
     if let Ok(world) = World::parse("world.toml", &text(bytes)) {
         stands(&world);
     }
 }
 
-/// A map results in a world or an error; the bytes before `P2` or `P5` are the YAML file.
+/// Asserts that a map is read as a world or has an error. The bytes before `P2` or `P5` are the YAML file.
 pub fn map(bytes: &[u8]) {
     let begin = bytes.windows(2).position(|pair| [&b"P2"[..], b"P5"].contains(&pair));
     let (header, image) = bytes.split_at(begin.unwrap_or(bytes.len()));
@@ -107,7 +108,8 @@ fn stands(world: &World) {
     }
 }
 
-/// A path is read or has an error; one that is read goes on in time, and is not too fast.
+/// Asserts that a path is read or has an error. The times of a path must increase, and its speeds must be within the
+/// limit.
 pub fn path(bytes: &[u8]) {
     let fastest = Twist { v: MetersPerSecond(0.5), omega: RadiansPerSecond(1.0) };
     let Ok(setpoints) = setpoints("path.csv", bytes, fastest) else { return };
@@ -118,7 +120,8 @@ pub fn path(bytes: &[u8]) {
     );
 }
 
-/// A record is read or has an error; one that is read whole and written again has the same turns.
+/// Asserts that a record is read or has an error. A record that is read completely and written again must have the same
+/// turns.
 pub fn record(bytes: &[u8]) {
     let Ok((begin, turns)) = Records::open(bytes) else { return };
     let Ok(turns) = turns.collect::<Result<Vec<_>, _>>() else { return };
@@ -139,7 +142,8 @@ pub fn record(bytes: &[u8]) {
     assert_eq!(format!("{again:?} {same:?}"), format!("{begin:?} {turns:?}"));
 }
 
-/// A robot's configuration is read or has an error; what is shown of one that is read is the same configuration.
+/// Asserts that a robot's configuration is read or has an error. The text that is shown for a configuration must be the
+/// same configuration.
 pub fn configuration(bytes: &[u8]) {
     let name = format!("mdle-any-file-{}-{:?}.toml", std::process::id(), std::thread::current().id());
     let file = std::env::temp_dir().join(name);
@@ -160,7 +164,7 @@ pub fn configuration(bytes: &[u8]) {
     fs::remove_file(&file).expect("a temporary file");
 }
 
-/// Shows what was found, to people and to programs.
+/// Asserts that each diagnostic can be shown as text and as JSON.
 fn shown(sources: &Sources, found: &[Diagnostic]) {
     for diagnostic in found {
         let shown = sources.render(diagnostic);

@@ -1,4 +1,4 @@
-//! The properties of every text: libFuzzer searches for a text without them, and a test tries the corpus.
+//! Properties of any text. libFuzzer searches for a text that violates them, and a test checks the corpus.
 //!
 //! Each function panics if a property does not hold.
 
@@ -23,20 +23,21 @@ use crate::random_script::script;
 static SIMULATOR: LazyLock<Alphabet> = LazyLock::new(|| alphabet(Some("sim")));
 static EVERYTHING: LazyLock<Alphabet> = LazyLock::new(|| alphabet(None));
 
-/// Maximum number of brackets of a plan of which Rust is emitted, and the most of one that is run.
+/// Maximum number of brackets of a plan for which Rust is emitted; `RUN` is the maximum for a plan that is run.
 const EMITTED: usize = 1000;
 const RUN: usize = 100;
 
-/// Maximum number of turns of a run: each may make as many transitions as there are.
+/// Maximum number of turns of a run. It is small, because each turn may make the maximum number of transitions.
 const TURNS: usize = 6;
 
-/// Returns bytes as a text: each invalid sequence becomes one character.
+/// Returns bytes as text, with a replacement character for each invalid sequence.
 #[must_use]
 pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// A text has a tree or errors, whose places are in it, and which can be shown; an error after it changes no tree.
+/// Asserts that a text has a tree or errors, that the errors are inside the text and can be shown, and that an error
+/// after the text does not change the tree.
 pub fn parse(text: &str) {
     let mut sources = Sources::default();
     sources.add("before.mdle", "Γ");
@@ -61,8 +62,8 @@ pub fn parse(text: &str) {
     }
 }
 
-/// The canonical layout of a text has its tree and its comments, and is its own layout; a text with errors has no
-/// layout.
+/// Asserts that the canonical layout of a text has the same tree and comments as the text, and is its own canonical
+/// layout. A text with errors must have no layout.
 pub fn layout(text: &str) {
     let id = SourceId(0);
     let arena = arena_for(text);
@@ -79,8 +80,8 @@ pub fn layout(text: &str) {
     assert_eq!(format(id, &laid_out).as_ref(), Ok(&laid_out));
 }
 
-/// For every robot a text has plans that can be analysed, or errors that can be shown; plans written as formulas are
-/// the same plans, if they can be written so.
+/// Asserts for several robots that a text has plans that can be analysed, or errors that can be shown. The formal
+/// notation of a plan must be an equivalent plan.
 pub fn check(text: &str) {
     for alphabet in [&*EVERYTHING, &*SIMULATOR, scripted()] {
         let all = compiled(text, alphabet);
@@ -95,7 +96,7 @@ pub fn check(text: &str) {
     }
 }
 
-/// An analysis has a result, and agrees with itself.
+/// Asserts that a machine can be analysed, and that the analysis is consistent.
 fn analysed(machine: &Machine) {
     let analysis = analyze(machine);
     assert_eq!((analysis.states, analysis.atoms.len()), (machine.states(), machine.atoms().len()));
@@ -126,7 +127,7 @@ fn behavior(machine: &Machine) -> String {
     format!("{:?} {scopes:?} {laws:?} {marks:?} {} {quarks:?}", machine.tables(), machine.sizes().memories)
 }
 
-/// The Rust of a plan is Rust, in every shape.
+/// Asserts that the Rust that is emitted for a plan is valid syntax in every shape.
 pub fn emit(text: &str) {
     let mut sources = Sources::default();
     sources.add("plan.mdle", text);
@@ -146,7 +147,7 @@ pub fn emit(text: &str) {
     }
 }
 
-/// All machines print the same trace of a plan; the text is also the seed of the random script.
+/// Asserts that all machines print the same trace of a plan. The text is also the random seed of the script.
 pub fn run(text: &str) {
     let seed = text.bytes().fold(0_u64, |seed, byte| seed.wrapping_mul(31).wrapping_add(u64::from(byte)));
     let script = script(&mut Chance::new(seed), TURNS);
@@ -165,7 +166,7 @@ fn lines(trace: &[mdle_compiler::trace::TraceLine<'_>]) -> String {
     trace.iter().map(|line| format!("{line}\n")).collect()
 }
 
-/// Returns the plans of a text, after all messages about it have been shown.
+/// Returns the plans of a text, and asserts that all messages about it can be shown.
 fn compiled(text: &str, alphabet: &Alphabet) -> Vec<Compiled> {
     let mut sources = Sources::default();
     for file in builtin::alphabets() {
@@ -178,7 +179,7 @@ fn compiled(text: &str, alphabet: &Alphabet) -> Vec<Compiled> {
     compiled
 }
 
-/// Shows what was found, to people and to programs.
+/// Asserts that the diagnostics are sorted, and that each can be shown as text and as JSON.
 fn shown(sources: &Sources, found: &[Diagnostic]) {
     assert!(found.is_sorted_by_key(|found| found.span()), "{found:?}");
     for diagnostic in found {

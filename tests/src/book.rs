@@ -6,23 +6,24 @@ use mdle_compiler::diagnostic::Code;
 
 use crate::repository::{TextFile, files, root};
 
-/// A fenced block of a page: the words after its backticks, separated by commas, and its content, with included files.
+/// A fenced block of a page: the words after its backticks, which are separated by commas, and its content, in which
+/// included files are inserted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fence {
-    /// Kind of the block first, then its other properties.
+    /// Words of the block: first its kind, then its other properties.
     pub words: Vec<String>,
     /// Content of the block.
     pub text: String,
 }
 
 impl Fence {
-    /// The file that it is to be written to.
+    /// Returns the name of the file to which the block is written, if it names one.
     #[must_use]
     pub fn file(&self) -> Option<&str> {
         self.words.iter().skip(1).map(String::as_str).find(|word| word.contains('.'))
     }
 
-    /// The codes of the messages that are expected of it.
+    /// Returns the codes of the messages that the block is expected to cause.
     #[must_use]
     pub fn codes(&self) -> Vec<&str> {
         self.words.iter().skip(1).map(String::as_str).filter(|word| !word.contains('.')).collect()
@@ -35,13 +36,14 @@ pub fn pages() -> Vec<TextFile> {
     files(&[".md"]).into_iter().filter(|file| file.path.starts_with("docs/src/")).collect()
 }
 
-/// The name of a page's file.
+/// Returns the name of a page's file.
 #[must_use]
 pub fn name(page: &TextFile) -> &str {
     page.path.trim_start_matches("docs/src/")
 }
 
-/// Returns the name of the page that a link of `page` leads to, whose path begins at the page's folder.
+/// Returns the name of the page to which a link of `page` leads. The path of the link is relative to the folder of the
+/// page.
 #[must_use]
 pub fn leads_to(page: &TextFile, link: &str) -> String {
     if link.is_empty() {
@@ -58,7 +60,7 @@ pub fn leads_to(page: &TextFile, link: &str) -> String {
     parts.join("/")
 }
 
-/// The fenced blocks of a page, in their order.
+/// Returns the fenced blocks of a page in order.
 #[must_use]
 pub fn fences(page: &TextFile) -> Vec<Fence> {
     let mut found: Vec<Fence> = Vec::new();
@@ -85,7 +87,7 @@ pub fn fences(page: &TextFile) -> Vec<Fence> {
     found
 }
 
-/// A line, or the file that it includes, without its last line end.
+/// Returns a line, or the file that the line includes, without the last line break.
 fn included(line: &str) -> String {
     let Some(path) = line.strip_prefix("{{#include ").and_then(|line| line.strip_suffix("}}")) else {
         return line.to_owned();
@@ -94,7 +96,7 @@ fn included(line: &str) -> String {
     text.trim_end().to_owned()
 }
 
-/// The targets of a page's links, blocks of code aside.
+/// Returns the targets of a page's links, except those in blocks of code.
 #[must_use]
 pub fn links(page: &TextFile) -> Vec<&str> {
     let mut is_inside = false;
@@ -106,7 +108,7 @@ pub fn links(page: &TextFile) -> Vec<&str> {
     lines.flat_map(|line| line.split("](").skip(1).filter_map(|rest| rest.split(')').next())).collect()
 }
 
-/// The anchors of a page: a heading's words in small letters, joined by `-`.
+/// Returns the anchors of a page. An anchor consists of the words of a heading in lower case, joined by `-`.
 #[must_use]
 pub fn anchors(page: &TextFile) -> Vec<String> {
     let headings =

@@ -1,12 +1,12 @@
-//! Chance that is the same on every machine: a seed decides everything.
+//! Random choices that are the same on every machine, because they depend only on a seed.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// Returns `count` times the number in the variable `MDLE_LONG`: how often a test repeats something with other random
-/// choices.
+/// Returns the number of times that a test repeats something with different random choices: `count` times the number in
+/// the variable `MDLE_LONG`.
 ///
-/// Without the variable it is half of `count`. `.ci/thorough` sets it.
+/// Without the variable it is half of `count`. `.ci/thorough` sets the variable.
 ///
 /// # Panics
 ///
@@ -16,8 +16,8 @@ pub fn repeated(count: u64) -> u64 {
     factor().map_or(count.div_ceil(2), |factor| count * factor)
 }
 
-/// Returns `most` if the variable `MDLE_LONG` is more than 1, and `less` otherwise: the size of an input that takes an
-/// unoptimized mdlec long.
+/// Returns the size of an input that takes an unoptimized mdlec long: `most` if the variable `MDLE_LONG` is more than
+/// 1, otherwise `less`.
 ///
 /// # Panics
 ///
@@ -34,28 +34,28 @@ fn factor() -> Option<u64> {
     Some(factor.expect("MDLE_LONG is a whole number from 1 on"))
 }
 
-/// A source of choices.
+/// A source of random choices.
 #[derive(Debug, Clone)]
 pub struct Chance(ChaCha8Rng);
 
 impl Chance {
-    /// The source of this seed.
+    /// Returns a source of random choices with this seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self(ChaCha8Rng::seed_from_u64(seed))
     }
 
-    /// A number below `end`, which is not 0. The bias of the remainder is of no interest here.
+    /// Returns a random number below `end`, which must not be 0. The result has a slight bias.
     pub fn below(&mut self, end: usize) -> usize {
         (self.0.next_u64() % end as u64) as usize
     }
 
-    /// True this often in a hundred.
+    /// Returns `true` with this probability, in percent.
     pub fn percent(&mut self, percent: usize) -> bool {
         self.below(100) < percent
     }
 
-    /// Returns one of the choices.
+    /// Returns a random element of `choices`.
     pub fn pick<'a, T: ?Sized>(&mut self, choices: &[&'a T]) -> &'a T {
         choices[self.below(choices.len())]
     }

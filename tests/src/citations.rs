@@ -2,21 +2,21 @@
 
 use crate::repository::TextFile;
 
-/// The folder of the book's pages, as citations begin with it.
+/// Folder of the book's pages, with which citations begin.
 const BOOK: &str = "docs/src/";
 
 /// A citation, such as `PAGE, 5.2 and 6`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Citation {
-    /// The path of the page from the root of the repository.
+    /// Path of the page from the root of the repository.
     pub path: String,
-    /// The numbers of the sections; empty if the page is cited as a whole.
+    /// Numbers of the sections; empty if the whole page is cited.
     pub sections: Vec<String>,
-    /// `true` if the path ends with a quotation mark, as a path that code opens does.
+    /// `true` if a quotation mark follows the path, as in code that opens the file.
     pub is_quoted: bool,
 }
 
-/// Returns the citations in a text. A citation may go on in the next line, after the mark of a comment.
+/// Returns the citations in a text. A citation may continue on the next line, after the mark of a comment.
 #[must_use]
 pub fn citations(text: &str) -> Vec<Citation> {
     let lines = text.lines().map(|line| line.trim_start().trim_start_matches(['/', '!', '#']).trim());
@@ -32,7 +32,7 @@ pub fn citations(text: &str) -> Vec<Citation> {
     found.collect()
 }
 
-/// Returns the numbers after a path: `, 5.2 and 6`.
+/// Returns the section numbers after a path, as in `, 5.2 and 6`.
 fn sections(mut rest: &str) -> Vec<String> {
     let mut sections = Vec::new();
     let mut joints: &[&str] = &[", "];
@@ -48,13 +48,13 @@ fn sections(mut rest: &str) -> Vec<String> {
     sections
 }
 
-/// Returns the number of a section that a text begins with: digits, with a point only between digits.
+/// Returns the section number at the beginning of a text: digits, with points only between digits.
 fn number(text: &str) -> &str {
     let end = text.find(|letter: char| !(letter.is_ascii_digit() || letter == '.')).unwrap_or(text.len());
     text.get(..end).unwrap_or_default().trim_end_matches('.')
 }
 
-/// Returns the numbers of the sections of a page: what its headings begin with.
+/// Returns the section numbers of a page, with which its headings begin.
 #[must_use]
 pub fn numbered_sections(page: &TextFile) -> Vec<&str> {
     let headings = page.text.lines().filter(|line| line.starts_with('#'));
@@ -62,7 +62,7 @@ pub fn numbered_sections(page: &TextFile) -> Vec<&str> {
     numbers.filter(|number| !number.is_empty()).collect()
 }
 
-/// Returns why a citation leads nowhere, or `None` if its page and all its sections exist.
+/// Returns the reason why a citation is wrong, or `None` if its page and all its sections exist.
 #[must_use]
 pub fn dangling(citation: &Citation, pages: &[TextFile]) -> Option<String> {
     let Some(page) = pages.iter().find(|page| page.path == citation.path) else {

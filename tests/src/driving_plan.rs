@@ -1,10 +1,10 @@
-//! Random plans that drive a simulated robot about.
+//! Generates random plans that drive a simulated robot.
 
 use std::fmt::Write as _;
 
 use crate::chance::Chance;
 
-/// A plan of the simulated robot: behaviors in behaviors, loops, frames, memories, and laws that drive it about.
+/// Returns a random plan for the simulated robot, with nested behaviors, loops, frames, memories, and laws that drive.
 #[must_use]
 pub fn random_plan(chance: &mut Chance) -> String {
     let mut text = String::from("{ Main (wait 90)\n");
@@ -13,7 +13,7 @@ pub fn random_plan(chance: &mut Chance) -> String {
     text + "}\n"
 }
 
-/// Some elements of a behavior that is `depth` levels above the deepest.
+/// Appends random elements of a behavior. Behaviors are nested at most `depth` deep in it.
 fn strings(chance: &mut Chance, text: &mut String, depth: usize, labels: &mut usize) {
     for _ in 0..1 + chance.below(4) {
         let frame = chance.pick(&["", "", "FRAME 45 ", "FRAME here "]);
@@ -42,7 +42,7 @@ fn strings(chance: &mut Chance, text: &mut String, depth: usize, labels: &mut us
     }
 }
 
-/// A condition with operators in operators.
+/// Returns a random condition with nested operators.
 fn condition(chance: &mut Chance, depth: usize) -> String {
     if depth > 0 && chance.percent(40) {
         let (one, other) = (condition(chance, depth - 1), condition(chance, depth - 1));

@@ -1,4 +1,4 @@
-//! The part of ECMAScript's expressions that conditions of mdlec's SCXML machines use.
+//! Evaluates the subset of ECMAScript's expressions that conditions of mdlec's SCXML machines use.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Returns `true` if a condition of this value holds.
+    /// Returns `true` if a condition with this value holds.
     #[must_use]
     pub fn is_true(&self) -> bool {
         match self {
@@ -48,7 +48,7 @@ impl Value {
 /// Returns the value of an expression.
 ///
 /// # Panics
-/// When the expression is not of the part that is read here.
+/// If the expression is not in the supported subset.
 #[must_use]
 pub fn evaluate(text: &str, data: &BTreeMap<String, Value>) -> Value {
     let mut reader = Reader { rest: text, data };
@@ -57,7 +57,7 @@ pub fn evaluate(text: &str, data: &BTreeMap<String, Value>) -> Value {
     value
 }
 
-/// Reads and evaluates in one pass; parts that are not `live` are only read.
+/// Parser that evaluates an expression in the same pass. Parts that are not `live` are parsed but not evaluated.
 struct Reader<'r> {
     rest: &'r str,
     data: &'r BTreeMap<String, Value>,
@@ -186,7 +186,7 @@ impl Reader<'_> {
         name
     }
 
-    /// A string in double quotes.
+    /// Reads a string in double quotes.
     fn text(&mut self) -> String {
         let mut letters = self.rest.trim_start().strip_prefix('"').expect("a quote").chars();
         let mut text = String::new();

@@ -1,9 +1,9 @@
-//! Sizes of the sections of an executable: the tools that print them are not on every machine.
+//! Reads the sizes of an executable's sections. The tools that print them are not available on every machine.
 
-/// The sizes in bytes of the sections of a 64-bit ELF file of this machine's byte order, by name.
+/// Returns the names and the sizes in bytes of the sections of a 64-bit ELF file with this machine's byte order.
 ///
 /// # Panics
-/// If it is not such a file.
+/// If the file is not such a file.
 #[must_use]
 pub fn sections(file: &[u8]) -> Vec<(String, usize)> {
     assert!(file.starts_with(b"\x7fELF\x02"), "a 64-bit ELF file");

@@ -1,4 +1,4 @@
-//! Emitted Rust of a plan for the target `scripted`, or for a robot with other quarks.
+//! Emits the Rust of a plan for the target `scripted`, or for a robot with other quarks.
 
 use mdle_compiler::alphabet::{Alphabet, combine, read};
 use mdle_compiler::diagnostic::{SourceId, Sources};
@@ -7,30 +7,30 @@ use mdle_compiler::rust::{Header, Shape, emit, emit_as};
 
 use crate::pipeline::scripted;
 
-/// The file of plan `Main` for the target `scripted`.
+/// Returns the emitted file of the plan `Main` for the target `scripted`.
 #[must_use]
 pub fn emitted(plan: &str) -> String {
     emitted_for(scripted(), plan)
 }
 
-/// Returns the file of plan `Main` for the target `scripted`, in this shape.
+/// Returns the emitted file of the plan `Main` for the target `scripted`, in this shape.
 #[must_use]
 pub fn emitted_as(shape: Shape, plan: &str) -> String {
     let sources = sources(plan);
     emit_as(shape, &machine(scripted(), plan), header(&sources), scripted())
 }
 
-/// Returns the file of plan `Main` for the robot of this alphabet, in the shape that suits the plan.
+/// Returns the emitted file of the plan `Main` for a robot with this alphabet, in the shape that suits the plan.
 #[must_use]
 pub fn emitted_for(alphabet: &Alphabet, plan: &str) -> String {
     let sources = sources(plan);
     emit(&machine(alphabet, plan), header(&sources), alphabet)
 }
 
-/// The alphabet of a robot that has these quarks.
+/// Returns the alphabet of a robot with these quarks.
 ///
 /// # Panics
-/// If they are not declared as they should be.
+/// If the declarations have errors.
 #[must_use]
 pub fn alphabet(declarations: &str) -> Alphabet {
     let text = format!("target t : crate t, period 1s; {declarations}");

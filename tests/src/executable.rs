@@ -1,4 +1,4 @@
-//! The real `mdlec`, built from this checkout, and the executables that it builds.
+//! Builds the real `mdlec` from this checkout, and runs it and the executables that it builds.
 
 use std::ffi::OsStr;
 use std::io::Write;
@@ -9,24 +9,24 @@ use std::sync::OnceLock;
 
 use crate::repository::root;
 
-/// The binary `mdlec`, as it is now: a test may be run before anything has built it.
+/// Returns the path of the binary `mdlec`. It is built first, because a test may run before anything else has built it.
 #[must_use]
 pub fn mdlec() -> &'static Path {
     static MDLEC: OnceLock<PathBuf> = OnceLock::new();
     MDLEC.get_or_init(|| built("mdlec"))
 }
 
-/// The binary `mdle`, as it is now.
+/// Returns the path of the binary `mdle`, which is built first.
 #[must_use]
 pub fn mdle() -> &'static Path {
     static MDLE: OnceLock<PathBuf> = OnceLock::new();
     MDLE.get_or_init(|| built("mdle"))
 }
 
-/// Builds this binary.
+/// Builds a binary, and returns its path.
 ///
-/// Cargo chooses the features of all libraries for the whole workspace and its tests, as in `cargo test --workspace`,
-/// because the command names the workspace and a test: what that command has compiled is not compiled again.
+/// The command names the workspace and a test, so that cargo selects the same features of all libraries as in `cargo
+/// test --workspace`. Therefore nothing that this command has compiled is compiled again.
 fn built(binary: &str) -> PathBuf {
     let target = target();
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
@@ -40,10 +40,10 @@ fn built(binary: &str) -> PathBuf {
     target.join("debug").join(binary)
 }
 
-/// A test that cargo has built soon: that of `runtime/core`.
+/// Name of a test that cargo builds quickly, in `runtime/core`.
 const SMALL_TEST: &str = "alphabet";
 
-/// The target folder of the build that this test belongs to, wherever `CARGO_TARGET_DIR` put it.
+/// Returns the target folder of the build to which this test belongs, even if `CARGO_TARGET_DIR` is set.
 #[must_use]
 pub fn target() -> PathBuf {
     // TARGET/PROFILE/deps/this-test
@@ -51,7 +51,7 @@ pub fn target() -> PathBuf {
     this.ancestors().nth(3).expect("a target folder").to_owned()
 }
 
-/// Returns an empty folder for a test. Tests in the same file have to name theirs differently; those of other files may
+/// Returns an empty folder for a test. Tests in the same file must use different names; tests in different files may
 /// use the same name.
 #[must_use]
 #[track_caller]
@@ -66,8 +66,8 @@ pub fn folder(test: &str) -> PathBuf {
     folder.canonicalize().expect("a folder")
 }
 
-/// Runs `mdlec` with these arguments in `folder`, and returns its output without the messages about builds of other
-/// tests. Its cache outlives the tests, so that only the first compiles the runtime.
+/// Runs `mdlec` with these arguments in `folder`, and returns its output without messages about builds of other tests.
+/// The cache is kept between test runs, so that only the first build compiles the runtime.
 #[must_use]
 pub fn run_mdlec(folder: &Path, arguments: &[&str]) -> Output {
     let mut output = command(folder, arguments).output().expect("mdlec runs");
@@ -89,7 +89,7 @@ pub fn run_mdlec_reading(folder: &Path, arguments: &[&str], input: &str) -> Outp
     output
 }
 
-/// `mdlec` with these arguments in `folder`, to be run as a test likes.
+/// Returns a command that runs `mdlec` with these arguments in `folder`.
 #[must_use]
 pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(mdlec());
@@ -100,13 +100,13 @@ pub fn command(folder: &Path, arguments: &[&str]) -> Command {
 /// Start of the messages about builds of other tests, which share the cache.
 const WAITING: &str = "waiting for another ";
 
-/// The messages, without those about builds of other tests.
+/// Returns the messages without those about builds of other tests.
 #[must_use]
 pub fn without_waiting(message: &str) -> String {
     message.lines().filter(|line| !line.starts_with(WAITING)).fold(String::new(), |text, line| text + line + "\n")
 }
 
-/// The cache that the tests share.
+/// Returns the folder of the cache that the tests share.
 #[must_use]
 pub fn cache() -> PathBuf {
     target().join("tmp/mdlec-cache")

@@ -1,27 +1,27 @@
-//! A plan run by brute force: from each situation that it can be in, a turn for each combination of quark values and
-//! each step of time. Written from the rules (docs/src/reference/semantics.md, 3 to 6) alone; it shares no stepping
-//! with any machine.
+//! Runs a plan by brute force: from each situation that the plan can reach, a turn for each combination of quark values
+//! and each step of time. It is written only from the rules (docs/src/reference/semantics.md, 3 to 6), and shares no
+//! code for steps with any machine.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use mdle_compiler::plan::{Condition, Interrupt, Mark, Node, Plan, QuarkId, Record, RecordId, Situation};
 
-/// Values of the quarks in a turn, by their numbers.
+/// Values of the quarks in a turn. The indices are the numbers of the quarks.
 #[derive(Debug, Clone, Default)]
 pub struct QuarkValues {
     /// Interrupts that have fired.
     pub fired: Vec<bool>,
-    /// Laws that are done.
+    /// Laws that have completed.
     pub completed: Vec<bool>,
 }
 
-/// Maximum number of transitions of one turn.
+/// Maximum number of transitions of a turn.
 const TRANSITIONS: usize = 4096;
 
 /// A scope, a loop or an atom.
 struct Part<'p> {
     interrupt: Option<&'p Interrupt>,
-    /// The passes of a loop; 0 is for ever.
+    /// Number of passes of a loop; 0 for an endless loop.
     times: u64,
     law: Option<QuarkId>,
     record: Option<Record>,
@@ -29,13 +29,13 @@ struct Part<'p> {
     children: Vec<usize>,
 }
 
-/// A plan with its parts numbered in pre-order.
+/// A plan whose parts are numbered in pre-order.
 pub struct Explorer<'p> {
     plan: &'p Plan,
     parts: Vec<Part<'p>>,
 }
 
-/// A part that is being run.
+/// A part of the plan that is currently entered.
 #[derive(Debug, Clone)]
 struct Frame {
     part: usize,
@@ -46,23 +46,24 @@ struct Frame {
     facts: Vec<bool>,
 }
 
-/// Situation of a plan.
+/// Situation of a running plan.
 #[derive(Debug, Clone)]
 pub struct Run {
     frames: Vec<Frame>,
-    /// Nanoseconds since it began.
+    /// Nanoseconds since the plan began.
     pub now: u64,
-    /// Nanometres driven since then.
+    /// Nanometres that the robot has driven since the plan began.
     pub way: u64,
 }
 
 /// Result of a turn.
 #[derive(Debug, Default)]
 pub struct Turn {
-    /// The atoms that were current, by their parts; the last one's law is applied unless the turn was cut.
+    /// Numbers of the atoms that were current in the turn, in order. The law of the last one is applied unless the turn
+    /// is cut.
     pub current: Vec<usize>,
-    /// The parts that ended, each with the operands of its interrupt that had fired; without operands if its law was
-    /// done.
+    /// Numbers of the parts that ended, each with the operands of its interrupt that fired; without operands if the law
+    /// completed.
     pub ended: Vec<(usize, Vec<usize>)>,
     /// `true` if a law was applied.
     pub applied: bool,
@@ -70,7 +71,7 @@ pub struct Turn {
     pub over: bool,
 }
 
-/// Situation in which a condition is read.
+/// Situation in which a condition is evaluated.
 struct At<'r, 'p> {
     explorer: &'r Explorer<'p>,
     run: &'r Run,
@@ -104,7 +105,7 @@ impl Situation for At<'_, '_> {
 }
 
 impl<'p> Explorer<'p> {
-    /// Nodes of a plan, as the explorer numbers them.
+    /// Returns an explorer of a plan, which numbers the parts of the plan.
     #[must_use]
     pub fn new(plan: &'p Plan) -> Self {
         let mut explorer = Self { plan, parts: Vec::new() };
@@ -139,7 +140,7 @@ impl<'p> Explorer<'p> {
         }
     }
 
-    /// The plan as it begins.
+    /// Returns the situation at the beginning of the plan.
     #[must_use]
     pub fn begin(&self) -> Run {
         let mut run = Run { frames: Vec::new(), now: 0, way: 0 };
@@ -147,7 +148,7 @@ impl<'p> Explorer<'p> {
         run
     }
 
-    /// The operands of a part's interrupt.
+    /// Returns the operands of a part's interrupt.
     #[must_use]
     pub fn operands(&self, part: usize) -> &'p [Condition] {
         self.parts[part].interrupt.map_or(&[], |interrupt| interrupt.condition.operands())
@@ -171,7 +172,7 @@ impl<'p> Explorer<'p> {
         }
     }
 
-    /// Makes one turn.
+    /// Runs a turn.
     #[must_use]
     pub fn turn(&self, run: &mut Run, values: &QuarkValues) -> Turn {
         let mut turn = Turn::default();
@@ -194,7 +195,8 @@ impl<'p> Explorer<'p> {
         turn
     }
 
-    /// Returns the outermost part that ends, by its place among the parts that enclose the current atom.
+    /// Returns the outermost part that ends, as an index among the entered parts, with the operands that fired. Returns
+    /// `None` if no part ends.
     fn fired(&self, run: &Run, values: &QuarkValues) -> Option<(usize, Vec<usize>)> {
         for (place, frame) in run.frames.iter().enumerate() {
             let at = At { explorer: self, run, frame, values };
@@ -209,7 +211,8 @@ impl<'p> Explorer<'p> {
         is_done.then(|| (run.frames.len() - 1, Vec::new()))
     }
 
-    /// Ends the part at this place and goes on to its successor; `false` if there is no successor.
+    /// Ends the entered part with the index `place`, and enters its successor; returns `false` if there is no
+    /// successor.
     fn end(&self, run: &mut Run, mut place: usize, cause: Option<usize>) -> bool {
         let mut ended = vec![(run.frames[place].part, cause)];
         let next = loop {
@@ -233,7 +236,7 @@ impl<'p> Explorer<'p> {
         true
     }
 
-    /// Records the labels of the parts that ended together.
+    /// Updates the records of `after` with the labels of the parts that ended together.
     fn record(&self, run: &mut Run, ended: &[(usize, Option<usize>)]) {
         let mut fresh: BTreeMap<RecordId, Vec<u32>> = BTreeMap::new();
         for (part, cause) in ended {
@@ -251,7 +254,7 @@ impl<'p> Explorer<'p> {
         }
     }
 
-    /// Sets the memories of RISING conditions whose operand has not fired.
+    /// Sets the memories of RISING conditions whose operand has not fired in this turn.
     fn remember(&self, run: &mut Run, values: &QuarkValues) {
         let mut set = Vec::new();
         for (place, frame) in run.frames.iter().enumerate() {
@@ -266,7 +269,8 @@ impl<'p> Explorer<'p> {
         set.into_iter().for_each(|(place, memory)| run.frames[place].memories[memory] = true);
     }
 
-    /// Returns a key that distinguishes situations; times only up to `longest`, after which every timer is over.
+    /// Returns a key that distinguishes situations. Times and distances are limited to `longest`, which exceeds all
+    /// timers.
     fn key(&self, run: &Run, longest: u64) -> Vec<u64> {
         let mut key = Vec::new();
         for frame in &run.frames {
@@ -277,9 +281,9 @@ impl<'p> Explorer<'p> {
         key
     }
 
-    /// Visits every turn from every situation that can be reached, breadth first, with these combinations of quark
-    /// values and these steps of time, with and without a step of the way if a condition reads it; at most `most`
-    /// situations. Returns `true` if these were all.
+    /// Visits every turn from every reachable situation, breadth first, for each of these combinations of quark values
+    /// and steps of time. If a condition reads the distance driven, each turn is visited with and without a movement.
+    /// Visits at most `most` situations, and returns `true` if these were all.
     pub fn explore(
         &self,
         values: &[QuarkValues],
@@ -287,7 +291,7 @@ impl<'p> Explorer<'p> {
         most: usize,
         visit: &mut impl FnMut(&Turn, &Run),
     ) -> bool {
-        /// Mean number of transitions that a situation may take: searches that are cut are long.
+        /// Maximum mean number of transitions per situation, because searches with many cut turns take long.
         const TRANSITIONS_EACH: usize = 500;
         let longest = 20_000_000_000;
         let drives = self.parts.iter().any(|part| part.interrupt.is_some_and(|it| it.condition.drives()));

@@ -1,4 +1,4 @@
-//! Results of the compiler for the plans in `plans/`, as text that a person compares.
+//! Results of the compiler for the plans in `plans/`, as text for snapshots.
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ use mdle_compiler::{Compiled, builtin, compile, fsm};
 
 use crate::repository::TextFile;
 
-/// The alphabet of a built-in target, or of a robot that has everything.
+/// Returns the alphabet of a built-in target or, without a name, of a robot with every capability.
 #[must_use]
 pub fn alphabet(target: Option<&str>) -> Alphabet {
     let mut sources = Sources::default();
@@ -33,7 +33,7 @@ pub fn judge(file: &TextFile, target: Option<&str>) -> (Vec<Compiled>, String) {
     (compiled, message)
 }
 
-/// A file after those of the alphabets.
+/// Returns sources that contain the files of the alphabets and then this file, with the identifier of the file.
 #[must_use]
 pub fn sources(file: &TextFile) -> (Sources, SourceId) {
     let mut sources = Sources::default();
@@ -44,13 +44,13 @@ pub fn sources(file: &TextFile) -> (Sources, SourceId) {
     (sources, source)
 }
 
-/// The tree of a file as an outline.
+/// Returns the tree of a file as an outline.
 #[must_use]
 pub fn tree(file: &TextFile) -> String {
     outline(&parse(SourceId(0), &file.text, &Arena::new()).0)
 }
 
-/// The machine of a plan, a line for each interrupt: its matrix's columns, as runs.
+/// Returns the machine of a plan as text: its states with their laws, and a line with the moves of each interrupt.
 #[must_use]
 pub fn machine(compiled: &Compiled) -> String {
     let file = fsm::fsm_file(&compiled.nondegenerate).expect("a small plan");
@@ -66,7 +66,7 @@ pub fn machine(compiled: &Compiled) -> String {
     text
 }
 
-/// The Rust that is emitted for a plan on the simulator.
+/// Returns the Rust that is emitted for a plan for the simulator.
 #[must_use]
 pub fn rust(file: &TextFile, compiled: &Compiled, shape: Shape) -> String {
     let name = file.path.rsplit('/').next().unwrap();

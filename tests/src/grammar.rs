@@ -1,8 +1,9 @@
-//! The grammar of plans as a list: the parts of each production, as the parser's generator reads them.
+//! The productions of the grammar of plans, as a list with the parts of each production, read from the parser
+//! generator's input.
 
 use crate::repository::root;
 
-/// An alternative of a production, as `Name = parts`, without the names that its action gives to the parts.
+/// An alternative of a production, in the form `Name = parts`, without the names that its action gives to the parts.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Production {
     /// Text of the production.
@@ -67,7 +68,7 @@ fn is_name(text: &str) -> bool {
     text.starts_with(char::is_uppercase) && text.chars().all(char::is_alphanumeric)
 }
 
-/// The parts without what the action calls them, and without places.
+/// Returns the parts of a production without the names that the action gives them, and without places.
 fn made_of(parts: &str) -> String {
     let named = |word: &str| match word.split_once(':') {
         Some((_, "@L" | "@R")) => String::new(),

@@ -1,19 +1,19 @@
-//! Strict readers of what mdlec writes for Graphviz and mermaid: what their grammars do not have is an error.
+//! Strict parsers of mdlec's output for Graphviz and mermaid: anything that their grammars do not allow is an error.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A graph of Graphviz's.
+/// A graph of Graphviz.
 #[derive(Debug, Default)]
 pub struct Graph {
-    /// The nodes that were declared, each with its attributes.
+    /// Declared nodes, each with its attributes.
     pub nodes: BTreeMap<String, BTreeMap<String, String>>,
-    /// The edges: from, to, attributes.
+    /// Edges, each as the node that it leaves, the node that it enters, and its attributes.
     pub edges: Vec<(String, String, BTreeMap<String, String>)>,
-    /// The nodes in each cluster, those of clusters in it included.
+    /// Nodes in each cluster, including the nodes of nested clusters.
     pub clusters: BTreeMap<String, BTreeSet<String>>,
 }
 
-/// Reads `digraph ID { … }`.
+/// Parses a graph `digraph ID { … }`.
 #[must_use]
 pub fn read_dot(text: &str) -> Graph {
     let tokens = tokens(text);
@@ -61,7 +61,7 @@ pub fn read_dot(text: &str) -> Graph {
     panic!("the graph does not end");
 }
 
-/// `[a=b, …]`, or nothing.
+/// Parses the attributes `[a=b, …]`, if there are any.
 fn attributes<'t>(tokens: &mut std::iter::Peekable<impl Iterator<Item = &'t str>>) -> BTreeMap<String, String> {
     let mut attributes = BTreeMap::new();
     if tokens.next_if_eq(&"[").is_none() {
@@ -82,7 +82,7 @@ fn attributes<'t>(tokens: &mut std::iter::Peekable<impl Iterator<Item = &'t str>
     }
 }
 
-/// A name, a number or a string in quotes.
+/// Asserts that a token is a name, a number or a string in quotes.
 fn is_id(token: &str) {
     let is_name = token.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
         && !token.starts_with(|digit: char| digit.is_ascii_digit());
@@ -120,7 +120,8 @@ fn tokens(text: &str) -> Vec<String> {
     tokens
 }
 
-/// A state diagram of mermaid's: for each composite state (the diagram itself has no name) what leads where inside it.
+/// A state diagram of mermaid, with the states and transitions inside each composite state. The name of the diagram
+/// itself is empty.
 #[derive(Debug, Default)]
 pub struct Diagram {
     /// States in each composite state.
@@ -129,7 +130,7 @@ pub struct Diagram {
     pub transitions: BTreeMap<String, Vec<(String, String, String)>>,
 }
 
-/// Reads a `stateDiagram-v2`; what leads from inside a composite state to the outside is an error.
+/// Parses a `stateDiagram-v2`. A transition from inside a composite state to the outside is an error.
 #[must_use]
 pub fn read_mermaid(text: &str) -> Diagram {
     let mut lines = text.lines();
@@ -171,7 +172,7 @@ pub fn read_mermaid(text: &str) -> Diagram {
     diagram
 }
 
-/// Asserts that a text has no character with a meaning in mermaid, except as a number.
+/// Asserts that a text contains characters with a meaning in mermaid only as numeric entities.
 fn assert_plain(text: &str) {
     let mut parts = text.split('#');
     let first = parts.next().unwrap_or_default();

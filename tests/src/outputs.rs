@@ -1,4 +1,4 @@
-//! Scripts as the target `scripted` takes them: an output for each turn.
+//! Converts scripts to outputs of the target `scripted`, one for each turn.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use mdle_scripted::{INTERRUPTS, LAWS, Output};
 
 use crate::signals::values;
 
-/// The times and outputs of a script's turns.
+/// Returns the times and outputs of a script's turns.
 #[must_use]
 pub fn outputs(script: &Script) -> Vec<(Nanos, Output)> {
     let turns = script.turns().iter();
@@ -22,7 +22,7 @@ pub fn outputs(script: &Script) -> Vec<(Nanos, Output)> {
         .collect()
 }
 
-/// Returns a number whose bit `i` is 1 if `said` contains text `i`.
+/// Returns a number whose bit `i` is 1 if `message` contains the text with index `i`.
 fn bits(texts: &[&str], message: &BTreeSet<String>) -> u64 {
     let bits = texts.iter().zip(0..).filter(|(text, _)| message.contains(**text));
     bits.fold(0, |number, (_, bit)| number | 1 << bit)

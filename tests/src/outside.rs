@@ -1,4 +1,5 @@
-//! Packages outside the workspace, as readers of the book write them: built here with what the workspace has compiled.
+//! Packages outside the workspace, as readers of the book write them. They are built with the libraries that the
+//! workspace has compiled.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,7 +11,7 @@ use toml::Table;
 use crate::executable::target;
 use crate::repository::root;
 
-/// Uncomments the patch of a new target's manifest, and lets it lead to this checkout, as a reader of the book does.
+/// Uncomments the patch in a new target's manifest, and makes it refer to this checkout, as a reader of the book does.
 ///
 /// # Panics
 ///
@@ -25,8 +26,8 @@ pub fn patch(package: &Path) {
     adopt(package);
 }
 
-/// Gives a package the workspace's versions and profile, so that most of what was compiled for the workspace is not
-/// compiled again.
+/// Gives a package the lock file and the profile of the workspace, so that most libraries that were compiled for the
+/// workspace are not compiled again.
 ///
 /// # Panics
 ///
@@ -39,7 +40,7 @@ pub fn adopt(package: &Path) {
     fs::write(&manifest, format!("{text}\n{}", profile(&needed(package)))).unwrap();
 }
 
-/// Returns the names of the packages that a package is built with.
+/// Returns the names of the packages with which a package is built.
 fn needed(package: &Path) -> BTreeSet<String> {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     let command = command.args(["tree", "--offline", "--prefix", "none", "--format", "{p}"]).current_dir(package);
@@ -49,8 +50,8 @@ fn needed(package: &Path) -> BTreeSet<String> {
     lines.lines().filter_map(|line| line.split(' ').next()).map(str::to_owned).collect()
 }
 
-/// Returns the development profile of the workspace, as far as it is about these packages. Ours are not members
-/// elsewhere, and have a member's debug information all the same.
+/// Returns the part of the workspace's development profile that concerns these packages. The packages of this
+/// repository are not members of another workspace, but get the debug information of members.
 fn profile(needed: &BTreeSet<String>) -> Table {
     let manifest: Table = fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
     let mut profile = manifest["profile"]["dev"].as_table().unwrap().clone();
@@ -66,7 +67,7 @@ fn profile(needed: &BTreeSet<String>) -> Table {
     Table::from_iter([("profile".to_owned(), dev.into())])
 }
 
-/// Returns cargo's command with these arguments for a package, without a network.
+/// Returns a command of cargo with these arguments for a package, without network access.
 #[must_use]
 pub fn cargo(package: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));

@@ -1,4 +1,4 @@
-//! From the text of a plan for the target `scripted` to the traces of the machines.
+//! Compiles the text of a plan for the target `scripted`, and computes the traces of all machines.
 
 use std::ops::Range;
 use std::sync::LazyLock;
@@ -13,7 +13,7 @@ use mdle_compiler::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tre
 /// Maximum number of states of a plan whose expanded form is run as well.
 const EXPANDED: u64 = 2000;
 
-/// Name of the one file that plans may use here.
+/// Name of the only file that plans can use here.
 pub const LIBRARY_FILE: &str = "library.mdle";
 /// Text of [`LIBRARY_FILE`].
 pub const LIBRARY: &str =
@@ -29,7 +29,7 @@ static SCRIPTED: LazyLock<Alphabet> = LazyLock::new(|| {
     alphabet
 });
 
-/// The alphabet of the target `scripted`.
+/// Returns the alphabet of the target `scripted`.
 #[must_use]
 pub fn scripted() -> &'static Alphabet {
     &SCRIPTED
@@ -38,15 +38,15 @@ pub fn scripted() -> &'static Alphabet {
 /// Compiles the plan `Main` of a text.
 ///
 /// # Errors
-/// Fails with the errors as text, as they are printed for people.
+/// Returns the errors as text for a user.
 pub fn compile(text: &str) -> Result<Compiled, String> {
     compile_plan(text, "Main")
 }
 
-/// Compiles the plan of this name of a text.
+/// Compiles the plan `name` of a text.
 ///
 /// # Errors
-/// Fails with the errors as text, as they are printed for people.
+/// Returns the errors as text for a user.
 pub fn compile_plan(text: &str, name: &str) -> Result<Compiled, String> {
     let (sources, library, source) = placed(text);
     let mut library = Library(library);
@@ -58,14 +58,14 @@ pub fn compile_plan(text: &str, name: &str) -> Result<Compiled, String> {
     }
 }
 
-/// The files of a plan for the target `scripted`, as [`compile`] takes them.
+/// Returns the files of a plan for the target `scripted`, in the form in which [`compile`] uses them.
 #[must_use]
 pub fn sources(text: &str) -> Sources {
     placed(text).0
 }
 
-/// Returns the diagnostics of a text that people are shown, each with its byte range there: those in the text itself,
-/// not in the library.
+/// Returns the diagnostics of a text that are shown to a user, each with its byte range. Diagnostics in the library are
+/// left out.
 #[must_use]
 pub fn diagnostics(text: &str) -> Vec<(Diagnostic, Range<usize>)> {
     let (sources, library, source) = placed(text);
@@ -78,7 +78,7 @@ pub fn diagnostics(text: &str) -> Vec<(Diagnostic, Range<usize>)> {
     placed.collect()
 }
 
-/// The files, and which are the library and the plan.
+/// Returns the files, with the identifiers of the library and of the plan.
 fn placed(text: &str) -> (Sources, SourceId, SourceId) {
     let mut sources = Sources::default();
     sources.add("alphabet.mdle", SCRIPTED_FILE);
@@ -87,7 +87,7 @@ fn placed(text: &str) -> (Sources, SourceId, SourceId) {
     (sources, library, plan)
 }
 
-/// Finds [`LIBRARY`] and nothing else.
+/// Loader that finds only [`LIBRARY`].
 struct Library(SourceId);
 
 impl Loader for Library {
@@ -104,16 +104,16 @@ fn rendered(sources: &Sources, found: &[Diagnostic]) -> String {
     found.iter().map(|diagnostic| sources.render(diagnostic)).collect()
 }
 
-/// A plan as each machine takes it.
+/// A plan in the forms that the machines need.
 #[derive(Debug)]
 pub struct Machines<'c> {
     compiled: &'c Compiled,
-    /// The plan with its finite loops written out, if that is not too long.
+    /// The plan's machine with expanded finite loops; `None` if it has too many states.
     expanded: Option<Machine>,
 }
 
 impl<'c> Machines<'c> {
-    /// The machines of a plan.
+    /// Returns the machines of a plan.
     #[must_use]
     pub fn new(compiled: &'c Compiled) -> Self {
         let expand = || lower(&expand(&compiled.nondegenerate)?);
@@ -121,7 +121,7 @@ impl<'c> Machines<'c> {
         Self { compiled, expanded: is_small.then(|| expand().expect("a small plan")) }
     }
 
-    /// The trace of each machine, by its name.
+    /// Returns the name and the trace of each machine.
     #[must_use]
     pub fn traces(&self, script: &Script) -> Vec<(&'static str, Vec<TraceLine<'_>>)> {
         let mut traces = vec![

@@ -1,7 +1,8 @@
-//! Counts how often each production of the grammar occurs in a text: from its tree, and from the text where trees omit
-//! it.
+//! Counts the occurrences of each production of the grammar in a text, from its tree and, for productions that trees
+//! omit, from the text.
 //!
-//! Productions are named as in [`crate::grammar`]; an optional part counts where it occurs. Units count by their names.
+//! Productions are named as in [`crate::grammar`]. An optional part is counted if it occurs. Units are counted by their
+//! names.
 
 mod conditions;
 
@@ -13,10 +14,10 @@ use mdle_compiler::syntax::tree::{
     Arg, Atom, Call, Count, Element, Exec, File, Formal, Frame, Number, Param, Plan, Primary,
 };
 
-/// Number of times that each production, and each unit, has been met.
+/// Number of occurrences of each production and of each unit.
 pub type Productions = BTreeMap<&'static str, u64>;
 
-/// Counts those of a text without errors.
+/// Adds the productions and units of a text without errors to `counts`.
 pub fn count(text: &str, file: &File<'_>, counts: &mut Productions) {
     let mut counter = Counter { text, counts };
     counter.met("File = Items?");
@@ -40,14 +41,15 @@ impl<'t> Counter<'t> {
         *self.counts.entry(production).or_default() += 1;
     }
 
-    /// A list of this many: its first, and the others.
+    /// Counts the productions of a list with `length` elements: `first` for its first element, and `further` for each
+    /// other element.
     fn list(&mut self, length: usize, first: &'static str, further: &'static str) {
         for place in 0..length {
             self.met(if place == 0 { first } else { further });
         }
     }
 
-    /// A number: its unit counts as well.
+    /// Counts the unit of a number, if it has one.
     fn number(&mut self, number: &Number<'_>) {
         if let Some(unit) = number.unit().and_then(Unit::from_name) {
             self.met(unit.name);
@@ -59,7 +61,7 @@ impl<'t> Counter<'t> {
         &self.text[span.within(SourceId(0))]
     }
 
-    /// Returns the text before a span, without white space at its end.
+    /// Returns the text before a span, without trailing white space.
     fn before(&self, span: Span) -> &'t str {
         self.text[..span.within(SourceId(0)).start].trim_end()
     }
@@ -95,7 +97,7 @@ impl<'t> Counter<'t> {
         self.elements(plan.elements);
     }
 
-    /// The robots of a group, between its brackets.
+    /// Counts the productions of the robots of a group.
     fn robots(&mut self, robots: &[Arg<'_>]) {
         if !robots.is_empty() {
             self.met("Head … ArgList?");

@@ -1,9 +1,10 @@
-//! Random conditions and laws, in the spellings that plans may use.
+//! Generates random conditions and laws, in all spellings that plans may use.
 
 use crate::chance::Chance;
 use crate::signals::comparison;
 
-/// The interrupts of the target `scripted`; arguments in every unit and notation, each of them in the target's list.
+/// Interrupts of the target `scripted`, with arguments in every unit and notation. All of them are in the target's
+/// list.
 const INTERRUPTS: &[&str] = &[
     "a",
     "b",
@@ -49,7 +50,7 @@ const INTERRUPTS: &[&str] = &[
     "stuck 1s",
 ];
 
-/// Timers; among the scripts' steps, so that they are over just before, at and just after a turn.
+/// Timers. Among them are the steps of scripts, so that timers fire just before, at and just after a turn.
 const TIMERS: &[&str] = &[
     "wait 0",
     "wait 0.05",
@@ -86,19 +87,19 @@ const LAWS: &[&str] = &[
     "chase(sun module)",
 ];
 
-/// Laws as only atoms have them: in formal notation they would be plans.
+/// Laws that can be written only in atoms; in formal notation they would be parsed as plans.
 const LAWS_OF_ATOMS: &[&str] = &["chase sun module", "drive (20 0)", "(wander (3 1500ms))"];
 
-/// A law with its arguments, perhaps for formal notation.
+/// Returns a random law with its arguments. `is_formal` is `true` for an atom in formal notation.
 pub fn law(chance: &mut Chance, is_formal: bool) -> String {
     let choices = if !is_formal && chance.percent(15) { LAWS_OF_ATOMS } else { LAWS };
     chance.pick(choices).to_owned()
 }
 
-/// Placeholder of an `after` until the labels of the definition are known; parentheses may enclose it.
+/// Placeholder of an `after` operand until the labels of the definition are known; parentheses may enclose it.
 pub const AFTER: &str = "AFTER";
 
-/// The operands of the outermost OR of a condition, as they are written.
+/// Returns the texts of the operands of a condition's outermost OR.
 pub fn operands(condition: &str) -> Vec<&str> {
     let (mut operands, mut depth, mut from) = (Vec::new(), 0_usize, 0);
     for (at, letter) in condition.char_indices() {
@@ -119,7 +120,7 @@ pub fn operands(condition: &str) -> Vec<&str> {
     operands
 }
 
-/// Returns a condition, as it is written between parentheses.
+/// Returns a random condition, as it is written between parentheses.
 pub fn condition(chance: &mut Chance) -> String {
     match chance.below(10) {
         0 => "null".into(),
@@ -129,7 +130,7 @@ pub fn condition(chance: &mut Chance) -> String {
     }
 }
 
-/// A quark, more often one of a few, so that scopes repeat each other's interrupts.
+/// Returns a random quark. A few quarks are more frequent, so that scopes repeat each other's interrupts.
 fn quark(chance: &mut Chance) -> String {
     if chance.percent(15) {
         return comparison(chance);

@@ -1,4 +1,4 @@
-//! Random plans, as text: scopes, loops and atoms in every notation that the compiler reads.
+//! Generates random plans as text, with scopes, loops and atoms in every notation that the compiler reads.
 
 mod labels;
 mod write;
@@ -6,7 +6,7 @@ mod write;
 use crate::chance::Chance;
 use crate::random_condition::{condition, law};
 
-/// A file with a plan `Main`, and perhaps one that it refers to.
+/// A file with a plan `Main`, and possibly a plan that `Main` refers to.
 #[derive(Debug, Clone)]
 pub struct RandomPlan {
     definitions: Vec<(&'static str, Scope)>,
@@ -16,15 +16,15 @@ pub struct RandomPlan {
     uses: bool,
 }
 
-/// A closed string.
+/// A closed string of the plan.
 #[derive(Debug, Clone)]
 struct Scope {
-    /// Label of the scope as a plan, with the separator after it.
+    /// Label of the scope as a plan, with the separator after it; empty if the scope has no label.
     label: String,
     name: &'static str,
     /// Condition of the scope as text; `None` if it has no condition.
     condition: Option<String>,
-    /// Timer of a scope in formal notation, which has no name.
+    /// Text of the timer of a scope in formal notation, in which a scope has no name; `None` for another notation.
     formal: Option<&'static str>,
     body: Vec<Element>,
     /// Text after the body.
@@ -36,12 +36,12 @@ struct Scope {
 enum Element {
     /// An element with a label.
     Labelled(String, Box<Element>),
-    /// An element in a frame of its own.
+    /// An element with a frame.
     Framed(&'static str, Box<Element>),
     Atom {
         condition: String,
         law: String,
-        /// Timer of an atom in formal notation.
+        /// Text of the timer of an atom in formal notation; `None` for another notation.
         formal: Option<&'static str>,
     },
     Scope(Scope),
@@ -50,9 +50,9 @@ enum Element {
         body: Vec<Element>,
         exec: bool,
     },
-    /// An open string without a count.
+    /// An open string without a loop count.
     String(Vec<Element>),
-    /// A plan by name, with the arguments for its parameters.
+    /// A reference to a plan by its name, with the arguments for the plan's parameters.
     Reference(&'static str, Option<String>),
 }
 
@@ -62,12 +62,12 @@ const NAMES: &[&str] = &[
     "law", "cursor", "Self_", "loop",
 ];
 
-/// Passes: small ones mostly, for others make long searches in one turn.
+/// Loop counts. Most of them are small, because large counts lead to long searches in a turn.
 const TIMES: &[&str] = &["1", "1", "2", "2", "2", "2", "3", "3", "3", "3", "5", "7", "inf"];
 
-/// The parameters of the plan that another refers to.
+/// Parameters of the plan that `Main` refers to.
 const PARAMETERS: &str = "(n: count, far: length, T: time, v: speed, mask: bits[4], leader: module, tune: file)";
-/// Arguments for the parameters, such that all quarks that result are among the target's texts.
+/// Arguments for each parameter, chosen so that all resulting quarks are in the target's list.
 const GIVEN: [&[&str]; 7] = [
     &["1", "2", "3", "inf"],
     &["2", "200cm", "0.25m", "25cm"],
@@ -77,7 +77,7 @@ const GIVEN: [&[&str]; 7] = [
     &["sun module"],
     &["\"bell.mid\""],
 ];
-/// Arguments for the parameters of `Stroll`, the plan of the file that is used.
+/// Arguments for the parameter of `Stroll`, a plan in the used file.
 const OF_STROLL: &[&[&str]] = &[&["0.25", "100ms", "inf"]];
 /// Conditions with parameters.
 const OF_PARAMETERS: &[&str] =
@@ -85,16 +85,16 @@ const OF_PARAMETERS: &[&str] =
 /// Laws that use the parameters.
 const LAWS_OF_PARAMETERS: &[&str] = &["drive(v)", "chase(leader)", "replay(tune)"];
 
-/// The frames of elements.
+/// Frames of elements.
 const FRAMES: &[&str] = &["90deg", "-45", "0.5rad", "180", "here", "here", "here"];
 
-/// State of a growing plan: its size is limited.
+/// State of the generation of a plan, which limits the plan's size.
 struct Growth<'c> {
     chance: &'c mut Chance,
     atoms: usize,
     /// `true` if loops may have thousands of passes.
     long: bool,
-    /// The plans by name that may occur in this plan, each with the choices for its arguments, if it has parameters.
+    /// Plans to which this plan may refer, each with the choices for its arguments.
     others: Vec<(&'static str, &'static [&'static [&'static str]])>,
     /// `true` if this plan has [`PARAMETERS`].
     own: bool,
@@ -103,7 +103,8 @@ struct Growth<'c> {
 }
 
 impl RandomPlan {
-    /// The plan that this source of chance grows. `atoms` is about how many it may have; `long` allows long searches.
+    /// Returns a random plan. `atoms` is the approximate maximum number of atoms; `long` allows loops with long
+    /// searches.
     pub fn new(chance: &mut Chance, atoms: usize, long: bool) -> Self {
         let mut definitions = Vec::new();
         let uses = chance.percent(10);
@@ -138,7 +139,7 @@ impl RandomPlan {
 }
 
 impl Growth<'_> {
-    /// The scope of a definition, whose labels are all known then.
+    /// Returns the scope of a definition. Once all its labels are known, the operands of `after` are filled in.
     fn definition(mut self, depth: usize) -> Scope {
         let mut scope = self.scope(depth);
         scope.ask(self.chance);
@@ -166,7 +167,8 @@ impl Growth<'_> {
         condition(self.chance)
     }
 
-    /// Returns the timer of an element in formal notation, or `None` if it is not written in that notation.
+    /// Returns the text of the timer of an element in formal notation, or `None` if the element is written in another
+    /// notation.
     fn formal(&mut self) -> Option<&'static str> {
         let times = ["", ", 0.25", ", 100ms", ", 1s", ", inf", ", T"];
         let times = if self.own { &times[..] } else { &times[..5] };
@@ -180,7 +182,7 @@ impl Growth<'_> {
         }
     }
 
-    /// Returns a reference to another plan, with arguments if it takes some.
+    /// Returns a reference to another plan, with arguments if the plan takes any.
     fn reference(&mut self) -> Element {
         let (name, choices) = self.others[self.chance.below(self.others.len())];
         let arguments: Vec<_> = choices.iter().map(|choices| self.chance.pick(choices)).collect();
@@ -220,8 +222,8 @@ impl Growth<'_> {
         }
     }
 
-    /// Returns a loop; often one that contains or ends in a scope, where leaving the scope and ending the pass must not
-    /// be confused.
+    /// Returns a loop. Many loops contain or end with a scope, because the end of the scope and the end of the pass
+    /// must be distinguished there.
     fn repeated(&mut self, depth: usize) -> Element {
         let times = match self.long && self.chance.percent(40) {
             true => self.chance.pick(&["3000", "5000", "1000000"]),

@@ -1,4 +1,4 @@
-//! Random scripts, as text: irregular times, interrupts that come and go, laws that complete.
+//! Generates random scripts as text, with irregular times, interrupts that come and go, and laws that complete.
 
 use std::fmt::Write;
 
@@ -7,18 +7,18 @@ use mdle_scripted::{INTERRUPTS, LAWS};
 use crate::chance::Chance;
 use crate::signals::Values;
 
-/// Steps between turns in seconds: zero, timers' own lengths, and one nanosecond more or less than these.
+/// Steps between turns in seconds: zero, lengths of timers, and steps that differ from them by a nanosecond.
 const STEPS: &[&str] =
     &["0", "0.05", "0.1", "0.1", "0.1", "0.099999999", "0.100000001", "0.25", "0.299999999", "1", "2.500000001", "7"];
 
-/// The ways driven between turns in metres, likewise.
+/// Distances driven between turns in metres, chosen like [`STEPS`].
 const WAYS: &[&str] =
     &["0", "0", "0.05", "0.1", "0.1", "0.099999999", "0.100000001", "0.01", "0.25", "0.299999999", "1.000000001"];
 
 /// Headings in degrees.
 const HEADINGS: &[&str] = &["0", "90", "-90", "180", "-179.5", "33.25", "0.001"];
 
-/// A script of this many turns for the target `scripted`.
+/// Returns a random script with `turns` turns for the target `scripted`.
 pub fn script(chance: &mut Chance, turns: usize) -> String {
     let mut text = String::new();
     let mut nanos: u64 = if chance.percent(80) { 0 } else { 1_234_567_890 };

@@ -18,8 +18,8 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
 }
 
-/// Returns every file with one of these endings, in the order of their paths, without build folders, links and hidden
-/// ones.
+/// Returns every file whose name ends with one of these endings, sorted by path. Build folders, symbolic links and
+/// hidden folders are left out.
 #[must_use]
 pub fn files(endings: &[&str]) -> Vec<TextFile> {
     let mut found = Vec::new();
@@ -54,7 +54,8 @@ fn read(path: &Path) -> TextFile {
     TextFile { path: path_text, text }
 }
 
-/// The names that code, comments aside, takes from `root`: what follows `root::`, or each name of a `root::{…}`.
+/// Returns the names that code takes from `root`: the name after `root::`, or each name in `root::{…}`. Comments are
+/// ignored.
 #[must_use]
 pub fn names_from(text: &str, root: &str) -> Vec<String> {
     let code: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
@@ -69,7 +70,7 @@ pub fn names_from(text: &str, root: &str) -> Vec<String> {
     names
 }
 
-/// The first name of a path, or the first names of all paths of a group.
+/// Returns the first name of a path, or the first names of all paths in a group.
 fn names_at(rest: &str) -> Vec<String> {
     let Some(group) = rest.strip_prefix('{') else { return vec![first_word(rest)] };
     let mut depth = 0_usize;

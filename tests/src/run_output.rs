@@ -1,4 +1,5 @@
-//! Runs of a plan from its text and as its executable, in the simulator and on emulated robots: all that they leave.
+//! Runs a plan loaded from its text or as its executable, in the simulator and on emulated robots, and collects the
+//! output and files of the run.
 
 use std::fs;
 use std::path::Path;
@@ -17,23 +18,24 @@ use crate::executable::{mdle, run_mdlec};
 const PERIOD: Duration = Duration::from_millis(100);
 const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
 
-/// The files that a run writes.
+/// Names of the files that a run writes.
 pub const FILES: [&str; 2] = ["run.jsonl", "trail.csv"];
 
-/// All that a run leaves: report, messages, exit status, and the files that it writes.
+/// Result of a run: its report, messages, exit status and files.
 #[derive(Debug, PartialEq, Eq)]
 pub struct RunOutput {
-    /// The report.
+    /// Report of the run.
     pub out: String,
-    /// The messages.
+    /// Messages of the run.
     pub err: String,
-    /// The exit status; `None` after a signal.
+    /// Exit status; `None` if a signal ended the run.
     pub status: Option<i32>,
-    /// The texts of [`FILES`]; `None` for one that was not written.
+    /// Texts of [`FILES`]; `None` for a file that was not written.
     pub files: Vec<Option<String>>,
 }
 
-/// Takes what a run in `folder` left; `called` are the words of its command before the options, for messages.
+/// Returns the result of a run in `folder`, and removes its files. In the texts, `called`, the words of the command
+/// before the options, is replaced by `PROGRAM`.
 #[must_use]
 pub fn left(folder: &Path, called: &str, output: Output) -> RunOutput {
     let files = FILES.map(|file| {
@@ -53,20 +55,20 @@ pub fn simulated_run(folder: &Path, mut command: Command, options: &[&str]) -> R
     left(folder, &called, command.args(options).current_dir(folder).output().unwrap())
 }
 
-/// The warnings about a plan.
+/// Returns the warnings about a plan.
 #[must_use]
 pub fn warnings(folder: &Path, file: &str, target: &str) -> String {
     String::from_utf8(run_mdlec(folder, &["check", file, "--target", target]).stderr).unwrap()
 }
 
-/// Returns the program and the arguments of a command, as a shell takes them.
+/// Returns the program and the arguments of a command, separated by spaces.
 #[must_use]
 pub fn called(command: &Command) -> String {
     let words = [command.get_program()].into_iter().chain(command.get_args());
     words.map(|word| word.to_str().unwrap()).collect::<Vec<_>>().join(" ")
 }
 
-/// `mdle run FILE --target TARGET`.
+/// Returns the command `mdle run FILE --target TARGET`.
 #[must_use]
 pub fn loaded(file: &str, target: &str) -> Command {
     let mut command = Command::new(mdle());
@@ -74,7 +76,7 @@ pub fn loaded(file: &str, target: &str) -> Command {
     command
 }
 
-/// The options of a run in the simulator with this body.
+/// Returns the options of a run in the simulator with this body and seed.
 #[must_use]
 pub fn in_simulator<'a>(body: &'a str, seed: &'a str) -> Vec<&'a str> {
     let [log, trail] = FILES;
@@ -83,7 +85,7 @@ pub fn in_simulator<'a>(body: &'a str, seed: &'a str) -> Vec<&'a str> {
     options
 }
 
-/// A robot in the office, at the start of the tour.
+/// Returns a simulated robot in the office, at the start of the tour.
 #[must_use]
 pub fn simulated(body: Body, step: Duration) -> Simulated {
     let world = World::office().unwrap();
@@ -91,7 +93,7 @@ pub fn simulated(body: Body, step: Duration) -> Simulated {
     Simulated::with(&make, &world, world.start, step).unwrap()
 }
 
-/// Runs a command on the emulated robot of a target in lockstep, for at most this many seconds.
+/// Runs a command on the emulated robot of a target in lockstep, with a time limit in seconds.
 #[must_use]
 pub fn emulated_run(folder: &Path, target: &str, command: Command, timeout: &str) -> RunOutput {
     if target == "scout" {

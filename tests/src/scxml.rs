@@ -1,22 +1,23 @@
-//! A small interpreter of flat SCXML machines (W3C, "State Chart XML", appendix D), for those that mdlec writes:
-//! transitions without an event first, in document order, until no such transition is enabled; then the next event.
+//! A small interpreter of flat SCXML machines (W3C, "State Chart XML", appendix D), for the machines that mdlec writes.
+//! It takes transitions without an event first, in document order, until no such transition is enabled, and then
+//! processes the next event.
 
 use std::collections::BTreeMap;
 
 use crate::ecmascript::{Value, evaluate};
 use crate::xml::Element;
 
-/// A machine that runs.
+/// A running machine.
 #[derive(Debug)]
 pub struct Machine<'e> {
     root: &'e Element,
     states: BTreeMap<&'e str, &'e Element>,
     state: &'e Element,
-    /// The data.
+    /// Data of the machine, by name.
     pub data: BTreeMap<String, Value>,
 }
 
-/// The attributes and children that each element may have.
+/// Elements, each with the attributes and children that it may have.
 const ELEMENTS: &[(&str, &[&str], &[&str])] = &[
     ("scxml", &["xmlns", "version", "datamodel", "name", "initial"], &["datamodel", "state", "final"]),
     ("datamodel", &[], &["data"]),
@@ -30,7 +31,7 @@ const ELEMENTS: &[(&str, &[&str], &[&str])] = &[
 ];
 
 impl<'e> Machine<'e> {
-    /// Begins: data have their values, the initial state is entered.
+    /// Starts a machine: sets the data to their initial values, and enters the initial state.
     #[must_use]
     pub fn new(root: &'e Element) -> Self {
         assert_valid(root);
@@ -50,13 +51,13 @@ impl<'e> Machine<'e> {
         machine
     }
 
-    /// The id of the state.
+    /// Returns the identifier of the current state.
     #[must_use]
     pub fn state(&self) -> &'e str {
         self.state.attribute("id")
     }
 
-    /// Processes an event; returns the states that the machine then left, in order.
+    /// Processes an event; returns the states that the machine left afterwards, in order.
     pub fn event(&mut self, name: &str, data: Value) -> Vec<&'e str> {
         self.data.insert("_event".into(), Value::Object([("data".to_owned(), data)].into()));
         let taken =
@@ -77,7 +78,7 @@ impl<'e> Machine<'e> {
         self.state.children.iter().filter(|child| child.name == "transition")
     }
 
-    /// Takes transitions without an event while one is enabled; returns the states that were left.
+    /// Takes transitions without an event as long as one is enabled; returns the states that were left.
     fn settle(&mut self) -> Vec<&'e str> {
         let mut left = Vec::new();
         loop {
@@ -128,7 +129,7 @@ impl<'e> Machine<'e> {
     }
 }
 
-/// Asserts that a document has only known elements and attributes, each element where it may be.
+/// Asserts that a document contains only known elements and attributes, and that each element is at an allowed place.
 fn assert_valid(root: &Element) {
     assert_eq!(root.attribute("xmlns"), "http://www.w3.org/2005/07/scxml");
     assert_eq!((root.attribute("version"), root.attribute("datamodel")), ("1.0", "ecmascript"));

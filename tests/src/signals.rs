@@ -1,13 +1,14 @@
-//! The signals of the target `scripted`: the values that a script gives them, and comparisons, which these decide.
+//! The signals of the target `scripted`: the values that a script gives them, and comparisons that depend on these
+//! values.
 
 use std::collections::BTreeSet;
 
 use crate::chance::Chance;
 
-/// A comparison as it may be spelled, its text, and whether it holds.
+/// A comparison: its spellings, its canonical text, and a function that returns `true` if it holds.
 type Comparison = (&'static [&'static str], &'static str, fn(&Values) -> bool);
 
-/// The values of the signals in a turn: numbers in the lists below, so that each has a text.
+/// Values of the signals in a turn. They are numbers from the lists below, so that each value has a text.
 #[derive(Debug, Clone, Copy)]
 pub struct Values {
     /// Range of sonar 3, in metres.
@@ -18,7 +19,7 @@ pub struct Values {
     pub x: f64,
     /// Heading, in degrees.
     pub theta: f64,
-    /// Forward speed, in centimetres a second.
+    /// Forward speed, in centimetres per second.
     pub v: f64,
 }
 
@@ -27,7 +28,7 @@ const PLACES: &[f64] = &[-1.0, 0.0, 0.4, 3.0];
 const HEADINGS: &[f64] = &[-179.5, 0.0, 90.5, 179.75];
 const SPEEDS: &[f64] = &[-20.0, 0.0, 20.5];
 
-/// Comparisons of random conditions: spellings, canonical text, and test.
+/// Comparisons in random conditions.
 const COMPARISONS: &[Comparison] = &[
     (&["r3 == r5", "r_3 == r_5(t)", "r 3 == r(5)"], "r3 == r5", |s| (s.r3 - s.r5).abs() <= 0.026),
     (&["r3 < r5"], "r3 < r5", |s| s.r3 < s.r5),
@@ -40,7 +41,7 @@ const COMPARISONS: &[Comparison] = &[
     (&["v \\leq 0"], "v <= 0", |s| s.v <= 0.0),
 ];
 
-/// Comparisons of `t`; among them the timers' own lengths.
+/// Comparisons of `t`, some of them with the lengths of timers.
 const TIMES: &[&str] = &[
     "t >= 0.25",
     "t > 100ms",
@@ -54,11 +55,11 @@ const TIMES: &[&str] = &[
     "t < inf",
 ];
 
-/// Comparisons of `way`; among them the steps that scripts make.
+/// Comparisons of `way`, some of them with the steps of scripts.
 const WAYS: &[&str] =
     &["way >= 0.25m", "way > 10cm", "way < 300mm", "way <= 0.05", "way == 0.1", "way(t) > 1", "way > 0", "way ≥ 0.2"];
 
-/// Returns a comparison, as it is written in a condition.
+/// Returns a random comparison, as it is written in a condition.
 pub fn comparison(chance: &mut Chance) -> String {
     if chance.percent(25) {
         return chance.pick(WAYS).to_owned();
@@ -70,7 +71,7 @@ pub fn comparison(chance: &mut Chance) -> String {
     chance.pick(spellings).to_owned()
 }
 
-/// Returns the values of the signals in SI units from a script's texts; infinite where there is no text.
+/// Returns the values of the signals, in SI units, from the texts of a script; infinity for a signal without a text.
 pub fn values(comparisons: &BTreeSet<String>) -> [f64; 5] {
     let value = |name: &str, values: &[f64], unit: f64| {
         let value = values.iter().find(|value| comparisons.contains(&format!("{name} == {value}")));
@@ -86,7 +87,7 @@ pub fn values(comparisons: &BTreeSet<String>) -> [f64; 5] {
 }
 
 impl Values {
-    /// Values of one turn.
+    /// Returns random values for a turn.
     pub fn new(chance: &mut Chance) -> Self {
         let mut one = |values: &[f64]| values[chance.below(values.len())];
         Self { r3: one(RANGES), r5: one(RANGES), x: one(PLACES), theta: one(HEADINGS), v: one(SPEEDS) }

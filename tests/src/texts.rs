@@ -1,4 +1,4 @@
-//! Texts of this repository that the compiler reads: plans, examples, what fuzzing kept, and what tests hold.
+//! Texts in this repository that the compiler reads: plans, examples, the corpus of fuzzing, and literals in tests.
 
 use std::fs;
 
@@ -8,7 +8,7 @@ use proc_macro2::{TokenStream, TokenTree};
 use crate::any_text;
 use crate::repository::{files, root};
 
-/// The corpus of fuzzing, the plans, and the examples of explanations, each with its origin.
+/// Returns the corpus of fuzzing, the plans, and the examples in explanations, each with its origin.
 ///
 /// # Panics
 /// If a file cannot be read.
@@ -29,7 +29,8 @@ pub fn kept() -> Vec<(String, String)> {
     texts
 }
 
-/// Returns every literal in the Rust of this repository that looks like a plan, such as the bad input of tests.
+/// Returns every string literal in the Rust code of this repository that looks like a plan, such as bad input in tests,
+/// with its file.
 #[must_use]
 pub fn literals() -> Vec<(String, String)> {
     let mut texts = Vec::new();

@@ -1,4 +1,4 @@
-//! Figures of ways that robots drove: by how much they are longer than straight.
+//! Figures of paths that robots drove, such as their excess length over a straight line.
 
 /// A place on the floor, in metres.
 pub type Place = [f64; 2];
@@ -9,22 +9,22 @@ pub fn distance(one: Place, other: Place) -> f64 {
     libm::hypot(one[0] - other[0], one[1] - other[1])
 }
 
-/// Returns by how much a way is longer than the distance of its ends, in percent.
+/// Returns by how much a path is longer than the distance between its ends, in percent.
 ///
 /// # Panics
 ///
-/// If the way has no places.
+/// If the path has no places.
 #[must_use]
 pub fn excess(way: &[Place]) -> f64 {
     let length: f64 = way.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
     (length / distance(way[0], way[way.len() - 1]) - 1.0) * 100.0
 }
 
-/// Returns the greatest distance of a way from the line between its ends, in metres.
+/// Returns the maximum distance of a path from the line between its ends, in metres.
 ///
 /// # Panics
 ///
-/// If the way has no places.
+/// If the path has no places.
 #[must_use]
 pub fn bulge(way: &[Place]) -> f64 {
     let (from, to) = (way[0], way[way.len() - 1]);

@@ -1,17 +1,17 @@
-//! A strict reader of the XML that mdlec writes: text that is not well-formed is an error.
+//! A strict parser of the XML that mdlec writes. Text that is not well-formed is an error.
 
 use std::collections::BTreeMap;
 
-/// An element.
+/// An element of a document.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Element {
     /// Name of the element.
     pub name: String,
     /// Attributes of the element.
     pub attributes: BTreeMap<String, String>,
-    /// The elements in it.
+    /// Elements directly inside the element.
     pub children: Vec<Element>,
-    /// The text in it, that of its children aside.
+    /// Text of the element, without the text of its children.
     pub text: String,
 }
 
@@ -22,7 +22,7 @@ impl Element {
         self.attributes.get(name).unwrap_or_else(|| panic!("<{}> has no `{name}`", self.name))
     }
 
-    /// Returns the element and all elements in it, outer ones first.
+    /// Returns the element and all nested elements, outer elements first.
     #[must_use]
     pub fn all(&self) -> Vec<&Self> {
         let (mut all, mut open) = (Vec::new(), vec![self]);
@@ -34,7 +34,7 @@ impl Element {
     }
 }
 
-/// The one element of a document.
+/// Returns the root element of a document.
 #[must_use]
 pub fn read(text: &str) -> Element {
     assert!(text.chars().all(|letter| !letter.is_control() || letter == '\n'), "a control character");
@@ -68,7 +68,7 @@ fn put(open: &mut [Element], text: &str) {
     open.last_mut().expect("an element").text += &unescaped(text);
 }
 
-/// A tag without its brackets.
+/// Parses the text of a tag between its brackets.
 fn element(tag: &str) -> Element {
     let (name, mut rest) = tag.split_once(' ').unwrap_or((tag, ""));
     assert!(!name.is_empty() && name.chars().all(char::is_alphanumeric), "the name {name:?}");

@@ -10,7 +10,7 @@ impl Counter<'_> {
         self.or(condition);
     }
 
-    /// Returns `true` if parentheses enclose the whole condition, and belong to it.
+    /// Returns `true` if parentheses enclose the whole condition and are part of it.
     fn is_parenthesized(&self, condition: &Condition<'_>) -> bool {
         self.written(condition.span).starts_with('(')
             && match &condition.node {
@@ -24,7 +24,7 @@ impl Counter<'_> {
             }
     }
 
-    /// Counts the productions of a condition in a place where enclosing parentheses would belong to a test.
+    /// Counts the productions of a condition. Parentheses around the whole condition count as those of a test.
     pub(super) fn or_inside(&mut self, condition: &Condition<'_>) {
         if self.is_parenthesized(condition) {
             self.wrapped();
@@ -74,7 +74,7 @@ impl Counter<'_> {
         }
     }
 
-    /// An operand of an AND.
+    /// Counts the productions of an operand of AND.
     fn not(&mut self, condition: &Condition<'_>) {
         if self.is_parenthesized(condition) {
             self.met("Not = Test");
@@ -169,7 +169,7 @@ impl Counter<'_> {
         }
     }
 
-    /// Returns `true` if the arguments are in a parenthesis that touches the name.
+    /// Returns `true` if the arguments are in parentheses that directly follow the name.
     pub(super) fn touches(&self, call: &Call<'_>) -> bool {
         self.written(call.span)[call.name.len()..].starts_with('(')
     }

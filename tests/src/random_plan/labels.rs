@@ -1,14 +1,14 @@
-//! Operands of `after` in random plans: a label of the same definition, with or without a cause.
+//! Fills in the operands of `after` in random plans: a label of the same definition, with or without a cause.
 
 use super::{Element, Scope};
 use crate::chance::Chance;
 use crate::random_condition::{AFTER, operands};
 
-/// Labels with the conditions of their elements, where these have one.
+/// Labels, each with the condition of its element; `None` for an element without a condition.
 type Labels = Vec<(String, Option<String>)>;
 
 impl Scope {
-    /// Makes every [`AFTER`] ask one of the labels of this definition.
+    /// Replaces every [`AFTER`] in the scope by an `after` of a label of this definition.
     pub(super) fn ask(&mut self, chance: &mut Chance) {
         let mut labels = Labels::new();
         self.body.iter().for_each(|element| element.labels(&mut labels));
@@ -36,7 +36,7 @@ impl Element {
         }
     }
 
-    /// The condition that ends it, if it has one.
+    /// Returns the condition that ends the element, if it has one.
     fn condition(&self) -> Option<String> {
         match self {
             Self::Atom { condition, .. } => Some(condition.clone()),
@@ -59,7 +59,7 @@ impl Element {
     }
 }
 
-/// Replaces each placeholder [`AFTER`] of a condition by an `after` of one of these labels, with or without a cause.
+/// Replaces each placeholder [`AFTER`] in a condition by an `after` of one of these labels, with or without a cause.
 fn fill(condition: &mut String, chance: &mut Chance, labels: &Labels) {
     while let Some(at) = condition.find(AFTER) {
         let after = if labels.is_empty() { "a".to_owned() } else { asked(chance, labels) };

@@ -1,4 +1,4 @@
-//! The text of random plans.
+//! Writes random plans as text.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use super::{Element, PARAMETERS, RandomPlan, Scope};
 use crate::chance::Chance;
 use crate::pipeline::LIBRARY_FILE;
 
-/// Marks a place between two elements that may have a comma; in no text.
+/// Mark between two elements at a position where a comma is allowed. It occurs in no other text.
 const BETWEEN: char = '\u{1}';
 
 impl fmt::Display for RandomPlan {
@@ -16,7 +16,7 @@ impl fmt::Display for RandomPlan {
 }
 
 impl RandomPlan {
-    /// Returns the text with a comma at some of the places between two elements that may have one
+    /// Returns the text with a comma at some of the positions between two elements where a comma is allowed
     /// (docs/src/reference/language.md, 3.2).
     pub fn with_commas(&self, chance: &mut Chance) -> String {
         let marked = Marked(self).to_string();
@@ -24,7 +24,7 @@ impl RandomPlan {
     }
 }
 
-/// The text of a plan with all marks.
+/// A plan whose text is written with all marks.
 struct Marked<'p>(&'p RandomPlan);
 
 impl fmt::Display for Marked<'_> {
@@ -68,7 +68,7 @@ fn bare(law: &str) -> &str {
     law.strip_prefix('(').and_then(|law| law.strip_suffix(')')).unwrap_or(law)
 }
 
-/// Writes elements, with a mark before each but the first that a comma `may_precede`.
+/// Writes elements. Before each element but the first, writes a mark if `may_precede` returns `true` for the element.
 fn write_all(elements: &[Element], may_precede: impl Fn(&Element) -> bool, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     elements.iter().enumerate().try_for_each(|(number, element)| {
         if number > 0 && may_precede(element) {
