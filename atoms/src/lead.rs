@@ -11,9 +11,10 @@ use crate::go_avoid::{GoAvoid, GoingRound};
 
 /// Additional room beside the outermost robot of the group, in metres, because the robots drift apart on the way.
 const DRIFTS: f64 = 0.1;
-/// Maximum distance, in metres, between an echo and the position of another robot that is taken to have caused it.
-const MEMBER: f64 = 0.3;
-/// Half of the angle of the cone in which a sonar hears.
+/// Maximum error, in metres, of another robot's position by its own odometry. A leader that took the echo of a robot of
+/// its group for an obstacle would turn away from it endlessly, since that robot keeps its place beside the leader.
+const MISPLACED: f64 = 0.25;
+/// Half of the angle within which a sonar hears.
 const CONE: Radians = Radians::from_degrees(15.0);
 /// Maximum turn rate, in rad/s, since the outermost robots drive on a larger circle.
 const FASTEST: f64 = 0.3;
@@ -109,26 +110,28 @@ impl<Y: SonarRing> SonarRing for Group<'_, Y> {
     }
 }
 
-/// Returns `true` if the ping is an echo of another robot at `place`.
-fn is_of(ping: &Ping, sonar: SonarId, ring: Meters, place: &Pose) -> bool {
+/// Returns `true` if the ping may be an echo of another robot that has a body with this radius and reports its position
+/// as `place`.
+fn is_of(ping: &Ping, sonar: SonarId, ring: Meters, radius: Meters, place: &Pose) -> bool {
     let Some(range) = ping.range else { return false };
     let axis = ping.axis(sonar);
     let transducer = axis.towards(axis.theta, ring);
     let towards = libm::atan2(place.y.0 - transducer.y.0, place.x.0 - transducer.x.0);
     let off = Radians(towards - axis.theta.0).wrapped().0.clamp(-CONE.0, CONE.0);
-    transducer.towards(Radians(axis.theta.0 + off), range).distance(place).0 < MEMBER
+    transducer.towards(Radians(axis.theta.0 + off), range).distance(place).0 < radius.0 + MISPLACED
 }
 
-/// Adds to `heard` the pings after the time `since`, or all pings if it is `None`, except echoes of other robots.
-fn take<Y: SonarRing + StateLink>(heard: &mut [Pings; SONARS], y: &Y, since: Option<Nanos>) {
-    let ring = y.ring_radius();
+/// Adds to `heard` the pings after the time `since`, or all pings if it is `None`, except echoes of other robots. Their
+/// bodies are assumed to be as large as this one.
+fn take<Y: DiffDrive + SonarRing + StateLink>(heard: &mut [Pings; SONARS], y: &Y, since: Option<Nanos>) {
+    let (ring, radius) = (y.ring_radius(), y.body_radius());
     for (sonar, heard) in (0..SONARS as u8).map(SonarId::new).zip(heard) {
         let mut new = [None; PINGS_KEPT];
         let are_new = y.pings(sonar).newest_first().filter(|ping| since.is_none_or(|since| ping.at > since));
         new.iter_mut().zip(are_new).for_each(|(place, ping)| *place = Some(ping));
         for ping in new.into_iter().rev().flatten() {
             let mut states = y.links().peers().filter_map(|peer| peer.state.as_ref());
-            if !states.any(|state| is_of(ping, sonar, ring, &state.pose)) {
+            if !states.any(|state| is_of(ping, sonar, ring, radius, &state.pose)) {
                 heard.push(*ping);
             }
         }
@@ -203,6 +206,15 @@ mod tests {
         assert_eq!(input(0.5, &beside(0.4, (0.79, 0.0))), [0.2, 0.0], "the echo is the other robot's");
         let [v, omega] = input(0.5, &beside(0.4, (9.0, 0.0)));
         assert!(v < 0.2 && omega.abs() == FASTEST, "something is there: {v} {omega}");
+    }
+
+    #[test]
+    fn a_robot_is_not_heard_where_odometry_has_misplaced_it() {
+        let radius = Sensed::default().body_radius().0;
+        // The echo is 0.6 m ahead of the centre: from the near side of a robot, which has itself further away.
+        let turn = |misplaced: f64| input(0.5, &beside(0.4, (0.59 + radius + misplaced, 0.0)))[1];
+        assert_eq!(turn(0.2), 0.0, "the echo is of the other robot, whose odometry has drifted");
+        assert!(turn(0.3) != 0.0, "an echo so far from the other robot is not of it");
     }
 
     #[test]
