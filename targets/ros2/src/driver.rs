@@ -20,6 +20,8 @@ use crate::stamp::ros_now;
 pub(crate) const LOOK: Duration = Duration::from_micros(500);
 /// Maximum real time to wait for a robot whose time is not the host's clock.
 const PATIENCE: Duration = Duration::from_secs(5);
+/// Maximum time by which `/clock` may go back, in nanoseconds.
+const BACK: i64 = 1_000_000_000;
 /// Maximum time for which the zero velocity is repeated.
 const HALTING: Duration = Duration::from_millis(500);
 /// Speeds below which the robot counts as being at rest.
@@ -40,6 +42,8 @@ pub struct Ros2<L> {
     request: StopRequest,
     /// Time of `/clock` at the first turn, in nanoseconds.
     origin: Option<i64>,
+    /// Latest time of `/clock` so far, in nanoseconds; 0 if time is not that of `/clock`.
+    latest: i64,
     turns: u32,
     /// Number of the atom and time of the turn in the last published state.
     published: Option<(u64, Nanos)>,
@@ -49,7 +53,19 @@ impl<L: Link> Ros2<L> {
     /// Returns the driver of the robot that `link` reaches; `sensing` holds the robot's first messages.
     pub fn new(config: Config, link: L, sensing: Sensing, pacing: Pacing, request: StopRequest, begun: Moment) -> Self {
         let times = Times::new(pacing.clock());
-        Self { link, config, sensing, pacing, times, begun, request, origin: None, turns: 0, published: None }
+        Self {
+            link,
+            config,
+            sensing,
+            pacing,
+            times,
+            begun,
+            request,
+            origin: None,
+            latest: 0,
+            turns: 0,
+            published: None,
+        }
     }
 
     /// Stores the recorded paths that the plan replays.
@@ -84,20 +100,38 @@ impl<L: Link> Ros2<L> {
         self.link.receive(&mut |index, payload| sensing.take(index, payload, now, at))
     }
 
+    /// Updates the latest time of `/clock`.
+    ///
+    /// # Errors
+    /// Fails if `/clock` has gone back by more than [`BACK`]. Turns would otherwise wait until it has caught up, and
+    /// the robot would be driven on.
+    fn follow_clock(&mut self) -> Result<(), Fault> {
+        let clock = self.sensing.clock();
+        let back = self.latest.saturating_sub(clock);
+        if back > BACK {
+            return Err(Fault::ClockReset(back as f64 / 1e9));
+        }
+        self.latest = self.latest.max(clock);
+        Ok(())
+    }
+
     /// Receives messages until `is_there` returns `true` or the run is asked to end.
     fn wait(&mut self, at: Nanos, topic: &str, is_there: impl Fn(&Sensing) -> bool) -> Result<(), Fault> {
-        let mut last = (self.sensing.clock(), Instant::now());
+        let mut last = (self.latest, Instant::now());
         loop {
             self.receive(at)?;
+            self.follow_clock()?;
             if is_there(&self.sensing) || self.request.is_made() {
                 return Ok(());
             }
-            if self.sensing.clock() != last.0 {
-                last = (self.sensing.clock(), Instant::now());
+            if self.latest > last.0 {
+                last = (self.latest, Instant::now());
             }
             let age = last.1.elapsed();
             if age > PATIENCE {
-                let (topic, limit, why) = (topic.to_owned(), PATIENCE.as_millis() as u64, String::new());
+                let is_back = self.sensing.clock() < self.latest;
+                let why = if is_back { "its time has gone back" } else { "" }.to_owned();
+                let (topic, limit) = (topic.to_owned(), PATIENCE.as_millis() as u64);
                 return Err(Fault::Stale { topic, age: age.as_millis(), limit, why });
             }
             sleep(LOOK);

@@ -25,6 +25,8 @@ pub enum Fault {
     NoSpeed,
     /// Odometry went back in time by this number of seconds.
     Backwards(f64),
+    /// The time of `/clock` went back by this number of seconds.
+    ClockReset(f64),
     /// Odometry jumped farther than the robot can have moved.
     Jumped {
         /// Distance of the jump, in metres.
@@ -79,6 +81,10 @@ impl fmt::Display for Fault {
                 f,
                 "the odometry has gone back in time by {seconds:.1} s, as after a restart of the robot; start the plan \
                  again"
+            ),
+            Self::ClockReset(seconds) => write!(
+                f,
+                "`/clock` has gone back by {seconds:.1} s, as after a reset of the simulation; start the plan again"
             ),
             Self::Jumped { way, degrees, seconds } => write!(
                 f,

@@ -87,6 +87,8 @@ impl Sensing {
     /// Fails if the odometry is invalid, has jumped, or has gone back in time.
     pub fn take(&mut self, index: usize, payload: &Payload, now: Duration, at: Nanos) -> Result<(), Fault> {
         let Some(seen) = self.seen.get(index) else { return Ok(()) };
+        // Messages that come at once with the first `/clock` are as new as it is.
+        let now = now.max(self.simulated());
         let (source, since) = (seen.input.source, seen.at.map_or(now, |at| now.saturating_sub(at)));
         let taken = match source {
             Source::Odometry => match payload.read::<Odometry>() {

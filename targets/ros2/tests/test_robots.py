@@ -4,6 +4,7 @@ import json
 import math
 import shutil
 import subprocess
+import time
 from pathlib import Path
 
 import pytest
@@ -159,6 +160,35 @@ def test_a_simulation_has_its_own_time():
         with running("hop", configuration(domain, use_sim_time=True, jump=1.0)) as run:
             arrives(run, robot)
         assert robot.body.place.x > 0.19
+
+
+@pytest.mark.parametrize("back", [0.9, 2, 500])
+def test_a_clock_that_goes_back_ends_the_plan(back):
+    domain, shift = new_domain(), [0.0]
+    with Robot(domain) as robot:
+        robot.add("clock", m.Clock, "rt/clock")
+
+        def clock(bumper):
+            # The odometry has a time of its own, which goes on.
+            nanos = int(1e9 * (robot.clock - shift[0]))
+            robot.writers["clock"].write(m.Clock(m.Time(nanos // 10**9, nanos % 10**9)))
+            return bumper
+
+        robot.changed["bumper"] = clock
+        robot.watchdog = 60.0
+        with running("ride", configuration(domain, use_sim_time=True)) as run:
+            drives(robot)
+            since = time.monotonic()
+            while run.process.poll() is None:
+                passed = time.monotonic() - since
+                assert passed < 8, "the plan goes on"
+                # After a small step back the clock advances and goes back again, and never passes its latest time.
+                shift[0] = back if back > 1 else back + passed // 0.5 * 0.5
+                time.sleep(0.01)
+            code, _, err = run.end()
+            assert code == 3, err
+            assert ("`/clock` has gone back by" if back > 1 else "its time has gone back") in err, err
+            stopped(robot, since)
 
 
 def test_the_state_of_the_plan_is_on_the_graph():

@@ -202,3 +202,12 @@ fn messages_before_the_first_clock_are_not_stale() {
     robot.take(Source::Clock, &ClockMessage { clock: Time::of(1_700_000_000_600_000_000) }).unwrap();
     assert!(robot.sensing.check(robot.sensing.simulated()).is_err());
 }
+
+#[test]
+fn messages_that_come_at_once_with_the_first_clock_are_not_stale() {
+    let mut robot = Robot::new(|config| config.use_sim_time = true);
+    robot.take(Source::Clock, &ClockMessage { clock: Time::of(1_000_000_000_000) }).unwrap();
+    robot.odometry(0.0).unwrap();
+    robot.scan(2.0).unwrap();
+    assert_eq!(robot.sensing.check(robot.sensing.simulated()), Ok(()));
+}
