@@ -1,6 +1,7 @@
 //! The link to the robot over DDS: finds the robot's topics, sends velocities and receives messages.
 
-use std::time::Duration;
+use std::mem;
+use std::time::{Duration, Instant};
 
 use mdle_host::StopRequest;
 use mdle_runtime::Twist;
@@ -24,7 +25,10 @@ use crate::stamp::ros_now;
 
 /// Maximum number of new participants with which the driver looks for the robot after the first participant.
 const REJOINS: u32 = 2;
-/// Maximum number of participants with which a robot is stopped after the first participant has ended.
+/// Minimum time without a turn after which the middleware may have forgotten the robot, and the robot this program.
+/// CycloneDDS and RustDDS take a program that is silent for 10 s for dead, others later.
+const FORGOTTEN: Duration = Duration::from_secs(8);
+/// Maximum number of participants with which a robot is stopped that may have been forgotten.
 const ATTEMPTS: u32 = 3;
 
 /// A link to the robot over DDS.
@@ -32,8 +36,12 @@ pub struct DdsLink {
     participant: Participant,
     readers: Vec<(Input, Reader)>,
     commands: Commands,
-    /// Participant that stops the robot after `participant` has ended, and its writer.
-    successor: Option<(Participant, Commands)>,
+    /// Number of subscribers of the last command before a suspension.
+    subscribers: i32,
+    /// Time of the last command or look for messages.
+    active: Instant,
+    /// `true` if the program was suspended for so long that the middleware may have forgotten the robot.
+    may_be_forgotten: bool,
     config: Config,
     state: Option<Writer>,
     diagnostics: Option<Writer>,
@@ -93,7 +101,9 @@ impl DdsLink {
             participant,
             readers,
             commands,
-            successor: None,
+            subscribers: 0,
+            active: Instant::now(),
+            may_be_forgotten: false,
             config: config.clone(),
             state,
             diagnostics,
@@ -137,50 +147,44 @@ impl DdsLink {
 }
 
 impl DdsLink {
+    /// Notices whether the program was suspended since the last call.
+    fn notice_suspension(&mut self) {
+        self.may_be_forgotten |= self.active.elapsed() >= FORGOTTEN;
+        self.active = Instant::now();
+    }
+
     /// Returns the time for the header of a command.
     fn stamp(&self) -> i64 {
         self.clock.unwrap_or_else(ros_now)
     }
 
-    /// Returns the participant that reaches the robot now.
-    fn current(&self) -> &Participant {
-        self.successor.as_ref().map_or(&self.participant, |(participant, _)| participant)
-    }
-
-    /// Stops the robot with the participant that reaches it now.
-    fn halt_by_current(&mut self, limit: Duration) -> Result<(), Fault> {
-        self.current().check()?;
-        let stamp = self.stamp();
-        match &mut self.successor {
-            None => self.commands.halt(&self.participant, limit, stamp),
-            Some((participant, commands)) => commands.halt(participant, limit, stamp),
-        }
-    }
-
     /// Stops the robot with a new participant, which first finds the subscribers that the first one had.
-    fn halt_anew(&mut self, limit: Duration) -> Result<(), Fault> {
-        let (expected, stamp) = (self.commands.writer.matched().max(1), self.stamp());
+    fn halt_anew(&self, limit: Duration) -> Result<(), Fault> {
+        let (expected, stamp) = (self.subscribers.max(1), self.stamp());
         let participant = Participant::join(&self.config)?;
-        let commands = self.commands.by(&participant)?;
-        let (participant, commands) = self.successor.insert((participant, commands));
-        let met = commands.meet(participant, expected, stamp);
-        let halted = commands.insist(participant, limit, stamp);
+        let mut commands = self.commands.by(&participant)?;
+        let met = commands.meet(expected, stamp);
+        let halted = commands.insist(&participant, limit, stamp);
         met.and(halted)
     }
 }
 
 impl Link for DdsLink {
     fn command(&mut self, twist: Twist) -> Result<(), Fault> {
-        self.participant.check()?;
-        if self.commands.writer.matched() == 0 {
+        self.notice_suspension();
+        let subscribers = self.commands.writer.matched();
+        if !self.may_be_forgotten {
+            self.subscribers = subscribers;
+        }
+        if subscribers == 0 {
             return Err(Fault::Unheard(self.commands.topic.clone()));
         }
         self.commands.send(twist, self.stamp()).map_err(Fault::Middleware)
     }
 
     fn receive(&mut self, take: &mut dyn FnMut(usize, &Payload) -> Result<(), Fault>) -> Result<(), Fault> {
+        self.notice_suspension();
         let Self { readers, publishers, participant, clock, .. } = self;
-        participant.check()?;
         receive(readers, &mut |input, index, payload, writer| {
             if let (Source::Clock, Some(clock)) = (input.source, clock.as_mut())
                 && let Ok(message) = payload.read::<ClockMessage>()
@@ -192,13 +196,17 @@ impl Link for DdsLink {
     }
 
     fn halt(&mut self, limit: Duration) -> Result<(), Fault> {
-        let mut halted = self.halt_by_current(limit);
+        self.notice_suspension();
+        let stamp = self.stamp();
+        let mut halted = self.commands.halt(&self.participant, limit, stamp);
+        // The program may also be suspended while it stops the robot.
+        self.notice_suspension();
         for _ in 0..ATTEMPTS {
-            // A suspension while the robot is being stopped ends the middleware as well.
-            if self.current().check().is_ok() {
+            if !mem::take(&mut self.may_be_forgotten) {
                 break;
             }
             halted = self.halt_anew(limit);
+            self.notice_suspension();
         }
         halted
     }

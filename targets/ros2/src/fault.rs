@@ -13,8 +13,6 @@ pub enum Fault {
     Network(String),
     /// Topics are missing; the sentences name these topics and those on the graph.
     Missing(String),
-    /// The middleware has ended, because the program was suspended.
-    Suspended,
     /// The run was asked to end while the driver was searching for the robot.
     Ended,
     /// A law has requested a speed that is not a number.
@@ -66,10 +64,6 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Middleware(sentence) | Self::Network(sentence) | Self::Missing(sentence) => f.write_str(sentence),
-            Self::Suspended => f.write_str(
-                "the middleware of ROS 2 has ended, as it does when this program is suspended, however shortly (SIGSTOP, \
-                 Ctrl-Z), or when a debugger is attached to it; start the plan again",
-            ),
             Self::Ended => f.write_str("the run was asked to end"),
             Self::NoNumber => f.write_str("a law has asked for a speed that is no number"),
             Self::NoPose => f.write_str(

@@ -3,7 +3,6 @@
 //! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], the quarks that this robot has. The
 //! module [`sensing`] turns the messages of topics into the output of a turn, without input or output of its own.
 //! [`Link`] hides the middleware.
-#![forbid(unsafe_code)]
 
 pub mod alphabet;
 pub mod battery;
@@ -16,12 +15,13 @@ pub mod config;
 pub mod contact;
 mod dds_link;
 mod driver;
+#[cfg(target_os = "linux")]
+mod epoll;
 mod fault;
 mod graph;
 mod link;
 mod local_addresses;
 pub mod messages;
-mod middleware_threads;
 pub mod names;
 pub mod odometer;
 mod pacing;

@@ -15,7 +15,6 @@ use crate::config::Config;
 use crate::fault::Fault;
 use crate::graph::{Endpoint, Graph};
 use crate::local_addresses;
-use crate::middleware_threads::MiddlewareThreads;
 use crate::names::{dds_topic, dds_type};
 use crate::payload_adapter::PayloadAdapter;
 
@@ -35,7 +34,6 @@ pub(crate) struct Participant {
     participant: DomainParticipant,
     publisher: Publisher,
     subscriber: Subscriber,
-    threads: MiddlewareThreads,
 }
 
 /// A reader of one topic.
@@ -91,25 +89,11 @@ impl Participant {
             local_addresses::check(address).map_err(Fault::Network)?;
             builder = builder.with_only_networks([IpAddr::V4(address)]);
         }
-        let threads = || {
-            let threads = MiddlewareThreads::all();
-            threads.map_err(|error| failed(&format!("the system does not list its threads: {error}")))
-        };
-        let others = threads()?;
         let participant = builder.build().map_err(|error| failed(&plain(&error.to_string())))?;
-        let threads = threads()?.without(&others);
         let qos = QosPolicyBuilder::new().build();
         let publisher = participant.create_publisher(&qos).map_err(|error| failed(&error.to_string()))?;
         let subscriber = participant.create_subscriber(&qos).map_err(|error| failed(&error.to_string()))?;
-        Ok(Self { participant, publisher, subscriber, threads })
-    }
-
-    /// Checks that the middleware's threads still run.
-    ///
-    /// # Errors
-    /// Returns the fault of a program that was suspended if a thread has ended.
-    pub(crate) fn check(&self) -> Result<(), Fault> {
-        if self.threads.are_alive() { Ok(()) } else { Err(Fault::Suspended) }
+        Ok(Self { participant, publisher, subscriber })
     }
 
     /// Subscribes to the topic with this absolute name.

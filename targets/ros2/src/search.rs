@@ -73,7 +73,6 @@ impl Search<'_> {
             (Lasting::default(), Lasting::default(), Probation::default());
         loop {
             self.listen(participant, readers, sensing, publishers)?;
-            participant.check()?;
             let graph = participant.graph();
             let is_stamped = graph.is_stamped(&topic, self.config.stamped);
             // A subscriber that is found later may change the type.
