@@ -24,6 +24,8 @@ const PATIENCE: Duration = Duration::from_secs(5);
 const BACK: i64 = 1_000_000_000;
 /// Maximum time for which the zero velocity is repeated.
 const HALTING: Duration = Duration::from_millis(500);
+/// Maximum time in which odometry has to report that the robot slows down after the zero velocity.
+const SLOWING: Duration = Duration::from_secs(3);
 /// Speeds below which the robot counts as being at rest.
 const REST: Twist = Twist { v: MetersPerSecond(0.02), omega: RadiansPerSecond(0.05) };
 /// Time after which an unchanged state of the plan is published again.
@@ -167,11 +169,44 @@ impl<L: Link> Ros2<L> {
         }
     }
 
+    /// Returns the speeds that the last odometry reports, without signs.
+    fn speeds(&self) -> Twist {
+        let velocity = self.sensing.sensed(Nanos::ZERO).map(|sensed| sensed.velocity).unwrap_or_default();
+        Twist { v: MetersPerSecond(velocity.v.0.abs()), omega: RadiansPerSecond(velocity.omega.0.abs()) }
+    }
+
+    /// Receives messages; returns `true` if they are valid, and none is missing.
+    fn is_informed(&mut self) -> bool {
+        self.receive(Nanos::ZERO).is_ok() && self.sensing.check(self.now()).is_ok()
+    }
+
     /// Returns `true` if the last odometry reports a robot at rest.
     fn rests(&mut self) -> bool {
-        let is_received = self.receive(Nanos::ZERO).is_ok() && self.sensing.check(self.now()).is_ok();
-        let velocity = self.sensing.sensed(Nanos::ZERO).map(|sensed| sensed.velocity);
-        is_received && velocity.is_ok_and(|twist| twist.v.0.abs() < REST.v.0 && twist.omega.0.abs() < REST.omega.0)
+        self.is_informed() && is_within(self.speeds(), REST)
+    }
+
+    /// Waits until new odometry reports a robot at rest, or with half the speeds that it had `before`.
+    ///
+    /// # Errors
+    /// Fails if odometry continues to report higher speeds. If none comes, nothing is known.
+    fn slows(&mut self, before: Twist) -> Result<(), Fault> {
+        let limits = Twist {
+            v: MetersPerSecond(REST.v.0.max(before.v.0 / 2.0)),
+            omega: RadiansPerSecond(REST.omega.0.max(before.omega.0 / 2.0)),
+        };
+        let (begun, (last, _)) = (Instant::now(), self.sensing.stamps());
+        while self.is_informed() {
+            let is_new = self.sensing.stamps().0 > last;
+            if is_new && is_within(self.speeds(), limits) {
+                break;
+            }
+            if begun.elapsed() > SLOWING {
+                let topic = self.config.topic(&self.config.odom).unwrap_or_default();
+                return if is_new { Err(Fault::Moving { topic, twist: self.speeds() }) } else { Ok(()) };
+            }
+            sleep(LOOK);
+        }
+        Ok(())
     }
 
     /// Publishes the state of the plan. A state that cannot be encoded is not published, and the plan continues.
@@ -181,6 +216,11 @@ impl<L: Link> Ros2<L> {
             self.link.publish(messages);
         }
     }
+}
+
+/// Returns `true` if both speeds are below their limits.
+fn is_within(speeds: Twist, limits: Twist) -> bool {
+    speeds.v.0 < limits.v.0 && speeds.omega.0 < limits.omega.0
 }
 
 impl<L: Link> Robot for Ros2<L> {
@@ -197,7 +237,10 @@ impl<L: Link> Robot for Ros2<L> {
     }
 
     fn stop(&mut self) -> Result<(), Fault> {
+        let before = self.speeds();
         match self.link.halt(HALTING) {
+            // A robot in lockstep moves only when it gets a command.
+            Ok(()) if !matches!(self.pacing, Pacing::Lockstep(_)) => self.slows(before),
             // Another subscriber may be gone, and the robot has stopped.
             Err(Fault::Unacknowledged(_)) if self.rests() => Ok(()),
             result => result,

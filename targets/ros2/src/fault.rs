@@ -3,6 +3,7 @@
 use std::fmt;
 
 use mdle_host::Refusal;
+use mdle_runtime::Twist;
 
 /// Reason why the driver ends a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,6 +57,13 @@ pub enum Fault {
     },
     /// No program subscribes to velocity commands any longer; the text is the topic's name.
     Unheard(String),
+    /// Odometry reports that the robot drives on after the zero velocity.
+    Moving {
+        /// Name of the topic of the odometry.
+        topic: String,
+        /// Speeds of the robot, without signs.
+        twist: Twist,
+    },
     /// No subscriber of velocity commands has acknowledged the zero velocity; the text is the topic's name.
     Unacknowledged(String),
 }
@@ -102,6 +110,10 @@ impl fmt::Display for Fault {
                 if why.is_empty() { Ok(()) } else { write!(f, "; the last message was left out: {why}") }
             }
             Self::Unheard(topic) => write!(f, "nobody subscribes to `{topic}` any more"),
+            Self::Moving { topic, twist } => {
+                let (v, omega) = (twist.v.0, twist.omega.0.to_degrees());
+                write!(f, "`{topic}` still reports {v:.2} m/s and {omega:.0}°/s, 3 s after the zero velocity")
+            }
             Self::Unacknowledged(topic) => {
                 write!(f, "no subscriber of `{topic}` has acknowledged the zero velocity within half a second")
             }

@@ -1,5 +1,6 @@
 """Every way out sends a zero velocity, which the robot sees."""
 
+import math
 import os
 import signal
 import subprocess
@@ -106,3 +107,29 @@ def test_silence_is_a_fault_if_it_lasts(seconds):
             code, _, err = run.end()
             assert code == 3 and "`/odom` has been silent for" in err and "its limit is 600 ms" in err, err
             stopped(robot, since)
+
+
+def test_a_base_that_acknowledges_and_drives_on_is_reported():
+    domain = new_domain()
+    with Robot(domain, watchdog=math.inf) as robot, running("ride", configuration(domain)) as run:
+        drives(robot)
+        robot.take = lambda: len(robot.commands.take(50))
+        run.process.send_signal(signal.SIGINT)
+        code, _, err = run.end()
+        assert code == 3 and "the robot may not have stopped: `/odom` still reports 0.10 m/s and 0°/s" in err, err
+
+
+def test_a_base_that_slows_down_in_its_time_is_stopped():
+    domain = new_domain()
+    with Robot(domain, watchdog=math.inf) as robot, running("ride", configuration(domain)) as run:
+        drives(robot)
+
+        def slowing():
+            speed, taken = robot.body.v, len(robot.commands.take(50))
+            robot.body.v = max(0.0, speed - 0.005)
+            return taken
+
+        robot.take = slowing
+        run.process.send_signal(signal.SIGINT)
+        code, _, err = run.end()
+        assert code == 130, err
