@@ -46,21 +46,48 @@ pub(crate) fn shown(value: &Value) -> String {
 
 /// Returns the message about `text` that is not TOML: the line, what is wrong with it, and its beginning.
 pub(crate) fn syntax_error(text: &str, error: &toml::de::Error) -> String {
+    let too_large = ["number overflowed", "value was too large", "value was too small", "as i128", "as u128"];
     let reason = match error.message() {
-        "integer number overflowed" | "floating-point number overflowed" => "the number is too large",
+        reason if too_large.iter().any(|words| reason.contains(words)) => "the number is too large",
         "" => "this is not TOML",
         reason => reason,
     };
-    let reason = reason.replace('\n', "; ");
+    let mut reason = reason.replace('\n', "; ");
     let Some(before) = error.span().and_then(|span| text.get(..span.start)) else { return reason };
     let (number, begin) = (before.matches('\n').count() + 1, before.rfind('\n').map_or(0, |end| end + 1));
     let line = text.get(begin..).and_then(|rest| rest.lines().next()).unwrap_or_default();
+    if reason == "duplicate key"
+        && let Some(first) = before.lines().position(|earlier| key_of(earlier) == key_of(line))
+    {
+        reason = format!("this key is already in line {}, where it can be changed", first + 1);
+    }
     format!("line {number}: {reason}: `{}`", shortened(line.trim()))
+}
+
+/// Returns the key of a line of TOML.
+fn key_of(line: &str) -> Option<&str> {
+    line.split_once('=').map(|(key, _)| key.trim())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_second_line_of_a_key_names_the_first() {
+        let text = "# odom\nodom = \"odom\" # topic (default)\nscan = \"scan\"\nodom = \"/odom\"\n";
+        let error = toml::from_str::<toml::Table>(text).unwrap_err();
+        let expected = "line 4: this key is already in line 2, where it can be changed: `odom = \"/odom\"`";
+        assert_eq!(syntax_error(text, &error), expected);
+    }
+
+    #[test]
+    fn numbers_that_no_type_holds_are_too_large() {
+        for text in ["a = 9999999999999999999", "a = -9999999999999999999", "a = 99999999999999999999"] {
+            let error = toml::from_str::<toml::Table>(text).unwrap_err();
+            assert_eq!(syntax_error(text, &error), format!("line 1: the number is too large: `{text}`"));
+        }
+    }
 
     #[test]
     fn messages_stay_short() {
