@@ -1,7 +1,7 @@
 //! Prints the output of an executable that makes no run: help, the answer that an option asks for, or an error in the
 //! arguments.
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 
 use clap::error::{ContextKind, ContextValue};
 use mdle_runtime::PrintableLines;
@@ -15,14 +15,19 @@ pub(crate) fn unparsed<'o>(error: clap::Error, out: impl FnOnce() -> Box<dyn Wri
         say(err, format_args!("{}", error.render().to_string().trim_end()));
         return run_end::USAGE;
     }
-    print_answer(&error.render().to_string(), &mut *out())
+    print_answer(&error.render().to_string(), &mut *out(), err)
 }
 
-/// Prints the answer that an option asks for instead of a run, and returns the exit status. Write errors are ignored,
-/// because the reader may close the stream early.
-pub(crate) fn print_answer(answer: &str, out: &mut dyn Write) -> u8 {
-    let _ = write!(out, "{}", PrintableLines(answer)).and_then(|()| out.flush());
-    run_end::OVER
+/// Prints the answer that an option asks for instead of a run, and returns the exit status. A reader may close the
+/// stream early; any other write error, as of a full disk, is reported.
+pub(crate) fn print_answer(answer: &str, out: &mut dyn Write, err: &mut dyn Write) -> u8 {
+    match write!(out, "{}", PrintableLines(answer)).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            say(err, format_args!("error: standard output cannot be written: {error}"));
+            run_end::FAULT
+        }
+        Ok(()) | Err(_) => run_end::OVER,
+    }
 }
 
 /// Removes clap's proposal for an unknown option unless at most a third of the letters differ: `--period`, for example,
@@ -38,4 +43,36 @@ fn with_near_option(mut error: clap::Error) -> clap::Error {
         let _ = error.remove(ContextKind::Usage);
     }
     error
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io;
+
+    use super::*;
+
+    /// A stream in which every write fails.
+    struct Failing(ErrorKind);
+
+    impl Write for Failing {
+        fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+            Err(self.0.into())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn an_answer_that_a_full_disk_loses_is_an_error() {
+        let printed = |kind| {
+            let mut err = Vec::new();
+            let status = print_answer("speed = 1\n", &mut Failing(kind), &mut err);
+            (status, String::from_utf8(err).unwrap())
+        };
+        let full = "error: standard output cannot be written: no storage space\n";
+        assert_eq!(printed(ErrorKind::StorageFull), (run_end::FAULT, full.to_owned()));
+        assert_eq!(printed(ErrorKind::BrokenPipe), (run_end::OVER, String::new()));
+    }
 }

@@ -41,7 +41,7 @@ where
     let options = arguments::options(&target, &matches);
     match shielded(|| (target.answer)(&matches)).unwrap_or_else(bug_before) {
         Err(refusal) => return refusal.tell(surroundings.err),
-        Ok(Some(answer)) => return print_answer(&answer, &mut *(surroundings.out)()),
+        Ok(Some(answer)) => return print_answer(&answer, &mut *(surroundings.out)(), surroundings.err),
         Ok(None) => {}
     }
     let settings = Settings { program, call: &call, matches: &matches, options: &options };
