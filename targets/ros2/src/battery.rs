@@ -8,16 +8,27 @@ use crate::messages::BatteryState;
 const CHARGING: u8 = 1;
 const FULL: u8 = 4;
 
-/// Returns the power supply that `message` reports. The battery is low if its charge, from 0 to 1, is below `low`; a
-/// charge that is not a number is never low.
-#[must_use]
-pub fn supply(message: &BatteryState, low: f64) -> Supply {
+/// Maximum charge: batteries report a little more than 1 when they are full, and some robots wrongly a percentage.
+const MOST: f64 = 1.5;
+
+/// Returns the power supply that `message` reports. The battery is low if its charge, of which 1 is full, is below
+/// `low`.
+///
+/// # Errors
+/// Returns the reason, as the end of a sentence about the message, if the charge is not a number from 0 to 1.5.
+pub fn supply(message: &BatteryState, low: f64) -> Result<Supply, String> {
     let charge = f64::from(message.percentage);
-    Supply {
+    if charge.is_nan() {
+        return Err("`percentage` is no number, as where a robot does not measure the charge".to_owned());
+    }
+    if !(0.0..=MOST).contains(&charge) {
+        return Err(format!("`percentage` is {charge}, and has to be from 0 to 1"));
+    }
+    Ok(Supply {
         battery: Volts(f64::from(message.voltage)),
         is_low: charge < low,
         is_plugged: [CHARGING, FULL].contains(&message.power_supply_status),
-    }
+    })
 }
 
 #[cfg(test)]
@@ -30,8 +41,12 @@ mod tests {
             let message = BatteryState { voltage: 14.5, percentage, power_supply_status, ..BatteryState::default() };
             supply(&message, 0.15)
         };
-        assert_eq!(state(0.1, 2), Supply { battery: Volts(14.5), is_low: true, is_plugged: false });
-        assert!(!state(0.15, 2).is_low && !state(f32::NAN, 0).is_low);
-        assert!(state(0.1, 1).is_plugged && state(1.0, 4).is_plugged && !state(1.0, 3).is_plugged);
+        let known = |percentage, status| state(percentage, status).unwrap();
+        assert_eq!(known(0.1, 2), Supply { battery: Volts(14.5), is_low: true, is_plugged: false });
+        assert!(!known(0.15, 2).is_low && !known(1.02, 2).is_low);
+        assert!(known(0.1, 1).is_plugged && known(1.0, 4).is_plugged && !known(1.0, 3).is_plugged);
+        assert!(state(f32::NAN, 0).unwrap_err().contains("is no number"));
+        assert_eq!(state(80.0, 0).unwrap_err(), "`percentage` is 80, and has to be from 0 to 1");
+        assert!(state(-1.0, 0).is_err() && state(f32::INFINITY, 0).is_err());
     }
 }

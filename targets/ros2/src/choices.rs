@@ -145,9 +145,21 @@ impl Setting for RangeSensors {
         if written.len() > MOST {
             return Err(format!("`ranges` has {} sensors, and {MOST} are the limit", written.len()));
         }
-        match written.iter().find(|sensor| ![sensor.x, sensor.y, sensor.yaw].iter().all(|value| value.abs() <= 10.0)) {
-            Some(sensor) => Err(format!("the place of the range sensor `{}` is more than 10 m away", sensor.topic)),
-            None => Ok(Self(written)),
+        for sensor in &written {
+            for (key, value, most, unit) in
+                [("x", sensor.x, 10.0, "m"), ("y", sensor.y, 10.0, "m"), ("yaw", sensor.yaw, 6.3, "rad")]
+            {
+                // A value that is no number is not within the limits either.
+                if !(-most..=most).contains(&value) {
+                    let topic = shortened(&sensor.topic);
+                    let value = if value.abs() < 1e6 { value.to_string() } else { format!("{value:e}") };
+                    return Err(format!(
+                        "`{key}` of the range sensor `{topic}` is {value}, and has to be a number from -{most} to \
+                         {most}, in {unit}"
+                    ));
+                }
+            }
         }
+        Ok(Self(written))
     }
 }

@@ -2,10 +2,11 @@
 
 use std::fmt;
 use std::path::Path;
+use std::time::Duration;
 
 use mdle_runtime::Meters;
 use mdle_runtime::Shape;
-use mdle_serial::{Key, Settings, Steering};
+use mdle_serial::{Key, Settings, Steering, shortened};
 
 use crate::choices::{BumperSource, Distribution, RangeSensors, Stamped};
 use crate::names::absolute;
@@ -134,8 +135,9 @@ fn domain_of(text: &str) -> Result<u64, String> {
     let number = if text.trim().is_empty() { Ok(0) } else { text.trim().parse() };
     number.ok().filter(|domain| *domain <= LAST_DOMAIN).ok_or_else(|| {
         format!(
-            "the variable ROS_DOMAIN_ID is `{text}`, and has to be a number from 0 to {LAST_DOMAIN}; a file with \
-             `domain` does not need it"
+            "the variable ROS_DOMAIN_ID is `{}`, and has to be a number from 0 to {LAST_DOMAIN}; a file with `domain` \
+             does not need it",
+            shortened(text)
         )
     })
 }
@@ -185,6 +187,12 @@ impl Config {
     /// Returns a sentence with the reason if `name` is not a valid topic name.
     pub fn topic(&self, name: &str) -> Result<String, String> {
         absolute(&self.namespace, name)
+    }
+
+    /// Returns the longest time that the robot may be without a command.
+    #[must_use]
+    pub fn longest_gap(&self) -> Duration {
+        Duration::from_millis(self.stale_odom.max(self.stale_scan))
     }
 
     /// Returns the shape of the body, as laws use it.

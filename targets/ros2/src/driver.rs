@@ -248,7 +248,7 @@ impl<L: Link> Robot for Ros2<L> {
     }
 
     fn longest_gap(&self) -> Option<Duration> {
-        Some(Duration::from_millis(self.config.stale_odom.max(self.config.stale_scan)))
+        Some(self.config.longest_gap())
     }
 }
 

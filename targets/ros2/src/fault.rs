@@ -90,9 +90,10 @@ impl fmt::Display for Fault {
             ),
             Self::Jumped { way, degrees, seconds } => write!(
                 f,
-                "the odometry has jumped by {way:.2} m and {degrees:.0}° in {seconds:.2} s, further than the robot can \
+                "the odometry has jumped by {} m and {degrees:.0}° in {seconds:.2} s, further than the robot can \
                  have moved; odometry must be continuous, so take a topic that no localisation corrects, or set \
-                 `fastest`, `fastest-turn` and `jump`"
+                 `fastest`, `fastest-turn` and `jump`",
+                distance(*way)
             ),
             Self::Several { topic, count, may_be_restart: false } => {
                 write!(
@@ -119,6 +120,11 @@ impl fmt::Display for Fault {
             }
         }
     }
+}
+
+/// Returns a distance in metres as a message writes it, which stays short.
+fn distance(meters: f64) -> String {
+    if meters < 1e6 { format!("{meters:.2}") } else { format!("{meters:.0e}") }
 }
 
 impl From<Fault> for Refusal {

@@ -6,6 +6,8 @@ use crate::source::Input;
 
 /// Maximum number of topics in a list.
 const LISTED: usize = 30;
+/// Maximum number of missing topics in a message.
+const MISSING: usize = 8;
 
 /// A reader or writer of another program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -82,7 +84,13 @@ impl Graph {
     pub fn about_missing(&self, missing: &[String], config: &Config) -> String {
         let is_empty = !self.readers.iter().chain(&self.writers).any(|endpoint| ros_topic(&endpoint.topic).is_some());
         let listed = self.listed(config);
-        if is_empty { listed } else { format!("{}; {listed}", missing.join("; ")) }
+        if is_empty {
+            return listed;
+        }
+        let more = missing.len().saturating_sub(MISSING);
+        let more = if more == 0 { String::new() } else { format!("; {more} more topics are missing") };
+        let missing: Vec<_> = missing.iter().take(MISSING).map(String::as_str).collect();
+        format!("{}{more}; {listed}", missing.join("; "))
     }
 
     /// Returns a sentence that lists all topics on the graph, those with publishers before those with subscribers.

@@ -3,10 +3,13 @@
 use std::collections::BTreeSet;
 
 use crate::command_graph::{TWIST, TWIST_STAMPED};
+use crate::config::Config;
 use crate::graph::{Endpoint, Graph};
 use crate::names::{dds_topic, dds_type, ros_topic};
 use crate::source::Input;
 
+/// Key of the range sensors, which are in a list of tables.
+pub(crate) const RANGES: &str = "ranges";
 /// Maximum number of topics in a list.
 const LISTED: usize = 8;
 
@@ -51,6 +54,10 @@ impl<'a> Missing<'a> {
         candidates.sort_by_key(|candidate| last(candidate) != last(self.topic));
         let (first, others) = candidates.split_first()?;
         let others: Vec<_> = others.iter().take(LISTED).map(|other| format!("\"{other}\"")).collect();
+        if self.key == RANGES {
+            let comment = if others.is_empty() { String::new() } else { format!(" # also: {}", others.join(", ")) };
+            return Some(format!("{RANGES} = [{{ topic = \"{first}\" }}]{comment}"));
+        }
         let comment = match (others.as_slice(), self.is_telling) {
             ([], true) => String::new(),
             ([], false) => format!(" # if that is the {}", self.key),
@@ -62,15 +69,23 @@ impl<'a> Missing<'a> {
 
 impl Graph {
     /// Returns help with the configuration entries for the missing topics, where the graph has others of the same type;
-    /// empty if there are none. If the graph has all of these topics in one other namespace, the entry is `namespace`.
+    /// empty if there are none. If the graph has all of these topics in one other namespace, the entry is `namespace`,
+    /// unless `config` has names that begin with a slash, which a namespace does not change.
     #[must_use]
-    pub fn help<'i>(&'i self, inputs: impl Iterator<Item = &'i Input>, commands: &'i str) -> String {
+    pub fn help<'i>(&'i self, inputs: impl Iterator<Item = &'i Input>, commands: &'i str, config: &Config) -> String {
         let of_input =
             |input: &'i Input| Missing::among(&self.writers, &input.topic, &[input.kind], input.source.key()?);
         let mut missing: Vec<_> = inputs.filter_map(of_input).collect();
         missing.extend(Missing::among(&self.readers, commands, &[TWIST, TWIST_STAMPED], ("cmd-vel", true)));
-        let entries = namespace(&missing)
-            .map_or_else(|| missing.iter().filter_map(Missing::choice).collect(), |namespace| vec![namespace]);
+        let is_absolute = config.robot_topics().any(|(_, name)| name.starts_with('/'));
+        let namespace = namespace(&missing).filter(|_| !is_absolute);
+        let choices = || {
+            let mut choices: Vec<_> = missing.iter().filter_map(Missing::choice).collect();
+            // Each missing range sensor has the same candidates.
+            choices.dedup();
+            choices
+        };
+        let entries = namespace.map_or_else(choices, |namespace| vec![namespace]);
         match entries.as_slice() {
             [] => String::new(),
             [entry] => format!("\nhelp: write `{entry}` into the file of --config"),
@@ -94,8 +109,8 @@ fn namespace(missing: &[Missing<'_>]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::choices::BumperSource;
-    use crate::config::{Config, Configured};
+    use crate::choices::{BumperSource, RangeSensor};
+    use crate::config::Configured;
 
     fn endpoint(topic: &str, kind: &str) -> Endpoint {
         Endpoint { topic: dds_topic(topic), kind: dds_type(kind), is_reliable: true, mismatch: None }
@@ -105,7 +120,7 @@ mod tests {
         let mut config = Configured::read(None).unwrap().config;
         change(&mut config);
         let inputs = crate::source::inputs(&config).unwrap();
-        graph.help(inputs.iter(), "/cmd_vel")
+        graph.help(inputs.iter(), "/cmd_vel", &config)
     }
 
     #[test]
@@ -140,12 +155,31 @@ mod tests {
     }
 
     #[test]
+    fn range_sensors_are_proposed_once() {
+        let mut graph = Graph::default();
+        graph.readers.push(endpoint("/cmd_vel", TWIST));
+        graph.writers.push(endpoint("/odom", "nav_msgs/msg/Odometry"));
+        graph.writers.push(endpoint("/front", "sensor_msgs/msg/Range"));
+        let two_sensors = |config: &mut Config| {
+            config.scan.clear();
+            let sensor = |topic: &str| RangeSensor { topic: topic.to_owned(), x: 0.0, y: 0.0, yaw: 0.0 };
+            config.ranges.0 = vec![sensor("r1"), sensor("r2")];
+        };
+        let expected = "\nhelp: write `ranges = [{ topic = \"/front\" }]` into the file of --config";
+        assert_eq!(help(&graph, two_sensors), expected);
+        graph.writers.push(endpoint("/rear", "sensor_msgs/msg/Range"));
+        assert!(help(&graph, two_sensors).contains("`ranges = [{ topic = \"/front\" }] # also: \"/rear\"`"));
+    }
+
+    #[test]
     fn a_robot_in_a_namespace_is_found() {
         let mut graph = Graph::default();
         graph.writers.push(endpoint("/robot1/odom", "nav_msgs/msg/Odometry"));
         graph.writers.push(endpoint("/robot1/scan", "sensor_msgs/msg/LaserScan"));
         graph.readers.push(endpoint("/robot1/cmd_vel", TWIST));
         assert_eq!(help(&graph, |_| {}), "\nhelp: write `namespace = \"/robot1\"` into the file of --config");
+        let help_of_absolute = help(&graph, |config| config.odom = "/odom".to_owned());
+        assert!(help_of_absolute.contains("\nodom = \"/robot1/odom\"\n"), "{help_of_absolute}");
         graph.readers.push(endpoint("/robot2/cmd_vel", TWIST));
         assert!(help(&graph, |_| {}).contains("namespace = \"/robot1\""));
         graph.writers.push(endpoint("/robot2/odom", "nav_msgs/msg/Odometry"));

@@ -11,7 +11,7 @@ const WATCH: Duration = Duration::from_secs(1);
 
 /// The publishers of a topic from which messages have come.
 ///
-/// A program that has ended without a farewell stays on the graph for some time: after a restart of a robot there are
+/// A program that was killed stays on the graph for some time: after a restart of a robot there are
 /// two publishers, of which the first is silent. Two publishers that drive the plan with two poses both send: the first
 /// of them sends again after the second.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

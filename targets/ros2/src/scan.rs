@@ -110,7 +110,12 @@ impl Scanner {
         } else if apart > wide {
             format!("its rays are {apart:.1}° apart, and each of the three directions ahead is {wide}° wide")
         } else {
-            "its rays do not look ahead; see `scan-yaw`".to_owned()
+            let ends = [0, scan.ranges.len() - 1].map(|number| self.angle(scan, number).0.to_degrees());
+            let [from, to] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            format!(
+                "its rays reach from {from:.0}° to {to:.0}° on the body, and the three directions ahead from -34° to \
+                 34°; see `scan-yaw`"
+            )
         })
     }
 
@@ -186,10 +191,12 @@ mod tests {
         let coarse = "its rays are 45.0° apart, and each of the three directions ahead is 22.5° wide";
         assert_eq!(looks(0.0, 8), Err(coarse.to_owned()));
         // Half a circle of which the robot sees what is behind it.
+        let behind = "its rays reach from -270° to -91° on the body, and the three directions ahead from -34° to 34°; \
+                      see `scan-yaw`";
         let half = LaserScan { angle_increment: (PI / 360.0) as f32, ..scan(vec![1.0; 360]) };
         let turned = |yaw: f64| scanner(|config| config.scan_yaw = yaw).looks_ahead(&half);
         assert_eq!(turned(PI / 2.0), Ok(()));
-        assert_eq!(turned(-PI / 2.0), Err("its rays do not look ahead; see `scan-yaw`".to_owned()));
+        assert_eq!(turned(-PI / 2.0), Err(behind.to_owned()));
         let increment = |angle_increment: f32| {
             scanner(|_| {}).looks_ahead(&LaserScan { angle_increment, ..half.clone() }).unwrap_err()
         };

@@ -113,7 +113,7 @@ impl Search<'_> {
         if !is_heard {
             missing.insert(0, graph.about_commands(topic, self.config.stamped));
         }
-        let help = graph.help(sensing.inputs(), topic);
+        let help = graph.help(sensing.inputs(), topic, self.config);
         Fault::Missing(format!("{}{help}", graph.about_missing(&missing, self.config)))
     }
 

@@ -102,9 +102,9 @@ impl Sensing {
             Source::Scan => payload.read().and_then(|scan: LaserScan| self.take_scan(&scan, now, at)),
             Source::Range(number) => self.read_range(payload).map(|range| self.take_range(number, &range, at)),
             Source::Bumper => self.take_bumper(payload),
-            Source::Battery => payload.read::<BatteryState>().map(|message| {
-                self.supply = supply(&message, self.config.low_battery);
-                message.header.stamp.nanos()
+            Source::Battery => payload.read().and_then(|message: BatteryState| {
+                self.supply = supply(&message, self.config.low_battery)?;
+                Ok(message.header.stamp.nanos())
             }),
             Source::Clock => payload.read::<ClockMessage>().map(|message| {
                 self.take_clock(message.clock.nanos());
@@ -215,7 +215,8 @@ impl Sensing {
     /// Returns the topics that lack a first message, each with the reason why a message was rejected. Topics that
     /// report changes only are left out.
     pub fn awaited(&self) -> impl Iterator<Item = (&Input, &str)> {
-        let awaited = self.seen.iter().filter(|seen| seen.at.is_none() && !reports_changes(&seen.input));
+        let may_wait = |seen: &Seen| reports_changes(&seen.input) && seen.left_out.is_empty();
+        let awaited = self.seen.iter().filter(move |seen| seen.at.is_none() && !may_wait(seen));
         awaited.map(|seen| (&seen.input, seen.left_out.as_str()))
     }
 

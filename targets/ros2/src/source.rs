@@ -2,6 +2,7 @@
 
 use crate::choices::{BumperSource, Distribution};
 use crate::config::{Config, has_topic};
+use crate::proposals::RANGES;
 
 /// The purpose of a topic that the driver reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,8 +23,7 @@ pub enum Source {
 
 impl Source {
     /// Returns the configuration key that names the topic, and `true` if the only topic of its type may be proposed,
-    /// which a bumper's may not, as its type is common. Returns `None` for range sensors, which are in tables, and for
-    /// the clock, whose name is fixed.
+    /// which a bumper's may not, as its type is common. Returns `None` for the clock, whose name is fixed.
     #[must_use]
     pub const fn key(self) -> Option<(&'static str, bool)> {
         match self {
@@ -31,7 +31,8 @@ impl Source {
             Self::Scan => Some(("scan", true)),
             Self::Battery => Some(("battery", true)),
             Self::Bumper => Some(("bumper", false)),
-            Self::Range(_) | Self::Clock => None,
+            Self::Range(_) => Some((RANGES, false)),
+            Self::Clock => None,
         }
     }
 }

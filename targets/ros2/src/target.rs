@@ -84,6 +84,14 @@ impl mdle_host::Target for Target {
     fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Self::Robot, Refusal> {
         let config = configured(matches)?.config;
         let (pacing, begun) = (pacing(matches, period)?, Moment::now());
+        if pacing == Pacing::Wall && period > config.longest_gap() {
+            let longest = config.longest_gap().as_millis();
+            return Err(Refusal::Usage(format!(
+                "a turn of {} ms is longer than the robot may be without a command, {longest} ms; give a shorter \
+                 `--period`, or set `stale-scan` in the file of --config",
+                period.as_millis()
+            )));
+        }
         let (link, sensing) = DdsLink::connect(&config, pacing, request, begun)?;
         for sentence in link.warnings() {
             // Without standard error the plan runs as well.

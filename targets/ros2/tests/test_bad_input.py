@@ -311,6 +311,11 @@ def test_a_bad_configuration_is_refused(values, sentence):
         ends_with(2, sentence, run)
 
 
+def test_a_period_longer_than_the_robot_may_be_without_a_command_is_refused():
+    with running("ride", configuration(new_domain()), "--period", "2s") as run:
+        ends_with(2, "a turn of 2000 ms is longer than the robot may be without a command, 1000 ms", run)
+
+
 @pytest.mark.parametrize("domain", ["233", "robot"])
 def test_a_bad_domain_of_the_environment_is_refused(domain):
     environment = {**os.environ, "ROS_DOMAIN_ID": domain}

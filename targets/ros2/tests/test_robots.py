@@ -121,6 +121,23 @@ def test_a_low_battery_ends_its_atom():
             arrives(run, robot)
 
 
+@pytest.mark.parametrize("charge, why", [(math.nan, "is no number"), (80.0, "is 80, and has to be from 0 to 1")])
+def test_a_battery_without_a_charge_is_refused(charge, why):
+    domain = new_domain()
+    with Robot(domain) as robot:
+        robot.add("battery_state", m.BatteryState)
+
+        def charged(bumper):
+            robot.writers["battery_state"].write(m.BatteryState(header=robot.header(""), percentage=charge))
+            return bumper
+
+        robot.changed["bumper"] = charged
+        with running("until_low", configuration(domain, battery="battery_state")) as run:
+            code, _, err = run.end()
+            assert code == 3 and f"`/battery_state` has messages that cannot be used: `percentage` {why}" in err, err
+            assert not robot.history
+
+
 def is_installed(machine):
     """Whether Rust compiles for this machine here."""
     command = ["rustc", "--print", "target-libdir", "--target", machine]

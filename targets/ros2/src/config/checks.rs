@@ -6,6 +6,7 @@ use super::{Config, has_topic};
 use crate::choices::BumperSource;
 use crate::local_addresses;
 use crate::names::is_namespace;
+use crate::proposals::RANGES;
 
 impl Config {
     /// Checks the conditions that the ranges of single values cannot express.
@@ -43,7 +44,7 @@ impl Config {
         }
         let mut named: Vec<(&str, String)> = Vec::new();
         let clock = self.use_sim_time.then_some(("use-sim-time", "/clock"));
-        for (key, name) in self.topics().into_iter().chain(clock) {
+        for (key, name) in self.topics().chain(clock) {
             if name.is_empty() {
                 return Err(empty(key));
             }
@@ -58,18 +59,19 @@ impl Config {
     }
 
     /// Returns the topics in use by the keys that name them.
-    fn topics(&self) -> Vec<(&'static str, &str)> {
-        let optional = [
-            ("scan", &self.scan),
-            ("battery", &self.battery),
-            ("state", &self.state),
-            ("diagnostics", &self.diagnostics),
-        ];
+    fn topics(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let published = [("state", self.state.as_str()), ("diagnostics", self.diagnostics.as_str())];
+        self.robot_topics().chain(published.into_iter().filter(|(_, topic)| !topic.is_empty()))
+    }
+
+    /// Returns the topics in use that a robot has to have, by the keys that name them.
+    pub(crate) fn robot_topics(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let optional = [("scan", &self.scan), ("battery", &self.battery)];
         let optional = optional.into_iter().filter(|(_, topic)| !topic.is_empty());
         let required = [("cmd-vel", &self.cmd_vel), ("odom", &self.odom)].into_iter();
         let required = required.chain(has_topic(self.bumper_type).then_some(("bumper", &self.bumper)));
-        let required = required.chain(self.ranges.0.iter().map(|sensor| ("ranges", &sensor.topic)));
-        required.chain(optional).map(|(key, topic)| (key, topic.as_str())).collect()
+        let required = required.chain(self.ranges.0.iter().map(|sensor| (RANGES, &sensor.topic)));
+        required.chain(optional).map(|(key, topic)| (key, topic.as_str()))
     }
 }
 

@@ -80,7 +80,10 @@ fn what_makes_no_sense_is_refused() {
         ("bumper-type = \"bool\"\nbumper = \"\"", "`bumper` is empty: write the topic that `bumper-type` needs"),
         ("odom = \"\"", "`odom` is empty, and no plan can drive without it: write the topic, as in `odom = \"odom\"`"),
         ("bumper-type = \"button\"", "has to be \"none\" or \"bool\" or \"hazard\" or \"scan\""),
-        ("ranges = [{ topic = \"a\", x = 1e9 }]", "the place of the range sensor `a` is more than 10 m away"),
+        (
+            "ranges = [{ topic = \"a\", yaw = 700 }]",
+            "`yaw` of the range sensor `a` is 700, and has to be a number from -6.3",
+        ),
         (
             "ranges = [{ topic = \"a\", z = 1 }]",
             "`ranges` is [{ topic = \"a\", z = 1 }], and has to be a list of sensors { topic = ",
