@@ -30,7 +30,7 @@ PLANS = {
 # Under nohup the tests, and all that they start, would take no hangup.
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-_domains = itertools.count(30)
+_domains = itertools.count(2)
 
 
 def new_domain():
