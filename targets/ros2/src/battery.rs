@@ -22,7 +22,7 @@ pub fn supply(message: &BatteryState, low: f64) -> Result<Supply, String> {
         return Err("`percentage` is no number, as where a robot does not measure the charge".to_owned());
     }
     if !(0.0..=MOST).contains(&charge) {
-        return Err(format!("`percentage` is {charge}, and has to be from 0 to 1"));
+        return Err(format!("`percentage` is {}, and has to be from 0 to {MOST}; 1 is full", message.percentage));
     }
     Ok(Supply {
         battery: Volts(f64::from(message.voltage)),
@@ -46,7 +46,7 @@ mod tests {
         assert!(!known(0.15, 2).is_low && !known(1.02, 2).is_low);
         assert!(known(0.1, 1).is_plugged && known(1.0, 4).is_plugged && !known(1.0, 3).is_plugged);
         assert!(state(f32::NAN, 0).unwrap_err().contains("is no number"));
-        assert_eq!(state(80.0, 0).unwrap_err(), "`percentage` is 80, and has to be from 0 to 1");
+        assert_eq!(state(80.0, 0).unwrap_err(), "`percentage` is 80, and has to be from 0 to 1.5; 1 is full");
         assert!(state(-1.0, 0).is_err() && state(f32::INFINITY, 0).is_err());
     }
 }

@@ -17,6 +17,8 @@ use crate::participant::{Delivery, Participant, Writer};
 
 /// Time between two repetitions of the zero velocity.
 const AGAIN: Duration = Duration::from_millis(100);
+/// Minimum number of repetitions: a suspension of the program uses up time.
+const TIMES: u32 = 5;
 /// Maximum time for which a new writer waits for the subscribers of the writer that it replaces.
 const REJOINING: Duration = Duration::from_secs(5);
 
@@ -73,19 +75,20 @@ impl Commands {
     }
 
     /// Sends a zero velocity until all subscribers that acknowledge messages have done so, or until `limit` has passed.
+    /// Returns `false` if no subscriber acknowledges messages.
     ///
     /// # Errors
     /// Fails if no subscriber has acknowledged the zero velocity.
-    pub(crate) fn halt(&mut self, participant: &Participant, limit: Duration, stamp: i64) -> Result<(), Fault> {
+    pub(crate) fn halt(&mut self, participant: &Participant, limit: Duration, stamp: i64) -> Result<bool, Fault> {
         let begun = Instant::now();
         let acknowledges = participant.graph().readers_of(&self.topic).any(|reader| reader.is_reliable);
-        loop {
+        for times in 1.. {
             let sent = self.send(Twist::default(), stamp);
             // Without subscribers everything counts as acknowledged.
             if sent.is_ok() && acknowledges && self.writer.is_acknowledged(AGAIN) && self.writer.matched() > 0 {
-                return Ok(());
+                return Ok(true);
             }
-            if begun.elapsed() >= limit {
+            if times >= TIMES && begun.elapsed() >= limit {
                 break;
             }
             if !acknowledges || sent.is_err() {
@@ -96,7 +99,7 @@ impl Commands {
         match (acknowledges, self.writer.matched()) {
             (true, _) => Err(Fault::Unacknowledged(topic)),
             (false, 0) => Err(Fault::Unheard(topic)),
-            (false, _) => Ok(()),
+            (false, _) => Ok(false),
         }
     }
 
@@ -105,7 +108,7 @@ impl Commands {
     ///
     /// # Errors
     /// Fails if no subscriber has acknowledged the last zero velocity.
-    pub(crate) fn insist(&mut self, participant: &Participant, limit: Duration, stamp: i64) -> Result<(), Fault> {
+    pub(crate) fn insist(&mut self, participant: &Participant, limit: Duration, stamp: i64) -> Result<bool, Fault> {
         let begun = Instant::now();
         while begun.elapsed() < limit {
             // `halt` reports that it cannot be sent.
@@ -126,9 +129,8 @@ impl Commands {
         while self.writer.matched() < expected {
             let passed = begun.elapsed();
             if passed > REJOINING {
-                let topic = self.topic.clone();
-                let is_alone = self.writer.matched() == 0;
-                return Err(if is_alone { Fault::Unheard(topic) } else { Fault::Unacknowledged(topic) });
+                let (topic, found) = (self.topic.clone(), self.writer.matched());
+                return Err(Fault::Lost { topic, found, expected });
             }
             if self.writer.matched() > 0 && passed >= due {
                 due = passed + AGAIN;

@@ -159,7 +159,7 @@ impl DdsLink {
     }
 
     /// Stops the robot with a new participant, which first finds the subscribers that the first one had.
-    fn halt_anew(&self, limit: Duration) -> Result<(), Fault> {
+    fn halt_anew(&self, limit: Duration) -> Result<bool, Fault> {
         let (expected, stamp) = (self.subscribers.max(1), self.stamp());
         let participant = Participant::join(&self.config)?;
         let mut commands = self.commands.by(&participant)?;
@@ -195,7 +195,7 @@ impl Link for DdsLink {
         })
     }
 
-    fn halt(&mut self, limit: Duration) -> Result<(), Fault> {
+    fn halt(&mut self, limit: Duration) -> Result<bool, Fault> {
         self.notice_suspension();
         let stamp = self.stamp();
         let mut halted = self.commands.halt(&self.participant, limit, stamp);

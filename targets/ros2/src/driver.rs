@@ -23,9 +23,13 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// Maximum time by which `/clock` may go back, in nanoseconds.
 const BACK: i64 = 1_000_000_000;
 /// Maximum time for which the zero velocity is repeated.
-const HALTING: Duration = Duration::from_millis(500);
+pub(crate) const HALTING: Duration = Duration::from_millis(500);
 /// Maximum time in which odometry has to report that the robot slows down after the zero velocity.
 const SLOWING: Duration = Duration::from_secs(3);
+/// Time before the end of [`SLOWING`] of which the lowest speeds count.
+const JUDGED: Duration = Duration::from_secs(1);
+/// Minimum time for which the robot has to be at rest.
+const STANDING: Duration = Duration::from_millis(200);
 /// Speeds below which the robot counts as being at rest.
 const REST: Twist = Twist { v: MetersPerSecond(0.02), omega: RadiansPerSecond(0.05) };
 /// Time after which an unchanged state of the plan is published again.
@@ -175,38 +179,47 @@ impl<L: Link> Ros2<L> {
         Twist { v: MetersPerSecond(velocity.v.0.abs()), omega: RadiansPerSecond(velocity.omega.0.abs()) }
     }
 
-    /// Receives messages; returns `true` if they are valid, and none is missing.
-    fn is_informed(&mut self) -> bool {
-        self.receive(Nanos::ZERO).is_ok() && self.sensing.check(self.now()).is_ok()
-    }
-
-    /// Returns `true` if the last odometry reports a robot at rest.
+    /// Returns `true` if the last odometry is not stale, and reports a robot at rest.
     fn rests(&mut self) -> bool {
-        self.is_informed() && is_within(self.speeds(), REST)
+        let is_informed = self.receive(Nanos::ZERO).is_ok() && self.sensing.check(self.now()).is_ok();
+        is_informed && is_within(self.speeds(), REST)
     }
 
-    /// Waits until new odometry reports a robot at rest, or with half the speeds that it had `before`.
+    /// Waits until new odometry reports a robot that stands. Returns `false` if no new odometry has come.
     ///
     /// # Errors
-    /// Fails if odometry continues to report higher speeds. If none comes, nothing is known.
-    fn slows(&mut self, before: Twist) -> Result<(), Fault> {
-        let limits = Twist {
-            v: MetersPerSecond(REST.v.0.max(before.v.0 / 2.0)),
-            omega: RadiansPerSecond(REST.omega.0.max(before.omega.0 / 2.0)),
-        };
+    /// Fails if odometry continues to report more than a quarter of the speeds that the robot had `before`.
+    fn slows(&mut self, before: Twist) -> Result<bool, Fault> {
         let (begun, (last, _)) = (Instant::now(), self.sensing.stamps());
-        while self.is_informed() {
-            let is_new = self.sensing.stamps().0 > last;
-            if is_new && is_within(self.speeds(), limits) {
-                break;
+        let (mut slowest, mut rest): (Option<Twist>, Option<Instant>) = (None, None);
+        while begun.elapsed() < SLOWING {
+            if self.receive(Nanos::ZERO).is_err() {
+                return Ok(false);
             }
-            if begun.elapsed() > SLOWING {
-                let topic = self.config.topic(&self.config.odom).unwrap_or_default();
-                return if is_new { Err(Fault::Moving { topic, twist: self.speeds() }) } else { Ok(()) };
+            if self.sensing.stamps().0 > last {
+                let speeds = self.speeds();
+                // Odometry is noisy: the least of many counts.
+                let is_last = begun.elapsed() + JUDGED > SLOWING;
+                slowest = Some(slowest.filter(|_| is_last).map_or(speeds, |slowest| least(slowest, speeds)));
+                rest = rest.filter(|_| is_within(speeds, REST)).or(is_within(speeds, REST).then(Instant::now));
+                if rest.is_some_and(|rest| rest.elapsed() >= STANDING) {
+                    return Ok(true);
+                }
             }
             sleep(LOOK);
         }
-        Ok(())
+        let limits = Twist {
+            v: MetersPerSecond(REST.v.0.max(before.v.0 / 4.0)),
+            omega: RadiansPerSecond(REST.omega.0.max(before.omega.0 / 4.0)),
+        };
+        match slowest {
+            Some(slowest) if !is_within(slowest, limits) => {
+                let topic = self.config.topic(&self.config.odom).unwrap_or_default();
+                Err(Fault::Moving { topic, twist: self.speeds() })
+            }
+            Some(_) => Ok(true),
+            None => Ok(false),
+        }
     }
 
     /// Publishes the state of the plan. A state that cannot be encoded is not published, and the plan continues.
@@ -221,6 +234,11 @@ impl<L: Link> Ros2<L> {
 /// Returns `true` if both speeds are below their limits.
 fn is_within(speeds: Twist, limits: Twist) -> bool {
     speeds.v.0 < limits.v.0 && speeds.omega.0 < limits.omega.0
+}
+
+/// Returns the smaller of each speed.
+fn least(one: Twist, other: Twist) -> Twist {
+    Twist { v: MetersPerSecond(one.v.0.min(other.v.0)), omega: RadiansPerSecond(one.omega.0.min(other.omega.0)) }
 }
 
 impl<L: Link> Robot for Ros2<L> {
@@ -240,10 +258,15 @@ impl<L: Link> Robot for Ros2<L> {
         let before = self.speeds();
         match self.link.halt(HALTING) {
             // A robot in lockstep moves only when it gets a command.
-            Ok(()) if !matches!(self.pacing, Pacing::Lockstep(_)) => self.slows(before),
+            Ok(_) if matches!(self.pacing, Pacing::Lockstep(_)) => Ok(()),
+            Ok(is_acknowledged) => {
+                let is_seen = self.slows(before)?;
+                let topic = self.config.topic(&self.config.odom).unwrap_or_default();
+                if is_acknowledged || is_seen { Ok(()) } else { Err(Fault::Unseen(topic)) }
+            }
             // Another subscriber may be gone, and the robot has stopped.
-            Err(Fault::Unacknowledged(_)) if self.rests() => Ok(()),
-            result => result,
+            Err(Fault::Unacknowledged(_) | Fault::Unheard(_)) if self.rests() => Ok(()),
+            Err(fault) => Err(fault),
         }
     }
 

@@ -64,6 +64,18 @@ pub enum Fault {
         /// Speeds of the robot, without signs.
         twist: Twist,
     },
+    /// Not all subscribers of velocity commands were found again after a long suspension.
+    Lost {
+        /// Name of the topic.
+        topic: String,
+        /// Number of subscribers that were found.
+        found: i32,
+        /// Number of subscribers before the suspension.
+        expected: i32,
+    },
+    /// No subscriber acknowledges commands, and no odometry has come since the zero velocity; the text is the
+    /// odometry's topic.
+    Unseen(String),
     /// No subscriber of velocity commands has acknowledged the zero velocity; the text is the topic's name.
     Unacknowledged(String),
 }
@@ -115,6 +127,14 @@ impl fmt::Display for Fault {
                 let (v, omega) = (twist.v.0, twist.omega.0.to_degrees());
                 write!(f, "`{topic}` still reports {v:.2} m/s and {omega:.0}°/s, 3 s after the zero velocity")
             }
+            Self::Lost { topic, found, expected } => write!(
+                f,
+                "{found} of {expected} subscribers of `{topic}` were found again within 5 s after the suspension"
+            ),
+            Self::Unseen(topic) => write!(
+                f,
+                "no subscriber acknowledges commands, and no message of `{topic}` has come since the zero velocity"
+            ),
             Self::Unacknowledged(topic) => {
                 write!(f, "no subscriber of `{topic}` has acknowledged the zero velocity within half a second")
             }

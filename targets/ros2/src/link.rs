@@ -23,10 +23,11 @@ pub trait Link {
     fn receive(&mut self, take: &mut dyn FnMut(usize, &Payload) -> Result<(), Fault>) -> Result<(), Fault>;
 
     /// Sends a zero velocity until all subscribers that acknowledge messages have done so, or until `limit` has passed.
+    /// Returns `false` if no subscriber acknowledges messages.
     ///
     /// # Errors
     /// Fails if no subscriber has acknowledged the zero velocity.
-    fn halt(&mut self, limit: Duration) -> Result<(), Fault>;
+    fn halt(&mut self, limit: Duration) -> Result<bool, Fault>;
 
     /// Publishes the state of the plan.
     fn publish(&mut self, messages: StateMessages);

@@ -10,13 +10,14 @@ use mdle_serial::Moment;
 use crate::cdr::Payload;
 use crate::commands::Commands;
 use crate::config::Config;
-use crate::driver::LOOK;
+use crate::driver::{HALTING, LOOK};
 use crate::fault::Fault;
 use crate::graph::Graph;
 use crate::participant::{Participant, Reader};
 use crate::publishers::{Probation, Publishers};
 use crate::sensing::Sensing;
 use crate::source::{Input, Source};
+use crate::stamp::ros_now;
 
 /// Time between two checks of the graph for topics.
 const GRAPH: Duration = Duration::from_millis(50);
@@ -66,9 +67,26 @@ impl Search<'_> {
         publishers: &mut Publishers,
         may_rejoin: bool,
     ) -> Result<Option<Commands>, Fault> {
+        let mut commands = None;
+        let found = self.seek((participant, readers), sensing, publishers, may_rejoin, &mut commands);
+        // A robot that another program has left moving is stopped, too.
+        if let (Err(_), Some(mut commands)) = (&found, commands) {
+            let _ = commands.halt(participant, HALTING, ros_now());
+        }
+        found
+    }
+
+    /// Waits as [`Search::find`] does; if it fails, `commands` is the writer, if there is one.
+    fn seek(
+        &self,
+        (participant, readers): (&Participant, &[(Input, Reader)]),
+        sensing: &mut Sensing,
+        publishers: &mut Publishers,
+        may_rejoin: bool,
+        commands: &mut Option<Commands>,
+    ) -> Result<Option<Commands>, Fault> {
         let topic = self.config.topic(&self.config.cmd_vel).map_err(Fault::Middleware)?;
         let limit = Duration::from_millis(self.config.discovery);
-        let mut commands: Option<Commands> = None;
         let (mut silence, mut rejection, mut probation) =
             (Lasting::default(), Lasting::default(), Probation::default());
         loop {
@@ -78,7 +96,7 @@ impl Search<'_> {
             // A subscriber that is found later may change the type.
             let current = commands.as_ref().map(|commands| commands.is_stamped);
             if let Some(is_stamped) = is_stamped.filter(|_| is_stamped != current) {
-                commands = Some(Commands::new(self.config, participant, &topic, is_stamped)?);
+                *commands = Some(Commands::new(self.config, participant, &topic, is_stamped)?);
             }
             let missing = missing(sensing, &graph);
             let is_heard = commands.as_mut().is_some_and(|commands| commands.are_heard(&graph));
@@ -89,7 +107,7 @@ impl Search<'_> {
                 Some(found) if is_heard && missing.is_empty() && (is_alone || passed > limit) => {
                     return Ok(Some(found));
                 }
-                other => commands = other,
+                other => *commands = other,
             }
             if passed > limit {
                 return Err(self.fault(sensing, &graph, missing, &topic, is_heard));

@@ -145,9 +145,9 @@ impl Link for Wire {
         sent.iter().try_for_each(|(number, payload)| take(*number, payload))
     }
 
-    fn halt(&mut self, _limit: Duration) -> Result<(), Fault> {
+    fn halt(&mut self, _limit: Duration) -> Result<bool, Fault> {
         self.0.borrow_mut().velocity = Twist::default();
-        Ok(())
+        Ok(true)
     }
 
     fn publish(&mut self, _messages: StateMessages) {}

@@ -121,7 +121,7 @@ def test_a_low_battery_ends_its_atom():
             arrives(run, robot)
 
 
-@pytest.mark.parametrize("charge, why", [(math.nan, "is no number"), (80.0, "is 80, and has to be from 0 to 1")])
+@pytest.mark.parametrize("charge, why", [(math.nan, "is no number"), (80.0, "is 80, and has to be from 0 to 1.5; 1 is full")])
 def test_a_battery_without_a_charge_is_refused(charge, why):
     domain = new_domain()
     with Robot(domain) as robot:

@@ -119,6 +119,49 @@ def test_a_base_that_acknowledges_and_drives_on_is_reported():
         assert code == 3 and "the robot may not have stopped: `/odom` still reports 0.10 m/s and 0°/s" in err, err
 
 
+def test_a_base_that_stops_and_drives_on_is_reported():
+    domain = new_domain()
+    with Robot(domain, watchdog=math.inf) as robot, running("ride", configuration(domain)) as run:
+        drives(robot)
+
+        def stumbling():
+            taken = robot.commands.take(50)
+            if taken:
+                stopped_at[0] = time.monotonic()
+            robot.body.v = 0.0 if time.monotonic() - stopped_at[0] < 0.1 else 0.1
+            return len(taken)
+
+        stopped_at = [0.0]
+        robot.take = stumbling
+        run.process.send_signal(signal.SIGINT)
+        code, _, err = run.end()
+        assert code == 3 and "the robot may not have stopped: `/odom` still reports 0.10 m/s" in err, err
+
+
+def test_a_base_that_neither_acknowledges_nor_reports_is_reported():
+    domain = new_domain()
+    with Robot(domain, watchdog=math.inf, reliable=False) as robot, running("ride", configuration(domain)) as run:
+        drives(robot)
+        robot.muted.add("odom")
+        run.process.send_signal(signal.SIGINT)
+        code, _, err = run.end()
+        assert code == 3 and "no message of `/odom` has come since the zero velocity" in err, err
+
+
+def test_a_base_that_is_moving_is_stopped_while_it_is_opened():
+    domain = new_domain()
+    with Robot(domain, watchdog=math.inf) as robot:
+        robot.body.v = 0.1
+        robot.muted.add("scan")
+        with running("ride", configuration(domain)) as run:
+            time.sleep(2)
+            since = time.monotonic()
+            run.process.send_signal(signal.SIGINT)
+            code, _, err = run.end()
+            assert code == 130, err
+            stopped(robot, since)
+
+
 def test_a_base_that_slows_down_in_its_time_is_stopped():
     domain = new_domain()
     with Robot(domain, watchdog=math.inf) as robot, running("ride", configuration(domain)) as run:
