@@ -84,3 +84,25 @@ fn a_plan_waits_as_long_as_a_module_declares() {
         "{silent}"
     );
 }
+
+#[test]
+fn the_tree_shows_what_is_read_and_why() {
+    let folder = with_plans("reads_in_the_tree");
+    fs::write(folder.join("rules.toml"), "[guards.near]\nwhen = \"range(ears module) < 10cm\"\nthen = \"hold\"\n")
+        .unwrap();
+    let commands = "load_plan near.mdle\nload_plan { Back (bumper)\n(Atom (x < 1m) (go -10 0)) }\n\
+                    load_plan { Back (bumper) (Atom (x < 1m) (go -10 0)) }\nload_plan near.mdle stand.mdle\n\
+                    get /plans/Near/reads\nget /plans/Back/text\nget /usr/mdle/main\n\
+                    get /usr/ears/.reads\nget /usr/ears/.priority\nget /usr/ears/.fault\n\
+                    get /safety/rules/near/when\nget /safety/rules/near/then\nls /safety/rules/speed\n\
+                    step 5\nget /usr/ears/.state\nget /usr/ears/.fault\n";
+    fs::write(folder.join("commands.txt"), commands).unwrap();
+    let ears = "ears=echo '{\"publishes\": {\"range\": \"m\"}, \"reads\": {\"sensors/r0\": \"m\"}}'; read line; \
+                echo '{\"range\": 0.3}'; read line; exit 3";
+    let mut command = Command::new(mdle());
+    command.args(["shell", "stand.mdle", "--target", "sim", "--world", "hall", "--speed", "max", "--paused", "-x"]);
+    command.args(["--safety", "rules.toml", "--module", ears, "-c", "commands.txt"]).current_dir(&folder);
+    let Output { status, stdout, stderr } = command.output().unwrap();
+    let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    insta::assert_snapshot!(format!("{out}---\n{err}[{}]\n", status.code().unwrap()));
+}

@@ -48,6 +48,12 @@ pub(super) type LoadedRows<A> = InRows<Shared<A>, Entered, Box<[u64]>, Memories<
 pub struct Shared<A: Alphabet>(Arc<Loaded<A>>);
 
 impl<A: Alphabet> Loaded<A> {
+    /// Returns the attributes of modules that the plan reads.
+    #[must_use]
+    pub fn reads(&self) -> &'static [ModuleRead] {
+        self.owned.reads
+    }
+
     pub(super) fn new(machine: &Machine, owned: Owned<A>) -> Self {
         let Fsm { brackets, atoms, termination } = machine.tables();
         let (brackets, atoms) = (brackets.to_vec(), atoms.to_vec());

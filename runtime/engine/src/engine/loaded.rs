@@ -21,6 +21,8 @@ pub(crate) struct Loaded<Y> {
     pub(crate) is_held: bool,
     /// Number of turns that ended without the module because it was late.
     pub(crate) late_turns: u64,
+    /// Reason why the module failed or was given up; empty if it was not.
+    pub(crate) fault: String,
 }
 
 /// Code of a loaded module, and the thread that runs it.
@@ -86,7 +88,17 @@ impl<Y> Loaded<Y> {
                 (Runs::InBackground(Visit { gate, due, ports: None }), ModuleState::Stopped)
             }
         };
-        Self { name, declared, first: 0, wires: Wires::new(), runs, state, is_held: false, late_turns: 0 }
+        Self {
+            name,
+            declared,
+            first: 0,
+            wires: Wires::new(),
+            runs,
+            state,
+            is_held: false,
+            late_turns: 0,
+            fault: String::new(),
+        }
     }
 
     /// Returns the seat of a registered module; `None` for a background module.

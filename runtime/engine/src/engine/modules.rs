@@ -13,7 +13,7 @@ use super::unpublished::unpublished;
 use crate::attribute::{AttributeName, Reading, Value};
 use crate::board::Board;
 use crate::fork::{Fork, Threads};
-use crate::module::{About, Candidate, PLAN, ROBOT, Refusal};
+use crate::module::{About, Candidate, PLAN, ROBOT, Refusal, Source};
 
 /// Clock that decides when a background module is served.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,7 +115,32 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// Returns the number of turns that ended without a module because it was late; 0 if no module has this name.
     #[must_use]
     pub fn late_turns(&self, name: &str) -> u64 {
-        self.loaded.iter().find(|module| &*module.name == name).map_or(0, |module| module.late_turns)
+        self.module(name).map_or(0, |module| module.late_turns)
+    }
+
+    /// Returns the priority of a module; 0 if no module has this name.
+    #[must_use]
+    pub fn priority(&self, name: &str) -> i32 {
+        self.module(name).map_or(0, |module| module.declared.priority)
+    }
+
+    /// Returns the reason why a module failed or was given up; empty if it was not, or if no module has this name.
+    #[must_use]
+    pub fn fault(&self, name: &str) -> &str {
+        self.module(name).map_or("", |module| &module.fault)
+    }
+
+    /// Returns the attributes of other modules that a module reads.
+    pub fn reads(&self, name: &str) -> impl Iterator<Item = &AttributeName> {
+        let sources = self.module(name).into_iter().flat_map(|module| &module.declared.reads);
+        sources.filter_map(|source| match source {
+            Source::Attribute(attribute, _) => Some(attribute),
+            Source::Setting(..) => None,
+        })
+    }
+
+    fn module(&self, name: &str) -> Option<&Loaded<Y>> {
+        self.loaded.iter().find(|module| &*module.name == name)
     }
 
     /// Loads a module, which follows all loaded modules in the order of turn breaks. A registered module makes its

@@ -135,7 +135,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
             Some(_) => arrivals.progress(&module.name),
             None => seat.progress(),
         };
-        let Loaded { name, state, late_turns, .. } = module;
+        let Loaded { name, state, late_turns, fault, .. } = module;
         match progress {
             Progress::Skipped if replayed.is_none() => arrivals.skipped.push(Arc::clone(name)),
             Progress::Late => {
@@ -160,6 +160,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         }
         if let Some(Fault(sentence)) = occupant.fault.take() {
             *state = ModuleState::Failed;
+            fault.clone_from(&sentence);
             events.push(Event::Failed(Arc::clone(name), sentence));
             return;
         }
@@ -283,6 +284,9 @@ impl<Y> Loaded<Y> {
                 (ModuleState::GivenUp, Event::Failed(name, sentence))
             }
         };
+        if let Event::Failed(_, sentence) = &event {
+            self.fault.clone_from(sentence);
+        }
         self.state = state;
         event
     }

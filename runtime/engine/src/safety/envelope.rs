@@ -228,6 +228,33 @@ impl Envelope {
         }
     }
 
+    /// Returns the consequence of a rule, in the words of a safety file; `None` for a rule that limits inputs.
+    #[must_use]
+    pub fn then(&self, id: RuleId) -> Option<&str> {
+        let rules = &self.rules;
+        let then = match id {
+            RuleId::Stale => rules.stale.map(|(_, then)| then),
+            RuleId::StaleModule => rules.stale_module.map(|(_, then)| then),
+            RuleId::Overrun => rules.overrun.map(|(_, then)| then),
+            RuleId::Contact => rules.contact,
+            RuleId::Guard(number) => rules.guards.get(number).map(|guard| guard.then),
+            RuleId::Finite | RuleId::Speed | RuleId::TurnRate | RuleId::Acceleration | RuleId::Fence(_) => None,
+        }?;
+        Some(match then {
+            Then::HoldForward => "hold forward",
+            Then::Hold => "hold",
+            Then::End => "end",
+            Then::Divert(plan) => rules.plans.get(plan).map_or("", |plan| &plan.file),
+        })
+    }
+
+    /// Returns the condition of a guard, in the plan language; `None` for another rule.
+    #[must_use]
+    pub fn when(&self, id: RuleId) -> Option<&str> {
+        let RuleId::Guard(number) = id else { return None };
+        self.rules.guards.get(number).map(|guard| guard.when.text.as_str())
+    }
+
     /// Returns the rules that can decide.
     fn ids(&self) -> impl Iterator<Item = RuleId> + use<> {
         let Rules { fences, contact, stale, stale_module, overrun, guards, .. } = &self.rules;

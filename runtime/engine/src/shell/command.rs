@@ -34,7 +34,7 @@ pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
     ("watch", "PATH", "print a value when it changes"),
     ("unwatch", "PATH", "print it no longer"),
     ("help", "[PATH|COMMAND]", "print the commands, or what a name or a command is"),
-    ("load_plan", "FILE", "compile the plans of a file, and store them"),
+    ("load_plan", "FILE|TEXT", "compile the plans of a file or of a text in braces, and store them"),
     ("swap", "PLAN [now|atom|plan]", "let a stored plan take over: now, when the atom ends, or when the plan ends"),
     ("cancel", "", "take back a plan that has not taken over yet"),
     ("rollback", "", "end the plan on trial: the plan before it goes on"),

@@ -7,7 +7,7 @@ use mdle_host::Break;
 use mdle_quantity::Quantity;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Volts};
 
-use crate::attribute::{self, AttributeKind};
+use crate::attribute::{self, AttributeKind, AttributeName};
 use crate::board::Post;
 use crate::engine::{Engine, HoldEffect, ModuleState};
 use crate::module::{About, PLAN, Refusal};
@@ -15,12 +15,18 @@ use crate::plans::EngineAlphabet;
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
 /// The methods and readings that every module has, in the order of their values.
-const OWN: [(&str, Node); 5] = [
+const OWN: [(&str, Node); 8] = [
     (
         ".state",
         Node::reading(Kind::Text, "state of the module: `active`, `stopped`, `late`, `given up`, `failed`, `ended`"),
     ),
     (".late", Node::reading(Kind::Integer, "number of turns that ended without the module because it was late")),
+    (".reads", Node::reading(Kind::Text, "attributes of other modules that the module reads")),
+    (
+        ".priority",
+        Node::reading(Kind::Integer, "priority of the module: modules of higher priority begin their turns first"),
+    ),
+    (".fault", Node::reading(Kind::Text, "reason why the module failed or was given up")),
     (".start", Node::method(Role::Admin, "lets the module make turns again")),
     (".stop", Node::method(Role::Admin, "stops the module until it is started")),
     (".unload", Node::method(Role::Admin, "unloads the module; its attributes vanish")),
@@ -81,7 +87,11 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for ModulesPart {
             let posts = modules.board().of(name);
             to.extend(posts.map(|post| post.reading.as_ref().map(|reading| shown(&post.about, &reading.value))));
             to.extend(modules.settings(name).map(|(about, reading)| Some(shown(about, &reading.value))));
+            let reads: Vec<_> = modules.reads(name).map(AttributeName::to_string).collect();
+            let fault = Some(modules.fault(name)).filter(|fault| !fault.is_empty());
             to.extend([Some(Value::text(state_text(state))), Some(Value::count(modules.late_turns(name)))]);
+            to.push(Some(Value::Text(reads.join(", ").into())));
+            to.extend([Some(Value::Integer(modules.priority(name).into())), fault.map(Value::text)]);
             to.extend([None, None, None]);
         }
         to.extend(modules.foreign().map(|post| Some(shown(&post.about, &post.reading.as_ref()?.value))));

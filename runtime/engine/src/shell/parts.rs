@@ -94,9 +94,17 @@ impl<A: Alphabet, B: Pilot> Served<Break<'_, B>> for SafetyPart<A> {
         });
         let Some(envelope) = self.0.as_ref().map(Guardian::envelope) else { return limits.into() };
         let count = Node::reading(Kind::Integer, "number of turns in which the rule has decided");
-        let rules = envelope.counts();
-        let rules =
-            rules.map(|(id, _)| (format!("/safety/rules/{}/count", envelope.name(id).replace(' ', "_")), count));
+        let when = Node::reading(Kind::Text, "condition of the guard");
+        let then = Node::reading(Kind::Text, "consequence of the rule, in the words of a safety file");
+        let rules = envelope.counts().flat_map(|(id, _)| {
+            let own = [
+                Some(("count", count)),
+                envelope.when(id).map(|_| ("when", when)),
+                envelope.then(id).map(|_| ("then", then)),
+            ];
+            let folder = format!("/safety/rules/{}", envelope.name(id).replace(' ', "_"));
+            own.into_iter().flatten().map(move |(name, node)| (format!("{folder}/{name}"), node))
+        });
         limits.into_iter().chain(rules).collect()
     }
 
@@ -109,7 +117,10 @@ impl<A: Alphabet, B: Pilot> Served<Break<'_, B>> for SafetyPart<A> {
             let value = *measure.of(&mut limits);
             to.push(Some(Value::Quantity(measure.in_its_unit(value), measure.quantity().1)));
         }
-        to.extend(envelope.counts().map(|(_, count)| Some(Value::count(count))));
+        to.extend(envelope.counts().flat_map(|(id, count)| {
+            let words = [envelope.when(id), envelope.then(id)].into_iter().flatten();
+            [Value::count(count)].into_iter().chain(words.map(Value::text)).map(Some)
+        }));
     }
 
     fn change(&mut self, path: &str, change: &Change, _: &mut Break<'_, B>, reply: Reply) {

@@ -9,6 +9,7 @@ use mdle_quantity::Quantity;
 use mdle_runtime::Nanos;
 
 use crate::Engine;
+use crate::attribute::AttributeName;
 use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
@@ -31,7 +32,7 @@ const OWN: [(&str, Node); 13] = [
     ("state", Node::reading(Kind::Integer, "number of the state in the expanded plan, from 1")),
     ("scopes", Node::reading(Kind::Text, "conditions of the scopes around the atom, the plan's first")),
     ("t", Node::reading(SECONDS, "time since the plan began")),
-    ("load_plan", Node::method(Role::Swap, "compiles the plans of a file, and stores them")),
+    ("load_plan", Node::method(Role::Swap, "compiles the plans of a file or of a text, and stores them")),
     ("cancel", Node::method(Role::Swap, "takes back a plan that has not taken over yet")),
     ("rollback", Node::method(Role::Swap, "ends the plan on trial, and lets the plan before it go on")),
 ];
@@ -133,6 +134,7 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
         let stored = moment.pilot.plans().stored().flat_map(|plan| {
             let nodes = [
                 ("text", Node::reading(Kind::Text, "text of the plan's file")),
+                ("reads", Node::reading(Kind::Text, "attributes of modules that the plan reads")),
                 (
                     "run",
                     Node::method(
@@ -161,7 +163,11 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
             None => to.extend([const { None }; 6]),
         }
         to.extend([const { None }; 3]);
-        to.extend(plans.stored().flat_map(|plan| [Some(Value::text(plan.text())), None, None]));
+        to.extend(plans.stored().flat_map(|plan| {
+            let reads = plan.loaded.reads().iter();
+            let reads: Vec<_> = reads.map(|read| AttributeName::new(read.module, read.attribute).to_string()).collect();
+            [Some(Value::text(plan.text())), Some(Value::Text(reads.join(", ").into())), None, None]
+        }));
     }
 
     fn change(&mut self, path: &str, change: &Change, moment: &mut Break<'_, Engine<A>>, reply: Reply) {
@@ -198,8 +204,14 @@ fn set<A: EngineAlphabet>(path: &str, text: &str, plans: &mut Plans<A>) -> Resul
 /// Calls a method; returns the number of the request if the compiler answers it.
 fn call<A: EngineAlphabet>(path: &str, arguments: &[String], engine: &mut Engine<A>) -> Result<Option<u32>, String> {
     if path == "/usr/mdle/load_plan" {
-        let [file] = arguments else { return Err("`load_plan` takes the name of a file".to_owned()) };
-        return Ok(Some(engine.plans_mut().load(PlanSource::File(PathBuf::from(file)))));
+        let source = match arguments {
+            [first, ..] if first.starts_with('{') => PlanSource::Text(arguments.join(" ")),
+            [file] => PlanSource::File(PathBuf::from(file)),
+            [] | [_, _, ..] => {
+                return Err("`load_plan` takes the name of a file, or the text of a plan in braces".to_owned());
+            }
+        };
+        return Ok(Some(engine.plans_mut().load(source)));
     }
     let stored = path.strip_prefix("/plans/");
     if let Some(name) = stored.and_then(|stored| stored.strip_suffix("/run")) {
