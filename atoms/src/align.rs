@@ -41,9 +41,9 @@ impl Align {
 /// The law of [`Align`], which is done when the ranges are equal and, if every turn brings a ping, the robot is
 /// at rest at that heading.
 ///
-/// Beside a jamb, a corner or a door, there may be no heading with equal ranges: on one side of it the first
-/// range is longer, on the other side the second range. The law is then done at the heading at which the ranges
-/// differed least; the remaining difference is that of the signals `r` of the two sonars.
+/// Beside a jamb, a corner or a door, there may be no heading with equal ranges: on one side of it the first range is
+/// longer, on the other side the second range. The law is then done at the heading at which the ranges differed least;
+/// the signals `r` of the two sonars show the remaining difference.
 ///
 /// The law waits for a sonar that occasionally misses an echo. If a sonar hears nothing for longer, the robot
 /// searches for the wall, at most once around. If it has heard no wall after the time of a slow full circle,

@@ -21,8 +21,7 @@ const KEPT: usize = 5;
 /// Minimum number of consecutive echoes that get nearer.
 const AGREE: usize = 3;
 /// Minimum time, on a robot whose sonars fire in turn, for which the echoes must get nearer. The wide cones of its
-/// sonars hear different rough walls beside the way alternately, and three such ranges may happen to be in descending
-/// order.
+/// sonars alternately hear different rough walls beside the way, and three of these ranges may decrease by chance.
 const LASTS: Nanos = Nanos(1_400_000_000);
 /// Maximum lateral distance, in metres, between two echoes of the same object.
 const ACROSS: f64 = 0.25;
@@ -31,7 +30,7 @@ const ACROSS: f64 = 0.25;
 /// cone just touches appears and disappears.
 const TURNS: f64 = 0.02;
 
-/// An echo: its place in the odometry's axes, and its time.
+/// An echo: its place in odometry coordinates, and its time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Echo {
     at: Nanos,
@@ -77,7 +76,7 @@ impl Approach {
     /// Returns the time, in seconds, from the newest echo until an approaching person reaches the robot; `None` if no
     /// person approaches.
     ///
-    /// Fixed obstacles stay at the same place.
+    /// Fixed obstacles are not reported, because their echoes stay at the same place.
     pub(crate) fn seconds(&self, here: Pose, way: Radians, in_turn: bool) -> Option<f64> {
         let (sin, cos) = libm::sincos(way.0);
         let mut heard = self.heard.iter().flatten().map(|Echo { at, place }| {
@@ -101,7 +100,7 @@ impl Approach {
     }
 }
 
-/// Returns the sonar whose axis is nearest to the direction `way` in the odometry's axes.
+/// Returns the sonar whose axis is nearest to the direction `way` in odometry coordinates.
 fn looking(here: Pose, way: Radians) -> Option<SonarId> {
     let off = |sonar: SonarId| Radians(here.theta.0 + sonar.bearing().0 - way.0).wrapped().0.abs();
     let sonars = (0..SONARS as u8).map(SonarId::new).map(|sonar| (sonar, off(sonar)));
@@ -133,7 +132,7 @@ mod tests {
     #[test]
     fn a_person_faster_than_the_robot_differs_from_a_wall() {
         let comes = [Some(5.0), Some(3.8), Some(2.6)];
-        // 2.6 m and the ring's radius, of which the robot has driven 0.2 m since.
+        // The distance was 2.6 m plus the ring's radius, and the robot has driven 0.2 m since.
         let arrives = seconds(&comes, 0.2, 0.0).expect("somebody");
         assert!((arrives - 2.59).abs() < 1e-9, "{arrives}");
         assert_eq!(seconds(&[Some(5.0), Some(4.8), Some(4.6)], 0.2, 0.0), None, "a wall");

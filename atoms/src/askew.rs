@@ -10,14 +10,14 @@ use crate::directions::{CONE, DIRECTIONS, after, newest, off, towards};
 const ALSO_FACES: f64 = 1.5;
 /// Difference, in metres, below which ranges count as equal.
 const ALIKE: f64 = 0.06;
-/// Minimum angle from a diagonal of the pings that distinguish a wall that faces the diagonal from an edge.
+/// Minimum angle between a diagonal and the pings that distinguish a wall facing the diagonal from an edge.
 const BESIDE: Radians = Radians::from_degrees(16.0);
 /// Maximum distance, in metres, between an echo and the line of a wall that faces a diagonal. At the edge of a passage,
 /// echoes of the rough walls that lead away from the edge are further beyond this line.
 const OF_LINE: f64 = 0.04;
 
-/// Angles, in degrees counter-clockwise from one of the four directions, of the normals of smooth walls that are looked
-/// for.
+/// Directions of the normals of the smooth walls to search for, in degrees counter-clockwise from one of the four
+/// directions.
 const SMOOTH_AT: [f64; 7] = [26.0, 31.0, 38.0, 45.0, 52.0, 59.0, 64.0];
 /// Angle from the normal of a smooth wall up to which the wall is heard.
 const WIDTH: Radians = Radians::from_degrees(31.0);
@@ -27,7 +27,7 @@ const MIDDLE: Radians = Radians::from_degrees(14.0);
 const BEYOND: [Radians; 2] = [Radians::from_degrees(44.0), Radians::from_degrees(66.0)];
 /// Age from which a ping is no longer considered for a smooth wall.
 const LATELY: Nanos = Nanos(2_200_000_000);
-/// Minimum number of pings that must hear the wall for each ping that may have missed it or measured a wrong range.
+/// Minimum ratio of pings that heard the wall to pings that missed it or measured a wrong range.
 const FEW: usize = 3;
 
 /// Returns `true` if a wall faces the robot between two of the four directions.

@@ -39,7 +39,7 @@ impl<Y: SonarRing> Interrupt<Y> for AtIsection {
     }
 }
 
-/// Returns `Some(true)` if this one sonar hears a near obstacle, and `Some(false)` if its direction is free; `None`
+/// Returns `Some(true)` if `sonar` itself hears a near obstacle, and `Some(false)` if its direction is free; `None`
 /// before its first ping.
 ///
 /// The smallest of the last ranges decides: one near echo blocks the direction, and it is free again only when all last
@@ -252,7 +252,7 @@ mod tests {
             ranges
         });
         assert!(fires("0100", &y));
-        // A quarter turn on, what was on the left is ahead.
+        // After a quarter turn, the obstacle that was on the left is ahead.
         y.pose.theta = Radians::from_degrees(90.0);
         assert!(fires("1000", &y) && !fires("0100", &y));
     }

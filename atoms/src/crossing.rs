@@ -35,8 +35,8 @@ pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, here: Pose, speed: f64) -
     (0..SONARS as u8).map(SonarId::new).filter_map(|sonar| comes(y, sonar, here, speed)).reduce(f64::max)
 }
 
-/// Returns the time, in seconds, until a person has crossed the way whom this sonar has heard in all its kept pings;
-/// `None` if it hears no such person. The conditions are those of [`crosses`].
+/// Returns the time, in seconds, until a person heard in all kept pings of `sonar` has crossed the way; `None` if there
+/// is no such person. The conditions are those of [`crosses`].
 fn comes<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, speed: f64) -> Option<f64> {
     const { assert!(PINGS_KEPT == 3) };
     if sonar.bearing().wrapped().0.abs() > core::f64::consts::FRAC_PI_2 {
@@ -62,7 +62,7 @@ fn comes<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, speed: f64
         (libm::hypot(from.along, from.across) - libm::hypot(to.along, to.across)) / (to.at - from.at)
     };
     let moves = |speed: f64| (SPEEDS[0]..=SPEEDS[1]).contains(&speed);
-    // Most echoes are of what lies in the way, or of what stands: their other places are not needed.
+    // Most echoes come from an obstacle in the way or from a fixed object. Their older places are not computed.
     let new = echo(new);
     if !(new.along > y.body_radius().0 + PERSON && new.across.abs() > ASIDE) {
         return None;

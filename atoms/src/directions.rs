@@ -1,4 +1,4 @@
-//! Finds the echoes that a robot's sonars have heard in its four directions, no matter which sonar faced there.
+//! Finds the echoes that a robot's sonars have heard in its four directions, regardless of which sonar faced there.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Ping, Radians, SONARS, SonarId};

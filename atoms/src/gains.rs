@@ -1,5 +1,5 @@
-//! The gains of the laws that depend on the body. The gains for an unknown body are chosen by its size and its sonars.
-//! All other gains are constants beside their laws.
+//! Gains of the laws that depend on the body. For an unknown body, the gains are chosen by its size and its sonars. All
+//! other gains are constants beside their laws.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, PINGS_KEPT};
@@ -76,8 +76,8 @@ const SCOUT: Gains = Gains {
     winds_most: f64::INFINITY,
 };
 
-/// Gains of an ATRV-mini, which is twice as wide. A smaller margin would leave too little room for its corners, and
-/// whatever it hears at 6 inches is within its margin anyway.
+/// Gains of an ATRV-mini, which is twice as wide. A smaller margin would leave too little room for its corners, and an
+/// obstacle heard at 6 inches is within the margin anyway.
 const ATRV: Gains = Gains {
     look_ahead: Meters(0.5),
     hard_margin: 0.06,

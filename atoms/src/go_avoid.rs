@@ -112,7 +112,7 @@ pub struct GoingRound {
 }
 
 /// A way round an obstacle that leads far off the goal's direction. The robot keeps to one side of the obstacle until
-/// the detour has helped; otherwise it would turn to and fro in front of the obstacle.
+/// the detour has helped; otherwise it would turn back and forth in front of the obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Detour {
     side: Side,
@@ -124,7 +124,7 @@ struct Detour {
 impl GoingRound {
     /// Returns this law with the goal of `other`, a law that has just been created at `here`.
     pub(crate) fn with_goal_of(self, other: &Self, here: Pose) -> Self {
-        // A goal that moves off with the robot takes away nothing of the progress towards it.
+        // If the goal moves away, the progress made towards it still counts.
         let progress = self.progress.moved(Meters(here.distance(&other.goal).0 - here.distance(&self.goal).0));
         Self { goal: other.goal, is_renewed: true, progress, axis: other.axis, drift: other.drift, ..self }
     }
@@ -162,7 +162,7 @@ impl GoingRound {
     fn notice(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) {
         let Meters(distance) = here.distance(&self.goal);
         let is_in_the_way = obstacles.free(self.direction(here)).0 < distance - ARRIVED.0 || self.narrow.stands();
-        // A rectangle that has no room to turn goes to and fro beside a way that a disc would find free.
+        // A rectangle without room to turn moves back and forth beside a way that is free for a disc.
         let is_kept_off = distance <= self.near(here, t).0 && (is_in_the_way || self.is_lost(here, t));
         self.kept_off = self.kept_off.or(Some(t)).filter(|_| is_kept_off);
     }
@@ -185,7 +185,7 @@ impl GoingRound {
         chosen
     }
 
-    /// Returns the direction in which to drive, in the odometry's axes.
+    /// Returns the direction in which to drive, in odometry coordinates.
     fn choose(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) -> Radians {
         let Meters(distance) = here.distance(&self.goal);
         let goal = self.direction(here);
@@ -203,7 +203,8 @@ impl GoingRound {
             return self.aside(side, goal, obstacles, look_ahead);
         }
         let side = self.detour.map(|detour| detour.side);
-        // On a detour along the obstacle: as far towards it as there is room, from where the robot heads.
+        // A detour that follows its obstacle aims towards the obstacle as far as there is room, starting from the
+        // robot's heading.
         let along = self.goes_along(t);
         let towards = match side.filter(|_| along) {
             Some(Side::Left) => Radians(here.theta.0 - ALONG.0),
@@ -287,7 +288,7 @@ impl GoingRound {
 impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
     type Law = GoingRound;
 
-    // Not inlined, so that the law is written once, where it is to be.
+    // Not inlined, so that the law is constructed only once, in its final place.
     #[inline(never)]
     fn begin(&self, y: &Y, begin: Begin) -> GoingRound {
         let (here, bearing) = (y.pose(), begin.frame.outward(self.bearing));
@@ -321,7 +322,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
         let here = y.pose();
         self.winding.take(&self.driven.1, &here);
         self.driven = (self.driven.0 + here.distance(&self.driven.1).0, here);
-        // Beside obstacles that the robot passes closely, walls are no hallway.
+        // In a narrow place, the walls heard need not be those of a hallway, so the drift is not used.
         if !self.narrow.follows() {
             self.turn_goal(y.drift(self.axis), here);
         }
@@ -333,7 +334,8 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
             return twist;
         }
         let off = Radians(chosen.direction.0 - here.theta.0).wrapped();
-        // Along an obstacle the direction is given from the heading: turning back would lead away from it.
+        // While the robot follows an obstacle, the direction is relative to its heading. Turning the longer way round
+        // would lead away from the obstacle.
         let Radians(off) = if self.goes_along(t) { off } else { self.winding.turn_to(off) };
         let Meters(ahead) = chosen.ahead;
         let Meters(distance) = here.distance(&self.goal);

@@ -11,8 +11,8 @@ use crate::go_avoid::{GoAvoid, GoingRound};
 
 /// Additional room beside the outermost robot of the group, in metres, because the robots drift apart on the way.
 const DRIFTS: f64 = 0.1;
-/// Maximum error, in metres, of another robot's position by its own odometry. A leader that took the echo of a robot of
-/// its group for an obstacle would turn away from it endlessly, since that robot keeps its place beside the leader.
+/// Maximum error, in metres, of another robot's position by its own odometry. A leader that mistook the echo of a robot
+/// in its group for an obstacle would turn away endlessly, since that robot keeps its place beside the leader.
 const MISPLACED: f64 = 0.25;
 /// Half of the angle within which a sonar hears.
 const CONE: Radians = Radians::from_degrees(15.0);
@@ -121,8 +121,8 @@ fn is_of(ping: &Ping, sonar: SonarId, ring: Meters, radius: Meters, place: &Pose
     transducer.towards(Radians(axis.theta.0 + off), range).distance(place).0 < radius.0 + MISPLACED
 }
 
-/// Adds to `heard` the pings after the time `since`, or all pings if it is `None`, except echoes of other robots. Their
-/// bodies are assumed to be as large as this one.
+/// Adds to `heard` the pings after the time `since`, or all pings if it is `None`, except echoes of other robots. All
+/// robots are assumed to have bodies of the same size.
 fn take<Y: DiffDrive + SonarRing + StateLink>(heard: &mut [Pings; SONARS], y: &Y, since: Option<Nanos>) {
     let (ring, radius) = (y.ring_radius(), y.body_radius());
     for (sonar, heard) in (0..SONARS as u8).map(SonarId::new).zip(heard) {
@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn echoes_of_other_robots_are_not_heard() {
-        // The transducer is 0.19 m ahead of the centre, and a body 0.2 m before that of the other robot.
+        // The transducer is 0.19 m ahead of the centre, and the edge of the other robot's body 0.2 m before its centre.
         assert_eq!(input(0.5, &beside(0.4, (0.79, 0.0))), [0.2, 0.0], "the echo is the other robot's");
         let [v, omega] = input(0.5, &beside(0.4, (9.0, 0.0)));
         assert!(v < 0.2 && omega.abs() == FASTEST, "something is there: {v} {omega}");
@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn a_robot_is_not_heard_where_odometry_has_misplaced_it() {
         let radius = Sensed::default().body_radius().0;
-        // The echo is 0.6 m ahead of the centre: from the near side of a robot, which has itself further away.
+        // The echo is 0.6 m ahead of the centre: from the near side of a robot that reports itself further away.
         let turn = |misplaced: f64| input(0.5, &beside(0.4, (0.59 + radius + misplaced, 0.0)))[1];
         assert_eq!(turn(0.2), 0.0, "the echo is of the other robot, whose odometry has drifted");
         assert!(turn(0.3) != 0.0, "an echo so far from the other robot is not of it");

@@ -20,7 +20,7 @@ const UNKNOWN: u8 = 4;
 const OCCUPIED: u8 = 8;
 /// Evidence that an echo adds.
 const HIT: u8 = 4;
-/// Maximum evidence.
+/// Maximum evidence of a cell.
 const MOST: u8 = 13;
 /// Evidence that a passing ping removes.
 const MISS: u8 = 2;
@@ -33,14 +33,14 @@ const RAYS: [(f64, f64); 5] = [(0.0, 0.0), (-11.0, 0.26), (11.0, 0.26), (-5.5, 0
 const WITHIN: f64 = 1.6;
 /// Range, in metres, that replaces a range below the minimum, at which the obstacle may be anywhere nearer.
 const INSTEAD: f64 = 0.1;
-/// Maximum absolute number of a cell, so that the difference of two numbers does not overflow.
+/// Maximum absolute index of a cell, so that the difference of two indices does not overflow.
 const FURTHEST: f64 = 1e8;
 /// Number of turns in which each sonar is read once, on a robot whose sonars all ping in every turn.
 const THIRDS: usize = 3;
 /// Distance before an echo, in metres, from which a cell is not marked as free.
 const BEFORE: f64 = 0.08;
 
-/// The cell of a place in the odometry's axes, given by its numbers along both axes.
+/// A cell, given by its indices along both axes of the odometry coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Cell {
     pub(crate) x: i32,
@@ -64,7 +64,8 @@ impl Cell {
 /// ping passes many cells, so `floor` of `libm`, or a conversion that checks for overflow, would take most of the
 /// turn's time.
 fn below(number: f64) -> i32 {
-    // In a sum of this size the last bit counts ones, so that the low bits are the nearest whole number.
+    // In a sum of this size, the last bit of the mantissa counts ones, so the low bits contain the nearest whole
+    // number.
     const ROUNDS: f64 = 6_755_399_441_055_744.0;
     const { assert!(ROUNDS == 1.5 * (1_u64 << 52) as f64) };
     let sum = number + ROUNDS;
@@ -75,7 +76,7 @@ fn below(number: f64) -> i32 {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Map {
     evidence: [[u8; BYTES]; ROWS],
-    /// The cell with the smallest numbers.
+    /// The cell with the smallest indices.
     pub(crate) corner: Cell,
     /// Time up to which the pings of each third of the sonars have been read; `None` before the first reading. Sonars
     /// that fire in turn all belong to the first third.
@@ -107,7 +108,7 @@ impl Map {
             let Some(ping) = pings.next().filter(|ping| taken.is_none_or(|taken| ping.at > taken)) else {
                 continue;
             };
-            // A single missed echo clears nothing.
+            // A single missed echo does not mark cells as free.
             let before = pings.next().and_then(|before| before.range);
             let Meters(range) = ping.range.or(before).unwrap_or(Meters(f64::INFINITY));
             let centre = ping.axis(sonar);
@@ -210,7 +211,7 @@ impl Map {
 
     /// Returns `true` if the cell is on the map.
     pub(crate) fn contains(&self, cell: Cell) -> bool {
-        // Without its sign, a negative number is a large one.
+        // Converted to unsigned, a negative number becomes large.
         let is_within = |place: i32| (place as u32) < CELLS as u32;
         is_within(cell.x - self.corner.x) && is_within(cell.y - self.corner.y)
     }

@@ -13,7 +13,7 @@ const KEPT: Nanos = Nanos(15_000_000_000);
 /// Range, in metres, beyond which echoes are not kept.
 const NEAR: f64 = 1.2;
 
-/// A place of an echo, in the odometry's axes, with the time of the last echo there.
+/// A place of an echo, in odometry coordinates, with the time of the last echo there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Echo {
     x: f64,
@@ -64,7 +64,8 @@ impl Memory {
         }
     }
 
-    /// Returns the places that are not forgotten at this time, relative to `here`, in the odometry's axes.
+    /// Returns the places that are not forgotten at this time, relative to `here`, along the axes of the odometry
+    /// coordinates.
     pub(crate) fn around(&self, here: Pose, now: Nanos) -> impl Iterator<Item = (f64, f64)> {
         let kept = self.echoes.iter().take(self.count).filter(move |place| now.since(place.at) < KEPT);
         kept.map(move |place| (place.x - here.x.0, place.y - here.y.0))

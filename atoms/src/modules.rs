@@ -1,4 +1,5 @@
-//! Numbers that modules publish, as signals and as the goal of `goAvoid` (paper, sections III-B and IV-B).
+//! Signals of numbers that modules publish, and `goAvoid` towards a goal that a module publishes (paper, sections III-B
+//! and IV-B).
 
 use mdle_runtime::capability::{DiffDrive, Modules, Odometry, SonarRing};
 use mdle_runtime::{Begin, Control, Law, Meters, MetersPerSecond, Nanos, Radians, Signal, Twist};
@@ -9,7 +10,7 @@ use crate::go_avoid::{GoAvoid, GoingRound};
 const BEARING: &str = "bearing";
 /// Attribute of a module with the distance to a point, in metres.
 const RANGE: &str = "range";
-/// Number that every module offers: the time, in seconds, since it published the attributes that the plan reads.
+/// Attribute of every module: the time, in seconds, since the module published the attributes that the plan reads.
 const AGE: &str = "age";
 /// Age from which a direction is stale.
 const STALE: Nanos = Nanos(2_000_000_000);
@@ -18,7 +19,8 @@ const FAR: Meters = Meters(5.0);
 /// Speed where the way is free.
 const SPEED: MetersPerSecond = MetersPerSecond(0.2);
 
-/// Declares signals of modules: for each, the name of the type, its doc comment, and the expression of its value.
+/// Declares module signals. Takes, for each signal, the name of its type, a doc comment, and an expression for its
+/// value.
 macro_rules! signals {
     ($($name:ident $doc:literal |$y:ident, $module:ident| $value:expr;)*) => {$(
         #[doc = $doc]

@@ -53,7 +53,7 @@ impl Asked {
     fn of(path: &[Setpoint], at: Nanos) -> Option<Self> {
         let next = path.partition_point(|setpoint| setpoint.at <= at);
         let (from, to) = (path.get(next.checked_sub(1)?)?, path.get(next)?);
-        // Not zero: `from` is not later than `at`, and `to` is.
+        // Not zero: `from` is not later than `at`, and `to` is later.
         let seconds = to.at.since(from.at).seconds();
         let part = at.since(from.at).seconds() / seconds;
         let turn = Radians(to.heading.0 - from.heading.0).wrapped().0;
@@ -167,7 +167,7 @@ mod tests {
         for frame in [0.0, 77.0, 180.0, -90.0] {
             let mut y = facing(90.0 + frame);
             replayed("bend", &mut y, framed(frame), 0);
-            // Each turn ahead with the heading and the speed that the path has at its beginning.
+            // Drives each turn straight, with the heading and the speed that the path has at the beginning of the turn.
             let (mut x, mut side) = (0.0, 0.0);
             for turn in 0..40 {
                 let (heading, speed) = match turn {

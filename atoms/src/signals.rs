@@ -41,7 +41,8 @@ impl<Y: SonarRing> Signal<Y> for Age {
     }
 }
 
-/// Declares signals of odometry: for each, the name of the type, its doc comment, and the expression of its value.
+/// Declares odometry signals. Takes, for each signal, the name of its type, a doc comment, and an expression for its
+/// value.
 macro_rules! signals {
     ($($name:ident $doc:literal |$y:ident| $value:expr;)*) => {$(
         #[doc = $doc]

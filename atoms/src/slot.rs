@@ -68,7 +68,7 @@ impl Keeping {
     /// in an earlier turn.
     fn place(&mut self, leader: &PeerState, t: Nanos) -> Moving {
         let since = self.direction.map_or(0.0, |(_, before)| t.since(before).seconds());
-        // The age counts from the turn in which the state arrived, one after that in which it was sent.
+        // The age counts from the turn in which the state arrived, one turn after it was sent.
         let age = leader.age.seconds() + since;
         let Twist { v, omega } = leader.velocity;
         let at = leader.pose.moved(Meters(v.0 * age), Radians(omega.0 * age));

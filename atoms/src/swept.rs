@@ -1,6 +1,6 @@
-//! Chooses the speed and turn rate that bring a body nearest to a place without touching anything on the map. For each
-//! pair of a speed and a turn rate, the body, a disc or a rectangle, is moved along the arc in a trial (a dynamic
-//! window).
+//! Chooses the speed and turn rate that bring a body nearest to a place without a collision on the map (dynamic window
+//! approach). For each pair of a speed and a turn rate, the motion of the body, a disc or a rectangle, is simulated
+//! along the arc.
 
 use core::f64::consts::TAU;
 
@@ -28,7 +28,7 @@ const ROUNDED: f64 = 0.03;
 const ROOM: f64 = 0.12;
 /// Distance, in metres, below which an obstacle costs five times as much.
 const CLOSE: f64 = 0.08;
-/// Cost, in metres, of turning on the spot or driving backwards, which must therefore bring the robot nearer by more
+/// Cost, in metres, of turning on the spot or driving backwards. Such a movement must bring the robot nearer by more
 /// than this.
 const STANDING_COSTS: f64 = 0.06;
 /// Cost, in metres, per radian between the body's heading and the direction of the place.
@@ -45,7 +45,7 @@ pub(crate) struct Aim {
     pub(crate) left: f64,
     /// `true` if the body cannot turn on the way to the place, and therefore has to face the place first.
     pub(crate) is_straight: bool,
-    /// Angle by which the robot has turned, which decides in which direction it turns to face the place.
+    /// Angle by which the robot has turned so far. It decides in which direction the robot turns to face the place.
     pub(crate) winding: Winding,
 }
 
@@ -53,9 +53,9 @@ pub(crate) struct Aim {
 pub(crate) struct Surroundings {
     points: [(f64, f64); POINTS],
     count: usize,
-    /// Half the length of the rectangle that `radius` extends to the body's outline; 0 for a disc.
+    /// Half-length of the rectangle that, extended by `radius` on all sides, is the body's outline; 0 for a disc.
     half_length: f64,
-    /// Half the width of the rectangle that `radius` extends to the body's outline; 0 for a disc.
+    /// Half-width of the rectangle that, extended by `radius` on all sides, is the body's outline; 0 for a disc.
     half_width: f64,
     radius: f64,
 }

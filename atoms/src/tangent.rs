@@ -48,7 +48,7 @@ const FREE_MOST: f64 = 3.0;
 /// the distance is negative.
 const BESIDE: (f64, f64) = (-0.05, 0.9);
 
-/// Place of an echo relative to the centre of the body, in the odometry's axes.
+/// Place of an echo relative to the centre of the body, along the axes of the odometry coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Point {
     x: f64,

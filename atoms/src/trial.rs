@@ -1,4 +1,4 @@
-//! Handwritten outputs of a robot, for tests of quarks.
+//! Outputs of a robot, written by hand, for tests of quarks.
 
 use core::f64::consts::PI;
 
@@ -174,7 +174,7 @@ pub(crate) fn sized(half_length: f64, half_width: f64) -> Sensed {
     Sensed { halves: [half_length, half_width], ..Sensed::default() }
 }
 
-/// Returns the beginning of an atom at time 0, in the odometry's own axes.
+/// Returns the beginning of an atom at time 0, in a frame that equals the odometry coordinates.
 pub(crate) fn begun() -> Begin {
     framed(0.0)
 }
@@ -198,7 +198,7 @@ where
         let input = law.input(y, Nanos::ZERO);
         turned += input.omega.0 * PERIOD;
         y.drive(input);
-        // As odometry reports it.
+        // Odometry reports a wrapped heading.
         y.pose.theta = y.pose.theta.wrapped();
     }
     panic!("not done after 1000 turns");

@@ -1,5 +1,5 @@
-//! Computes the costs of the ways to the goal from all cells of a map. They spread as a wave from the goal, or, if the
-//! goal is not on the map, from the cells at the map's edge through which a way leads to it. Cells beside obstacles
+//! Computes the costs of the ways to the goal from all cells of a map. The costs spread as a wave from the goal, or, if
+//! the goal is not on the map, from the cells at the map's edge through which a way leads to it. Cells beside obstacles
 //! cost more.
 
 use mdle_runtime::capability::DiffDrive;
@@ -243,7 +243,7 @@ impl Wave {
             let is_edge = row == 0 || row == CELLS - 1;
             let (_, y) = Cell { x: corner.x, y: corner.y + row }.centre();
             let may_end = corner.y + row == end.y || (goal.y.0 - y).abs() < near.0;
-            // Elsewhere ways end in the first and the last cell of a row alone.
+            // In the other rows, ways end only in the first and the last cell.
             let columns = (0..CELLS).step_by(if is_edge || may_end { 1 } else { CELLS as usize - 1 });
             for column in columns {
                 let is_border = is_edge || column == 0 || column == CELLS - 1;

@@ -1,4 +1,4 @@
-//! Finds the shortest way on a map to a place nearer to the goal. A rectangle keeps to its way until another one is
+//! Finds the shortest way on a map to a place nearer to the goal. A rectangle keeps to its way until another way is
 //! much shorter. It drives straight through places in which it cannot turn: in the last place before them, it turns to
 //! face the first place beyond them.
 
@@ -89,7 +89,7 @@ struct Way<'w> {
 }
 
 impl Way<'_> {
-    /// Returns the cell of the next place of the last way; `None` if that way is no longer good.
+    /// Returns the cell of the next place of the last way; `None` if that way is no longer usable.
     fn kept(&self, map: &Map, before: &Next) -> Option<usize> {
         let at = Cell::of(before.x, before.y);
         let cell = map.contains(at).then(|| index(at.x - map.corner.x, at.y - map.corner.y))?;
@@ -105,7 +105,7 @@ impl Way<'_> {
     /// Returns the cell to which a rectangular body drives next, and `true` if it must drive there straight. Before a
     /// narrow section this is the last cell in which the body can turn; from there it is a cell a little beyond the
     /// section, if a free straight line leads to it. `before` is the last result, from which the search continues while
-    /// that result is still good.
+    /// that result is still usable.
     fn beyond(&self, map: &Map, before: Option<Next>) -> (usize, bool) {
         let before = before.and_then(|before| Some((self.kept(map, &before)?, before.is_straight)));
         let is_tight = |cell: usize| self.wave.is_tight(cell);
@@ -179,8 +179,8 @@ mod tests {
         }
     }
 
-    /// Returns the first place to which the robot drives past a wall 0.6 m ahead, which has a gap of this width, in
-    /// metres, whose middle is 0.3 m to the left; `None` if there is no way.
+    /// Returns the first place to which the robot drives past a wall 0.6 m ahead; `None` if there is no way. The wall
+    /// has a gap of this width, in metres, with its middle 0.3 m to the left.
     fn through(gap: f64, y: &Sensed) -> Option<(f64, f64)> {
         let mut map = Map::EMPTY;
         map.occupy((0.6, 0.3 + gap / 2.0), (0.6, 1.55));
@@ -238,7 +238,7 @@ mod tests {
 
     #[test]
     fn a_way_is_kept_until_another_is_much_shorter() {
-        // A post ahead is passed on both sides alike.
+        // A post straight ahead can be passed equally well on both sides.
         let mut map = Map::EMPTY;
         map.occupy((0.6, -0.1), (0.6, 0.1));
         let next = |left: f64| {

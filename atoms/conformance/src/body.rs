@@ -1,4 +1,4 @@
-//! Checks that the measures that a robot reports of its own body are plausible.
+//! Checks that the dimensions that a robot reports for its body are plausible.
 
 use std::format;
 

@@ -25,7 +25,7 @@ where
     let wall = front + AWAY;
     let mut trial = Trial::of(stage, &Room::open().across(0.0, wall, 1.0))?;
     let reach = FEELS + V * S::PERIOD.seconds();
-    // To the wall, and for two seconds against it.
+    // Drives to the wall, then against it for two seconds.
     let mut turns = 0;
     while Way::between(AT, trial.truth()).ahead < AWAY - reach {
         not_felt(&trial, wall - front, reach)?;

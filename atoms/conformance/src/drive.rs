@@ -26,7 +26,7 @@ pub(super) const OMEGA: f64 = 0.4;
 const STANDS: (f64, f64) = (0.01, 0.02);
 /// Minimum deceleration of a body that is stopped, in m/s² and rad/s².
 const BRAKES: (f64, f64) = (0.5, 1.5);
-/// Fraction of the speed limits of the alphabet that the body has to reach.
+/// Fraction of the alphabet's speed limits that the body must reach.
 const REACHED: f64 = 0.9;
 
 /// Checks that the body was at rest.
@@ -74,7 +74,7 @@ pub(super) fn ignores_what_is_no_number<S: Stage>(stage: &mut S) -> Result<(), V
     for (v, omega) in [(f64::NAN, 0.0), (0.0, f64::NAN), (f64::INFINITY, 0.0), (0.0, f64::NEG_INFINITY)] {
         let mut trial = Trial::of(stage, &Room::open())?;
         let from = trial.truth();
-        // The robot decides if such an input is a fault.
+        // The robot may treat this input as a fault.
         for _ in 0..10 {
             if trial.robot.exchange(&twist(v, omega)).is_err() {
                 break;
@@ -112,7 +112,7 @@ pub(super) fn reaches_its_limits<S: Stage>(stage: &mut S) -> Result<(), Verdict>
             let is_rate = limit.parameter == "omega";
             let (v, omega) = if is_rate { (0.0, asked) } else { (asked, 0.0) };
             trial.drive(v, omega, 2.0)?;
-            // Short, so that no circle is full.
+            // Short enough not to complete a circle.
             let seconds = lasting::<S>(0.3);
             let way = trial.drive(v, omega, seconds)?;
             let (reached, unit) = if is_rate { (way.turn, "rad/s") } else { (way.ahead, "m/s") };

@@ -19,7 +19,7 @@ const DONE: f64 = 5.0;
 const SQUARE: f64 = 8.0;
 /// Maximum duration of a turn, in seconds.
 const TURNS: f64 = 25.0;
-/// Distance of the wall beside which `align` runs, in metres beyond the body, and half the wall's length.
+/// The wall beside which `align` runs: its distance from the body, and half its length, both in metres.
 const WALL: (f64, f64) = (0.5, 1.8);
 /// Angle from square at which the robot begins to align, in degrees.
 const ASKEW: f64 = 12.0;
@@ -78,7 +78,7 @@ fn off(degrees: f64) -> f64 {
 }
 
 pub(super) fn rotate<S: Stage>(stage: &mut S) -> Result<(), Verdict> {
-    // Headings count from where the robot looked first, and it has turned since.
+    // Headings are relative to the robot's first heading, and the robot has turned since.
     for (heading, before) in [(90.0, OMEGA), (270.0, OMEGA), (-60.0, -OMEGA)] {
         let mut trial = Trial::of(stage, &Room::open())?;
         let first = trial.truth();
@@ -136,7 +136,7 @@ where
     Out<S>: SonarRing + DiffDrive,
 {
     let radius = Trial::of(stage, &Room::open())?.y.body_radius().0;
-    // The wall is askew, on the side that each pair looks at: left, behind, right, in front.
+    // The wall is askew, on the side that each pair of sonars faces: left, behind, right, in front.
     for (first, second, side, askew) in
         [(3, 5, 90.0, ASKEW), (7, 9, 180.0, -ASKEW), (11, 13, 270.0, ASKEW), (15, 1, 0.0, -ASKEW)]
     {

@@ -59,7 +59,7 @@ pub trait Stage {
     /// Sets the robot's power supply from now on; for robots with the capability `power`.
     fn supply(&mut self, _robot: &mut Self::Robot, _supplied: Supplied) {}
 
-    /// Returns the true pose of the body, in the axes of the room; odometry may differ.
+    /// Returns the true pose of the body, in room coordinates; odometry may differ.
     fn truth(&self, robot: &Self::Robot) -> Pose;
 
     /// Lets `periods` periods pass without an exchange.
@@ -80,7 +80,7 @@ pub enum Supplied {
 /// The output of the robot on this stage.
 type Out<S> = <<S as Stage>::Robot as Robot>::Output;
 
-/// Suite of checks of one robot, with a method that runs the checks of each capability, and the verdicts so far.
+/// A suite of checks for one robot, with a method for each capability, and the verdicts so far.
 #[derive(Debug)]
 pub struct Suite<'s, S: Stage> {
     stage: &'s mut S,
@@ -144,7 +144,7 @@ impl<'s, S: Stage> Suite<'s, S> {
         )
     }
 
-    /// Checks `bumper`: contact is reported while the body touches a wall, and not otherwise.
+    /// Checks `bumper`: contact is reported only while the body touches a wall.
     #[must_use]
     pub fn bumper(self) -> Self
     where

@@ -28,7 +28,7 @@ pub(super) struct Measured<'a> {
     pub(super) what: &'a str,
     /// Unit of the quantity.
     pub(super) unit: &'a str,
-    /// Name of the quantity that is blamed for a wrong sign or scale, such as "the input".
+    /// Name of the quantity to blame for a wrong sign or scale, such as "the input".
     pub(super) whose: &'a str,
     pub(super) found: f64,
     pub(super) wanted: f64,
@@ -40,7 +40,7 @@ impl Measured<'_> {
     /// Checks that the measured number is within the tolerance.
     ///
     /// # Errors
-    /// Fails with a sentence about the difference and its probable cause.
+    /// Fails with a message about the difference and its probable cause.
     pub(super) fn check(&self) -> Result<(), String> {
         let Self { what, unit, whose, found, wanted, within } = *self;
         if (found - wanted).abs() <= within {

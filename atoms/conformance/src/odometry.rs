@@ -93,7 +93,7 @@ where
         let (from, began) = (trial.y.pose(), trial.truth());
         let most = 1.5 * omega * S::PERIOD.seconds();
         let mut last = from;
-        // More than a circle.
+        // Turns more than a full circle.
         while trial.now().seconds() < 9.0 {
             trial.drive(0.0, omega, S::PERIOD.seconds())?;
             let turned = Way::between(last, trial.y.pose()).turn;
@@ -140,7 +140,7 @@ where
     let mut trial = Trial::of(stage, &Room::open())?;
     trial.drive(v, omega, SETTLES)?;
     let way = trial.drive(v, omega, 1.0)?;
-    // The arc that its chord and its turn belong to, and how long it took.
+    // Ratio of the arc length to the chord, and the duration of the arc.
     let half = way.turn / 2.0;
     let arc = if half.abs() < 1e-9 { 1.0 } else { half / libm::sin(half) };
     let (direction, seconds) = (if way.ahead < 0.0 { -1.0 } else { 1.0 }, lasting::<S>(1.0));
@@ -161,7 +161,7 @@ where
     Out<S>: Odometry,
 {
     let mut trial = Trial::of(stage, &Room::open())?;
-    // Beyond half a circle, where what is wrapped differs from what is not.
+    // Turns by more than half a circle, where a wrapped heading differs from an unwrapped one.
     trial.drive(V, 0.8, 5.0)?;
     let (Pose { x, y, theta }, velocity) = (trial.y.pose(), trial.y.velocity());
     let signals = [

@@ -1,4 +1,4 @@
-//! Checks of the battery and charger states that the robot reports.
+//! Checks the battery and charger states that the robot reports.
 
 use std::format;
 
@@ -54,7 +54,7 @@ fn agree<S: Stage>(y: &Out<S>, supply: ReportedSupply) -> Result<(), Verdict> {
     Ok(())
 }
 
-/// Checks that the robot reports a state with the one power supply that causes it, and not with the two others.
+/// Checks that the robot reports a state only with the power supply that causes it, not with the other two.
 fn only(what: &str, where_it_is: bool, where_not: [bool; 2]) -> Result<(), String> {
     match (where_it_is, where_not) {
         (true, [false, false]) => Ok(()),

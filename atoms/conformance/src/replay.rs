@@ -1,4 +1,4 @@
-//! Checks that the robot has the paths that it was given, and replays one (section IV-A).
+//! Checks that the robot's output contains the given paths, and that the law `path` replays one (section IV-A).
 
 use std::format;
 
@@ -10,8 +10,8 @@ use super::stored_path::{BEND, NAME, SPEED};
 use super::trial::{Trial, Way};
 use super::{Out, Room, Stage, Verdict};
 
-/// Maximum distance of the body from the end of the path, in metres, and from its heading there, in degrees. The body
-/// deviates from the path because it has to accelerate and to stop.
+/// Maximum errors at the end of the path: of the position, in metres, and of the heading, in degrees. The body deviates
+/// from the path because it has to accelerate and to stop.
 const ENDS: (f64, f64) = (0.1, 10.0);
 
 pub(super) fn are_there<S: Stage>(stage: &mut S) -> Result<(), Verdict>

@@ -14,11 +14,11 @@ pub enum Verdict {
     Holds,
     /// The alphabet has no such quark or signal, so no plan can use it.
     NotOffered,
-    /// A defect, as a sentence for the author.
+    /// A defect; contains a message for the author.
     Broken(String),
 }
 
-/// Conversion of a sentence to a verdict about a defect.
+/// Converts a description of a defect to a verdict.
 impl From<String> for Verdict {
     fn from(sentence: String) -> Self {
         Self::Broken(sentence)
@@ -40,7 +40,7 @@ pub struct Checked {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Report {
     checked: Vec<Checked>,
-    /// Sentences about capabilities that are claimed but were not checked, or were checked but are not claimed.
+    /// Messages about capabilities that are claimed but were not checked, or were checked but are not claimed.
     claims: Vec<String>,
     /// Claimed capabilities for which there are no checks.
     unknown: Vec<&'static str>,

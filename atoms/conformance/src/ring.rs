@@ -1,4 +1,4 @@
-//! Checks of the sixteen sonars: their directions, their ranges, and the times of their pings.
+//! Checks the sixteen sonars: their directions, their ranges, and the times of their pings.
 
 use std::format;
 
@@ -19,8 +19,8 @@ const RANGE: f64 = 0.05;
 /// from each of its rotations and reversals.
 const WALLS: [f64; SONARS] =
     [1.08, 1.71, 0.75, 2.37, 1.41, 1.93, 0.86, 1.60, 1.19, 2.15, 0.97, 2.26, 1.52, 1.82, 1.30, 2.04];
-/// Half the width of the walls of sonars with even and with odd numbers, per metre of their distance. The walls are
-/// narrow enough not to be heard by the neighbouring sonars.
+/// Half-widths of the walls, for sonars with even and with odd numbers, per metre of distance. The neighbouring sonars
+/// do not hear walls that are this narrow.
 const HALF: [f64; 2] = [0.05, 0.08];
 /// Maximum age of a ping, in seconds: a full ring takes a second.
 const OLD: f64 = 2.0;

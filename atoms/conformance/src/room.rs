@@ -10,7 +10,7 @@ use mdle_runtime::{Meters, Pose, Radians};
 const FAR: f64 = 40.0;
 
 /// Pose at which robots begin. It differs from the origin in position and heading, so that the checks detect a robot
-/// that confuses its own axes with those of the room.
+/// that confuses odometry coordinates with room coordinates.
 pub(super) const AT: Pose = Pose { x: Meters(1.0), y: Meters(-0.5), theta: Radians::from_degrees(30.0) };
 
 /// A straight wall without thickness.

@@ -28,7 +28,7 @@ fn arguments(degrees: f64, range: f64) -> [Argument<'static>; 3] {
 pub(super) fn arrives<S: Stage>(stage: &mut S) -> Result<(), Verdict> {
     for degrees in [60.0, -60.0, 0.0] {
         let mut trial = Trial::of(stage, &Room::open())?;
-        // Bearings count from where the robot looked first, and it has turned and gone on since.
+        // Bearings are relative to the robot's first heading, and the robot has turned and driven since.
         let first = trial.truth();
         trial.drive(SPEED, 0.4, 1.5)?;
         trial.drive(0.0, 0.0, 0.8)?;
@@ -52,7 +52,7 @@ where
     Out<S>: SonarRing + DiffDrive,
 {
     let radius = Trial::of(stage, &Room::open())?.y.body_radius().0;
-    // A wall across its way: it has to go round, or stay.
+    // A wall blocks the way: the robot must go round it or stay where it is.
     let room = Room::open().across(0.0, radius + 1.0, 1.0);
     let mut trial = Trial::of(stage, &room)?;
     trial.drive(0.0, 0.0, super::ring::HEARD)?;

@@ -36,7 +36,7 @@ fn word(bits: [bool; 4]) -> String {
     bits.iter().map(|bit| if *bit { '1' } else { '0' }).collect()
 }
 
-/// Checks that, of the 16 patterns of `atIsection`, only the pattern of these walls fires.
+/// Checks that only the pattern of these walls fires, out of the 16 patterns of `atIsection`.
 fn tells<S: Stage>(stage: &mut S, walls: [bool; 4]) -> Result<(), Verdict>
 where
     Out<S>: SonarRing + DiffDrive,

@@ -1,4 +1,4 @@
-//! A trial of a robot in a room, which runs turns and measures the motion of the body.
+//! Runs trials of a robot in a room: makes turns and measures the motion of the body.
 
 use std::format;
 
@@ -25,7 +25,7 @@ pub(super) struct Trial<'s, S: Stage> {
     exchanges: u64,
 }
 
-/// The motion of a body between two poses, in the axes of the first pose.
+/// The motion of a body between two poses, relative to the first pose.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way {
     /// Distance forward, in metres.

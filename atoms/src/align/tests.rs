@@ -1,4 +1,4 @@
-//! Tests of `align`: walls, errors of the sonars, and places in which no heading has equal ranges.
+//! Tests `align` beside walls, with errors of the sonars, and in places where no heading has equal ranges.
 
 use super::*;
 use crate::trial::{Sensed, begun};
@@ -71,7 +71,7 @@ fn a_start_off_square_converges() {
         for (first, second, wall) in [(7, 9, 180.0), (3, 5, 90.0), (11, 13, 270.0), (15, 1, 0.0)] {
             for confirmation in [3, 2] {
                 let end = aligned(first, second, wall, off, confirmation);
-                // Pings that come once a second are of where it was.
+                // Pings that come once a second were heard at an earlier heading.
                 let most = if confirmation == 3 { 2.0 } else { 5.0 };
                 assert!(end.abs() < most, "align {first} {second} from {off}: {end}");
             }
@@ -99,8 +99,8 @@ fn errors_and_missed_echoes_do_not_keep_it_from_the_wall() {
                 let off = 8.0 * ((seed % 9) as f64 - 4.0);
                 let wall = Wall { misses, error: 0.02, confirmation, ..EXACT };
                 let (end, done) = ended(wall, off, seed + 4);
-                // Two ranges that are 2 cm wrong make 3 degrees, and pings that come once a second are of where it
-                // was.
+                // Two range errors of 2 cm cause an error of 3 degrees, and pings that come once a second were heard at
+                // an earlier heading.
                 let most = if confirmation == 3 { 5.0 } else { 10.0 };
                 assert!(done && end.abs() < most, "from {off}, misses {misses:?}, {confirmation}: {end}, {done}");
             }
@@ -118,7 +118,7 @@ fn beside_a_dead_sonar_it_looks_round_once_and_is_done() {
             y.ping(SonarId::new(7), Some(0.6));
             y.ping(SonarId::new(9), None);
             let t = Nanos(turn * 100_000_000);
-            // 79 s are a full circle at the slowest turn.
+            // A full circle at the minimum turn rate takes 79 s.
             assert_eq!(law.completed(&y, t), turn > 786, "{}", t.seconds());
             let input = law.input(&y, t);
             turned += input.omega.0.to_degrees() * crate::trial::PERIOD;
@@ -153,8 +153,8 @@ fn done(sonars: [u8; 2], off: f64, ranges: impl Fn(f64) -> [f64; 2]) -> Option<(
 
 #[test]
 fn beside_an_edge_it_ends_where_ranges_differ_least() {
-    // Up to one degree the second sonar hears a jamb, beyond it the wall of the room behind. A jamb is believed for
-    // three pings, while the robot turns on.
+    // Up to one degree the second sonar hears a jamb, beyond it the wall of the room behind. The echo of the jamb
+    // counts for three pings, while the robot keeps turning.
     for off in [-20.0, 0.0, 3.0, 20.0] {
         let (seconds, heading) =
             done([7, 9], off, |heading| [0.9, if heading < 1.0 { 0.6 } else { 2.0 }]).expect("an end");

@@ -1,4 +1,4 @@
-//! Tests detours on a tangent to an obstacle, turn by turn.
+//! Tests the tangent rule: free ways, walls beside a way, and detours around obstacles.
 
 use super::*;
 use crate::trial::Sensed;
@@ -70,7 +70,7 @@ fn a_wall_at_the_least_range_may_be_nearer() {
 fn passes(confirmation: usize) -> bool {
     let mut y = Sensed { confirmation, ..Sensed::default() };
     for (sonar, side) in [(4, 1.0), (12, -1.0)] {
-        // From 20 cm beyond the middle, since a Scout hears what is near at its least range.
+        // Heard from 20 cm beyond the middle, since a Scout reports its minimum range for a nearer obstacle.
         y.pose = Pose { x: Meters(1.0), y: Meters(-0.2 * side), ..Pose::ORIGIN };
         y.ping(SonarId::new(sonar), Some(0.2 + 0.205 + 0.055 - 0.19));
     }
