@@ -1,4 +1,4 @@
-//! The breakpoints of a session. A breakpoint is at a place of the plan, at the entry of an atom or of a named scope,
+//! The breakpoints of a session. A breakpoint is at a place in the plan, at the entry of an atom or of a named scope,
 //! or at a time.
 
 use std::collections::BTreeMap;
@@ -20,23 +20,23 @@ pub(crate) type Id = i64;
 #[derive(Debug)]
 pub(crate) struct Breakpoints {
     places: Vec<Place>,
-    /// For each file, the numbers of its breakpoints and the places at which they stop the run.
+    /// For each file, the numbers of its breakpoints, with the places at which they stop the run.
     lines: BTreeMap<SourceId, Vec<(Id, Place)>>,
     names: Vec<(Id, Name)>,
     last: Id,
 }
 
-/// Condition of a breakpoint that is not at a place in a file.
+/// Condition of a breakpoint that has no place in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Name {
-    /// The entry of a scope with this name or of an atom with this law.
+    /// The entry of a scope with this name, or of an atom with this law.
     Entered(String),
-    /// The first turn whose plan time is at least this time.
+    /// The first turn with a plan time of at least this time.
     Time(Nanos),
 }
 
 impl Breakpoints {
-    /// Returns an empty list of breakpoints for a plan.
+    /// Returns the breakpoints of a plan; none is set.
     pub(crate) fn new(loaded: &Loaded) -> Self {
         Self { places: places(loaded), lines: BTreeMap::new(), names: Vec::new(), last: 0 }
     }
@@ -46,8 +46,8 @@ impl Breakpoints {
         &self.places
     }
 
-    /// Replaces the breakpoints of a file by breakpoints at the given lines and columns, which count from 0. Returns
-    /// the number of each breakpoint, with its place or the reason why it has no place.
+    /// Replaces the breakpoints in a file by breakpoints at the given lines and columns, which count from 0. Returns
+    /// the number of each breakpoint, with its place or the reason why it has none.
     pub(crate) fn set(
         &mut self,
         loaded: &Loaded,
@@ -72,8 +72,8 @@ impl Breakpoints {
         set
     }
 
-    /// Replaces the breakpoints that are not in a file. Returns the number of each breakpoint, or the reason why it
-    /// cannot stop a run.
+    /// Replaces the breakpoints that have no place in a file. Returns the number of each breakpoint; `Err` contains the
+    /// reason why it cannot stop a run.
     pub(crate) fn set_names(&mut self, plan: &Plan, wanted: &[String]) -> Vec<(Id, Result<(), String>)> {
         self.names.clear();
         let mut set = Vec::new();
@@ -112,7 +112,7 @@ impl Breakpoints {
     }
 }
 
-/// Parses the text of a breakpoint that is not at a place in a file: a name, or a time with its unit.
+/// Parses the text of a breakpoint that has no place in a file: a name, or a time with its unit.
 fn name(plan: &Plan, text: &str) -> Result<Name, String> {
     if text.starts_with(|c: char| c.is_ascii_digit()) {
         return time(text).map(Name::Time).ok_or_else(|| format!("`{text}` is no time: write it as `2.5s` or `500ms`"));

@@ -1,4 +1,4 @@
-//! The client: it exchanges messages of the Debug Adapter Protocol, each in JSON after a header with its length.
+//! The client: exchanges messages of the Debug Adapter Protocol. Each message is JSON after a header with its length.
 
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Read, Write};
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::ServeError;
 
-/// Maximum length of a message in bytes: a client sends names and lines, but no texts.
+/// Maximum length of a message, in bytes. A client sends names and lines, but no file contents.
 const LONGEST: usize = 16_000_000;
 
 /// A request from the client.
@@ -20,11 +20,11 @@ pub(crate) struct Request {
     pub(crate) arguments: Value,
 }
 
-/// The client at the other end of the connection.
+/// Connection to the client.
 pub(crate) struct Client<'o> {
-    /// Messages from the client. A separate thread reads them, so that a request can interrupt a run.
+    /// Messages from the client. A separate thread reads them, so a request can interrupt a run.
     received: Receiver<Result<Value, ServeError>>,
-    /// Requests that arrived during a run, in their order.
+    /// Requests that arrived during a run, in order of arrival.
     waiting: VecDeque<Request>,
     output: &'o mut dyn Write,
     /// Number of the last sent message.
@@ -79,7 +79,7 @@ impl<'o> Client<'o> {
                 response["body"] = body;
             }
             Err(message) => {
-                // The format is a template, in which braces are variables.
+                // In the protocol, `format` is a template in which braces enclose variables.
                 let format = json!({ "id": 1, "format": "{text}", "variables": { "text": message }, "showUser": true });
                 response["success"] = json!(false);
                 response["message"] = json!(message);

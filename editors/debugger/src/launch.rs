@@ -1,4 +1,4 @@
-//! Reads the plan and the script of a session.
+//! Launches a session: compiles the plan and reads the script.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,9 +20,9 @@ pub(crate) struct Launch {
     program: PathBuf,
     /// Path of the script.
     script: PathBuf,
-    /// Robot for a plan that has no `mdle.toml`.
+    /// Robot to use for a plan without an `mdle.toml`.
     target: Option<String>,
-    /// Name of the plan; needed if the file contains several plans.
+    /// Name of the plan; required if the file contains several plans.
     plan: Option<String>,
     /// `true` to stop at the entry of the plan.
     #[serde(default)]
@@ -37,7 +37,7 @@ pub(crate) struct Loaded {
     script: Script,
     /// Lines of each file that was read.
     lines: BTreeMap<SourceId, Lines>,
-    /// Texts of the `after` conditions. The keys are the facts that the conditions test.
+    /// Texts of the `after` conditions, by the fact that each condition tests.
     facts: BTreeMap<(RecordId, u32), String>,
 }
 
@@ -45,7 +45,7 @@ impl Loaded {
     /// Compiles the plan and reads the script.
     ///
     /// # Errors
-    /// Fails if a file cannot be read or contains errors. The text has one line for each error.
+    /// Fails if a file cannot be read or contains errors; the message has one line for each error.
     pub(crate) fn read(launch: &Launch) -> Result<Self, String> {
         let Launch { program, script, target, plan, .. } = launch;
         let settings = Settings::beside(program).map_err(words)?;
@@ -78,7 +78,7 @@ impl Loaded {
         Ok(loaded)
     }
 
-    /// Returns the turns of the script, which has at least one turn.
+    /// Returns the turns of the script; there is at least one.
     pub(crate) fn turns(&self) -> &[Reports] {
         self.script.turns()
     }
@@ -106,7 +106,7 @@ impl Loaded {
         std::path::absolute(self.input.path(source)?).ok()
     }
 
-    /// Returns the file at a path, if it contains parts of the plan.
+    /// Returns the file at a path; `None` if it contains no part of the plan.
     pub(crate) fn source(&self, path: &Path) -> Option<SourceId> {
         let place = mdle_files::place(path).ok()?;
         let is_there = |source: &SourceId| {
@@ -115,21 +115,20 @@ impl Loaded {
         self.lines.keys().copied().find(is_there)
     }
 
-    /// Returns the file of a span, with the line and the column of its start. Both count from 0; columns are in UTF-16
-    /// units.
+    /// Returns the file of a span, and the line and column of its start, both from 0; columns are in UTF-16 units.
     pub(crate) fn place(&self, span: Span) -> (SourceId, u32, u32) {
         let (source, range) = self.input.sources.range(span);
         let at = self.lines.get(&source).map(|lines| lines.position(self.text(source), range.start));
         (source, at.map_or(0, |at| at.line), at.map_or(0, |at| at.character))
     }
 
-    /// Returns the `after` conditions about a record, with the numbers of their facts.
+    /// Returns the `after` conditions that test facts of a record, with the numbers of the facts.
     pub(crate) fn facts(&self, record: RecordId) -> impl Iterator<Item = (u32, &str)> {
         self.facts.range((record, 0)..=(record, u32::MAX)).map(|((_, fact), text)| (*fact, text.as_str()))
     }
 }
 
-/// Returns the texts of the `after` conditions of a plan. The keys are the facts that the conditions test.
+/// Returns the texts of a plan's `after` conditions, by the fact that each condition tests.
 fn facts(compiled: &Compiled) -> BTreeMap<(RecordId, u32), String> {
     let mut facts = BTreeMap::new();
     for interrupt in compiled.plan.parts().filter_map(mdle_compiler::plan::Part::interrupt) {
@@ -142,13 +141,13 @@ fn facts(compiled: &Compiled) -> BTreeMap<(RecordId, u32), String> {
     facts
 }
 
-/// Returns the diagnostics of a plan with errors as text, followed by the number of errors.
+/// Returns the diagnostics of an invalid plan as text, followed by the number of errors.
 fn rendered(sources: &Sources, found: &[Diagnostic]) -> String {
     let shown = found.iter().take(most_shown(found)).map(|found| sources.render(found));
     shown.chain(judged(found, false).err()).collect::<Vec<_>>().join("\n")
 }
 
-/// Returns the message about a file that cannot be read, or the diagnostics of a file with errors.
+/// Returns the error message for a file that cannot be read, or the diagnostics of a file with errors.
 fn words(error: InputError) -> String {
     let own = error.to_string();
     let found = error.faulty_file().map(|file| rendered(&file.sources, &file.diagnostics));

@@ -1,8 +1,8 @@
-//! The debugger of MDLe, for every editor that speaks the Debug Adapter Protocol; `mdlec dap` runs it on standard input
-//! and output.
+//! The debugger of MDLe, for every editor that supports the Debug Adapter Protocol; `mdlec dap` runs it on standard
+//! input and output.
 //!
-//! A plan runs on a script of interrupts, as in `mdlec trace`. Runs are deterministic. To go back, a run therefore
-//! starts from a copy of an earlier state and goes forward again (`run.rs`).
+//! A plan runs on a script of interrupts, as in `mdlec trace`. Runs are deterministic, so a step back restarts from a
+//! copy of an earlier state and runs forward again (`run.rs`).
 
 mod breakpoints;
 mod client;
@@ -37,7 +37,7 @@ pub enum ServeError {
 /// Serves one client on standard input and output until the client ends the session.
 ///
 /// # Errors
-/// Fails if the client violated the protocol or vanished.
+/// Fails if the client violates the protocol or closes the connection too early.
 pub fn serve() -> Result<(), ServeError> {
     serve_on(io::stdin(), &mut io::stdout())
 }
@@ -45,7 +45,7 @@ pub fn serve() -> Result<(), ServeError> {
 /// Serves one client until the client ends the session.
 ///
 /// # Errors
-/// Fails if the client violated the protocol or vanished.
+/// Fails if the client violates the protocol or closes the connection too early.
 pub fn serve_on(input: impl Read + Send + 'static, output: &mut dyn Write) -> Result<(), ServeError> {
     serve::serve(&mut Client::new(BufReader::new(input), output))
 }

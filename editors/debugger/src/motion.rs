@@ -1,4 +1,4 @@
-//! Motions of a run: continue, steps forward, and steps back.
+//! Motions of a run: continue, step forward, and step back.
 
 use mdle_compiler::plan::Part;
 use serde_json::{Value, json};
@@ -8,7 +8,7 @@ use crate::breakpoints::Id;
 use crate::run::Step;
 use crate::session::Session;
 
-/// Number of steps between two checks for a request that interrupts the run.
+/// Number of steps after which the run checks for a request that interrupts it.
 const LOOK: u64 = 4_096;
 
 /// A motion that the client requests.
@@ -31,7 +31,7 @@ pub(crate) enum Motion {
 }
 
 impl Motion {
-    /// Returns the motion that a command requests; `None` for a command that is not a motion.
+    /// Returns the motion that a command requests; `None` if the command is not a motion.
     pub(crate) fn of(command: &str, arguments: &Value) -> Option<Self> {
         let is_fine = arguments.get("granularity").and_then(Value::as_str) == Some("instruction");
         match (command, is_fine) {
@@ -59,7 +59,7 @@ impl Session<'_, '_, '_> {
         }
     }
 
-    /// Executes a motion, and reports where the run has stopped.
+    /// Performs a motion, and reports where the run has stopped.
     pub(crate) fn go(&mut self, motion: Motion) -> Result<(), ServeError> {
         self.lists.clear();
         match motion {
@@ -80,7 +80,7 @@ impl Session<'_, '_, '_> {
                 return Ok(());
             }
             let Some(step) = self.run.step() else {
-                // Nothing is left to be stepped over: the client has seen the end.
+                // The client has already been shown the end: this step ends the session.
                 return if steps == 1 { self.client.event("terminated", json!({})) } else { self.ended() };
             };
             let hits = self.breakpoints.hits(&self.run, &self.loaded.compiled.plan, Some(step));
@@ -103,8 +103,8 @@ impl Session<'_, '_, '_> {
         self.stopped("end", text, &[])
     }
 
-    /// Moves the run back to the last earlier position that `is_there` accepts, or else to the start of the run, and
-    /// reports the stop. The arguments of `is_there` are the breakpoints at a position and the step that leads to it.
+    /// Moves the run back to the last earlier position that `is_there` accepts, or to the start of the run if there is
+    /// none, and reports the stop. `is_there` gets the breakpoints at a position and the step that leads to it.
     fn back(&mut self, reason: &str, is_there: impl Fn(&[Id], Option<Step>) -> bool) -> Result<(), ServeError> {
         let (breakpoints, plan) = (&self.breakpoints, &self.loaded.compiled.plan);
         self.run.back(|run, step| is_there(&breakpoints.hits(run, plan, step), step));

@@ -1,4 +1,4 @@
-//! The places of a plan at which a run can stop: the beginnings of elements, and the operands of conditions.
+//! Places in a plan at which a run can stop: starts of elements, and operands of conditions.
 
 use mdle_compiler::diagnostic::{SourceId, Span};
 use mdle_compiler::plan::Part;
@@ -9,16 +9,16 @@ use crate::launch::Loaded;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Place {
     source: SourceId,
-    /// Line of the place's start, from 0.
+    /// Line of the start, from 0.
     pub(crate) line: u32,
-    /// Column of the place's start, from 0.
+    /// Column of the start, from 0.
     pub(crate) column: u32,
     /// `true` for an operand of a condition, `false` for a scope, a loop or an atom.
     pub(crate) is_operand: bool,
     pub(crate) span: Span,
 }
 
-/// Returns all places of a plan in the order of their files.
+/// Returns all places of a plan, sorted by file and position.
 pub(crate) fn places(loaded: &Loaded) -> Vec<Place> {
     let place = |span: Span, is_operand: bool| {
         let (source, line, column) = loaded.place(span);
@@ -34,13 +34,13 @@ pub(crate) fn places(loaded: &Loaded) -> Vec<Place> {
         places.extend(operands.map(|operand| place(operand.span, true)));
     }
     places.sort();
-    // A plan that is used twice has its places twice.
+    // A plan that is used twice adds its places twice.
     places.dedup();
     places
 }
 
 /// Returns the place at which a breakpoint in the given line stops the run. With a column, this is the operand at the
-/// column, or else the next place in the line, or else the last place in the line. Without a column, this is the
+/// column, otherwise the next place in the line, otherwise the last place in the line. Without a column, this is the
 /// element that begins in the line. If there is no such place, it is the next place in the file.
 pub(crate) fn meant(places: &[Place], source: SourceId, line: u32, column: Option<u32>) -> Option<Place> {
     let from = places.partition_point(|place| (place.source, place.line) < (source, line));
@@ -65,7 +65,7 @@ pub(crate) fn between(places: &[Place], source: SourceId, first: u32, last: u32)
 
 impl Place {
     /// Returns the column after the end of the place, which must end in the line in which it begins. Operands contain
-    /// no character with two UTF-16 units.
+    /// only characters of one UTF-16 unit.
     fn end_column(&self) -> u32 {
         self.column.saturating_add(self.span.end.saturating_sub(self.span.start))
     }

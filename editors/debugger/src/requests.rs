@@ -1,4 +1,4 @@
-//! Answers the requests that a client sends while its run is stopped. Each answer is a function of the session.
+//! Answers the requests that a client sends while the run is stopped. An answer depends only on the session.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use crate::session::Session;
 use crate::stack::{Frame, frames};
 use crate::why::{sentence, why};
 
-/// Number of the debugged program's only thread.
+/// Number of the debugged plan's only thread.
 pub(crate) const THREAD: i64 = 1;
 
 #[derive(Deserialize)]
@@ -80,7 +80,7 @@ struct OfReference {
 /// Answers a request.
 ///
 /// # Errors
-/// Returns a sentence for the user.
+/// Fails with a sentence for the user.
 pub(crate) fn answer(session: &mut Session<'_, '_, '_>, command: &str, arguments: &Value) -> Result<Value, String> {
     match command {
         "setBreakpoints" => set_breakpoints(session, read(arguments)?),
@@ -160,7 +160,7 @@ fn stack_trace(session: &Session<'_, '_, '_>, asked: &StackTrace) -> Value {
     json!({ "stackFrames": shown.collect::<Vec<_>>(), "totalFrames": total })
 }
 
-/// Returns a frame in the form of the protocol, with its place in a file.
+/// Returns a frame as a protocol object, with its place in a file.
 fn shown(session: &Session<'_, '_, '_>, number: usize, frame: &Frame) -> Value {
     let loaded = session.loaded;
     let (source, line, column) = loaded.place(frame.span);
@@ -178,8 +178,8 @@ fn shown(session: &Session<'_, '_, '_>, number: usize, frame: &Frame) -> Value {
     })
 }
 
-/// Returns the frame with this number or, without a number, the frame of the current atom; `None` once the plan has
-/// ended.
+/// Returns the frame with this number; without a number, the frame of the current atom. Returns `None` once the plan
+/// has ended.
 fn frame(session: &Session<'_, '_, '_>, number: Option<usize>) -> Result<Option<Frame>, String> {
     let frames = frames(&session.run, &session.loaded.compiled.plan);
     let index = number.unwrap_or(1).checked_sub(1).filter(|index| *index < frames.len().max(1));
@@ -198,7 +198,7 @@ fn variables(session: &Session<'_, '_, '_>, asked: &OfReference) -> Result<Value
     Ok(json!({ "variables": list }))
 }
 
-/// Answers the question why a condition holds or does not hold.
+/// Explains why a condition holds or does not hold.
 fn evaluate(session: &mut Session<'_, '_, '_>, asked: &Evaluate) -> Result<Value, String> {
     let frames = frames(&session.run, &session.loaded.compiled.plan);
     let from = asked.frame_id.unwrap_or(1).saturating_sub(1).min(frames.len());
@@ -213,7 +213,7 @@ fn evaluate(session: &mut Session<'_, '_, '_>, asked: &Evaluate) -> Result<Value
     })?;
     let references: Vec<Value> =
         reasons.iter().map(|reason| session.lists.reason(reason)["variablesReference"].clone()).collect();
-    // Comparisons have no operands to be listed.
+    // A comparison has no operands to show.
     let reference = references.into_iter().next().unwrap_or_default();
     Ok(json!({ "result": sentence(&reasons, &asked.expression), "variablesReference": reference }))
 }

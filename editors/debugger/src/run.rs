@@ -1,11 +1,11 @@
-//! A run of a plan on a script, which can go forward and back step by step. Runs are deterministic: to go back, the run
-//! starts from a copy of an earlier state and goes forward again.
+//! A run of a plan on a script, with steps forward and back. Runs are deterministic: a step back restarts from a copy
+//! of an earlier state and runs forward again.
 
 use mdle_compiler::diagnostic::Span;
 use mdle_compiler::plan::Plan;
 use mdle_compiler::trace::{Applied, OpenPart, Reports, Step as TreeStep, Tree};
 
-/// Maximum number of copies of the state. When it is reached, every second copy is dropped.
+/// Maximum number of state copies. When it is reached, every second copy is dropped.
 const MOST_COPIES: usize = 64;
 
 /// A position in a run.
@@ -15,7 +15,7 @@ pub(crate) struct At {
     pub(crate) steps: u64,
     /// Number of the turn, from 0.
     pub(crate) turn: usize,
-    /// Number of transitions so far in the turn.
+    /// Number of transitions in the turn so far.
     made: usize,
     /// Input of the turn; `None` until the turn has ended.
     pub(crate) input: Option<Input>,
@@ -24,7 +24,7 @@ pub(crate) struct At {
 /// Input of a turn that has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Input {
-    /// The input that the law of the current atom returns.
+    /// The input that the current atom's law returns.
     Law,
     /// The null input, because the turn reached the maximum number of transitions.
     Cut,
@@ -37,8 +37,8 @@ pub(crate) enum Input {
 pub(crate) enum Step {
     /// The next turn has begun, at a later time.
     Turn,
-    /// A scope has ended. `ended` is the number of open elements that enclosed the scope, and `kept` is the number of
-    /// open elements that have stayed open.
+    /// A scope has ended. `ended` is the number of open elements that enclosed the scope; `kept` is the number of open
+    /// elements that are still open.
     Transition { ended: usize, kept: usize },
     /// The turn has ended.
     End,
@@ -50,9 +50,9 @@ pub(crate) struct Run<'p> {
     turns: &'p [Reports],
     tree: Tree<'p>,
     at: At,
-    /// Copies of the state in the order of the run; the first is the start of the run.
+    /// Copies of the state in the order of the run; the first one is the start of the run.
     copies: Vec<(At, Tree<'p>)>,
-    /// Number of turns between two copies.
+    /// Number of turns between two copies of the state.
     apart: usize,
 }
 
@@ -75,17 +75,17 @@ impl<'p> Run<'p> {
         &self.turns[self.at.turn]
     }
 
-    /// Returns the reports of the previous turn, if there is one.
+    /// Returns the reports of the previous turn; `None` in the first turn.
     pub(crate) fn reports_before(&self) -> Option<&'p Reports> {
         self.turns.get(self.at.turn.checked_sub(1)?)
     }
 
-    /// Returns the open elements from the plan to the current atom; no elements once the plan has ended.
+    /// Returns the open elements, from the plan to the current atom; none once the plan has ended.
     pub(crate) fn open(&self) -> impl DoubleEndedIterator<Item = OpenPart<'_, 'p>> + ExactSizeIterator {
         self.tree.open()
     }
 
-    /// Returns the places of the operands whose firing ends a scope in the next step.
+    /// Returns the places of the operands that end a scope in the next step because they fire.
     pub(crate) fn firing(&self) -> Vec<Span> {
         if self.at.input.is_some() { Vec::new() } else { self.tree.firing(self.reports()) }
     }
@@ -142,9 +142,9 @@ impl<'p> Run<'p> {
         self.copies.push((self.at, self.tree.clone()));
     }
 
-    /// Moves back to the last earlier position that `is_there` accepts, or else to the start of the run. The second
-    /// argument of `is_there` is the step that leads to the position, and `None` for the start. Returns `false` if the
-    /// run is at its start.
+    /// Moves back to the last earlier position that `is_there` accepts, or to the start of the run if there is none.
+    /// The second argument of `is_there` is the step that leads to the position; `None` at the start. Returns `false`
+    /// if the run is already at its start.
     pub(crate) fn back(&mut self, mut is_there: impl FnMut(&Self, Option<Step>) -> bool) -> bool {
         let here = self.at.steps;
         if here == 0 {
@@ -164,13 +164,13 @@ impl<'p> Run<'p> {
                 self.go_to(steps);
                 return true;
             }
-            // The step that leads to a copy was made on the way to it.
+            // The search up to this copy has already made the step that leads to it.
             end = copied.steps;
         }
         false
     }
 
-    /// Moves to the position `steps` steps after the start of the run.
+    /// Moves to the position after `steps` steps from the start of the run.
     fn go_to(&mut self, steps: u64) {
         if let Some((at, tree)) = self.copies.iter().rev().find(|(at, _)| at.steps <= steps).cloned() {
             (self.at, self.tree) = (at, tree);
@@ -193,8 +193,8 @@ mod tests {
       ExecPlan inf { (Atom (RISING bumper OR wait 3) (go 20 0)) (Atom (bumper AND wait 1) (go 10 0))^3 }
     }";
 
-    /// Runs `test` on a plan and a script of `turns` turns, in which bumper has fired in every third and every seventh
-    /// turn.
+    /// Calls `test` with a run of a plan on a script of `turns` turns. In the script, bumper fires in every third and
+    /// in every seventh turn.
     fn with_run(turns: usize, test: impl FnOnce(Run<'_>)) {
         let target = mdle_files::target(Some("sim")).unwrap();
         let (compiled, _) = compile(SourceId(0), PLAN, &target.alphabet, None);

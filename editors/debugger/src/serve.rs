@@ -1,4 +1,4 @@
-//! Serves a client: answers `initialize`, `launch`, and then the requests of a session.
+//! Serves a client: answers `initialize` and `launch`, and then the requests of a session.
 
 use serde_json::{Value, json};
 

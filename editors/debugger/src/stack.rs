@@ -1,4 +1,4 @@
-//! The stack of a run: the current atom, and the scopes that enclose it, each with the passes of its loops.
+//! The stack of a run: the current atom and its enclosing scopes, with the passes of their loops.
 
 use mdle_compiler::diagnostic::Span;
 use mdle_compiler::plan::{Part, Plan};
@@ -8,18 +8,18 @@ use crate::run::Run;
 /// A frame of the stack: an atom or a scope.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Frame {
-    /// Name of the frame for users.
+    /// Name of the frame as shown to users.
     pub(crate) name: String,
     /// Place of the atom or of the scope's definition.
     pub(crate) span: Span,
-    /// Index of the frame among the open elements of the run.
+    /// Index of the frame in the run's list of open elements.
     pub(crate) open: usize,
-    /// Loops that directly enclose the element, from the outermost to the innermost, as indices among the open elements
-    /// of the run.
+    /// Loops that directly enclose the element, from the outermost to the innermost, as indices into the run's list of
+    /// open elements.
     pub(crate) loops: Vec<usize>,
 }
 
-/// Returns the frames from the current atom to the plan; no frames once the plan has ended.
+/// Returns the frames from the current atom to the plan; none once the plan has ended.
 pub(crate) fn frames(run: &Run<'_>, plan: &Plan) -> Vec<Frame> {
     let (mut frames, mut loops, mut passes) = (Vec::new(), Vec::new(), String::new());
     for (open, element) in run.open().enumerate() {

@@ -1,4 +1,4 @@
-//! The variables of a frame: the operands of its condition, its memory since it was entered, and the turn.
+//! The variables of a frame: operands of its condition, memory since its entry, and data of the turn.
 
 use serde_json::{Value, json};
 
@@ -7,18 +7,18 @@ use crate::run::{Input, Run};
 use crate::stack::Frame;
 use crate::why::{Reason, reason};
 
-/// Lists of variables that the client can request while the run is stopped; a reference is an index into the lists,
+/// Lists of variables that the client can request while the run is stopped. The client refers to a list by its index,
 /// from 1.
 #[derive(Debug, Default)]
 pub(crate) struct Lists(Vec<Vec<Value>>);
 
 impl Lists {
-    /// Removes all lists, because the run continues.
+    /// Removes all lists because the run continues.
     pub(crate) fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// Returns the list with this reference.
+    /// Returns the list with this reference; `None` if there is no such list.
     pub(crate) fn get(&self, reference: usize) -> Option<&[Value]> {
         self.0.get(reference.checked_sub(1)?).map(Vec::as_slice)
     }
@@ -28,14 +28,14 @@ impl Lists {
         self.0.len()
     }
 
-    /// Returns the variable of a condition, with its operands below it.
+    /// Returns the variable for a condition, with the operands as its children.
     pub(crate) fn reason(&mut self, reason: &Reason) -> Value {
         let operands: Vec<Value> = reason.operands.iter().map(|operand| self.reason(operand)).collect();
         let reference = if operands.is_empty() { 0 } else { self.add(operands) };
         json!({ "name": reason.text, "value": reason.value(), "variablesReference": reference })
     }
 
-    /// Returns the groups of variables of a frame; once the plan has ended, only the group of the turn.
+    /// Returns the groups of variables for a frame; once the plan has ended, only the group for the turn.
     pub(crate) fn scopes(&mut self, loaded: &Loaded, run: &Run<'_>, frame: Option<&Frame>) -> Value {
         let mut lists = Vec::new();
         if let Some(frame) = frame {
@@ -75,7 +75,7 @@ fn meters(nanometers: u64) -> String {
     format!("{} m", nanometers as f64 / 1e9)
 }
 
-/// Returns the memory of a frame: timer, path driven, passes, memories of RISING, and the record of `after`.
+/// Returns the memory of a frame: timer, distance driven, passes of loops, memories of RISING, and record of `after`.
 fn kept(loaded: &Loaded, run: &Run<'_>, frame: &Frame) -> Vec<Value> {
     let reports = run.reports();
     let opened: Vec<_> = run.open().collect();

@@ -1,4 +1,4 @@
-//! The reason why a condition holds or does not hold, with the values of its operands.
+//! Explains why a condition holds or does not hold, with the values of its operands.
 
 use std::slice::Iter;
 
@@ -9,23 +9,22 @@ use crate::launch::Loaded;
 use crate::run::Run;
 use crate::stack::Frame;
 
-/// The value of a condition in a turn, with its operands.
+/// Value of a condition in a turn, with its operands.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Reason {
     /// Text of the condition.
     pub(crate) text: String,
     pub(crate) holds: bool,
-    /// Reason for the value, such as the elapsed time; empty if the operands are the reason.
+    /// Reason for the value, such as the elapsed time; empty if the operands already explain the value.
     pub(crate) detail: String,
-    /// `true` for a comparison, whose first word is a number and not a condition.
+    /// `true` for a comparison, whose first word is the name of a number and not a condition.
     is_comparison: bool,
     pub(crate) operands: Vec<Reason>,
 }
 
-/// Returns the reason for the value of the condition in `expression`. The expression can be the frame's whole condition
-/// or a part of it, as it is written in the file or as conditions are printed. It can also be the first word of an
-/// operand; the name of a signal selects all comparisons of the signal. Returns `None` if the frame's condition has no
-/// such part.
+/// Explains the value of the condition in `expression`, which can be the frame's whole condition or a part of it,
+/// written as in the file or as conditions are printed. It can also be the first word of an operand; the name of a
+/// signal selects all comparisons of this signal. Returns `None` if the frame's condition has no such part.
 pub(crate) fn why(loaded: &Loaded, run: &Run<'_>, frame: &Frame, expression: &str) -> Option<Vec<Reason>> {
     let (plan, reports) = (&loaded.compiled.plan, run.reports());
     let open = run.open().nth(frame.open)?;
@@ -48,8 +47,8 @@ pub(crate) fn why(loaded: &Loaded, run: &Run<'_>, frame: &Frame, expression: &st
     if comparisons.is_empty() { named.into_iter().next().map(|first| vec![first]) } else { Some(comparisons) }
 }
 
-/// Returns a sentence about `reasons`: the value of a single condition or, for the comparisons of a number, the text
-/// and the value of each, because the number itself is neither true nor false.
+/// Returns a sentence about `reasons`: the value of a single condition. For the comparisons of a number, which is
+/// neither true nor false itself, returns the text and the value of each comparison.
 pub(crate) fn sentence(reasons: &[Reason], expression: &str) -> String {
     let expression = plain(expression);
     match reasons {
@@ -58,8 +57,7 @@ pub(crate) fn sentence(reasons: &[Reason], expression: &str) -> String {
     }
 }
 
-/// Returns the first part of a condition that `is_meant` accepts. The arguments of `is_meant` are the first and the
-/// last operand of the part.
+/// Returns the first part of a condition that `is_meant` accepts, given the first and the last operand of the part.
 fn written<'c, 'p>(
     condition: &'c Condition,
     places: &mut Iter<'p, OperandPlace>,
@@ -99,7 +97,7 @@ fn is_balanced(text: &str) -> bool {
     depth == Some(0)
 }
 
-/// Returns the value of a condition of an open part in a turn, with the reason.
+/// Evaluates a condition of an open scope or atom in the turn of `reports`, and explains the result.
 pub(crate) fn reason(plan: &Plan, part: OpenPart<'_, '_>, condition: &Condition, reports: &Reports) -> Reason {
     let operands = if condition.lasting().is_some() { &[] } else { condition.children() };
     Reason {
@@ -142,8 +140,7 @@ fn detail(part: OpenPart<'_, '_>, condition: &Condition, reports: &Reports) -> S
 }
 
 impl Reason {
-    /// Returns the first reason that `is_it` accepts; the reason for an operator comes before the reasons for its
-    /// operands.
+    /// Returns the first reason that `is_it` accepts; an operator is tried before its operands.
     fn find(&self, is_it: &impl Fn(&Self) -> bool) -> Option<&Self> {
         if is_it(self) { Some(self) } else { self.operands.iter().find_map(|operand| operand.find(is_it)) }
     }
@@ -154,7 +151,7 @@ impl Reason {
         if self.detail.is_empty() { value.to_owned() } else { format!("{value}: {}", self.detail) }
     }
 
-    /// Returns the value, followed by the values of the operands that decide it.
+    /// Returns the value, followed by the values of the operands that determine it.
     fn sentence(&self) -> String {
         let mut sentence = self.value();
         let operands: Vec<String> =
@@ -165,7 +162,7 @@ impl Reason {
         sentence
     }
 
-    /// Returns all nested reasons that have no operands.
+    /// Returns all nested reasons without operands.
     fn leaves(&self) -> Vec<&Self> {
         match self.operands.as_slice() {
             [] => vec![self],

@@ -1,4 +1,4 @@
-//! Answers to the requests about one document: results of the features, in the terms of the protocol.
+//! Answers requests about a single document: converts the results of the language features to protocol objects.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ use mdle_language_service::{
     completion, fixes as quick, formatting as layout, hints as inlay, hover as about, lenses as lens, outline,
 };
 
-/// The document that a request is about.
+/// The document that a request refers to.
 #[derive(Debug)]
 pub(crate) struct Asked<'d> {
     pub(crate) documents: &'d Documents,

@@ -12,16 +12,16 @@ use crate::documents::{Document, Documents, is_alphabet};
 use mdle_language_service::diagnostics::findings;
 use mdle_language_service::lines::Lines;
 
-/// Diagnostics of one check.
+/// Diagnostics found by one check.
 #[derive(Debug, Default)]
 pub(crate) struct Checked {
-    /// Diagnostics by the URI of the document that contains them.
+    /// Diagnostics, by the URI of the document in which they are shown.
     pub(crate) diagnostics: BTreeMap<String, Vec<Value>>,
     /// `true` if the document uses other files, or names files that cannot be read.
     pub(crate) uses_files: bool,
 }
 
-/// Checks the document `uri`; `book` is the address of the book.
+/// Checks the document `uri`; `book` is the address of the book, for links to explanations.
 pub(crate) fn check(documents: &Documents, uri: &str, document: &Document, book: Option<&str>) -> Checked {
     if is_alphabet(&document.path) {
         return Checked { diagnostics: [(uri.to_owned(), of_alphabet(document))].into(), uses_files: false };
@@ -45,7 +45,7 @@ pub(crate) fn check(documents: &Documents, uri: &str, document: &Document, book:
     Checked { diagnostics, uses_files }
 }
 
-/// Returns the diagnostics of an alphabet.
+/// Returns the diagnostics of an alphabet file.
 fn of_alphabet(document: &Document) -> Vec<Value> {
     let mut sources = Sources::default();
     let (text, lines) = (document.text.as_str(), Lines::of(&document.text));
@@ -60,7 +60,7 @@ fn of_alphabet(document: &Document) -> Vec<Value> {
     findings(&sources, &found).into_iter().map(diagnostic).collect()
 }
 
-/// Returns the message about an input that cannot be checked, as in `mdlec check`, with the first defect of the file.
+/// Returns the message about an input that cannot be checked, as in `mdlec check`, with the first error in the file.
 fn words(error: InputError) -> String {
     let own = Some(error.to_string()).filter(|own| !own.is_empty());
     let first = error.faulty_file().and_then(|FaultyFile { sources, diagnostics, .. }| {

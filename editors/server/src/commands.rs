@@ -1,4 +1,4 @@
-//! The commands of the code lenses: `mdle.run` returns the command line to type, `mdle.draw` returns a picture.
+//! Executes the commands of code lenses: `mdle.run` returns a command line, and `mdle.draw` returns a picture.
 
 use mdle_compiler::picture;
 use serde_json::{Value, json};
@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 use crate::documents::Documents;
 use crate::params::Refusal;
 
-/// Name of the command that runs a plan: it returns the words of the command line, for the editor's terminal.
+/// Name of the command that runs a plan. It returns the words of a command line for the editor's terminal.
 pub(crate) const RUN: &str = "mdle.run";
-/// Name of the command that draws a plan: it returns an SVG.
+/// Name of the command that draws a plan. It returns an SVG.
 pub(crate) const DRAW: &str = "mdle.draw";
 
 /// Executes a command, whose arguments are the URI of a document and the name of a plan.

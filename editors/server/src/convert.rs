@@ -1,4 +1,4 @@
-//! Conversion of answers to the terms of the protocol.
+//! Converts answers to protocol objects.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,7 +10,7 @@ use crate::documents::{Documents, Plan};
 use mdle_language_service::diagnostics::{Finding, Place};
 use mdle_language_service::lines::{Lines, Position};
 
-/// Converter of places in a plan's files to the terms of the protocol. It determines the lines of each file only once.
+/// Converts places in a plan's files to protocol objects. The lines of each file are determined only once.
 #[derive(Debug)]
 pub(crate) struct Converter<'d> {
     documents: &'d Documents,
@@ -18,12 +18,12 @@ pub(crate) struct Converter<'d> {
     lines: BTreeMap<SourceId, Lines>,
 }
 
-/// Returns a position in the form of the protocol.
+/// Returns a position as a protocol object.
 pub(crate) fn position(at: Position) -> Value {
     json!({ "line": at.line, "character": at.character })
 }
 
-/// Returns a range in the form of the protocol.
+/// Returns a range as a protocol object.
 pub(crate) fn range(text: &str, lines: &Lines, range: &Range<usize>) -> Value {
     let [start, end] = [range.start, range.end].map(|byte| position(lines.position(text, byte)));
     json!({ "start": start, "end": end })
@@ -34,12 +34,12 @@ impl<'d> Converter<'d> {
         Self { documents, plan, lines: BTreeMap::new() }
     }
 
-    /// Returns the URI of a file that was read for the plan; `None` for the files of alphabets.
+    /// Returns the URI of a file that was read for the plan; `None` for an alphabet file.
     pub(crate) fn uri(&self, source: SourceId) -> Option<String> {
         self.plan.input.path(source).map(|path| self.documents.uri(path))
     }
 
-    /// Returns a range in the plan's own document.
+    /// Returns a range in the document of the plan itself.
     pub(crate) fn own(&mut self, range: &Range<usize>) -> Value {
         self.range(&Place { source: self.plan.input.source, range: range.clone() })
     }
@@ -56,7 +56,7 @@ impl<'d> Converter<'d> {
         Some(json!({ "uri": self.uri(place.source)?, "range": self.range(place) }))
     }
 
-    /// Returns a diagnostic, with a link to the page of messages in the `book` if its address is known.
+    /// Returns a diagnostic. It has a link to its explanation in the `book` if the book's address is known.
     pub(crate) fn diagnostic(&mut self, finding: &Finding, book: Option<&str>) -> Value {
         let related = finding.related.iter();
         let related: Vec<_> = related
@@ -85,7 +85,7 @@ impl<'d> Converter<'d> {
 /// Value of the field `source` of all diagnostics.
 const SOURCE: &str = "mdlec";
 
-/// Returns a diagnostic that has no place in the plan, such as an error in an `mdle.toml`. It is shown at the first
+/// Returns a diagnostic without a place in the plan, such as an error in an `mdle.toml`. It is shown at the first
 /// character of the document.
 pub(crate) fn unplaced(message: &str) -> Value {
     let start = json!({ "line": 0, "character": 0 });

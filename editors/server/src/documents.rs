@@ -1,4 +1,4 @@
-//! The documents that are open in the editor, with the robot and the other documents that their checks need.
+//! The documents open in the editor. Checks also need their robot and the other documents.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -17,21 +17,21 @@ pub(crate) struct Document {
     pub(crate) version: i64,
 }
 
-/// An edit in the form of the protocol; an edit without a range replaces the whole text.
+/// An edit as a protocol object. An edit without a range replaces the whole text.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Change {
     range: Option<Positions>,
     text: String,
 }
 
-/// A range in the form of the protocol.
+/// A range as a protocol object.
 #[derive(Debug, Clone, Copy, Deserialize)]
 pub(crate) struct Positions {
     pub(crate) start: At,
     pub(crate) end: At,
 }
 
-/// A position in the form of the protocol.
+/// A position as a protocol object.
 #[derive(Debug, Clone, Copy, Deserialize)]
 pub(crate) struct At {
     line: u32,
@@ -45,7 +45,7 @@ impl From<At> for Position {
 }
 
 impl Document {
-    /// Applies the edits one after the other, each to the text after the previous edit.
+    /// Applies the edits in order. Each edit refers to the text after the previous edit.
     pub(crate) fn change(&mut self, changes: Vec<Change>) {
         for change in changes {
             match change.range {
@@ -59,11 +59,11 @@ impl Document {
     }
 }
 
-/// All open documents, by their URIs as the client writes them.
+/// All open documents, by URI as the client writes it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Documents {
     pub(crate) open: BTreeMap<String, Document>,
-    /// Robot that the client's settings name, for plans without an `mdle.toml`.
+    /// Robot named in the client's settings, for plans without an `mdle.toml`.
     pub(crate) robot: Option<String>,
 }
 
@@ -80,8 +80,7 @@ impl Documents {
         self.with_robot(document, self.robot(&document.path)?)
     }
 
-    /// Reads the plan in an open document. If the document's robot is unknown, the plan is read for a robot with every
-    /// capability.
+    /// Reads the plan in an open document. If the document's robot is unknown, assumes a robot with every capability.
     pub(crate) fn plan_for_any(&self, document: &Document) -> Result<Plan, InputError> {
         let robot = self.robot(&document.path).or_else(|_| target(None))?;
         self.with_robot(document, robot)
@@ -92,7 +91,8 @@ impl Documents {
         Ok(Plan { input, target })
     }
 
-    /// Returns the robot of the `mdle.toml` beside a plan; if there is none, the robot of the client's settings.
+    /// Returns the robot in the `mdle.toml` next to a plan; if there is no such file, the robot in the client's
+    /// settings.
     fn robot(&self, path: &Path) -> Result<Target, InputError> {
         let settings = Settings::beside(path)?;
         let option = self.robot.as_deref().filter(|_| !settings.names_target(None));
@@ -106,7 +106,7 @@ impl Documents {
         unsaved
     }
 
-    /// Returns the URI of a file; the URI of an open document is as the client writes it.
+    /// Returns the URI of a file; for an open document, the URI as the client writes it.
     pub(crate) fn uri(&self, path: &Path) -> String {
         let at = place(path).ok();
         let mut open = self.open.iter();
@@ -115,7 +115,8 @@ impl Documents {
         own.map_or_else(|| uri::of(path), |(uri, _)| uri.clone())
     }
 
-    /// Returns the plan files that may use each other: the open files, and the files in their folders and subfolders.
+    /// Returns the plan files that may use each other: the open files, and all plan files in their folders and
+    /// subfolders.
     pub(crate) fn project(&self) -> BTreeSet<PathBuf> {
         let mut files: BTreeSet<PathBuf> = self.open.values().map(|document| document.path.clone()).collect();
         let folders: BTreeSet<_> = files.iter().filter_map(|file| file.parent()).map(Path::to_owned).collect();
@@ -128,7 +129,7 @@ impl Documents {
     }
 }
 
-/// Maximum number of folder entries that are examined below the folders of the open documents.
+/// Maximum number of directory entries that are examined below the folders of the open documents.
 const MOST_FILES: usize = 10_000;
 /// Maximum depth of the search below the folder of an open document, in levels of folders.
 const DEEPEST: usize = 6;
@@ -159,7 +160,7 @@ fn is_plan(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "mdle") && !is_alphabet(path)
 }
 
-/// Returns `true` if a file is an alphabet, which has a language of its own.
+/// Returns `true` if a file is an alphabet, which is written in a different language.
 pub(crate) fn is_alphabet(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name == "alphabet.mdle")
 }

@@ -1,4 +1,4 @@
-//! Converts a panic of a task to an error of this task, so that the server continues.
+//! Converts a panic in a task to an error, so the server continues.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -6,7 +6,7 @@ use lsp_server::ErrorCode;
 
 use crate::params::Refusal;
 
-/// Runs `work`. If it panics, returns an internal error, and the server continues.
+/// Runs `work`; returns an internal error if it panics.
 pub(crate) fn guarded<T>(work: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|cause| {
         let text = cause.downcast_ref::<&str>().copied().map(str::to_owned);

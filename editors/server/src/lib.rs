@@ -1,8 +1,8 @@
-//! The language server of MDLe, for every editor that speaks the Language Server Protocol 3.17; `mdlec lsp` runs it on
-//! standard input and output.
+//! The language server of MDLe, for every editor that supports the Language Server Protocol 3.17; `mdlec lsp` runs it
+//! on standard input and output.
 //!
-//! The features are those of `mdle-language-service`, which answers with byte ranges. `requests` and `convert`
-//! translate between the features and the protocol, whose positions are in UTF-16.
+//! `mdle-language-service` implements the features, and answers with byte ranges. `requests` and `convert` translate
+//! between the features and the protocol, which counts positions in UTF-16 units.
 
 mod answers;
 mod check;
@@ -38,11 +38,11 @@ pub enum ServeError {
 /// Serves one client on standard input and output until the client ends the server.
 ///
 /// # Errors
-/// Fails if the client violated the protocol or vanished.
+/// Fails if the client violates the protocol or closes the connection too early.
 pub fn serve() -> Result<(), ServeError> {
     let (connection, threads) = lsp_server::Connection::stdio();
     let served = serve_on(&connection);
-    // The threads end when nothing is left to be sent. A reader may wait for a client that sends nothing more.
+    // The threads end when there is nothing left to send. A reading thread may still wait for a client that is silent.
     drop(connection);
     match served {
         Ok(()) => Ok(()),

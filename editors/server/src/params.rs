@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::documents::{At, Positions};
 
-/// An error that answers a request.
+/// An error as the answer to a request.
 #[derive(Debug)]
 pub(crate) struct Refusal {
     pub(crate) code: ErrorCode,
@@ -14,17 +14,17 @@ pub(crate) struct Refusal {
 }
 
 impl Refusal {
-    /// Returns the refusal of a request whose parameters do not follow the protocol.
+    /// Returns the error for a request whose parameters violate the protocol.
     pub(crate) fn params(message: &str) -> Self {
         Self { code: ErrorCode::InvalidParams, message: message.to_owned() }
     }
 
-    /// Returns the refusal of a request about a document that the client has not opened.
+    /// Returns the error for a request about a document that the client has not opened.
     pub(crate) fn unknown(uri: &str) -> Self {
         Self::params(&format!("`{uri}` is not open"))
     }
 
-    /// Returns the refusal of a request that cannot be fulfilled, with the reason for the user.
+    /// Returns the error for a request that cannot be fulfilled, with the reason for the user.
     pub(crate) fn failed(message: impl Into<String>) -> Self {
         Self { code: ErrorCode::RequestFailed, message: message.into() }
     }

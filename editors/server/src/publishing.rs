@@ -32,7 +32,7 @@ impl Server<'_> {
         concerned.iter().try_for_each(|uri| self.publish(uri))
     }
 
-    /// Stores the diagnostics of a check, and adds the documents that contain them, or contained the earlier ones, to
+    /// Stores the diagnostics of a check, and adds the documents that contain these or the previous diagnostics to
     /// `concerned`.
     fn keep(&mut self, uri: String, checked: check::Checked) {
         if checked.uses_files {
@@ -49,7 +49,7 @@ impl Server<'_> {
         self.concerned.extend(before.into_iter().flat_map(BTreeMap::into_keys));
     }
 
-    /// Publishes the diagnostics in a document. A diagnostic that was found by several checks is published once.
+    /// Publishes the diagnostics in a document. A diagnostic that several checks found is published once.
     fn publish(&self, uri: &str) -> Result<(), ServeError> {
         let mut diagnostics: Vec<&Value> = Vec::new();
         for diagnostic in self.found.values().filter_map(|found| found.get(uri)).flatten() {

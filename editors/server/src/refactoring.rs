@@ -1,4 +1,4 @@
-//! Definition, references and rename across the files of a project.
+//! Implements definition, references and rename across the files of a project.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -19,8 +19,8 @@ use mdle_language_service::rename::{self as names, Named};
 /// A definition: the canonical path of its file, and the byte range of the name.
 type Definition = (PathBuf, Range<usize>);
 
-/// Returns the definition at a place of a plan's files. The result is equal for all files that use the definition.
-/// Returns `None` if the place is in a file of the alphabet.
+/// Returns the definition at a place in a plan's files. The result is the same for all files that use the definition.
+/// Returns `None` if the place is in an alphabet file.
 fn global(plan: &Plan, defined: &Place) -> Option<Definition> {
     let path = plan.input.path(defined.source)?;
     Some((place(path).unwrap_or_else(|_| path.to_owned()), defined.range.clone()))
@@ -96,13 +96,13 @@ pub(crate) fn rename(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Re
 #[derive(Debug)]
 struct File {
     text: String,
-    /// Byte ranges in the file at which the name is written.
+    /// Byte ranges of the name's occurrences in the file.
     ranges: Vec<Range<usize>>,
     meanings: Vec<(u8, Option<usize>)>,
     errors: Vec<Code>,
 }
 
-/// Returns the files of the project that use a definition, by their paths.
+/// Returns the files of the project that use a definition, by path.
 fn files_with(documents: &Documents, definition: &Definition) -> BTreeMap<PathBuf, File> {
     let mut files = BTreeMap::new();
     let mut paths: BTreeSet<PathBuf> = documents.project();
@@ -122,12 +122,12 @@ fn files_with(documents: &Documents, definition: &Definition) -> BTreeMap<PathBu
     files
 }
 
-/// Reads a file, and returns it if it uses the definition.
+/// Reads a file, and returns it if it uses the definition; `None` otherwise.
 fn seen(documents: &Documents, path: &Path, text: String, definition: &Definition) -> Option<File> {
     let document = Document { path: path.to_owned(), text, version: 0 };
     let mut plan = documents.plan_for_any(&document).ok()?;
     let source = plan.input.source;
-    // The places of definitions are compared after the view, which has the input's files.
+    // The places are compared with the definition after the view, which borrows the files of the input.
     let (all, meanings) = plan.view(|view| {
         let places = view.sources;
         let all: Vec<_> = mdle_language_service::mentions::mentions(view.files, view.alphabet)
@@ -156,7 +156,7 @@ fn seen(documents: &Documents, path: &Path, text: String, definition: &Definitio
     })
 }
 
-/// Checks that all names in `files` keep their meaning if the definition is renamed to `name`.
+/// Checks that all names in `files` keep their meanings if the definition is renamed to `name`.
 fn keeps_meanings(documents: &Documents, files: &BTreeMap<PathBuf, File>, name: &str) -> Result<(), String> {
     let mut renamed = documents.clone();
     for (path, file) in files {

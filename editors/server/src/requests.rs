@@ -1,4 +1,4 @@
-//! The requests of the protocol, each with the function that answers it.
+//! Requests of the protocol, each with the function that answers it.
 
 use lsp_server::ErrorCode;
 use serde_json::{Value, json};
@@ -9,7 +9,7 @@ use crate::params::{Params, Refusal};
 use crate::{commands, refactoring};
 use mdle_language_service::tokens;
 
-/// Returns the capabilities of the server, as in the answer to `initialize`.
+/// Returns the capabilities of the server for the answer to `initialize`.
 pub(crate) fn capabilities() -> Value {
     json!({
         "positionEncoding": "utf-16",
@@ -37,7 +37,7 @@ pub(crate) fn capabilities() -> Value {
     })
 }
 
-/// Returns the URI of the document that a request is about.
+/// Returns the URI of the document that a request refers to.
 pub(crate) fn uri_of(params: &Value) -> Result<String, Refusal> {
     let uri = params.pointer("/textDocument/uri").and_then(Value::as_str);
     uri.map(str::to_owned).ok_or_else(|| Refusal::params("missing `textDocument.uri`"))
@@ -46,7 +46,7 @@ pub(crate) fn uri_of(params: &Value) -> Result<String, Refusal> {
 /// A function that answers a request about a document.
 type Answer = fn(&mut Asked<'_>, &Params) -> Result<Value, Refusal>;
 
-/// Returns the function that answers requests of this method.
+/// Returns the function that answers requests with this method; `None` if there is none.
 fn function(method: &str) -> Option<Answer> {
     Some(match method {
         "textDocument/hover" => answers::hover,

@@ -1,4 +1,4 @@
-//! The main loop of the server: handles messages in their order, and checks documents when no message waits.
+//! The main loop of the server: handles messages in order, and checks documents when no message waits.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
@@ -12,7 +12,7 @@ use crate::guard::guarded;
 use crate::params::Refusal;
 use crate::requests;
 
-/// Time without messages from the client after which a document is checked. It is shorter than the time between two
+/// Time without messages from the client after which a document is checked. It is shorter than the interval between two
 /// keystrokes.
 const PAUSE: Duration = Duration::from_millis(5);
 
@@ -26,11 +26,10 @@ pub(crate) struct Server<'c> {
     pub(crate) waiting: VecDeque<Message>,
     /// URIs of documents to check.
     pub(crate) stale: BTreeSet<String>,
-    /// URIs of documents whose diagnostics are published once all documents are checked. If they were published
-    /// earlier, the diagnostics in a file that several documents use could belong to different texts of the file.
+    /// URIs of documents whose diagnostics are published when all documents are checked. If they were published
+    /// earlier, the diagnostics in a file that several documents use could refer to different versions of the file.
     pub(crate) concerned: BTreeSet<String>,
-    /// Diagnostics, by the URI of the document whose check found them, and then by the URI of the document that
-    /// contains them.
+    /// Diagnostics, by the URI of the checked document, and then by the URI of the document that contains them.
     pub(crate) found: BTreeMap<String, BTreeMap<String, Vec<Value>>>,
     /// URIs of open documents that use other files, or name files that cannot be read.
     pub(crate) users: BTreeSet<String>,
@@ -41,7 +40,7 @@ pub(crate) struct Server<'c> {
 /// Serves one client until the client ends the server.
 ///
 /// # Errors
-/// Fails if the client violated the protocol or vanished.
+/// Fails if the client violates the protocol or closes the connection too early.
 pub fn serve_on(connection: &Connection) -> Result<(), ServeError> {
     let options = initialize(connection)?;
     let mut server = Server {
@@ -59,7 +58,7 @@ pub fn serve_on(connection: &Connection) -> Result<(), ServeError> {
     server.run()
 }
 
-/// Answers `initialize`, and refuses every other request before it. Returns the client's settings.
+/// Answers `initialize`, and refuses all requests before it. Returns the client's settings.
 fn initialize(connection: &Connection) -> Result<Value, ServeError> {
     loop {
         match connection.receiver.recv().map_err(|_| ServeError::Vanished)? {
@@ -106,7 +105,7 @@ impl Server<'_> {
         }
     }
 
-    /// Returns the next message, or `None` if no message arrives and a document has to be checked.
+    /// Returns the next message. Returns `None` if no message arrives and a document has to be checked.
     fn next(&mut self) -> Result<Option<Message>, ServeError> {
         while let Ok(message) = self.connection.receiver.try_recv() {
             self.receive(message)?;
@@ -173,7 +172,7 @@ impl Server<'_> {
         }
     }
 
-    /// Writes an error that no answer can report to the client's log.
+    /// Sends an error that belongs to no answer to the client's log.
     pub(crate) fn log(&self, message: &str) -> Result<(), ServeError> {
         let params = json!({ "type": 1, "message": message });
         send(self.connection, Notification::new("window/logMessage".into(), params))

@@ -1,4 +1,4 @@
-//! Notifications from the client: documents that it opens, changes and closes, and its settings.
+//! Handles notifications from the client: opened, changed and closed documents, and settings.
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -9,7 +9,7 @@ use crate::params::Refusal;
 use crate::server::Server;
 use crate::{requests, uri};
 
-/// Settings of the client, in `initialize` and in `workspace/didChangeConfiguration`.
+/// Settings of the client, received in `initialize` and in `workspace/didChangeConfiguration`.
 #[derive(Debug, Default, Deserialize)]
 struct Options {
     target: Option<String>,
@@ -68,7 +68,7 @@ impl Server<'_> {
                 let settings = params.get("settings").cloned().unwrap_or_default();
                 self.configure(settings.get("mdle").unwrap_or(&settings));
             }
-            // The others, of which an editor has many, change no document.
+            // Other notifications, of which an editor sends many, do not change a document.
             _ => {}
         }
         Ok(())
@@ -94,7 +94,7 @@ impl Server<'_> {
         self.mark_all();
     }
 
-    /// Marks a document, and the documents that may use it, to be checked.
+    /// Marks a document, and all documents that may use it, to be checked.
     fn mark(&mut self, uri: &str) {
         self.stale.insert(uri.to_owned());
         self.stale.extend(self.users.iter().cloned());

@@ -4,11 +4,11 @@ use std::ffi::OsString;
 use std::os::unix::ffi::{OsStrExt, OsStringExt};
 use std::path::{Path, PathBuf};
 
-/// Returns the path that a URI names; the path of a document that is not in a file, such as `untitled:1`, is its URI.
+/// Returns the path in a URI. For a document without a file, such as `untitled:1`, the path is the URI itself.
 pub(crate) fn path(uri: &str) -> PathBuf {
     match uri.strip_prefix("file://") {
         Some(rest) => {
-            // Between the slashes a host may be named.
+            // The URI may name a host between the slashes.
             let path = rest.find('/').and_then(|slash| rest.get(slash..)).unwrap_or(rest);
             OsString::from_vec(decoded(path.as_bytes())).into()
         }

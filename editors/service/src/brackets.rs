@@ -1,4 +1,4 @@
-//! The open brackets of an unfinished text, and the words read in each of them.
+//! Open brackets of an unfinished text, with the words that follow in each bracket.
 
 use crate::words::{Kind, Word};
 
@@ -10,7 +10,7 @@ pub(crate) enum Bracket {
     Body,
     Atom,
     Condition,
-    /// Arguments of the call that is written in the enclosing bracket.
+    /// Arguments of the call in the enclosing bracket.
     Arguments,
 }
 
@@ -21,11 +21,11 @@ pub struct OpenCall<'t> {
     pub name: &'t str,
     /// Number of arguments before the cursor.
     pub args: usize,
-    /// `true` if the call is in a condition, `false` if it is a law or a plan.
+    /// `true` if the call is in a condition; `false` for a law or a plan.
     pub is_condition: bool,
 }
 
-/// An open bracket, with the words read in it.
+/// An open bracket, with the words read in it so far.
 #[derive(Debug, Clone)]
 pub(crate) struct Open<'t> {
     pub(crate) bracket: Bracket,
@@ -41,8 +41,8 @@ impl Open<'_> {
     }
 }
 
-/// Updates the stack of open brackets for the next word of the text: a bracket opens or closes, and any other word
-/// belongs to the innermost open bracket. `touches` is `true` if the word directly follows a name.
+/// Updates the stack of open brackets with the next word of the text. A bracket opens or closes; any other word belongs
+/// to the innermost open bracket. `touches` is `true` if the word directly follows a name.
 pub(crate) fn read<'t>(stack: &mut Vec<Open<'t>>, word: &Word<'t>, touches: bool) {
     match word.text {
         "{" | "(" => {
@@ -86,7 +86,7 @@ fn opened(outer: Option<&Open<'_>>, sign: &str, touches: bool) -> Bracket {
         (_, Bracket::Condition) if outer.call.is_none() => Bracket::Condition,
         (_, Bracket::Condition | Bracket::Arguments) => Bracket::Arguments,
         (_, Bracket::Plan | Bracket::Body | Bracket::Parameters) => Bracket::Body,
-        // The law, in parentheses of its own.
+        // A law in its own parentheses.
         (_, Bracket::Atom) => Bracket::Arguments,
     }
 }

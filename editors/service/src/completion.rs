@@ -20,7 +20,7 @@ pub enum ItemKind {
     Interrupt,
     /// A signal of the robot's alphabet.
     Signal,
-    /// A plan in the document or a used file.
+    /// A plan in the document or in a file that it uses.
     Plan,
     /// A unit of a number.
     Unit,
@@ -43,15 +43,15 @@ pub struct Item {
     pub kind: ItemKind,
     /// Word that the editor lists and compares with the typed text.
     pub label: String,
-    /// Short text beside the word.
+    /// Short text shown next to the word.
     pub detail: String,
     /// Documentation of the proposal, in Markdown.
     pub docs: String,
-    /// Text to insert; for an [`ItemKind::Snippet`] with placeholders such as `${1:name}`.
+    /// Text to insert; in an [`ItemKind::Snippet`], placeholders such as `${1:name}` mark the words to fill in.
     pub insert: String,
 }
 
-/// Proposals, with the byte range that each proposal replaces.
+/// Proposals, and the byte range that each of them replaces.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Completion {
     /// Byte range to replace.
@@ -67,7 +67,7 @@ pub struct Signature {
     pub label: String,
     /// Documentation of the quark or plan, in Markdown.
     pub docs: String,
-    /// Parameters as in the text of the signature.
+    /// Parameters, written as in the text of the signature.
     pub params: Vec<String>,
     /// Index of the parameter at the cursor.
     pub active: usize,
@@ -118,7 +118,7 @@ fn snippets(texts: &[(&str, &str)]) -> Vec<Item> {
     texts.iter().map(snippet).collect()
 }
 
-/// Returns the quarks of a kind that the robot supports, without duplicate names.
+/// Returns the quarks of a kind that the robot supports; each name occurs once.
 fn quarks<'v>(view: &'v View<'_>, kind: DeclarationKind) -> impl Iterator<Item = Item> + 'v {
     let mut last = "";
     let declarations = view.alphabet.declarations().filter(move |declaration| declaration.kind == kind);
@@ -134,7 +134,7 @@ fn item(view: &View<'_>, declaration: &Declaration) -> Item {
         DeclarationKind::Signal => ItemKind::Signal,
     };
     let docs = hover::quark(view.alphabet, &declaration.name, declaration.kind).unwrap_or_default();
-    // The number of a sonar touches the name of a signal.
+    // A sonar number directly follows the name of a signal.
     let is_numbered = kind == ItemKind::Signal && declaration.params.iter().any(|param| param.kind == Kind::Sonar);
     let name = if is_numbered { format!("{}0", declaration.name) } else { declaration.name.clone() };
     Item { docs, ..simple(kind, &name, &signature(declaration)) }
@@ -151,15 +151,15 @@ fn plans(view: &View<'_>) -> Vec<Item> {
     view.files.plans.iter().filter(|plan| plan.name.span.start < plan.name.span.end).map(item).collect()
 }
 
-/// Returns the units of the number at the cursor. If the parameter for the number is known, these are the units of the
-/// parameter's type; otherwise all units.
+/// Returns the units for the number at the cursor: the units of the parameter's type if the parameter is known, and all
+/// units otherwise.
 fn units(view: &View<'_>, context: &Context<'_>) -> Vec<Item> {
     let kind = context.call.as_ref().and_then(|call| kind_of(view, call));
     let fits = |unit: &&Unit| kind.is_none_or(|kind| unit.kind == kind);
     Unit::ALL.iter().filter(fits).map(|unit| simple(ItemKind::Unit, unit.name, &unit.kind.words())).collect()
 }
 
-/// Returns the type of the argument at the cursor.
+/// Returns the type of the argument at the cursor; `None` if it is not known.
 fn kind_of(view: &View<'_>, call: &OpenCall<'_>) -> Option<Kind> {
     if let Some(declaration) = declared(view, call) {
         return declaration.params.get(call.args).map(|param| param.kind);
@@ -168,7 +168,7 @@ fn kind_of(view: &View<'_>, call: &OpenCall<'_>) -> Option<Kind> {
     bare_unit(plan.params.get(call.args)?.type_name.node).map(|unit| unit.kind)
 }
 
-/// Returns the declaration of the quark that is being typed.
+/// Returns the declaration of the quark that is being typed; `None` if it is not declared.
 fn declared<'v>(view: &'v View<'_>, call: &OpenCall<'_>) -> Option<&'v Declaration> {
     let kind = if call.is_condition { DeclarationKind::Interrupt } else { DeclarationKind::Control };
     let start = mdle_compiler::diagnostic::Span { start: 0, end: 0 };
@@ -178,7 +178,7 @@ fn declared<'v>(view: &'v View<'_>, call: &OpenCall<'_>) -> Option<&'v Declarati
         .max_by_key(|found| found.params.len())
 }
 
-/// Returns the parameters of the plan that contains the cursor; in a condition also `OR` and `AND`.
+/// Returns the parameters of the plan that contains the cursor; in a condition, also `OR` and `AND`.
 fn arguments(view: &View<'_>, context: &Context<'_>, byte: usize) -> Vec<Item> {
     let around = view.own().iter().filter(|plan| view.contains(plan.span, byte));
     let params = around.flat_map(|plan| plan.params);

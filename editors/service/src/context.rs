@@ -1,4 +1,4 @@
-//! The context of the cursor in an unfinished text, which determines the words that may follow.
+//! Determines the context of the cursor in an unfinished text, and thus the words that may follow.
 
 use std::ops::Range;
 
@@ -9,7 +9,7 @@ use crate::words::{Kind, Word, words};
 /// Kind of word that may follow at the cursor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Expected {
-    /// A plan or `use`, outside all brackets.
+    /// A plan or `use`, outside any bracket.
     Plan,
     /// An element of a plan.
     Element,
@@ -17,7 +17,7 @@ pub enum Expected {
     Operand,
     /// A law of an atom.
     Law,
-    /// A label, as the operand of `after`.
+    /// A label, the operand of `after`.
     Label,
     /// The type of a parameter.
     Type,
@@ -25,7 +25,7 @@ pub enum Expected {
     Unit,
     /// An argument, or a word after the call.
     Argument,
-    /// No word: the cursor is in a comment, in a text, or where the user chooses a name.
+    /// No word: the cursor is in a comment or a text, or where the user chooses a name.
     Nothing,
 }
 
@@ -34,7 +34,7 @@ pub enum Expected {
 pub struct Context<'t> {
     /// Kind of word that may follow.
     pub expected: Expected,
-    /// Byte range of the word that ends at the cursor; a completion replaces it.
+    /// Byte range of the word that ends at the cursor; completion replaces it.
     pub typed: Range<usize>,
     /// Innermost call that encloses the cursor.
     pub call: Option<OpenCall<'t>>,
@@ -42,7 +42,8 @@ pub struct Context<'t> {
     pub labels: Vec<&'t str>,
 }
 
-/// Returns the context of the cursor at `byte`, from the text before it; the labels are those of the whole plan.
+/// Returns the context of the cursor at `byte`, determined by the text before it; the labels are those of the whole
+/// plan.
 #[must_use]
 pub fn context(text: &str, byte: usize) -> Context<'_> {
     let mut stack: Vec<Open<'_>> = Vec::new();
@@ -50,7 +51,7 @@ pub fn context(text: &str, byte: usize) -> Context<'_> {
     let mut labels = Vec::new();
     let mut before: Option<Word<'_>> = None;
     for word in words(text) {
-        // A bracket that ends at the cursor is before it; a name is being typed.
+        // A bracket that ends at the cursor is complete; a name is still being typed.
         let is_at_cursor = word.range.start >= byte || (word.range.end >= byte && word.kind != Kind::Sign);
         if found.is_none() && is_at_cursor {
             found = Some(at_cursor(&stack, &word, byte));
@@ -85,7 +86,7 @@ pub fn context(text: &str, byte: usize) -> Context<'_> {
     found
 }
 
-/// Returns the context of a cursor that is before `word`, in it, or at its end.
+/// Returns the context of the cursor if it is before, in, or at the end of `word`.
 fn at_cursor<'t>(stack: &[Open<'t>], word: &Word<'t>, byte: usize) -> Context<'t> {
     let is_in = word.range.start < byte;
     let typed = if is_in && word.kind == Kind::Name { word.range.start..byte } else { byte..byte };
@@ -99,7 +100,7 @@ fn at_cursor<'t>(stack: &[Open<'t>], word: &Word<'t>, byte: usize) -> Context<'t
     Context { expected, typed, call, labels: Vec::new() }
 }
 
-/// Returns the byte range of a number's unit up to the cursor.
+/// Returns the byte range of a number's unit, up to the cursor.
 fn unit_at(number: &Word<'_>, byte: usize) -> Range<usize> {
     let digits = number.text.find(|letter: char| letter.is_alphabetic()).unwrap_or(number.text.len());
     (number.range.start + digits).min(byte)..byte
@@ -111,7 +112,7 @@ fn call<'t>(stack: &[Open<'t>]) -> Option<OpenCall<'t>> {
     let open = stack.last()?;
     match (open.bracket, stack.len().checked_sub(2).and_then(|outer| stack.get(outer))) {
         (Bracket::Arguments, Some(outer)) => match &outer.call {
-            // Words in the parentheses are arguments, also the first.
+            // All words in the parentheses are arguments, including the first.
             Some(call) => Some(OpenCall { args: call.args + open.items, ..call.clone() }),
             None => open.call.clone(),
         },

@@ -1,4 +1,4 @@
-//! Diagnostics of a document and of the files that it uses, as `mdlec check` shows them.
+//! Diagnostics of a document and of the files that it uses, with the content that `mdlec check` shows.
 
 use std::ops::Range;
 
@@ -18,11 +18,11 @@ pub struct Place {
 pub struct Finding {
     /// Code of the diagnostic.
     pub code: Code,
-    /// Place of the defect.
+    /// Place of the error or warning.
     pub place: Place,
-    /// Message of the diagnostic, text at the place, and help, each on a line.
+    /// Message of the diagnostic, text at the place, and help; one line each.
     pub message: String,
-    /// Places that explain the defect, each with a text.
+    /// Places that explain the diagnostic, each with a text.
     pub related: Vec<(Place, String)>,
 }
 
@@ -41,7 +41,7 @@ pub fn place(sources: &Sources, span: Span) -> Place {
     Place { source, range }
 }
 
-/// Converts diagnostics to findings, up to the maximum number that is shown to a user.
+/// Converts diagnostics to findings, at most as many as are shown to a user.
 #[must_use]
 pub fn findings(sources: &Sources, diagnostics: &[Diagnostic]) -> Vec<Finding> {
     let shown = diagnostics.iter().take(most_shown(diagnostics));

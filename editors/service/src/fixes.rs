@@ -6,12 +6,12 @@ use mdle_compiler::diagnostic::{Diagnostic, Sources};
 
 use crate::diagnostics::{Place, place};
 
-/// An edit that corrects a defect.
+/// An edit that fixes the cause of a diagnostic.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fix {
     /// Title of the fix: the help of the diagnostic.
     pub title: String,
-    /// Index of the diagnostic in the list of diagnostics.
+    /// Index of the diagnostic in the list of all diagnostics.
     pub diagnostic: usize,
     /// Place of the text to replace.
     pub place: Place,
@@ -19,7 +19,7 @@ pub struct Fix {
     pub replacement: String,
 }
 
-/// Returns the fixes of the diagnostics that touch `range` in a file. `own` returns `true` for the places in this file.
+/// Returns the fixes for the diagnostics that touch `range` in a file. `own` returns `true` for places in this file.
 #[must_use]
 pub fn fixes(
     sources: &Sources,

@@ -1,4 +1,4 @@
-//! Formatting of a document, or of the plans that a range touches, in the layout of `mdlec fmt`.
+//! Formats a document, or the plans that a range touches, in the layout of `mdlec fmt`.
 
 use std::ops::Range;
 
@@ -16,16 +16,15 @@ pub struct TextEdit {
     pub text: String,
 }
 
-/// Formats a document: returns the edit between the first and the last difference, or `None` if the document has
-/// errors.
+/// Formats a document. Returns the edit between the first and the last difference; `None` if the document has errors.
 #[must_use]
 pub fn document(text: &str) -> Option<Vec<TextEdit>> {
     let formatted = format(SourceId(0), text).ok()?;
     Some(difference(text, &formatted, 0))
 }
 
-/// Formats the plans that a range touches, also if other plans have errors; returns `None` if one of these plans has
-/// errors.
+/// Formats the plans that a range touches, even if other plans have errors. Returns `None` if one of the formatted
+/// plans has errors.
 #[must_use]
 pub fn range(view: &View<'_>, range: &Range<usize>) -> Option<Vec<TextEdit>> {
     let plans: Vec<_> = view.file.plans.iter().filter_map(|plan| view.range(plan.span)).collect();
@@ -40,7 +39,7 @@ pub fn range(view: &View<'_>, range: &Range<usize>) -> Option<Vec<TextEdit>> {
     Some(difference(text, formatted.trim_end(), whole.start))
 }
 
-/// Returns the edit that turns `old`, which begins at byte `start`, into `new`; no edit if the two are equal.
+/// Returns the edit that turns `old`, which begins at byte `start`, into `new`; an empty list if they are equal.
 fn difference(old: &str, new: &str, start: usize) -> Vec<TextEdit> {
     let same = |pair: &(char, char)| pair.0 == pair.1;
     let prefix: usize = old.chars().zip(new.chars()).take_while(same).map(|(letter, _)| letter.len_utf8()).sum();

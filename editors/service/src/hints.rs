@@ -1,4 +1,4 @@
-//! Hints between the words of a plan: units of bare numbers, laws that complete, and plans that never end.
+//! Inlay hints: units of numbers without a unit, laws that complete, and plans that never end.
 
 use mdle_compiler::alphabet::DeclarationKind;
 use mdle_compiler::syntax::tree::{Count, Element, Primary};
@@ -6,7 +6,7 @@ use mdle_compiler::syntax::tree::{Count, Element, Primary};
 use crate::mentions::{Role, inside, mentions};
 use crate::view::View;
 
-/// A text that an editor shows after a place.
+/// A hint that an editor shows inside the text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Hint {
     /// Byte offset after which the hint is shown.
@@ -15,7 +15,7 @@ pub struct Hint {
     pub text: String,
 }
 
-/// Returns the hints of a document in the order of the text.
+/// Returns the hints of a document in order of position.
 #[must_use]
 pub fn hints(view: &View<'_>) -> Vec<Hint> {
     let mut hints = Vec::new();

@@ -1,4 +1,4 @@
-//! The text in Markdown that an editor shows for the name or number under the pointer.
+//! Text, in Markdown, that an editor shows for the name or number under the pointer.
 
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -21,7 +21,7 @@ pub struct Hover {
     pub text: String,
 }
 
-/// Returns the text about the name or number at a byte offset.
+/// Returns the text about the name or number at a byte offset; `None` if there is none.
 #[must_use]
 pub fn hover(view: &View<'_>, byte: usize) -> Option<Hover> {
     let mentions = mentions(view.files, view.alphabet);
@@ -39,7 +39,7 @@ pub fn hover(view: &View<'_>, byte: usize) -> Option<Hover> {
     Some(Hover { range: view.range(mention.span)?, text })
 }
 
-/// Keywords, each with its form and its meaning.
+/// Keywords with their form and meaning.
 const KEYWORDS: &[(&str, &str, &str)] = &[
     (
         "Atom",
@@ -66,7 +66,7 @@ const KEYWORDS: &[(&str, &str, &str)] = &[
     ),
 ];
 
-/// Returns the form and the meaning of the keyword at a byte offset.
+/// Returns the form and meaning of the keyword at a byte offset; `None` if there is none.
 fn keyword(text: &str, byte: usize) -> Option<Hover> {
     let mut near = words(text).take_while(|word| word.range.start <= byte);
     let found = near.find(|word| word.range.end >= byte && word.kind == Kind::Name)?;
@@ -74,7 +74,7 @@ fn keyword(text: &str, byte: usize) -> Option<Hover> {
     Some(Hover { range: found.range, text: format!("```text\n{form}\n```\n{meaning}") })
 }
 
-/// Returns the signatures, meanings and required capabilities of the quarks with this name.
+/// Returns the signatures, meanings and required capabilities of the quarks with this name; `None` if there are none.
 pub(crate) fn quark(alphabet: &Alphabet, name: &str, kind: DeclarationKind) -> Option<String> {
     let name = quark_name(alphabet, name, kind);
     let declarations = alphabet.declarations_of(name).filter(|declaration| declaration.kind == kind);
@@ -117,8 +117,8 @@ fn about(alphabet: &Alphabet, declaration: &Declaration) -> String {
     text
 }
 
-/// Returns a text with the value of a number in its own unit, in `bare`, which is the unit of a number without a unit
-/// at this place, and in the base unit. Returns `None` if a unit is unknown or does not fit.
+/// Returns a text with the value of a number in its own unit, in `bare` (the unit of a number without a unit at this
+/// place) and in the base unit. Returns `None` if a unit is unknown or does not fit.
 fn number(written: &str, bare: Option<Unit>) -> Option<String> {
     let bare = bare?;
     let digits = written.trim_end_matches(|letter: char| !letter.is_ascii_digit());
@@ -139,7 +139,7 @@ fn number(written: &str, bare: Option<Unit>) -> Option<String> {
     Some(format!("{}{note}", values.join(" = ")))
 }
 
-/// Formats a number with at most six decimals.
+/// Formats a number with at most six decimal places.
 fn rounded(value: f64) -> String {
     let text = format!("{value:.6}");
     let short = text.trim_end_matches('0').trim_end_matches('.');
@@ -156,7 +156,7 @@ fn parameter(view: &View<'_>, mention: &Mention<'_>) -> Option<String> {
     Some(format!("```text\n{name}: {}\n```\nParameter of `{of}`{unit}.", param.type_name.node))
 }
 
-/// Returns a text with the conditions that refer to a label.
+/// Returns a text about a label, with the lines of the `after` conditions that refer to it.
 fn label(view: &View<'_>, mentions: &[Mention<'_>], mention: &Mention<'_>) -> String {
     let asks = mentions.iter().filter(|other| {
         other.role == Role::Label
@@ -217,7 +217,7 @@ fn behavior<'s>(elements: &[Element<'s>], defined: Span) -> Option<(Plan<'s>, Op
     })
 }
 
-/// Returns the text of a condition without its parentheses.
+/// Returns the text of a condition without the outer parentheses.
 fn operands(view: &View<'_>, condition: &Condition<'_>) -> String {
     let text = view.words(condition.span);
     let inner = text.strip_prefix('(').and_then(|text| text.strip_suffix(')'));

@@ -1,4 +1,4 @@
-//! The plans of a document that a user can run and draw.
+//! Plans of a document that a user can run and draw.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -15,7 +15,7 @@ pub struct Runnable {
     pub range: Range<usize>,
 }
 
-/// Returns the plans of the document that no other plan uses and that have no parameters.
+/// Returns the plans of the document that are not used by another plan and have no parameters.
 #[must_use]
 pub fn runnables(view: &View<'_>) -> Vec<Runnable> {
     let mentions = mentions(view.files, view.alphabet);

@@ -1,9 +1,8 @@
-//! Conversion between byte offsets in a text and the positions of the protocol, which count lines and UTF-16 columns
-//! from 0.
+//! Converts between byte offsets in a text and positions of the protocol, which are lines and UTF-16 columns from 0.
 
 use std::ops::Range;
 
-/// A position: line and UTF-16 column, both from 0.
+/// A position: a line and a UTF-16 column, both from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Position {
     /// Line number, from 0.
@@ -12,7 +11,7 @@ pub struct Position {
     pub character: u32,
 }
 
-/// Starting offsets of the lines of a text. A line ends with `\n`, `\r\n` or `\r`.
+/// Byte offsets of the starts of the lines. A line ends with `\n`, `\r\n` or `\r`.
 #[derive(Debug, Clone)]
 pub struct Lines {
     starts: Vec<usize>,
@@ -31,8 +30,8 @@ impl Lines {
         Self { starts: std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect() }
     }
 
-    /// Returns the position of a byte of `text`: inside a character, the position of the character; beyond the end of
-    /// the text, the position of the end.
+    /// Returns the position of a byte offset in `text`. An offset inside a character has the position of the character;
+    /// an offset after the end of the text has the position of the end.
     #[must_use]
     pub fn position(&self, text: &str, byte: usize) -> Position {
         let byte = text.floor_char_boundary(byte);
@@ -42,8 +41,8 @@ impl Lines {
         Position { line: small(line), character: small(character) }
     }
 
-    /// Returns the byte offset of a position of `text`. Inside a character it is the start of the character, beyond the
-    /// end of a line the end of the line, and beyond the last line the end of the text.
+    /// Returns the byte offset of a position in `text`. A position inside a character is moved to the start of the
+    /// character, after the end of a line to the end of the line, and after the last line to the end of the text.
     #[must_use]
     pub fn byte(&self, text: &str, position: Position) -> usize {
         let line = self.line(text, position.line);
@@ -60,14 +59,14 @@ impl Lines {
         byte
     }
 
-    /// Returns the byte range of a line with its line break; an empty range at the end of the text if there is no such
-    /// line.
+    /// Returns the byte range of a line, including its line break. If there is no such line, returns an empty range at
+    /// the end of the text.
     fn line(&self, text: &str, line: u32) -> Range<usize> {
         let start = |line: usize| self.starts.get(line).copied().unwrap_or(text.len());
         start(line as usize)..start((line as usize).saturating_add(1))
     }
 
-    /// Returns the byte range between two positions in either order.
+    /// Returns the byte range between two positions, which may be in either order.
     #[must_use]
     pub fn range(&self, text: &str, from: Position, to: Position) -> Range<usize> {
         let (from, to) = (self.byte(text, from), self.byte(text, to));
@@ -83,7 +82,8 @@ fn small(number: usize) -> u32 {
 mod tests {
     use super::*;
 
-    /// A character of two UTF-16 units and four bytes, one of one unit and two bytes, and all line breaks.
+    /// Contains a character of two UTF-16 units and four bytes, a character of one unit and two bytes, and all line
+    /// breaks.
     const TEXT: &str = "a𝒜b\r\nü∞\rx\n";
 
     fn byte(line: u32, character: u32) -> usize {
@@ -107,7 +107,7 @@ mod tests {
         let lines = Lines::of(TEXT);
         for at in (0..=TEXT.len()).filter(|at| TEXT.is_char_boundary(*at)) {
             let position = lines.position(TEXT, at);
-            // The line break `\r\n` is one: no position is in the middle.
+            // The line break `\r\n` is a unit: no position is between its characters.
             let expected = if TEXT.get(at - at.min(1)..=at) == Some("\r\n") { at - 1 } else { at };
             assert_eq!(lines.byte(TEXT, position), expected, "{at} {position:?}");
         }

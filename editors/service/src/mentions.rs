@@ -1,5 +1,5 @@
-//! Lists all names and numbers of the plans with their meanings. Definition, references, rename, hover and colours use
-//! this list.
+//! Lists all names and numbers in the plans, with their meanings. Definition, references, rename, hover, hints, lenses
+//! and semantic tokens use this list.
 
 use std::collections::BTreeMap;
 
@@ -23,9 +23,9 @@ pub enum Role {
     Quark(DeclarationKind),
     /// The type of a parameter.
     Type,
-    /// A number, with the unit that a number without a unit has at this place; `None` if this unit is not known.
+    /// A number, with the unit that a number without a unit would have at this place; `None` if this unit is unknown.
     Number(Option<Unit>),
-    /// A text in quotes, or a name that is a whole argument.
+    /// A text in quotes, or a name that is an entire argument.
     Text,
 }
 
@@ -38,7 +38,7 @@ pub struct Mention<'s> {
     pub text: &'s str,
     /// Meaning of the name or number.
     pub role: Role,
-    /// Place where the name is defined, equal to `span` at the definition itself; `None` if no plan defines the name.
+    /// Place where the name is defined; equal to `span` at the definition itself; `None` if no plan defines the name.
     pub defined: Option<Span>,
 }
 
@@ -50,7 +50,7 @@ impl Mention<'_> {
     }
 }
 
-/// Returns all names and numbers in the plans of a file and of the files that it uses.
+/// Returns all names and numbers in the plans of a file, and of the files that it uses.
 #[must_use]
 pub fn mentions<'s>(files: &Files<'s>, alphabet: &Alphabet) -> Vec<Mention<'s>> {
     let plans = files.plans.iter().rev().map(|plan| (plan.name.node, plan)).collect();
@@ -64,7 +64,7 @@ pub fn mentions<'s>(files: &Files<'s>, alphabet: &Alphabet) -> Vec<Mention<'s>> 
     list.mentions
 }
 
-/// Collects the labels of a definition, to which `after` in the same definition can refer.
+/// Collects the labels in a definition; `after` in the same definition can refer to them.
 fn labels<'s>(elements: &[Element<'s>], found: &mut BTreeMap<&'s str, Span>) {
     for element in elements {
         if let Some(label) = element.label() {
@@ -97,8 +97,8 @@ pub fn quark_name<'n>(alphabet: &Alphabet, name: &'n str, kind: DeclarationKind)
     }
 }
 
-/// Returns the declaration of the called quark. If several declarations have this name, the number of arguments
-/// decides.
+/// Returns the declaration of the called quark. If several declarations have this name, selects by the number of
+/// arguments.
 #[must_use]
 pub fn declaration<'a>(alphabet: &'a Alphabet, call: &Call<'_>, kind: DeclarationKind) -> Option<&'a Declaration> {
     let name = quark_name(alphabet, call.name, kind);
@@ -108,12 +108,12 @@ pub fn declaration<'a>(alphabet: &'a Alphabet, call: &Call<'_>, kind: Declaratio
     of_kind().find(fits).or_else(|| of_kind().next())
 }
 
-/// Returns the unit that a number without a unit has for a parameter.
+/// Returns the unit of an argument for this parameter that is a number without a unit.
 fn unit_of(param: &mdle_compiler::alphabet::Param) -> Option<Unit> {
     param.unit.or_else(|| param.kind.base_unit())
 }
 
-/// Returns the unit that a number without a unit has for a plan's parameter of this type
+/// Returns the unit of an argument for a plan's parameter of this type that is a number without a unit
 /// (docs/src/reference/language.md, 3.4).
 #[must_use]
 pub fn bare_unit(type_name: &str) -> Option<Unit> {
@@ -136,7 +136,7 @@ struct List<'l, 's> {
 
 impl<'s> List<'_, 's> {
     fn add(&mut self, name: Name<'s>, role: Role, defined: Option<Span>) {
-        // What the parser put there is not written.
+        // The parser inserts empty names that do not occur in the text.
         if name.span.start < name.span.end {
             self.mentions.push(Mention { span: name.span, text: name.node, role, defined });
         }

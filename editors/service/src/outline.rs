@@ -1,4 +1,4 @@
-//! The structure of a document: its symbols, and the ranges that a user can fold and select.
+//! The structure of a document: symbols, and ranges that a user can fold and select.
 
 use std::ops::Range;
 
@@ -13,13 +13,13 @@ use crate::view::View;
 pub enum SymbolKind {
     /// A plan of the file.
     Plan,
-    /// A behavior that is written inside a plan.
+    /// A behavior written inside a plan.
     Behavior,
     /// An element with a label.
     Labelled,
 }
 
-/// A plan, a behavior or a labelled element, with the symbols inside.
+/// A plan, a behavior or a labelled element, with the symbols that it contains.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Symbol {
     /// Kind of the symbol.
@@ -79,7 +79,7 @@ fn within(view: &View<'_>, elements: &[Element<'_>]) -> Vec<Symbol> {
     symbols
 }
 
-/// Returns the ranges that can be folded: elements, plans and comments of several lines.
+/// Returns the ranges that can be folded: elements, plans and comments of more than one line.
 #[must_use]
 pub fn folds(view: &View<'_>) -> Vec<Range<usize>> {
     let mut spans = Vec::new();
@@ -91,7 +91,7 @@ pub fn folds(view: &View<'_>) -> Vec<Range<usize>> {
     folds
 }
 
-/// Returns the ranges around a byte offset that can be selected, from the smallest to the whole document.
+/// Returns the ranges that can be selected at a byte offset, from the smallest to the whole document.
 #[must_use]
 pub fn selections(view: &View<'_>, byte: usize) -> Vec<Range<usize>> {
     let mut spans = Vec::new();
@@ -100,7 +100,7 @@ pub fn selections(view: &View<'_>, byte: usize) -> Vec<Range<usize>> {
     let mut around: Vec<_> = around.filter(|range| range.start <= byte && byte <= range.end).collect();
     around.push(0..view.text.len());
     around.sort_by_key(ExactSizeIterator::len);
-    // Each contains the one before it.
+    // Each range contains the previous one.
     let mut nested: Vec<Range<usize>> = Vec::new();
     for range in around {
         if nested.last().is_none_or(|inner| range.start <= inner.start && inner.end <= range.end && range != *inner) {

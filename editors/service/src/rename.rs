@@ -1,4 +1,4 @@
-//! Definitions, references, and rename of plans, parameters and labels.
+//! Definitions, references and rename for plans, parameters and labels.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ use crate::view::View;
 /// A plan, parameter or label at a byte offset.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Named {
-    /// Place of the name where it is defined.
+    /// Place of the name in its definition.
     pub defined: Place,
     /// Place of the name at the byte offset.
     pub here: Place,
@@ -22,7 +22,7 @@ pub struct Named {
     pub name: String,
 }
 
-/// Returns the plan, parameter or label at a byte offset; `None` for a name that no plan defines.
+/// Returns the plan, parameter or label at a byte offset; `None` if no plan defines the name at this offset.
 #[must_use]
 pub fn named(view: &View<'_>, byte: usize) -> Option<Named> {
     let mentions = mentions(view.files, view.alphabet);
@@ -31,14 +31,14 @@ pub fn named(view: &View<'_>, byte: usize) -> Option<Named> {
     Some(Named { defined: at(mention.defined?), here: at(mention.span), name: mention.text.to_owned() })
 }
 
-/// Returns the path in the `use` at a byte offset, as it is written in the document.
+/// Returns the path in the `use` at a byte offset, as written in the document; `None` if there is none.
 #[must_use]
 pub fn used_file(view: &View<'_>, byte: usize) -> Option<String> {
     let used = view.file.uses.iter().find(|used| view.contains(used.span, byte))?;
     Some(used.node.to_owned())
 }
 
-/// Returns the places of all names in the document that refer to a definition that `is_meant` accepts.
+/// Returns the places of all names in the document whose definition `is_meant` accepts.
 #[must_use]
 pub fn references(view: &View<'_>, is_meant: impl Fn(&Place) -> bool) -> Vec<Place> {
     let of_definition = |mention: &Mention<'_>| {
@@ -50,7 +50,7 @@ pub fn references(view: &View<'_>, is_meant: impl Fn(&Place) -> bool) -> Vec<Pla
     places.into_iter().map(|span| place(view.sources, span)).collect()
 }
 
-/// Returns `true` if a text can be the name of a plan, as the parser reads it.
+/// Returns `true` if the parser accepts a text as the name of a plan.
 #[must_use]
 pub fn is_name(name: &str) -> bool {
     let text = format!("{{ {name} Other }}");
@@ -61,8 +61,8 @@ pub fn is_name(name: &str) -> bool {
     found.is_empty() && plan.name.node == name && matches!(plan.elements, [only] if is_other(only))
 }
 
-/// Returns the role of each mention, as a number, and the index of the mention that defines its name. A rename keeps
-/// all meanings if the list is equal before and after it.
+/// Returns, for each mention, its role as a number and the index of the mention that defines its name. A rename keeps
+/// all meanings if the list is the same before and after it.
 #[must_use]
 pub fn meanings(view: &View<'_>) -> Vec<(u8, Option<usize>)> {
     let mentions = mentions(view.files, view.alphabet);

@@ -1,4 +1,4 @@
-//! Semantic tokens: the parts of a document whose role is known only from the syntax tree.
+//! Semantic tokens: parts of a document whose role follows only from the syntax tree.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use mdle_compiler::alphabet::DeclarationKind;
 use crate::mentions::{Role, mentions};
 use crate::view::View;
 
-/// Names of the kinds of tokens, a selection of those in the protocol.
+/// Names of the token kinds, a subset of those in the protocol.
 pub const KINDS: &[&str] =
     &["class", "parameter", "property", "function", "event", "variable", "type", "number", "string"];
 
@@ -22,7 +22,7 @@ pub struct Token {
     pub is_definition: bool,
 }
 
-/// Returns the tokens of a document in the order of the text; each token is on one line.
+/// Returns the tokens of a document in order of position; each token is on one line.
 #[must_use]
 pub fn tokens(view: &View<'_>) -> Vec<Token> {
     let mentions = mentions(view.files, view.alphabet);
@@ -43,7 +43,7 @@ pub fn tokens(view: &View<'_>) -> Vec<Token> {
     let mut tokens: Vec<_> = tokens.collect();
     tokens.retain(|token| view.text.get(token.range.clone()).is_some_and(|text| !text.contains(['\n', '\r'])));
     tokens.sort_by_key(|token| (token.range.start, token.range.end));
-    // A place that is read twice has its first meaning.
+    // A place that occurs twice has the meaning of its first occurrence.
     let mut end = 0;
     tokens.retain(|token| {
         let is_free = token.range.start >= end;

@@ -1,4 +1,4 @@
-//! Splits an unfinished text, whose tree is incomplete, into words for completion.
+//! Splits an unfinished text into words for completion, because its syntax tree is incomplete.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use std::ops::Range;
 pub(crate) enum Kind {
     /// A name or a keyword.
     Name,
-    /// Digits, with the unit that directly follows.
+    /// Digits, and the unit that directly follows them.
     Number,
     /// A comment or a text in quotes.
     Opaque,

@@ -1,4 +1,4 @@
-//! The tree-sitter grammar of MDLe, generated and compiled from `editors/tree-sitter`.
+//! The tree-sitter grammar of MDLe. The build script generates and compiles its parser from `editors/tree-sitter`.
 
 use tree_sitter_language::LanguageFn;
 
@@ -7,5 +7,5 @@ unsafe extern "C" {
 }
 
 /// The tree-sitter grammar of MDLe.
-// SAFETY: the generated parser defines this function, and its result is valid for ever.
+// SAFETY: the generated parser defines this function, and its result is valid forever.
 pub const LANGUAGE: LanguageFn = unsafe { LanguageFn::from_raw(tree_sitter_mdle) };

@@ -19,8 +19,8 @@ fn tree(parser: &mut Parser, text: &str) -> Tree {
     parser.parse(text, None).unwrap()
 }
 
-/// Returns mdlec's messages about syntax errors in a text. Errors that a grammar cannot express are left out: the
-/// nesting depth of brackets, and parts that a file lacks.
+/// Returns mdlec's messages about syntax errors in a text. Errors that a grammar cannot express are omitted: the
+/// nesting depth of brackets, and missing parts of a file.
 fn syntax_errors(text: &str) -> Vec<String> {
     let arena = arena_for(text);
     let (_, found) = parse(SourceId(0), text, &arena);
@@ -28,8 +28,8 @@ fn syntax_errors(text: &str) -> Vec<String> {
     found.into_iter().filter(|found| is_of_notation(found.code)).map(|found| found.message).collect()
 }
 
-/// Returns a description of the difference if only one of tree-sitter and mdlec finds an error in a text, and `None` if
-/// they agree.
+/// Describes the difference if only one of tree-sitter and mdlec finds an error in a text; returns `None` if they
+/// agree.
 fn difference(parser: &mut Parser, text: &str) -> Option<String> {
     let (tree, errors) = (tree(parser, text), syntax_errors(text));
     let has_error = tree.root_node().has_error();
@@ -48,7 +48,7 @@ fn kept_texts_have_errors_for_both_or_for_none() {
     let mut parser = parser();
     let texts = texts::kept();
     assert!(texts.len() > 300);
-    // At a NUL the lexers that tree-sitter generates end every token, also a comment.
+    // The lexers that tree-sitter generates end every token at a NUL, even a comment.
     let texts = texts.iter().filter(|(_, text)| !text.contains('\0'));
     let differences = texts.filter_map(|(from, text)| Some(format!("{from}: {}", difference(&mut parser, text)?)));
     assert_none(&differences.collect::<Vec<_>>());

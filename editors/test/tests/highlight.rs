@@ -1,4 +1,4 @@
-//! Tests of the colours that tree-sitter gives the example plans.
+//! Tests the highlighting of the example plans by tree-sitter.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
@@ -12,7 +12,7 @@ fn query(name: &str) -> String {
     std::fs::read_to_string(root().join("editors/tree-sitter/queries").join(name)).unwrap()
 }
 
-/// Returns a text in which each coloured part is written as `⟨NAME part⟩`, with the name of its colour.
+/// Returns a text in which each highlighted part is written as `⟨NAME part⟩`, where `NAME` is the name of its colour.
 fn highlighted(text: &str) -> String {
     let mut config =
         HighlightConfiguration::new(LANGUAGE.into(), "mdle", &query("highlights.scm"), "", &query("locals.scm"))

@@ -1,11 +1,11 @@
-//! Tests of breakpoints on lines, on operands, on names and on times.
+//! Tests breakpoints on lines, operands, names and times.
 
 use serde_json::{Value, json};
 
 use crate::client::Session;
 
-/// Sets breakpoints with `set`, sends `commands`, and returns the time of the turn and the innermost frame after each
-/// command.
+/// Sets breakpoints with `set`, and sends `commands`; returns, after each command, the time of the turn and the
+/// innermost frame.
 fn stops(test: &str, set: impl FnOnce(&mut Session), commands: &[&str]) -> Vec<String> {
     let mut session = Session::of(test, crate::client::PLAN, crate::client::SCRIPT, &json!({}));
     set(&mut session);
@@ -13,7 +13,7 @@ fn stops(test: &str, set: impl FnOnce(&mut Session), commands: &[&str]) -> Vec<S
     for command in commands {
         session.request(command, json!({ "threadId": 1 }));
         let stack = session.request("stackTrace", Value::Null);
-        // The last list of the innermost frame: the turn.
+        // The last list of the innermost frame contains the variables of the turn.
         let scopes = session.request("scopes", json!({ "frameId": 1 }));
         seqs.push((
             stack,

@@ -1,4 +1,4 @@
-//! A client for tests, which sends all requests of a session and then reads the messages of the debugger.
+//! A client for tests: sends all requests of a session, and then reads the messages of the debugger.
 
 use std::fs;
 use std::io::Cursor;
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use mdle_debugger::{ServeError, serve_on};
 use serde_json::{Value, json};
 
-/// The plan of the tests. Its lines count from 1.
+/// Plan for the tests. Its lines count from 1.
 pub(crate) const PLAN: &str = "{ Tour (wait 100s)
   s1: (Atom (bumper AND wait 2s OR atIsection 1000) (go 20 0))
   { Shake (RISING bumper)
@@ -17,7 +17,7 @@ pub(crate) const PLAN: &str = "{ Tour (wait 100s)
 }
 ";
 
-/// The script of the tests: bumper fires from 3 s to 4 s and at 7 s, and `turn 90` completes at 6.5 s.
+/// Script for the tests: bumper fires from 3 s to 4 s and at 7 s, and `turn 90` completes at 6.5 s.
 pub(crate) const SCRIPT: &str = r#"{"t": 0}
 {"t": 1, "fired": ["bumper"]}
 {"t": 2.5}
@@ -29,7 +29,7 @@ pub(crate) const SCRIPT: &str = r#"{"t": 0}
 {"t": 8}
 "#;
 
-/// A session on a plan and a script in a folder of its own.
+/// A session with a plan and a script in its own folder.
 pub(crate) struct Session {
     pub(crate) folder: PathBuf,
     input: Vec<u8>,
@@ -110,7 +110,7 @@ pub(crate) fn served(input: Vec<u8>) -> (Messages, Result<(), ServeError>) {
     (Messages(messages), ended)
 }
 
-/// The messages of the debugger.
+/// All messages of the debugger.
 pub(crate) struct Messages(pub(crate) Vec<Value>);
 
 impl Messages {
@@ -147,13 +147,13 @@ impl Messages {
             .collect()
     }
 
-    /// Returns the names and lines of the frames of a stack trace, the innermost first.
+    /// Returns the names and lines of the frames in a stack trace, innermost first.
     pub(crate) fn stack(&self, seq: i64) -> Vec<String> {
         let frames = self.body(seq)["stackFrames"].as_array().unwrap();
         frames.iter().map(|frame| format!("{} @{}", frame["name"].as_str().unwrap(), frame["line"])).collect()
     }
 
-    /// Returns variables as `name = value`.
+    /// Returns variables in the form `name = value`.
     pub(crate) fn variables(&self, seq: i64) -> Vec<String> {
         let variables = self.body(seq)["variables"].as_array().unwrap();
         let one = |variable: &Value| {

@@ -1,4 +1,4 @@
-//! Tests of the start and the end of a session, and of launches that fail.
+//! Tests the start and end of a session, and launches that fail.
 
 use mdle_debugger::ServeError;
 use serde_json::{Value, json};

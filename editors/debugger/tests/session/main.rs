@@ -1,4 +1,4 @@
-//! Tests of the debugger's answers to the requests of a client.
+//! Tests the debugger's answers to a client's requests.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -1,10 +1,10 @@
-//! Tests of steps forward and back.
+//! Tests steps forward and back.
 
 use serde_json::{Value, json};
 
 use crate::client::Session;
 
-/// Returns the stack at the entry and after each command, and the reasons of all stops.
+/// Returns the stack at the entry and after each command, and the reason for each stop.
 fn stacks(test: &str, commands: &[&str]) -> (Vec<Vec<String>>, Vec<String>) {
     let mut session = Session::launched(test);
     session.requests(&["configurationDone"]);
@@ -64,7 +64,7 @@ fn a_fine_step_back_goes_to_the_transition_before() {
 fn a_step_out_ends_the_scope_around_the_atom() {
     let (stacks, _) = stacks("step_out", &["stepIn", "stepOut", "stepOut"]);
     assert_eq!(stacks[2], ["stop @6", "Tour @1"]);
-    // The scope around it is the plan, which the script does not end.
+    // The enclosing scope is the plan itself, which does not end in the script.
     assert_eq!(stacks[3], ["stop @6", "Tour @1"]);
 }
 

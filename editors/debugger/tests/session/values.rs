@@ -1,4 +1,4 @@
-//! Tests of variables, and of the reasons why a condition does not hold.
+//! Tests variables, and explanations why a condition does not hold.
 
 use serde_json::{Value, json};
 
@@ -50,7 +50,7 @@ fn a_condition_says_which_of_its_operands_hold() {
     );
 }
 
-/// A signal is a number, which cannot hold or fail; the answer lists the comparisons of the signal instead.
+/// A signal is a number and can neither hold nor fail; the answer lists the comparisons of the signal instead.
 #[test]
 fn a_number_shows_its_comparisons() {
     let plan = "{ P (r0 < 60cm OR NOT r0 < 3m AND bumper OR t > 9s)\n  (Atom (way > 2m) (go 20 0))\n}\n";

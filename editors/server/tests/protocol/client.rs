@@ -1,4 +1,4 @@
-//! A client for tests of the server.
+//! A client for tests of the language server.
 
 use std::path::PathBuf;
 use std::thread::JoinHandle;
@@ -93,7 +93,7 @@ impl Client {
         self.notify("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
     }
 
-    /// Waits for the diagnostics of a document, of its version `version` if given.
+    /// Waits for the diagnostics of a document; if `version` is given, for those of this version.
     pub(crate) fn diagnostics(&mut self, uri: &str, version: Option<i32>) -> Vec<Diagnostic> {
         loop {
             let notification = match self.notified.is_empty() {
@@ -113,14 +113,14 @@ impl Client {
         }
     }
 
-    /// Closes the connection and returns how the server ended.
+    /// Closes the connection; returns the result of the server.
     pub(crate) fn end(&mut self) -> Result<(), ServeError> {
         self.connection = None;
         self.server.take().unwrap().join().unwrap()
     }
 }
 
-/// Codes of diagnostics, in their order.
+/// Returns the codes of diagnostics, in order.
 pub(crate) fn codes(diagnostics: &[Diagnostic]) -> Vec<String> {
     let code = |diagnostic: &Diagnostic| match diagnostic.code.clone() {
         Some(lsp_types::NumberOrString::String(code)) => code,

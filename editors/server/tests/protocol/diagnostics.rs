@@ -1,4 +1,4 @@
-//! Tests of the diagnostics that are published while a user types, in all files that a plan uses.
+//! Tests the diagnostics that are published while a user types, in all files that a plan uses.
 #![allow(clippy::disallowed_methods, reason = "a test makes files")]
 
 use std::fs;
@@ -31,7 +31,7 @@ fn unsaved_texts_of_used_files_are_checked() {
     assert_eq!(codes(&client.diagnostics(&main, Some(1))), [""; 0]);
     client.change(&leg, 2, json!([{ "text": "{ Leg (Atom (bumpr) stop) }\n" }]));
     assert_eq!(codes(&client.diagnostics(&leg, Some(2))), ["E0201"]);
-    // Found by the checks of both, shown once.
+    // The checks of both documents find the error, and it is published once.
     assert!(client.notified.is_empty());
 }
 
@@ -60,7 +60,7 @@ fn the_robot_is_that_of_the_settings() {
     assert_eq!(codes(&client.diagnostics(&uri, Some(1))), ["E0402"]);
     client.notify("workspace/didChangeConfiguration", json!({ "settings": { "mdle": { "target": "" } } }));
     assert_eq!(codes(&client.diagnostics(&uri, Some(1))), [""; 0]);
-    // The file beside the plan wins.
+    // The file next to the plan takes precedence over the client's settings.
     fs::write(folder.join("mdle.toml"), "target = \"atrv\"\n").unwrap();
     client.notify("textDocument/didSave", json!({ "textDocument": { "uri": uri } }));
     assert_eq!(codes(&client.diagnostics(&uri, Some(1))), ["E0402"]);

@@ -1,4 +1,4 @@
-//! Tests of each feature on one document, through the protocol.
+//! Tests each language feature on a single document, through the protocol.
 
 use lsp_types as lsp;
 use serde_json::{Value, json};
@@ -7,7 +7,8 @@ use crate::client::Client;
 
 const URI: &str = "file:///tmp/features.mdle";
 
-/// Returns a client with this text open, in which `|` marks the cursor, and the parameters of requests at the cursor.
+/// Opens a text in a new client; `|` marks the cursor. Returns the client, and the parameters for requests at the
+/// cursor.
 fn at(text: &str) -> (Client, Value) {
     let client = Client::with_options(json!({ "target": "sim" }));
     let byte = text.find('|').expect("a cursor");

@@ -1,4 +1,4 @@
-//! Tests of the server from `initialize` to `exit`, and of clients that violate the protocol.
+//! Tests the server from `initialize` to `exit`, and with clients that violate the protocol.
 
 use lsp_types::Hover;
 use mdle_language_server::ServeError;
@@ -53,7 +53,7 @@ fn requests_that_make_no_sense_are_errors() {
         let request = client.request(method, params);
         assert_eq!(client.answer(request).unwrap_err().code, code, "{method}");
     }
-    // Of a notification nobody waits for an answer.
+    // A notification has no answer, so these errors have no effect.
     client.notify("textDocument/didChange", json!({ "textDocument": 7 }));
     client.notify("textDocument/didClose", json!({}));
     client.open("file:///a.mdle", "{ P (Atom (bumper) stop) }");
@@ -70,7 +70,7 @@ fn a_cancelled_request_that_waits_is_not_answered() {
     let last = *requests.last().unwrap();
     client.notify("$/cancelRequest", json!({ "id": last }));
     for request in requests.into_iter().filter(|request| *request != last) {
-        // The refusal of the last request may come before any of these.
+        // The refusal of the last request may arrive before any of these answers.
         loop {
             match client.receive() {
                 lsp_server::Message::Response(answer) if answer.id == request.into() => {

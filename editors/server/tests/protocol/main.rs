@@ -1,5 +1,5 @@
-//! Tests of the server by a client in the same process. Answers are parsed as the types of `lsp-types`, which implement
-//! the protocol independently of the server.
+//! Tests the server with a client in the same process. Answers are parsed with `lsp-types`, which implements the
+//! protocol independently of the server.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -1,4 +1,4 @@
-//! Tests of definition, references and rename across files.
+//! Tests definition, references and rename across files.
 #![allow(clippy::disallowed_methods, reason = "a test makes files")]
 
 use std::fs;
@@ -11,7 +11,7 @@ use crate::client::{Client, folder};
 const LEG: &str = "{ Leg(v: speed) (Atom (bumper) (go v 0)) }\n";
 const MAIN: &str = "use \"leg.mdle\"\n{ Main (wait 9) a: Leg(20)\n  (Atom (after a) stop) Leg(30) }\n";
 
-/// Writes `LEG` to a file, and returns a client with `MAIN` open, and the URIs of `LEG` and `MAIN`.
+/// Writes `LEG` to a file, and opens `MAIN`; returns the client and the URIs of `LEG` and `MAIN`.
 fn opened(test: &str) -> (Client, String, String) {
     let folder = folder(test);
     fs::write(folder.join("leg.mdle"), LEG).unwrap();
@@ -52,10 +52,10 @@ fn references_are_found_in_all_files() {
     assert_eq!(marked.len(), 2);
 }
 
-/// Edits by file, each as the line and the column of its start.
+/// Edits by file; each edit is given by the line and the column of its start.
 type Edits = Vec<(String, Vec<(u32, u32)>)>;
 
-/// Returns the edits of a rename, or the reason why it is refused.
+/// Returns the edits of a rename; `Err` contains the reason why it is refused.
 fn rename(client: &mut Client, mut params: Value, name: &str) -> Result<Edits, String> {
     params["newName"] = json!(name);
     let request = client.request("textDocument/rename", params);

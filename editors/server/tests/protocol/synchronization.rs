@@ -1,4 +1,4 @@
-//! Tests that the text of a document follows the client's edits, whose columns count UTF-16 units.
+//! Tests that the text of a document follows the client's edits, which count columns in UTF-16 units.
 
 use serde_json::{Value, json};
 
@@ -40,7 +40,7 @@ fn positions_past_an_end_are_edits_at_the_end() {
     assert_ne!(codes(&client.diagnostics(URI, Some(1))), [""; 0]);
     client.change(URI, 2, json!([edit((7, 7), (9, 9), " }")]));
     assert_eq!(codes(&client.diagnostics(URI, Some(2))), [""; 0]);
-    // In the middle of a pair, and with the end before the start.
+    // The second edit ends in the middle of a surrogate pair, and its end is before its start.
     client.change(URI, 3, json!([edit((0, 0), (0, 0), "/* 𝒜 */"), edit((0, 4), (0, 3), "")]));
     assert_eq!(codes(&client.diagnostics(URI, Some(3))), [""; 0]);
 }
