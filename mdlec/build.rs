@@ -8,7 +8,8 @@ mod sources;
 mod targets;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Cargo watches the package by itself only as long as a build script names nothing, and `sources` does.
+    // Without any `rerun-if-changed`, cargo would watch the whole package. `sources` prints such lines, so the
+    // package's own sources have to be named as well.
     println!("cargo::rerun-if-changed=src");
     sources::pack()
 }

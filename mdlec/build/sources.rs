@@ -26,8 +26,8 @@ const SHARED: [&str; 13] = [
     "mdlec/files",
 ];
 
-/// Names of folders that are not packed, because no build of an executable reads them. A folder that contains a package
-/// of its own is not packed with the package around it either.
+/// Names of folders that are not packed, because no build of an executable reads them. Nested packages are not packed
+/// with the enclosing package either.
 const LEFT_OUT: [&str; 5] = ["tests", "benches", "examples", "snapshots", "target"];
 
 /// Name of a workspace's lock file.
@@ -50,7 +50,7 @@ pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
     packages.push(format!("targets/{EMULATOR}"));
     packages.extend(emulated.iter().map(|name| format!("targets/{name}/{EMULATOR}")));
 
-    // A target with a lock of its own is a workspace of its own, with libraries that no other plan needs.
+    // A target with its own lock file is a separate workspace, with libraries that no other plan needs.
     let is_apart = |package: &String| root.join(package).join(LOCK).is_file();
     let (apart, members): (Vec<_>, Vec<_>) = packages.iter().cloned().partition(is_apart);
     let reduced = out.join("workspace.toml");
@@ -76,7 +76,7 @@ pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
 }
 
 /// Returns the root manifest with only `packages` as members. The packages `apart` are excluded, because each of them
-/// is a workspace of its own.
+/// is a separate workspace.
 fn workspace(root: &Path, packages: &[String], apart: &[String]) -> Result<String, Box<dyn Error>> {
     let mut manifest: toml::Table = read_manifest(root)?.parse()?;
     let workspace = table_in(&mut manifest, "workspace")?;
@@ -110,7 +110,7 @@ fn table_in<'a>(table: &'a mut toml::Table, name: &str) -> Result<&'a mut toml::
     table.get_mut(name).and_then(toml::Value::as_table_mut).ok_or_else(|| format!("Cargo.toml has no table `{name}`"))
 }
 
-/// Adds the files to be packed in `folder` and below to `files`. Their names begin with `name`.
+/// Appends to `files` the files to be packed in `folder` and its subfolders. `name` is the prefix of their names.
 fn collect(folder: &Path, name: &str, files: &mut Vec<(String, PathBuf)>) -> Result<(), Box<dyn Error>> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
@@ -128,7 +128,7 @@ fn collect(folder: &Path, name: &str, files: &mut Vec<(String, PathBuf)>) -> Res
     Ok(())
 }
 
-/// Returns the Rust text of the table.
+/// Returns the generated Rust code: the table of files, the hash, the targets and the emulators.
 fn table(
     root: &Path,
     files: &[(String, PathBuf)],
@@ -139,7 +139,8 @@ fn table(
     let mut rust = "pub(super) static FILES: &[(&str, &[u8])] = &[\n".to_owned();
     for (name, path) in files {
         let contents = fs::read(path)?;
-        // The length keeps a name apart from the contents before it.
+        // The zero byte and the length separate name and contents, so that different files never give the same input of
+        // the hash.
         hasher.update(name.as_bytes()).update(&[0]).update(&contents.len().to_le_bytes()).update(&contents);
         writeln!(rust, "    ({name:?}, include_bytes!({:?})),", text(Some(path.as_os_str()))?)?;
     }

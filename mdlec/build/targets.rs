@@ -7,13 +7,14 @@ use std::{env, fs};
 /// Folder below `targets` that contains the template for `mdlec new-target` instead of a robot.
 const TEMPLATE: &str = "template";
 
-/// Name of the folder of the sources in a published package, which `.ci/package` writes, and name of the manifests in
-/// this folder. They are renamed because cargo does not publish a subfolder that contains a `Cargo.toml`.
+/// Names, in a published package, of the folder of the sources and of the manifests in this folder. `.ci/package`
+/// writes the folder and renames the manifests, because cargo does not publish a subfolder that contains a
+/// `Cargo.toml`.
 const PACKED: &str = "packed";
 const PACKED_MANIFEST: &str = "manifest.toml";
 
-/// Returns the folder of the sources: the packed sources of a published package or, if there are none, the checkout,
-/// whose path relative to the package is `up`.
+/// Returns the folder of the sources: the packed sources in a published package or, if there are none, the checkout, at
+/// the path `up` relative to the package.
 pub(crate) fn checkout(up: &str) -> Result<PathBuf, Box<dyn Error>> {
     let package = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let packed = package.join(PACKED);

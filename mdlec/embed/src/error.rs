@@ -31,7 +31,7 @@ pub enum EmbedError {
         "the name {0:?} contains a line break, so cargo cannot watch this file\nhelp: rename the file or its folder"
     )]
     LineBreak(PathBuf),
-    /// The output file, whose path this is, is also an input file.
+    /// The output file, at this path, is also an input file.
     #[error("`{0}` is the plan itself and would be lost: rename the plan's file")]
     OutputIsInput(PathBuf),
     /// The Rust code cannot be written.

@@ -19,10 +19,10 @@
 //! }
 //! ```
 //!
-//! The package has `mdle-embed` among its `[build-dependencies]`, and among its `[dependencies]` what the Rust refers
-//! to: `mdle-runtime` and the target's crate, here `mdle-sim`. [`write`](Embed::write) makes one type of the plan,
-//! which implements `mdle_runtime::Plan`: `mdle_host::run` runs it as an executable that `mdlec` makes, and
-//! `mdle_runtime::Machine` turn by turn.
+//! The package needs `mdle-embed` in its `[build-dependencies]`, and in its `[dependencies]` the crates that the
+//! generated Rust uses: `mdle-runtime` and the target's crate, here `mdle-sim`. [`write`](Embed::write) generates one
+//! type, which implements `mdle_runtime::Plan`. `mdle_host::run` runs the plan like an executable that `mdlec` builds,
+//! and `mdle_runtime::Machine` runs it turn by turn.
 #![allow(clippy::disallowed_methods, reason = "a build script writes files")]
 
 mod error;
@@ -101,13 +101,13 @@ impl Embed {
             Ok(rust) => rust,
             Err(too_large) => return Err(faulty(input.sources, vec![too_large])),
         };
-        // The alphabets that came with mdlec change with it, and then cargo runs the build script again in any case.
+        // The built-in alphabets change only with mdlec, and then cargo runs the build script again anyway.
         let inputs = input.inputs(&target);
         let watched = inputs.iter().map(|file| watched(file)).collect::<Result<String, _>>()?;
         if is_among(output, &inputs) {
             return Err(EmbedError::OutputIsInput(output.to_owned()));
         }
-        // A build script that is stopped in the middle is run again, so a part of the file does no harm.
+        // Cargo runs an interrupted build script again, so an incomplete file does no harm.
         fs::write(output, rust).map_err(|error| EmbedError::Output { path: output.to_owned(), error })?;
         Ok(warnings(&input.sources, &found) + &watched)
     }
@@ -124,7 +124,7 @@ fn warnings(sources: &Sources, found: &[Diagnostic]) -> String {
     found.iter().map(|warning| warning_line(&sources.message(warning))).collect()
 }
 
-/// Returns a warning as a single line, which is all that cargo accepts.
+/// Returns a warning as a single line, because cargo accepts only single lines.
 fn warning_line(warning: &Message<'_>) -> String {
     let place = warning.spans.first().map(|place| format!("{}:{}:{}: ", place.file, place.line, place.column));
     let help: String = warning.help.iter().map(|help| format!("; help: {help}")).collect();

@@ -9,7 +9,7 @@ use mdle_compiler::diagnostic::{Diagnostic, Sources};
 /// Reason why a plan or a target cannot be read.
 #[derive(Debug)]
 pub enum InputError {
-    /// A file cannot be read, or a folder is not a target; the text is a sentence with the reason.
+    /// A file cannot be read, or a folder is not a target; contains the error message.
     Unusable(String),
     /// No target is named, although Rust code can be written only for a target.
     NoTarget,
@@ -33,7 +33,7 @@ pub enum InputError {
         /// Names of the file's plans.
         plans: Vec<String>,
     },
-    /// The file contains the plan of a group, and none of its robots was selected.
+    /// The file contains the plan of a group, and no robot of the group was selected.
     Group {
         /// Name of the file.
         file: String,
@@ -69,7 +69,7 @@ pub enum Spelling {
     BuildScript,
     /// Entries of a TOML file: `target = "sim"`.
     Entry,
-    /// Entries of a test file, in which `plan` is a file, and `name` the name of a plan.
+    /// Entries of a test file, in which `plan` names a file, and `name` names a plan.
     TestEntry,
 }
 

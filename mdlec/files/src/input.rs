@@ -15,7 +15,7 @@ use crate::read::Unread;
 use crate::text::{read_text, shown, without_mark};
 use crate::{InputError, Target, Unsaved, read, unsaved};
 
-/// A plan file, together with the alphabet's files and the files that it uses.
+/// A plan file, with the files that it uses and the files of the alphabet.
 #[derive(Debug)]
 pub struct Input {
     /// The texts of all these files, for messages.
@@ -28,7 +28,7 @@ pub struct Input {
     read: BTreeMap<PathBuf, SourceId>,
     /// Texts that are used instead of files.
     unsaved: Unsaved,
-    /// Plans of single robots that the last compilation made from the plans of groups.
+    /// Plans of single robots that the last compilation derived from the plans of groups.
     parts: Vec<Part>,
     /// `true` if the files that the plan uses must not be read.
     is_alone: bool,
@@ -66,8 +66,7 @@ impl Input {
         self.paths.get(&source).map(PathBuf::as_path)
     }
 
-    /// Returns an input that refuses to read the files that the plan uses, for a text whose author must not read files
-    /// here.
+    /// Returns an input that does not read the files that the plan uses, for a plan from an untrusted author.
     #[must_use]
     pub fn alone(self) -> Self {
         Self { is_alone: true, ..self }
@@ -192,7 +191,7 @@ impl Input {
         Err(InputError::UnknownPlan { file, name: name.to_owned(), plans })
     }
 
-    /// Returns the only plan in `plans`. They are the results of [`compile`](Self::compile), each with the plan's name.
+    /// Returns the only plan in `plans`, the results of [`compile`](Self::compile), each with the plan's name.
     ///
     /// # Errors
     /// Fails if `plans` is empty or has several plans.

@@ -1,7 +1,6 @@
-//! The files of plans: this crate reads plans, the files that they use, and the alphabets of targets, for the
-//! stages of [`mdle_compiler`].
+//! Reads plan files, the files that they use, and the alphabets of targets, for the stages of [`mdle_compiler`].
 //!
-//! It prints nothing: an error while reading is an [`InputError`], whose message says what to type instead.
+//! This crate prints nothing. Errors are returned as an [`InputError`], whose message says what to type instead.
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 
 mod error;

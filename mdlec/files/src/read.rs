@@ -1,5 +1,5 @@
-//! Reads the files that a user names: standard input, and regular files up to a maximum size, but never a file
-//! that waits for a writer.
+//! Reads a file that a user names: standard input, or a regular file up to a maximum size. Never waits for the writer
+//! of a pipe.
 
 use std::fmt;
 use std::fs::{self, FileType, OpenOptions};
@@ -22,7 +22,7 @@ pub enum Unread {
     Irregular(&'static str),
     /// The file is larger than this maximum, in bytes.
     TooLarge(u64),
-    /// The file does not end: a writer may add more.
+    /// The file has no end yet, because a writer may add more.
     Endless,
     /// Error of the system.
     System(io::Error),
@@ -61,12 +61,12 @@ impl Unread {
 /// # Errors
 /// Fails if the file cannot be read, is larger, or is not a regular file.
 pub fn file(path: &Path, most: u64) -> Result<Vec<u8>, Unread> {
-    // To open a device or a pipe may already do something to it.
+    // Opening a device or a pipe can already have side effects.
     regular(fs::metadata(path).map_err(Unread::System)?.file_type())?;
     let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits() as i32;
     let file = OpenOptions::new().read(true).custom_flags(flags).open(path).map_err(Unread::System)?;
     let metadata = file.metadata().map_err(Unread::System)?;
-    // Something else may have the name by now.
+    // Another file may have replaced the first one in the meantime.
     regular(metadata.file_type())?;
     if metadata.len() > most { Err(Unread::TooLarge(most)) } else { whole(file, most) }
 }

@@ -79,7 +79,7 @@ impl Settings {
         let Some(file) = file_beside(plan) else { return Ok(Self::default()) };
         let bytes = match read::file(&file, LARGEST) {
             Ok(bytes) => bytes,
-            // The second if the folder is none, which is said of the plan.
+            // `NotADirectory` means that the plan's folder is a file; the error for the plan reports this.
             Err(Unread::System(error))
                 if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) =>
             {
@@ -133,17 +133,17 @@ impl Settings {
         })
     }
 
-    /// Returns the file of the safety rules that a run of `mdle` puts between plan and robot.
+    /// Returns the file of the safety rules that a run of `mdle` applies between plan and robot.
     #[must_use]
     pub fn safety(&self) -> Option<SafetyEntry> {
         let own = self.text.safety.as_ref()?;
         Some(SafetyEntry { place: self.place(own.line), file: self.in_folder(&own.value) })
     }
 
-    /// Returns the options of the file for a run, except those that are also in `given`, the arguments of the
-    /// command line. The options are for the target of the file: if the command line names another target with
-    /// `target`, there are no options. `known` returns the known worlds and options of a target; the run itself
-    /// checks the rest.
+    /// Returns the options of the file for a run, except those that are also in `given`, the arguments of the command
+    /// line. The options apply to the target of the file: if the command line names a different target with `target`,
+    /// no options are returned. `known` returns the known worlds and options of a target; the run itself checks the
+    /// rest.
     ///
     /// # Errors
     /// Fails if there is no such world or option.

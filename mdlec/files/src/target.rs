@@ -30,7 +30,7 @@ impl Target {
         self.sources.iter().map(|(_, text)| text.as_str())
     }
 
-    /// Returns only the alphabet's files, for messages.
+    /// Returns only the alphabet's files, as the sources of messages.
     #[must_use]
     pub fn sources(&self) -> Sources {
         let mut sources = Sources::default();
@@ -55,7 +55,7 @@ impl Target {
     pub fn must_be_bound(&self) -> Result<(), InputError> {
         let Some(folder) = &self.folder else { return Ok(()) };
         let file = folder.join("alphabet.mdle");
-        // The crate serves an engine as well, whatever this plan is for.
+        // The bindings always include the engine, even for a plan that does not use it.
         let mut alphabet = self.alphabet.clone();
         alphabet.has_engine = true;
         let is_up_to_date =
@@ -70,7 +70,7 @@ pub fn bound(file: &Path) -> PathBuf {
     file.with_file_name("src").join("alphabet.rs")
 }
 
-/// Returns a sentence about the alphabet in `file` whose Rust file is missing or out of date.
+/// Returns the error message for the alphabet in `file`, whose Rust file is missing or out of date.
 #[must_use]
 pub fn out_of_date(file: &Path) -> String {
     let (rust, file) = (bound(file), file.display());

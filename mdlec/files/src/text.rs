@@ -43,7 +43,7 @@ pub(crate) fn shown(path: &Path) -> String {
 fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> InputError {
     let mut sources = Sources::default();
     let source = sources.add(name, String::from_utf8_lossy(bytes));
-    // The replacement character that stands there now is three bytes long.
+    // The invalid bytes have been replaced by U+FFFD, which is three bytes long.
     let span = Span::new(source, valid, valid + 3);
     let found = Diagnostic::new(Code::E0109, "this file is not UTF-8 text", span, "no character of UTF-8")
         .help("save it as UTF-8 in your editor, or convert it: `iconv -f latin1 -t utf-8`");

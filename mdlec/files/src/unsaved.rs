@@ -1,11 +1,11 @@
-//! Texts that are read instead of files: those that an editor has not saved yet, or all files of a plan.
+//! Texts that are read instead of files: texts that an editor has not saved yet, or all files of a plan.
 
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-/// Texts in place of files.
+/// Texts that replace files.
 #[derive(Debug, Clone, Default)]
 pub struct Unsaved {
     /// The texts. The keys are the canonical paths of the files that they replace.

@@ -9,7 +9,7 @@ use mdle_files::Settings;
 pub(super) fn analyze(options: &Analyze) -> Result<(), Failure> {
     let target = Settings::beside(&options.plan)?.target(options.target.as_deref())?;
     let mut input = mdle_files::read_plan(&options.plan, &target)?;
-    // An analysis needs the machine alone, and of a long plan the rest is as large again.
+    // The analysis needs only the state machine. The rest of a long plan is as large again, so it is dropped.
     let judge = |Compiled { machine, .. }: Compiled| analysis(&machine);
     let analysis = compiled::compile_judged(
         &mut input,

@@ -22,7 +22,7 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
         return everywhere(options);
     }
     let named = options.target.as_deref().map(|name| mdle_files::target(Some(name))).transpose()?;
-    // Without the option each folder may have another one.
+    // Without `--target`, each folder can have a different target.
     let mut beside = BTreeMap::new();
     each(&options.plans, |path| {
         if scenario::is_scenario(path) {

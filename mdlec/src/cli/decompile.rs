@@ -11,7 +11,7 @@ use mdle_theory::theorem::{Answer, Machine, as_printed, augment, decompile as th
 /// Maximum number of states for which the matrices of a machine are printed.
 const SHOWN: usize = 12;
 
-/// Prints the plan of a machine, or the results of the paper's own conditions.
+/// Prints the plan of a machine or, with `--as-printed`, whether the conditions as printed in the paper hold.
 pub(super) fn decompile(options: &Decompile) -> Result<(), Failure> {
     let file = options.machine.display();
     let text = mdle_files::read_text(&options.machine, LARGEST_DATA)?;

@@ -1,11 +1,11 @@
-//! Checks the extensions of output files before anything is read. An extension is refused if it belongs to another
-//! format than the one that the command writes.
+//! Checks the extensions of output files before any input is read, and refuses extensions of formats that the command
+//! does not write.
 
 use std::path::{Path, PathBuf};
 
 use super::{EmitKind, Failure};
 
-/// Extensions of pictures.
+/// Extensions of picture files.
 const PICTURES: [&str; 12] = ["svg", "png", "jpg", "jpeg", "gif", "webp", "bmp", "tif", "tiff", "pdf", "ps", "eps"];
 
 /// Refuses a file name for the picture of `mdlec draw` if it has an extension other than `.svg`.
@@ -19,8 +19,8 @@ pub(super) fn svg(file: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// Refuses a file name with the extension of a picture for an executable or for another form of `plan`, which is not a
-/// picture.
+/// Refuses the extension of a picture file for an executable or for a form of `plan`, since none of them is a picture
+/// file.
 pub(super) fn no_picture(file: &Path, kind: EmitKind, plan: &Path) -> Result<(), Failure> {
     let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if !PICTURES.iter().any(|picture| ending.eq_ignore_ascii_case(picture)) {

@@ -8,10 +8,10 @@ use mdle_compiler::diagnostic::{Severity, has_errors};
 use mdle_files::Target;
 use mdle_files::read::LARGEST_PLAN;
 
-/// Value of `--target` for all robots that are part of mdlec.
+/// Value of `--target` that selects all built-in robots.
 pub(super) const ALL: &str = "all";
 
-/// A plan file with the errors for each robot; a robot without errors can run it.
+/// A plan file, with its errors for each robot. A robot without errors can run the plan.
 struct Row {
     name: String,
     refusals: Vec<Vec<String>>,

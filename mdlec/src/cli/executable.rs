@@ -24,10 +24,10 @@ pub(super) fn run(options: &Run) -> Result<(), Failure> {
     build(&options.executable, path, output, None)?.become_it(options.executable.target.as_deref(), &options.args)
 }
 
-/// Checks the `mdle.toml` beside a plan before the build. The options that a run with the arguments `args` takes from
-/// it must be valid, and it must not name safety rules, which an executable does not have.
+/// Checks the `mdle.toml` beside a plan before the build: the options that it adds to a run with the arguments `args`
+/// must be valid, and it must not name safety rules, which an executable does not support.
 pub(super) fn settings_fit(options: &Executable, args: &[String]) -> Result<(), Failure> {
-    // A scenario takes none.
+    // A scenario takes no options from an `mdle.toml`.
     let Some(path) = options.plan.as_ref().filter(|path| !scenario::is_scenario(path)) else { return Ok(()) };
     let settings = Settings::beside(path)?;
     if let Some(SafetyEntry { place, .. }) = settings.safety() {
@@ -53,11 +53,12 @@ pub(super) fn take_signals() -> Result<(), Failure> {
 /// An executable that was built, with the settings of its plan.
 pub(super) struct Runnable {
     path: PathBuf,
-    /// The settings; empty for a scenario, which takes none.
+    /// Settings of the plan; empty for a scenario, which takes no options from an `mdle.toml`.
     settings: Settings,
 }
 
-/// Builds the executable of the plan in `path` for a machine, by default in the current folder and for this machine.
+/// Builds the executable of the plan in `path`. By default, the executable is for this machine and in the current
+/// folder.
 pub(super) fn build(
     options: &Executable,
     path: &Path,
@@ -75,7 +76,7 @@ pub(super) fn build(
     target.alphabet.has_engine = false;
     let Emitted { target, input, plan_name, rust } =
         emitted(path, target, options.name.as_deref(), options.deny_warnings)?;
-    // Standard input has no name of its own.
+    // Standard input has no file name, so the executable gets the name of the plan.
     let stem = path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(&plan_name), PathBuf::from);
     let output = output.unwrap_or(stem);
     let crate_name = &target.alphabet.crate_name;
@@ -112,18 +113,19 @@ impl Runnable {
 
 /// Fails if the executable `program` does not accept the option with this value.
 ///
-/// An executable checks its arguments one by one, and does nothing else before it answers `--version`.
+/// An executable checks its arguments in order and does nothing else before it answers `--version`, so this call only
+/// checks the option.
 fn must_fit(option: &RunOption, program: &Path) -> Result<(), Failure> {
     let answer = Command::new(program).args(&option.arguments).arg("--version").stdin(Stdio::null()).output();
-    // A program that cannot be run cannot become this process either, which says why.
+    // If the program cannot be started, replacing this process fails as well and reports the reason.
     match answer.ok().filter(|answer| answer.status.code() == Some(2)) {
         Some(refusal) => Err(option.refused(&String::from_utf8_lossy(&refusal.stderr)).into()),
         None => Ok(()),
     }
 }
 
-/// Replaces this process by a program, so that the exit status and the signals of the program are those of this
-/// process.
+/// Replaces this process by a program. The program's exit status becomes that of this process, and signals to this
+/// process reach the program.
 pub(super) fn become_program(command: &mut Command) -> Result<(), Failure> {
     let error = command.exec();
     Err(Failure::usage(format!("cannot run `{}`: {error}", Path::new(command.get_program()).display())))

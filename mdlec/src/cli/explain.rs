@@ -1,4 +1,4 @@
-//! `mdlec explain`: prints the meaning of a code, with a wrong and a right example.
+//! `mdlec explain`: prints the meaning of a code, with a wrong and a corrected example.
 
 use super::{Failure, report};
 use mdle_compiler::diagnostic::Code;

@@ -20,7 +20,8 @@ pub(super) fn fmt(options: &Fmt) -> Result<(), Failure> {
             return if formatted == text { Ok(()) } else { differs(path) };
         }
         if path == Path::new("-") {
-            // The text is the user's own, and an editor wants it back as it was; a terminal is not to obey it.
+            // An editor needs the text back unchanged. On a terminal, control characters in the text must have no
+            // effect.
             let is_terminal = io::stdout().is_terminal();
             return if is_terminal { report::print(&formatted) } else { report::print_exactly(&formatted) };
         }

@@ -10,8 +10,8 @@ use mdle_compiler::diagnostic::{Code, Diagnostic};
 use mdle_compiler::plan::Nondegenerate;
 use mdle_theory::equations::{self, MatrixFiles};
 
-/// Prints the matrices, or writes them into a folder without overwriting any of `inputs`. Only small
-/// matrices are printed; files have no limit of size.
+/// Prints the matrices, or writes them into a folder without overwriting any of `inputs`. Only small matrices are
+/// printed; files may contain ten million ones in total.
 pub(super) fn matrices(
     plan: &Nondegenerate,
     combined: bool,
@@ -53,7 +53,8 @@ pub(super) fn matrices(
     Ok(())
 }
 
-/// Removes the files of an earlier list, writes the files and then their list, and returns the number of matrices.
+/// Writes the matrix files and then their list, and returns the number of matrices. If the folder contains an earlier
+/// list, its matrix files are removed first.
 fn write(files: &MatrixFiles<'_, '_>, folder: &Path, inputs: &[PathBuf]) -> Result<usize, Failure> {
     let failed = |error: io::Error| Failure::usage(format!("`{}` cannot be written: {error}", folder.display()));
     fs::create_dir_all(folder).map_err(failed)?;
@@ -75,8 +76,8 @@ fn write(files: &MatrixFiles<'_, '_>, folder: &Path, inputs: &[PathBuf]) -> Resu
     Ok(count)
 }
 
-/// Returns the files in a folder that have names of matrix files. Files of another plan could be mistaken for files of
-/// this plan.
+/// Returns the files in a folder that have names of matrix files. They are removed before new files are written,
+/// because files of an earlier plan could be mistaken for files of this plan.
 fn matrix_files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {

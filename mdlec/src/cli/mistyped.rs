@@ -1,4 +1,5 @@
-//! Recognizes misspelled commands and options of other commands, for which clap reports a less helpful error.
+//! Recognizes misspelled commands, and options that only other commands have. The errors that clap reports for them are
+//! less helpful.
 
 use std::env;
 use std::path::Path;
@@ -25,8 +26,8 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     ("emulator", &["emulate"]),
 ];
 
-/// Returns the error for a first argument that resembles a command and is not a file; clap takes such an argument for a
-/// plan. Returns `None` if the first argument is anything else.
+/// Returns the error for a first argument that resembles a command and is not a file, which clap would take for a plan.
+/// Returns `None` for any other first argument.
 pub(super) fn command() -> Option<Failure> {
     let cli = Cli::command();
     let word = words(&cli).into_iter().nth(1).and_then(|word| word.into_string().ok());
@@ -67,7 +68,7 @@ pub(super) fn option(answer: &clap::Error) -> Option<Failure> {
     let owners = match owners.split_last() {
         Some((only, [])) => only.clone(),
         Some((last, others)) => format!("{} and {last}", others.join(", ")),
-        // Such as `--run`.
+        // An option of `mdlec` without a command, such as `--run`.
         None if cli.get_arguments().any(is_given) => {
             "`mdlec` without a command; `mdlec run PLAN` does the same".to_owned()
         }

@@ -36,7 +36,7 @@ pub(super) fn new_target(options: &NewTarget) -> Result<(), Failure> {
         }
     })?;
     fill(folder, name).inspect_err(|_| {
-        // What led here says more than what comes of this.
+        // The original error is more helpful than an error of this removal.
         let _ = fs::remove_dir_all(folder);
     })?;
     report::note(format_args!(
@@ -69,7 +69,7 @@ fn named(file: &str, text: &str, name: &str) -> String {
     const VERSION: &str = concat!(" = \"", env!("CARGO_PKG_VERSION"), "\"");
     let text = text.replace("license.workspace = true\n", "");
     let text = text.replace("[lints]\nworkspace = true\n", "[workspace]\n").replace(".workspace = true", VERSION);
-    // One that asks for features besides.
+    // A dependency that also selects features.
     text.replace("{ workspace = true", &format!("{{ version{VERSION}"))
 }
 

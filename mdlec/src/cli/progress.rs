@@ -56,7 +56,7 @@ impl ProgressOutput {
             return;
         }
         let mut out = io::stderr().lock();
-        // A closed standard error has nobody to wait for the build.
+        // If standard error is closed, nobody sees the progress, so a write error is ignored.
         let _ = if out.is_terminal() {
             self.open = true;
             write!(out, "\r\x1b[K{}", Printable(progress))

@@ -20,7 +20,7 @@ static COLOR: OnceLock<Color> = OnceLock::new();
 
 /// Sets the format and the colours of all messages.
 pub(super) fn choose(format: MessageFormat, color: Color) {
-    // There is one command line, so this is the first time.
+    // The command line is read only once, so neither value has been set before.
     let _ = FORMAT.set(format);
     let _ = COLOR.set(color);
 }
@@ -30,12 +30,12 @@ pub(super) fn is_json() -> bool {
     FORMAT.get() == Some(&MessageFormat::Json)
 }
 
-/// Prints diagnostics in their order, then their number.
+/// Prints diagnostics in order, followed by their number.
 ///
 /// Returns `true` if the plan may be used: no errors, and with `deny_warnings` no warnings.
 pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings: bool) -> bool {
     if is_json() {
-        // A program is told all of them.
+        // Programs get all diagnostics; the number of diagnostics as text is limited.
         found.iter().for_each(|diagnostic| line(&sources.message(diagnostic)));
     } else {
         render(sources, found);
@@ -56,13 +56,13 @@ fn render(sources: &Sources, found: &[Diagnostic]) {
         Color::Auto if io::stderr().is_terminal() => ColorChoice::Auto,
         Color::Auto | Color::Never => ColorChoice::Never,
     };
-    // Nobody is left to be told when standard error is closed.
+    // If standard error is closed, the diagnostics cannot be shown, so a write error is ignored.
     let _ = sources.write_all(found, &mut StandardStream::stderr(choice));
 }
 
 /// Writes a message as one line of JSON.
 fn line(message: &Message<'_>) {
-    // Nobody is left to be told when standard error is closed.
+    // If standard error is closed, the message cannot be shown, so a write error is ignored.
     let _ = writeln!(io::stderr().lock(), "{}", message.to_json());
 }
 
@@ -105,8 +105,8 @@ pub(super) fn printed(result: io::Result<()>) -> Result<(), Failure> {
 
 /// Prints the output of clap: the requested help or version, or a usage error.
 pub(super) fn answer(answer: &clap::Error) -> Result<(), Failure> {
-    // Only the arguments can have brought what a terminal would obey; beside its colours it could not be told from
-    // them.
+    // Control characters in clap's text can come only from the arguments. They cannot be told apart from clap's own
+    // colour codes, so such a text is printed without colours.
     let is_plain = |argument: OsString| argument.to_string_lossy().chars().all(is_printable);
     let result = if env::args_os().all(is_plain) {
         answer.print()

@@ -14,7 +14,7 @@ use super::{Executable, Failure, report};
 use crate::link::{Entry, Package, TargetCrate};
 use mdle_files::{Settings, target};
 
-/// The robot of scenarios.
+/// Name of the robot that scenarios use.
 pub(super) const SIM: &str = "sim";
 
 /// Builds the executable of the scenario in the file at `path`, and returns the path of the executable.
@@ -51,7 +51,7 @@ pub(super) fn check(path: &Path, deny_warnings: bool) -> Result<(), Failure> {
     files(path).map(drop)
 }
 
-/// Returns the files of the scenario. Errors are printed.
+/// Returns the names and contents of the scenario's files; prints the errors if there are any.
 fn files(path: &Path) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     mdle::scenario_files(path).map_err(Failure::silent)
 }
@@ -90,7 +90,7 @@ fn must_be_plain(deny_warnings: bool) -> Result<(), Failure> {
 fn constant(files: &[(String, Vec<u8>)]) -> String {
     let mut rust = "pub const FILES: &[(&str, &[u8])] = &[\n".to_owned();
     for (name, bytes) in files {
-        // A string takes everything.
+        // Writing to a string cannot fail.
         let _ = writeln!(rust, "    ({name:?}, b\"{}\"),", bytes.escape_ascii());
     }
     rust + "];\n"

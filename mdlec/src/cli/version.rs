@@ -20,7 +20,7 @@ pub(super) fn version<'t>(texts: impl Iterator<Item = &'t [u8]>, target: &Target
 fn hash<'t>(texts: impl Iterator<Item = &'t [u8]>) -> String {
     let mut hasher = blake3::Hasher::new();
     for text in texts {
-        // The length keeps a text apart from the next.
+        // The length separates the texts, so that different texts never give the same input.
         hasher.update(&text.len().to_le_bytes()).update(text);
     }
     hasher.finalize().to_hex()[..12].to_owned()

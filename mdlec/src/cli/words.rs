@@ -5,8 +5,8 @@ use std::ffi::OsString;
 
 use clap::{Arg, Command};
 
-/// Returns the words of this process's command line. Global options that come before the command are moved after it:
-/// without a command, a plan can follow such an option, so clap would refuse the command there.
+/// Returns the words of this process's command line, with global options before the command moved after it. Without a
+/// command, a plan can follow such an option, so clap would refuse a command there.
 pub(super) fn words(cli: &Command) -> Vec<OsString> {
     ordered(env::args_os().collect(), cli)
 }

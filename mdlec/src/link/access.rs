@@ -34,7 +34,8 @@ pub(super) fn private(folder: &Path) -> Result<Private, LinkError> {
     let failed = |error| LinkError::cache(folder, error);
     DirBuilder::new().recursive(true).mode(OWN).create(folder).map_err(failed)?;
     let place = folder.canonicalize().map_err(failed)?;
-    // A link on the way there is its owner's to turn.
+    // The owner of a symbolic link in the path can redirect it, so the folders of the unresolved path are checked as
+    // well.
     let as_named = path::absolute(folder).map_err(failed)?;
     for above in as_named.ancestors().skip(1).chain(place.ancestors().skip(1)) {
         judge(above, &fs::symlink_metadata(above).map_err(failed)?)?;
@@ -45,7 +46,7 @@ pub(super) fn private(folder: &Path) -> Result<Private, LinkError> {
     }
     if found.mode() & 0o077 != 0 {
         fs::set_permissions(&place, Permissions::from_mode(OWN)).map_err(failed)?;
-        // Some file systems have no permissions, and say nothing.
+        // Some file systems have no permissions, and ignore the change without an error.
         if fs::metadata(&place).map_err(failed)?.mode() & 0o077 != 0 {
             return Err(LinkError::CacheOpen(place));
         }
@@ -154,7 +155,7 @@ mod tests {
         let above = folder("of_another");
         let cache = above.join("cache");
         private(&cache).unwrap();
-        // Only the superuser can give a folder away.
+        // Only the superuser can change the owner of a folder; the test ends here for other users.
         if chown(&cache, Some(12345), None).is_err() {
             return;
         }

@@ -23,7 +23,8 @@ pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependen
     if let Some(signal) = run.status.signal() {
         return LinkError::Stopped(u8::try_from(signal).unwrap_or(u8::MAX));
     }
-    // Cargo names the option also where it has it from the user: it was not given.
+    // mdlec did not pass `--offline` to this run, so cargo's message means that the user's configuration forbids the
+    // network.
     if run.online && run.lacks_libraries() {
         return LinkError::Offline;
     }
@@ -39,7 +40,7 @@ pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependen
     if let Some(error) = errors.clone().find(|error| LINKER.iter().any(|sign| error.text.starts_with(sign))) {
         return linker(error, &plan, job.machine.foreign(), log);
     }
-    // The crate that fails first is the cause: what depends on it is not compiled.
+    // The first crate that fails is the cause: crates that depend on it are not compiled.
     match errors.map(|error| &error.manifest).next() {
         Some(manifest) if *manifest == plan => emitted(target, log),
         Some(manifest) if manifest.starts_with(ours) => LinkError::Packed { folder: ours.clone(), log },
@@ -52,7 +53,7 @@ pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependen
 /// Returns the error for a linker that failed. If the executable of the package `plan` was linked, this is the linker
 /// for the machine `foreign`; otherwise it is the linker for this machine.
 fn linker(error: &Complaint, plan: &Path, foreign: Option<&str>, log: PathBuf) -> LinkError {
-    // Of libraries only build scripts and procedural macros are linked, which run on this machine.
+    // In other packages, only build scripts and procedural macros are linked, and these run on this machine.
     match foreign.filter(|_| error.manifest == plan) {
         Some(triple) => LinkError::MachineLinker { triple: triple.to_owned(), log },
         None => LinkError::Linker { log },
@@ -63,13 +64,13 @@ fn linker(error: &Complaint, plan: &Path, foreign: Option<&str>, log: PathBuf) -
 fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
     match target {
         TargetCrate::Builtin { .. } => LinkError::Emitted { log },
-        // More often it is that the crate lags behind its alphabet.
+        // More often, the cause is a crate that is out of date with its alphabet.
         TargetCrate::Path { crate_name, .. } => LinkError::TargetMisfit { crate_name: (*crate_name).to_owned(), log },
     }
 }
 
-/// Returns the error for a crate that mdlec did not emit and that does not compile, or for a run in which cargo did not
-/// begin to compile.
+/// Returns the error for a run in which cargo did not begin to compile, or in which a crate that mdlec did not emit
+/// does not compile.
 fn others(
     job: &Job<'_>,
     run: &Run,
@@ -90,7 +91,7 @@ fn others(
         TargetCrate::Path { crate_name, .. } => {
             let theirs = run.complaints.iter().filter(|complaint| !is_ours(&complaint.manifest));
             let theirs: String = theirs.map(|complaint| complaint.text.as_str()).collect();
-            // A build script that fails says so through cargo only.
+            // If a build script fails, only cargo reports it.
             let output = if run.complaints.iter().any(|complaint| complaint.is_error) { theirs.as_str() } else { text };
             LinkError::TargetBroken { crate_name: (*crate_name).to_owned(), text: output.trim_end().to_owned() }
         }

@@ -1,6 +1,6 @@
-//! Record of a plan's package and its executable at the last build.
+//! Record of the last build of a plan: hashes of its package, its lock file and its executable.
 //!
-//! Cargo compares the times of files. Times do not show that a file was truncated or overwritten, and they are
+//! Cargo compares only the times of files. Times do not show that a file was truncated or overwritten, and they are
 //! wrong after the clock was set back.
 
 use std::fs;
@@ -36,7 +36,8 @@ pub(super) fn has_lock(folder: &Path) -> bool {
     read(folder).is_some_and(|[_, noted, _]| lock(folder).is_some_and(|lock| lock == noted))
 }
 
-/// Returns the recorded hashes of the package, of its lock file, and of the executable.
+/// Returns the recorded hashes of the package, of its lock file, and of the executable; `None` if there is no valid
+/// record.
 fn read(folder: &Path) -> Option<[String; 3]> {
     let text = fs::read_to_string(file(folder)).ok()?;
     let lines: Vec<_> = text.lines().map(str::to_owned).collect();

@@ -50,11 +50,12 @@ impl Cache {
     /// # Errors
     /// Fails if `folder` cannot be created, or if others can change or replace it.
     pub fn at(folder: &Path) -> Result<Self, LinkError> {
-        // Cargo shows paths without symbolic links; ours are compared with them.
+        // The path has no symbolic links, because it is compared with paths that cargo prints without symbolic links.
         let Private { folder, was_open } = access::private(folder)?;
         let cache = Self { folder };
         if was_open {
-            // Anybody may have put there what cargo would take for its own; the sources are compared.
+            // Other users may have put files there that cargo would take for its own. The sources can stay, since their
+            // contents are compared.
             remove(&cache.target())?;
             remove(&cache.plans())?;
         }
@@ -101,7 +102,7 @@ impl Cache {
             }
             Err(TryLockError::Error(error)) => return Err(failed(error)),
         }
-        // For those who wait; on a full disk they learn no number.
+        // Waiting processes show this number. On a full disk it is missing.
         let _ = file.set_len(0).and_then(|()| writeln!(file, "{}", process::id()));
         Ok(file)
     }
@@ -122,7 +123,7 @@ fn replace(file: &Path, contents: &[u8]) -> io::Result<()> {
     if let Some(folder) = file.parent() {
         fs::create_dir_all(folder)?;
     }
-    // Nothing can be renamed over a folder.
+    // A file cannot be renamed over a folder.
     if file.is_dir() {
         fs::remove_dir_all(file)?;
     }

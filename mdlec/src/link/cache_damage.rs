@@ -52,15 +52,16 @@ pub(super) fn found(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>) -> Optio
     if run.lacks_room() || run.status.signal().is_some() {
         return None;
     }
-    // It reads files there and takes them for its own.
+    // Cargo trusts the files in its output folder, and can panic if one of them is damaged.
     if run.is_cargo_broken() {
         return Some(Damage::Libraries);
     }
     let folder = job.cache.target();
     let names_folder = folder.to_str().is_some_and(|folder| run.stderr.contains(folder));
-    // A compiler that fails without a word is shown with its command line, which names the folder as well.
+    // If the compiler fails without a message, cargo prints the compiler's command line, which contains the folder as
+    // well.
     let refused = !run.began && names_folder && !run.stderr.contains("process didn't exit successfully");
-    // What was compiled a moment ago is not damaged: whatever is wrong then will not mend by doing it again.
+    // A crate that was compiled in this run is not damaged: compiling it again would not help.
     let spoilt = run.reused && run.complaints.iter().any(|complaint| is_of_damage(complaint, job.plan, target));
     (refused || spoilt).then_some(Damage::Libraries)
 }
@@ -68,12 +69,13 @@ pub(super) fn found(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>) -> Optio
 /// Returns `true` if a damaged library can be the cause of the error.
 fn is_of_damage(complaint: &Complaint, plan: &PlanPackage, target: &TargetCrate<'_>) -> bool {
     let says = |signs: &[&str]| signs.iter().any(|sign| complaint.text.contains(sign));
-    // What came with mdlec does not fail by itself, but what mdlec makes of a plan can be wrong.
+    // The sources that are part of mdlec are tested, so an error in them indicates damage. The code that mdlec emits
+    // for a plan can be wrong.
     let is_tested = matches!(target, TargetCrate::Builtin { .. }) && complaint.manifest != plan.manifest();
     complaint.is_error && !says(&LACKING) && (is_tested || says(&UNREADABLE) && !is_forgotten(complaint, target))
 }
 
-/// Returns `true` if the error is that a third-party crate uses a crate that is not among its dependencies.
+/// Returns `true` if the error is caused by a third-party crate that uses a crate missing from its dependencies.
 fn is_forgotten(complaint: &Complaint, target: &TargetCrate<'_>) -> bool {
     let TargetCrate::Path { folder, .. } = target else { return false };
     let is_own = folder.canonicalize().is_ok_and(|folder| complaint.manifest.starts_with(folder));

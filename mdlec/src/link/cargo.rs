@@ -18,7 +18,7 @@ use super::{Cache, LinkError, Progress, cleanup};
 const PROFILE: [&str; 13] = [
     // A panic in a driver has to reach the code that stops the robot.
     "profile.release.panic='unwind'",
-    // Executables compute the same on every machine, whatever is configured there.
+    // Executables compute the same results on every machine, regardless of its configuration.
     "profile.release.overflow-checks=false",
     "profile.release.debug-assertions=false",
     "profile.release.package.'*'.overflow-checks=false",
@@ -30,7 +30,7 @@ const PROFILE: [&str; 13] = [
     "profile.release.debug=false",
     "profile.release.rpath=false",
     "profile.release.strip='symbols'",
-    // Options are read once, and are a seventh of an executable.
+    // Options are parsed only once, and their parser is a seventh of an executable.
     "profile.release.package.clap_builder.opt-level='s'",
 ];
 
@@ -74,19 +74,20 @@ impl Job<'_> {
     pub(super) fn clean(&self) -> Result<(), LinkError> {
         let mut command = self.command("clean");
         command.arg("--offline").arg("--package").arg(self.plan.name());
-        // Where this fails, the build that follows says why.
+        // If this command fails, the following build reports the reason.
         output(command, "cargo").map(|_| ())
     }
 
     /// Returns cargo's command `name` for the plan.
     fn command(&self, name: &str) -> Command {
         let mut command = toolchain::command("cargo");
-        // With an explicit triple the flags are for the plan alone: a static procedural macro could not be loaded.
+        // With an explicit triple, cargo does not apply the flags to procedural macros: a static one could not be
+        // loaded.
         command.args([name, "--release", "--color=never", "--target", &self.machine.triple]);
         command.arg("--manifest-path").arg(self.plan.manifest());
         command.arg("--target-dir").arg(self.cache.target());
         command.args(PROFILE.iter().flat_map(|setting| ["--config", setting]));
-        // Both win over cargo's configuration. What is compiled stays in the cache.
+        // Both override cargo's configuration, so that all build results are in the cache.
         command.env("CARGO_BUILD_BUILD_DIR", self.cache.target()).env("CARGO_INCREMENTAL", "0");
         command.envs(self.machine.linker(cargo_home().as_deref()));
         command
@@ -95,12 +96,12 @@ impl Job<'_> {
     /// Returns the flags of rustc. They make the executable static, with a fixed address, so that it needs no
     /// relocation table, and they keep the paths of this machine out of it.
     ///
-    /// The flags are equal for all plans, because cargo would compile everything again for other flags. Therefore the
-    /// messages of panics contain the path of a target outside the home folder.
+    /// The flags are equal for all plans, because cargo would compile everything again for other flags. The path of a
+    /// target outside the home folder is therefore not removed, and appears in the messages of panics.
     fn flags(&self) -> OsString {
         let mut flags = OsString::from("-Ctarget-feature=+crt-static\x1f-Crelocation-model=static");
         let home = env::home_dir();
-        // The last that fits wins.
+        // If several prefixes match a path, the last one takes effect.
         let places = [(home, "~"), (cargo_home(), "/cargo"), (Some(self.cache.folder().to_owned()), "/mdle")];
         for (place, name) in places {
             let Some(place) = place.filter(|place| place.parent().is_some()) else { continue };

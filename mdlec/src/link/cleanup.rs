@@ -1,4 +1,4 @@
-//! Cleans up when a signal ends this process: kills a running cargo, and removes incomplete files.
+//! Cleans up when a signal ends this process: terminates a running cargo, and removes incomplete files.
 
 use std::fs::{self, File};
 use std::io;
@@ -14,28 +14,28 @@ use signal_hook::iterator::Signals;
 
 use super::guard::Guard;
 
-/// Processes and files of this process that a signal must clean up.
+/// Child processes and files that are cleaned up when a signal arrives.
 static UNFINISHED: Mutex<Vec<Unfinished>> = Mutex::new(Vec::new());
 
-/// A process to kill, or a file to remove, when a signal arrives.
+/// A child process to terminate, or a file to remove, when a signal arrives.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Unfinished {
-    /// A child process in a process group of its own.
+    /// A child process, with the process group of its guard.
     Child { process: Pid, group: Pid },
     /// A file that is not complete yet.
     File(PathBuf),
 }
 
-/// Installs signal handlers. From now on, a signal that ends this process first kills its cargo and removes incomplete
-/// files. The exit status is the same as in shells: 128 plus the signal's number. `farewell` runs last.
+/// Installs signal handlers. From now on, a signal that ends this process first terminates its cargo and removes
+/// incomplete files. The exit status is the same as in shells: 128 plus the signal's number. `farewell` runs last.
 ///
 /// # Errors
 /// Fails if the system does not let a signal be caught.
 pub fn leave_nothing_behind(farewell: impl FnOnce() + Send + 'static) -> io::Result<()> {
     let ending = [SIGHUP, SIGINT, SIGQUIT, SIGTERM];
-    // Whoever started this with `nohup` wants it to outlive the terminal.
+    // A process that was started with `nohup` must outlive the terminal.
     let ending = ending.into_iter().filter(|signal| *signal != SIGHUP || !is_ignored(*signal));
-    // Where it is caught, a write beyond the limit on files is an error that can be told.
+    // If SIGXFSZ is caught, a write beyond the limit on file sizes returns an error that can be reported.
     let mut signals = Signals::new(ending.chain([SIGXFSZ]))?;
     thread::spawn(move || {
         if let Some(signal) = signals.forever().find(|signal| *signal != SIGXFSZ) {
@@ -47,11 +47,11 @@ pub fn leave_nothing_behind(farewell: impl FnOnce() + Send + 'static) -> io::Res
 
 /// Ends this process after cleaning up.
 fn end(signal: i32, farewell: impl FnOnce()) {
-    // Never let go again: nothing new begins any more.
+    // The lock is never released, so no further process or file can be started.
     let unfinished = list();
     for what in unfinished.iter() {
         match what {
-            // What cannot be ended or removed has ended, or has gone, by itself.
+            // An error means that the process has already ended or the file no longer exists.
             Unfinished::Child { process, group } => {
                 let _ = kill_process_group(*group, Signal::TERM);
                 let _ = waitid(WaitId::Pid(*process), WaitIdOptions::EXITED | WaitIdOptions::NOWAIT);
@@ -94,7 +94,7 @@ pub(super) fn create(path: &Path) -> io::Result<(File, Watched)> {
     Ok((file, Watched(path)))
 }
 
-/// Locks the list; its content is valid even if another thread panicked while holding it.
+/// Locks the list. The list is valid even if another thread panicked while holding the lock.
 fn list() -> MutexGuard<'static, Vec<Unfinished>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }

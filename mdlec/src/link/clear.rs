@@ -25,7 +25,7 @@ const OWN: [&str; 6] = ["cargo", "compiled", "compiled.new", "target", "tmp", "p
 /// Fails and changes nothing if the folder is not a cache: it contains a file that mdlec did not write, or no lock
 /// file. Also fails if the system refuses.
 pub fn clear(folder: &Path, progress: &mut dyn FnMut(Progress)) -> Result<u64, LinkError> {
-    // Before anything is changed, permissions included.
+    // This check comes before any change, even a change of permissions.
     let Some(found) = contents(folder)? else { return Ok(0) };
     if found.is_empty() {
         return Ok(0);

@@ -7,16 +7,16 @@ use std::path::{Path, PathBuf};
 /// rustc at its end.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
-    /// The output is a folder: its path.
+    /// The output path is a folder.
     #[error("`{0}` is a folder: name a file for the output with `-o FILE`")]
     OutputIsFolder(PathBuf),
-    /// The output is a special file, such as a device: its path.
+    /// The output path is a special file, such as a device.
     #[error("`{0}` is not a file: name a file for the executable with `-o FILE`")]
     OutputIsSpecial(PathBuf),
-    /// The output is a file that the command reads: its path.
+    /// The output path is a file that the command reads.
     #[error("`{0}` is an input of this command and would be lost: name another file for the output")]
     OutputIsInput(PathBuf),
-    /// The folder of the output does not exist: its path.
+    /// The folder of the output, at this path, does not exist.
     #[error("the folder `{0}` does not exist: make it, or name another with `-o FILE`")]
     OutputFolderMissing(PathBuf),
     /// The output cannot be written.
@@ -67,7 +67,7 @@ pub enum LinkError {
         /// Reason why the folder is not a cache: an unknown file, or no lock file.
         why: String,
     },
-    /// The disk is full: the path that could not be written.
+    /// The disk is full; contains the path that could not be written.
     #[error("there is no room left at `{0}` (a full disk, a quota, or `ulimit -f`): make room, then try again")]
     DiskFull(PathBuf),
 
@@ -103,7 +103,7 @@ pub enum LinkError {
         "executables run on Linux, and `{0}` is another system: name aarch64, armv7, x86_64 or another triple of Linux"
     )]
     NotLinux(String),
-    /// The standard library of the machine is not installed, but rustup offers it: the target triple.
+    /// The standard library of the machine is not installed, but rustup offers it; contains the target triple.
     #[error("Rust's standard library for `{0}` is not installed: run `rustup target add {0}`")]
     MachineToAdd(String),
     /// The standard library of the machine is not installed, and rustup does not offer it.
@@ -112,7 +112,7 @@ pub enum LinkError {
          your distribution or the makers of the machine advise"
     )]
     MachineMissing(String),
-    /// There is no linker for another machine.
+    /// The linker cannot make a static executable for another machine.
     #[error(
         "the linker cannot make a static executable for `{triple}`: name a linker for it in the configuration in cargo's \
          home, as `[target.{triple}]` and `linker = \"…\"`; its output is in `{log}`"
@@ -148,7 +148,7 @@ pub enum LinkError {
     )]
     Offline,
 
-    /// The target's folder is not a crate: its path.
+    /// The target's folder, at this path, is not a crate.
     #[error("`{0}` has no Cargo.toml: a target is the folder of its crate, with its alphabet")]
     NotACrate(PathBuf),
     /// The target's alphabet and its manifest name different crates.
@@ -197,10 +197,10 @@ pub enum LinkError {
         log: PathBuf,
     },
 
-    /// A path that is not UTF-8, so that no manifest can contain it.
+    /// The path is not UTF-8, so a manifest cannot contain it.
     #[error("`{0}` is not UTF-8, which cargo's manifests need: rename it")]
     NotUtf8(PathBuf),
-    /// A signal has stopped the build: the number of the signal.
+    /// A signal has stopped the build; contains the number of the signal.
     #[error("the build was stopped by signal {0}")]
     Stopped(u8),
     /// Cargo fails for an unknown reason.
@@ -231,7 +231,7 @@ pub enum LinkError {
         /// File with the output of cargo and rustc.
         log: PathBuf,
     },
-    /// An unknown built-in target: its name.
+    /// There is no built-in target of this name.
     #[error("internal error: `{0}` is not built in; please report it")]
     NoSuchTarget(String),
 }
@@ -289,7 +289,8 @@ impl LinkError {
     }
 }
 
-/// Returns `true` if the error means that the disk, a quota or the limit of the process is full.
+/// Returns `true` if the error means that the disk is full, or that a quota or the process's limit on file sizes is
+/// reached.
 fn is_full(error: &io::Error) -> bool {
     use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
     matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge)

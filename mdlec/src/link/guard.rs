@@ -1,4 +1,4 @@
-//! Kills a running cargo if its mdlec was killed. Otherwise this cargo would delay the next build until it is done.
+//! Kills a running cargo when its mdlec was killed; it would otherwise delay the next build until it finishes.
 
 use std::io;
 use std::os::unix::process::CommandExt;
@@ -32,7 +32,8 @@ impl Guard {
 
 impl Drop for Guard {
     fn drop(&mut self) {
-        // The shell alone: children that cargo left running on purpose, such as a cache of compilers, go on.
+        // Only the shell is killed. Background processes that cargo left running on purpose, such as a compiler cache,
+        // continue.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
@@ -53,7 +54,7 @@ mod tests {
     fn the_group_ends_with_the_input_of_its_guard() {
         let mut guard = Guard::start().unwrap();
         let mut child = sleep(&guard);
-        // As when this process is killed: the system closes what it held.
+        // The same happens when this process is killed: the system closes the pipe.
         drop(guard.0.stdin.take());
         assert_eq!(child.wait().unwrap().signal(), Some(9));
     }

@@ -1,4 +1,4 @@
-//! Configuration of cargo and rustup that builds ignore, because it is not in cargo's home.
+//! Finds configuration files of cargo and rustup that builds ignore, because they are not in cargo's home.
 
 use std::path::{Path, PathBuf};
 use std::{fs, path};
@@ -8,7 +8,8 @@ use super::toolchain::cargo_home;
 /// Files that cargo and rustup read in the folder of a build and in each folder above it.
 const NAMES: [&str; 4] = [".cargo/config.toml", ".cargo/config", "rust-toolchain.toml", "rust-toolchain"];
 
-/// Returns the first configuration file in `folders` or above them that is not in cargo's home. Builds do not read it.
+/// Returns the first configuration file in `folders` or above them that is not in cargo's home, and that builds
+/// therefore ignore.
 #[must_use]
 pub fn ignored_configuration(folders: &[&Path]) -> Option<PathBuf> {
     first(folders, cargo_home().as_deref())
@@ -16,7 +17,7 @@ pub fn ignored_configuration(folders: &[&Path]) -> Option<PathBuf> {
 
 fn first(folders: &[&Path], home: Option<&Path>) -> Option<PathBuf> {
     let home = home.and_then(|home| fs::canonicalize(home).ok());
-    // As cargo looks: above the folder itself, wherever a link or `..` leads to it.
+    // Like cargo, resolve symbolic links and `..` before searching the folders above.
     let place = |folder: &&Path| fs::canonicalize(folder).or_else(|_| path::absolute(folder)).ok();
     let folders: Vec<PathBuf> = folders.iter().filter_map(place).collect();
     let files =
@@ -40,7 +41,7 @@ mod tests {
         fs::create_dir_all(&home).unwrap();
         fs::create_dir_all(&plans).unwrap();
         fs::write(home.join("config.toml"), "").unwrap();
-        // Something above may have a configuration of its own.
+        // A folder above the test's folder may contain a configuration file.
         let above = first(&[&folder.join("..")], Some(&home));
         assert_eq!(first(&[&plans], Some(&home)), above);
         assert_eq!(first(&[&plans], None), Some(home.join("config.toml")));

@@ -17,7 +17,7 @@ const SHORT: [(&str, &str); 3] = [
     ("x86_64", "x86_64-unknown-linux-musl"),
 ];
 
-/// Linker of rustc itself, which every installation has.
+/// Linker that comes with every installation of rustc.
 const OWN_LINKER: &str = "rust-lld";
 
 /// A machine for which executables are built.

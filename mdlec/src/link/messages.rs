@@ -30,11 +30,11 @@ pub(super) struct Run {
     pub(super) status: ExitStatus,
     /// `true` if cargo was allowed to use the network.
     pub(super) online: bool,
-    /// `true` if cargo compiled a package, or found a compiled package.
+    /// `true` if cargo compiled a package or found a compiled package, or if rustc reported a message.
     pub(super) began: bool,
     /// `true` if cargo used at least one crate that an earlier run had compiled.
     pub(super) reused: bool,
-    /// Executable of the plan; `None` if there is none.
+    /// Executable of the plan; `None` if cargo reported none.
     pub(super) executable: Option<Executable>,
     /// Messages of rustc, warnings included, in order.
     pub(super) complaints: Vec<Complaint>,
@@ -108,7 +108,7 @@ pub(super) fn follow(
 ) -> io::Result<Run> {
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
     let (sender, heard) = mpsc::channel();
-    // Both pipes must be emptied, or cargo waits for us.
+    // Both pipes must be read at the same time, because cargo blocks while a pipe is full.
     let stderr = {
         let sender = sender.clone();
         thread::spawn(move || {
@@ -127,7 +127,7 @@ pub(super) fn follow(
     for heard in heard {
         match heard {
             CargoLine::Blocked => progress(Progress::Blocked),
-            // A line that is not a message, such as a compiler wrapper's, is none of ours.
+            // Lines that are not messages, such as those of a compiler wrapper, are ignored.
             CargoLine::Message(line) => {
                 if let Ok(line) = serde_json::from_slice(&line) {
                     log.take(line, progress);
@@ -145,7 +145,7 @@ pub(super) fn follow(
 /// Passes each line to `take`, until there are no more lines, reading fails, or `take` returns `false`.
 fn each_line(lines: Option<impl Read>, mut take: impl FnMut(&[u8]) -> bool) {
     for line in lines.map(BufReader::new).into_iter().flat_map(|lines| lines.split(b'\n')) {
-        // What was read before an error is good enough for a message.
+        // After a read error, the lines read so far are sufficient for an error message.
         let Ok(line) = line else { break };
         if !take(&line) {
             break;

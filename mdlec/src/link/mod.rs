@@ -1,8 +1,8 @@
 //! Builds a static executable from emitted Rust, or from the files of a scenario: writes a cargo package and runs
 //! cargo.
 //!
-//! Everything happens in the [`Cache`]. The sources of executables are part of mdlec and unpacked there once, so that
-//! an installed mdlec needs no checkout and, once cargo has fetched the libraries, no network:
+//! All files are in the [`Cache`]. The sources of executables are part of mdlec and are unpacked there once. An
+//! installed mdlec therefore needs no checkout and, once cargo has fetched the libraries, no network:
 //!
 //! ```text
 //! lock                    locked while an mdlec works; contains the number of its process
@@ -13,15 +13,15 @@
 //! plans/plan-NAME-HASH/   the package of a plan; HASH is of its text as Rust, of the target and of the machine
 //! ```
 //!
-//! Only its user has access to the cache. mdlec repairs damage in it: files of mdlec are compared byte by byte, build
-//! results by their hash, and where cargo cannot read the rest, everything is compiled again.
+//! Only its user has access to the cache. mdlec repairs damage in it: it compares its own files byte by byte and build
+//! results by their hash, and compiles everything again if cargo cannot read the remaining files.
 //!
-//! An executable depends on the text of the plan, on mdlec, on the target, on Rust's version and on the path of the
-//! cache: not on the plan's folder, nor on earlier builds. Cargo puts the paths of packages into the symbols of their
-//! code, so that another cache gives other bytes.
+//! Builds are reproducible: the bytes of an executable depend on the text of the plan, on mdlec, on the target, on
+//! Rust's version and on the path of the cache, but not on the plan's folder or on earlier builds. The path of the
+//! cache matters because cargo derives the symbols of a package's code from the path of the package.
 //!
-//! Versions are those of mdlec's own lock file, flags are set here in every environment, and the paths of the cache, of
-//! cargo's home and of the user's home do not get into the executable.
+//! Libraries have the versions of mdlec's own lock file, and compiler flags are the same in every environment. The
+//! paths of the cache, of cargo's home and of the user's home do not get into the executable.
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 
 mod access;
@@ -75,7 +75,7 @@ use toolchain::Toolchain;
 pub struct Package<'a> {
     /// Name of the plan or of the scenario, which the executable shows.
     pub plan_name: &'a str,
-    /// Texts on which the executable depends, for its answer to `--version`.
+    /// Version text of the plan, its target and mdlec, for the executable's answer to `--version`.
     pub version: &'a str,
     /// File of the plan or of the scenario.
     pub plan_file: &'a Path,
@@ -136,7 +136,7 @@ pub fn build(
     let job = Job { cache, machine: &machine, plan: &plan };
     let executable = make(&job, package.target, &dependencies, progress)?;
     let size = destination.copy(&executable.path)?;
-    // Until here: another build of this plan would write over the executable.
+    // The lock is held until here, because another build of this plan would overwrite the executable.
     drop(locked);
     Ok(Built { size, fresh: executable.fresh })
 }
@@ -185,7 +185,7 @@ fn make(
     }
 }
 
-/// Runs cargo, and runs it again if damage in the cache may have caused a failure.
+/// Runs cargo. If the result shows damage in the cache, removes the damaged part and runs cargo again.
 fn run(job: &Job<'_>, target: &TargetCrate<'_>, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
     let mut mended = Vec::new();
     let mut seal = Seal::check(job.cache, progress)?;

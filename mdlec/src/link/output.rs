@@ -70,7 +70,7 @@ impl Destination {
             return Err(LinkError::OutputFolderMissing(folder.to_owned()));
         }
         let destination = Self { shown, path };
-        // Nothing stays behind: a signal in the build must not leave a file.
+        // The trial file is removed at once, so that a signal during the build does not leave a file behind.
         let trial = destination.beside();
         let tried = cleanup::create(&trial).and_then(|_watched| fs::remove_file(&trial));
         tried.map_err(|error| LinkError::output(&destination.shown, error))?;
@@ -93,7 +93,7 @@ impl Destination {
         let (mut file, _watched) = cleanup::create(&new).map_err(refused)?;
         let written = write(&mut file).and_then(|written| fs::rename(&new, &self.path).map(|()| written));
         written.map_err(|error| {
-            // The first error is the one that counts.
+            // Only the first error is reported; an error of the removal is ignored.
             let _ = fs::remove_file(&new);
             refused(error)
         })
@@ -109,7 +109,7 @@ impl Destination {
     }
 }
 
-/// Returns the folder of a file, also if the path is only a name.
+/// Returns the folder of a file; `.` for a path that is only a name.
 fn folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

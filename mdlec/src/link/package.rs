@@ -58,7 +58,7 @@ fn write_package(
     match write_files(&folder, &files, lock) {
         Ok(()) => {}
         Err(full @ LinkError::DiskFull(_)) => return Err(full),
-        // Such as a file where a folder has to be.
+        // Writing fails if, for example, a file is in the place of a folder.
         Err(_) => {
             remove(&folder)?;
             write_files(&folder, &files, lock)?;
@@ -73,7 +73,7 @@ fn write_files(folder: &Path, files: &[(&str, &str)], lock: &str) -> Result<(), 
     for (name, text) in files {
         write_if_changed(&folder.join(name), text.as_bytes())?;
     }
-    // Cargo adds the plan's own package to the lock file and drops what the plan does not need.
+    // Cargo adds the plan's own package to the lock file, and removes packages that the plan does not need.
     if write_if_changed(&folder.join("seed.lock"), lock.as_bytes())? || !build_record::has_lock(folder) {
         write_if_changed(&folder.join("Cargo.lock"), lock.as_bytes())?;
     }

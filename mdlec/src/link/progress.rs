@@ -8,7 +8,7 @@ pub enum Progress {
     /// Another mdlec is building; the field is the number of its process, if it is known. This build continues
     /// afterwards.
     Waiting(Option<u32>),
-    /// Cargo waits for another cargo, which mdlec did not start.
+    /// Cargo waits for a lock that is held by a cargo that mdlec did not start.
     Blocked,
     /// Cargo fetches libraries that are not on this machine yet.
     Fetching,
@@ -21,7 +21,7 @@ pub enum Progress {
 }
 
 impl Progress {
-    /// Returns `true` if this is the first report of the step, and not the same step with a higher number.
+    /// Returns `true` for the first report of a step, and `false` for further reports of the step with a higher number.
     #[must_use]
     pub fn is_first(&self) -> bool {
         match self {

@@ -1,9 +1,11 @@
-//! Checks the hashes of everything used from the cache: libraries, procedural macros, build scripts and their output.
+//! Checks the hashes of everything that builds use from the cache: libraries, procedural macros, build scripts and
+//! their output.
 //!
-//! Cargo compares the times of files. The list of this module names each compiled file with the hash of its
-//! contents. Before cargo runs, a file that is not listed or differs is removed, so that cargo compiles it
-//! again. The list reveals damage, and files that were put there while the folder was open to others. It does
-//! not stop an attacker who can write to the cache, and so to the list; the permissions of the cache do.
+//! Cargo compares only the times of files. This module keeps a list of all compiled files with the hashes of their
+//! contents. Before cargo runs, each file that is not listed or does not match its hash is removed, so that cargo
+//! compiles it again. The list reveals damage, and files that other users added while they had access to the folder. It
+//! does not stop an attacker who can write to the cache, because the list is in the cache; the permissions of the cache
+//! prevent this.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -35,19 +37,19 @@ impl Seal {
     pub(super) fn check(cache: &Cache, progress: &mut dyn FnMut(Progress)) -> Result<Self, LinkError> {
         let (target, list) = (cache.target(), cache.folder().join(LIST));
         let text = fs::read_to_string(&list).unwrap_or_default();
-        // What was compiled again is listed again: the last line counts.
+        // A file that was compiled again is listed again: its last line counts.
         let lines = text.lines().filter_map(|line| line.split_once(' '));
         let hashes = lines.map(|(hash, path)| (path.to_owned(), hash.to_owned())).collect();
         let mut seal = Self { target, list, hashes };
 
-        // A link leads out of the cache.
+        // A symbolic link would lead out of the cache.
         if seal.target.is_symlink() {
             remove(&seal.target)?;
         }
         let mut files = Vec::new();
         taken(&seal.target, false, &mut files).map_err(|error| LinkError::cache(&seal.target, error))?;
         let (good, bad): (Vec<_>, Vec<_>) = files.iter().zip(seal.fit(&files)).partition(|(_, fits)| *fits);
-        // What a build that was stopped had compiled is not listed, and no damage.
+        // Files that an interrupted build compiled are not listed, and are not damage.
         if bad.iter().any(|(file, _)| seal.listed(file).is_some()) {
             progress(Progress::Discarding);
         }
@@ -59,13 +61,13 @@ impl Seal {
         Ok(seal)
     }
 
-    /// Records the hashes of `files` in the list. If `fresh` is `true`, cargo has found the files already compiled, and
-    /// those that are listed are not recorded again.
+    /// Records the hashes of `files` in the list. If `fresh` is `true`, cargo has found the files already compiled;
+    /// files that are listed then keep their hashes.
     pub(super) fn add(&mut self, files: &[PathBuf], fresh: bool) {
         let new = files.iter().filter(|file| !fresh || self.listed(file).is_none());
         let lines: Vec<_> = new.filter_map(|file| Some((self.name(file)?.to_owned(), hash_of(file)?))).collect();
         let text: String = lines.iter().map(|(path, hash)| format!("{hash} {path}\n")).collect();
-        // What cannot be listed is compiled anew the next time.
+        // A file that cannot be listed is compiled again in the next build.
         let _ = File::options()
             .create(true)
             .append(true)
@@ -78,7 +80,7 @@ impl Seal {
     /// its output.
     pub(super) fn add_script(&mut self, inside: &Path, fresh: bool) {
         let mut files = Vec::new();
-        // What cannot be read is compiled anew the next time.
+        // A file that cannot be read is compiled again in the next build.
         let _ = taken(inside.parent().unwrap_or(inside), false, &mut files);
         self.add(&files, fresh);
     }
@@ -122,7 +124,7 @@ fn hash_of(file: &Path) -> Option<String> {
     fs::read(file).ok().map(|bytes| hash(&bytes))
 }
 
-/// Returns the number of threads that read files: at most 4, which read as fast as memory allows.
+/// Returns the number of threads that read files: at most 4, which is enough to read at the speed of memory.
 fn workers() -> usize {
     thread::available_parallelism().map_or(1, |all| all.get().min(4))
 }
@@ -138,7 +140,7 @@ fn taken(folder: &Path, all: bool, files: &mut Vec<PathBuf>) -> io::Result<()> {
         let entry = entry?;
         let (kind, path, name) = (entry.file_type()?, entry.path(), entry.file_name());
         if kind.is_dir() {
-            // Cargo's notes on what is up to date are named like build scripts.
+            // Cargo's fingerprint files have the same names as build scripts.
             if name != ".fingerprint" {
                 taken(&path, all || name == "out", files)?;
             }
@@ -226,7 +228,7 @@ mod tests {
         assert!(!differs(&cache), "a build that was stopped leaves such files");
         assert!(!folder.join("libstrange-5.rlib").exists() && !folder.join("anywhere").is_symlink());
         assert!(folder.join("liba-1.d").exists() && note.exists() && cache.folder().exists());
-        // The same contents, elsewhere.
+        // A symbolic link to the same contents is rejected.
         fs::rename(&files[0], cache.folder().join("moved")).unwrap();
         link("liba-1.rlib", &cache.folder().join("moved"));
         assert!(differs(&cache) && !files[0].is_symlink() && cache.folder().join("moved").exists());

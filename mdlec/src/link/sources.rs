@@ -61,7 +61,7 @@ fn options(target: &str) -> Option<Vec<(&'static str, &'static str)>> {
     let (folder, _) = builtin(target)?;
     let lines = text(&format!("{folder}/options.txt")).lines().filter(|line| !line.starts_with('#'));
     let options: Vec<_> = lines.map(|line| line.split_once(' ').unwrap_or((line, ""))).collect();
-    // A robot may not have been listed yet.
+    // An empty list means that the options of the robot are not known yet.
     Some(options).filter(|options| !options.is_empty())
 }
 
@@ -95,13 +95,14 @@ impl Sources {
         match write(&folder) {
             Ok(()) => {}
             Err(full @ LinkError::DiskFull(_)) => return Err(full),
-            // Such as a file where a folder has to be.
+            // Writing fails if, for example, a file is in the place of a folder.
             Err(_) => {
                 remove(&folder)?;
                 write(&folder)?;
             }
         }
-        // Where its time cannot be set, it is forgotten a little early, which costs no more than time.
+        // The folder's time marks its last use. If it cannot be set, the sources are removed too early, which only
+        // costs time.
         let _ = File::open(&folder).and_then(|folder| folder.set_modified(SystemTime::now()));
         Ok(Self { folder })
     }
@@ -132,7 +133,7 @@ fn forget_old_versions(cache: &Cache) -> Result<(), LinkError> {
         remove(&cache.target())?;
         remove(&cache.plans())?;
     }
-    // Last, so that what stops halfway goes on the next time.
+    // The sources are removed last, so that the next run continues an interrupted removal.
     old.iter().try_for_each(|old| remove(old))
 }
 
@@ -182,7 +183,7 @@ mod tests {
     #[test]
     fn nothing_but_what_a_build_needs_is_packed() {
         for (name, _) in embedded::FILES {
-            // Of the compiler what loads the plans of a scenario.
+            // Of mdlec, only the crates that load the plans of a scenario are packed.
             let is_of_mdlec = name.starts_with("mdlec/");
             let is_loader = ["mdlec/compiler/", "mdlec/files/"].iter().any(|folder| name.starts_with(folder));
             assert!(is_loader || !is_of_mdlec, "{name}");
@@ -207,7 +208,7 @@ mod tests {
         fs::remove_file(folder.join("atoms/Cargo.toml")).unwrap();
         fs::write(folder.join("runtime/core/src/lib.rs"), "cut").unwrap();
         fs::remove_dir_all(folder.join("runtime/host")).unwrap();
-        // Garbage of the right length, and a folder where a file has to be.
+        // Garbage of the right length, and a folder in the place of a file.
         fs::write(folder.join("atoms/alphabet.mdle"), text("atoms/alphabet.mdle").replace(' ', "?")).unwrap();
         fs::remove_file(folder.join("Cargo.lock")).unwrap();
         fs::create_dir_all(folder.join("Cargo.lock/garbage")).unwrap();

@@ -1,5 +1,5 @@
-//! Removes the package of a plan file's former text from the cache. The name of a package depends on the text, so each
-//! edit would otherwise leave the earlier package with an executable of some megabytes.
+//! Removes the packages of earlier versions of a plan file from the cache. The name of a package depends on the plan's
+//! text, so each edit would otherwise leave behind a package with an executable of some megabytes.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -13,7 +13,7 @@ use super::plan_package::PlanPackage;
 use super::{Cache, LinkError};
 
 /// Name of a file in a package's folder. It contains a hash of the plan file's path and, if the package is not for this
-/// machine, of the machine.
+/// machine, of the target triple.
 const OWNER: &str = "owner";
 
 /// Records that `plan_file` was last built for `machine` as `package`, and removes the packages of its earlier

@@ -1,8 +1,8 @@
-//! Crate of the robot, and the packages on which a plan for the robot depends.
+//! The crate of a robot, and the packages on which a plan for the robot depends.
 //!
-//! A plan and its target must use the same `mdle-runtime`, since a type in two packages is two types. A
-//! third-party target therefore decides: its path dependencies are used for the plan as well; its dependencies
-//! by version or from git are replaced, in its crate too, by the sources that are part of mdlec.
+//! A plan and its target must use the same `mdle-runtime`, since Rust treats a type in two packages as two types. The
+//! path dependencies of a third-party target are therefore used for the plan as well. Its dependencies by version or
+//! from git are replaced, for the plan and for the target, by the sources that are part of mdlec.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -52,7 +52,7 @@ impl<'a> TargetCrate<'a> {
     }
 }
 
-/// Returns `true` if `file` begins like an executable of Linux.
+/// Returns `true` if `file` begins with the magic number of an ELF file, as executables of Linux do.
 fn is_executable(file: &Path) -> bool {
     let mut start = [0; 4];
     File::open(file).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == *b"\x7fELF"
@@ -70,7 +70,7 @@ pub(super) struct Dependencies {
     pub(super) lock: String,
     /// Text that distinguishes this target from others.
     pub(super) identity: String,
-    /// Folder of the sources that are part of mdlec; a fault in them is a fault of mdlec.
+    /// Folder of mdlec's own sources; a compile error in them is a bug in mdlec.
     pub(super) ours: PathBuf,
 }
 
@@ -90,7 +90,7 @@ fn builtin(name: &str, crate_name: &str, sources: &Sources) -> Result<Dependenci
     let mut packages: Vec<_> =
         SHARED.iter().map(|(name, folder)| ((*name).to_owned(), sources.folder.join(folder))).collect();
     packages.push((package.to_owned(), sources.folder.join(&folder)));
-    // A target that is a workspace of its own has a lock of its own.
+    // A target that is a separate workspace has its own lock file.
     let own = sources::text(&format!("{folder}/{}", sources::LOCK));
     let lock = if own.is_empty() { sources::text(sources::LOCK) } else { own };
     Ok(Dependencies {
@@ -102,7 +102,8 @@ fn builtin(name: &str, crate_name: &str, sources: &Sources) -> Result<Dependenci
     })
 }
 
-/// Returns the dependencies of a scenario: the package that runs scenarios has all robots and the compiler.
+/// Returns the dependencies of a scenario: only the package that runs scenarios, which includes all robots and the
+/// compiler.
 pub(super) fn scenario_dependencies(sources: &Sources) -> Dependencies {
     let (name, folder) = sources::RUNNER;
     Dependencies {
@@ -126,7 +127,7 @@ pub(super) fn emulator_dependencies(robot: &str, sources: &Sources) -> Result<De
     })
 }
 
-/// Returns the dependencies of a third-party target, with the packages that its manifest selects.
+/// Returns the dependencies of a plan for a third-party target, as its manifest selects them.
 fn by_path(folder: &Path, crate_name: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
     let manifest = folder.join("Cargo.toml").canonicalize().map_err(|_| LinkError::NotACrate(folder.to_owned()))?;
     let metadata = read(&manifest, crate_name)?;
@@ -145,14 +146,14 @@ fn by_path(folder: &Path, crate_name: &str, sources: &Sources) -> Result<Depende
                 patches.push((dependency.patched_source(), name.to_owned(), ours.clone()));
                 packages.push((name.to_owned(), ours));
             }
-            // Atoms of the target's own choice come by way of the target, or not at all.
+            // A target with path dependencies brings its own package of atoms, or uses none.
             None if name == "mdle-atoms" && by_path => {}
             None if name == "mdle-atoms" => packages.push((name.to_owned(), ours)),
             None => return Err(LinkError::TargetLacks { crate_name: crate_name.to_owned(), missing: name }),
         }
     }
     packages.push((own.name.clone(), manifest.parent().unwrap_or(folder).to_owned()));
-    // Without a lock file of its own the target is built with the versions of mdlec's, as far as they are the same.
+    // A target without a lock file is built with the versions in mdlec's lock file, where these fit its dependencies.
     let lock = fs::read_to_string(metadata.workspace_root.join(sources::LOCK));
     Ok(Dependencies {
         packages,

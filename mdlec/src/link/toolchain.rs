@@ -1,4 +1,4 @@
-//! The installed Rust: its version, and the commands by which its programs are run.
+//! The installed Rust toolchain: its version, and the commands that run its programs.
 
 use std::ffi::OsStr;
 use std::path::{self, PathBuf};
@@ -11,8 +11,8 @@ use super::LinkError;
 const NEEDED: &str = env!("CARGO_PKG_RUST_VERSION");
 
 /// Prefixes of environment variables that cargo may read, because they are the user's choice: cargo's folders, its
-/// registries, the network, and its use of the machine. All other variables could change builds, or make cargo build
-/// everything again.
+/// registries, the network, and its use of the machine. All other variables of cargo and rustc are removed, because
+/// they could change builds, or make cargo build everything again.
 const KEPT: [&str; 6] =
     ["CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTRIES_", "CARGO_REGISTRY_", "CARGO_BUILD_JOBS"];
 
@@ -38,7 +38,7 @@ impl Toolchain {
         let description = String::from_utf8_lossy(&found.stdout);
         let field = |name: &str| description.lines().find_map(|line| line.strip_prefix(name));
         let (Some(host), Some(release), true) = (field("host: "), field("release: "), found.status.success()) else {
-            // Such as rustup without a toolchain; its first line says so.
+            // For example, rustup without a toolchain, which the first line reports.
             let errors = String::from_utf8_lossy(&found.stderr);
             let why = errors.lines().next().unwrap_or("it printed no error").trim_start_matches("error: ").to_owned();
             return Err(LinkError::NoRust { tool: "rustc", why });

@@ -1,8 +1,8 @@
-//! Tests that a damaged cache is repaired, and that the executable is then the one of the current plan.
+//! Tests that mdlec repairs a damaged cache, and then builds the executable of the current plan.
 //!
 //! Compiling all libraries again takes long. If the variable `MDLE_LONG` is set to anything but 1, the tests damage all
-//! libraries and compile them again. Otherwise a test damages only the libraries of mdlec or of the robot, or it ends
-//! when the build reports that it compiles everything again.
+//! libraries and compile them again. Otherwise a test damages only a few libraries, or it ends when the build reports
+//! that it compiles everything again.
 
 use std::fs::{self, File};
 use std::os::unix::fs::MetadataExt;
@@ -49,12 +49,12 @@ fn assert_mends(robot: &Robot, cause: &str, restore: impl FnOnce()) {
     }
     let mut leave = |progress| {
         if progress == Progress::Mending {
-            // Without a message: it is not a failure.
+            // `resume_unwind` prints no message, because this is not a failure.
             panic::resume_unwind(Box::new(progress));
         }
     };
     let rust = PLAN.replace("morning", cause);
-    // The list of what was compiled, of which nothing would be good any more.
+    // The build discards the list of compiled files, so the test restores it.
     let list = robot.cache.folder().join("compiled");
     let listed = fs::read(&list).unwrap();
     let ended = panic::catch_unwind(AssertUnwindSafe(|| robot.build_with("nap.mdle", &rust, &mut leave)));
@@ -121,7 +121,7 @@ fn libraries_that_are_damaged_are_built_anew() {
     cut(&libraries(&["libmdle_rover"], ".rmeta"), 0);
     assert_builds(&robot, "night");
 
-    // A library of a stranger is compiled again, beside others of which nothing is left.
+    // A third-party library without its fingerprint is compiled again, beside other libraries that are empty.
     let compiled = files(&target(&robot.cache), &|name| name.starts_with("lib-thread_priority"));
     cut(&libraries(&["libmdle_", "libthread_priority"], ".rmeta"), 0);
     compiled.iter().for_each(|fingerprint| fs::remove_file(fingerprint).unwrap());
@@ -152,7 +152,7 @@ fn a_library_that_another_was_put_in_place_of_is_not_used() {
     let [host] = host.as_slice() else { panic!("{host:?}") };
     let mut bytes = fs::read(host).unwrap();
     let times = fs::metadata(host).unwrap().modified().unwrap();
-    // Its report, as another would have it: cargo and rustc see nothing, as the times and the size stay.
+    // Replaces the text of its report. Cargo and rustc do not notice this, because the time and the size stay the same.
     let words = b"plan over";
     let places: Vec<_> = (0..bytes.len() - words.len()).filter(|at| bytes[*at..].starts_with(words)).collect();
     assert!(!places.is_empty());
@@ -206,7 +206,7 @@ fn files_of_the_package_that_are_damaged_are_written_anew() {
     fs::remove_dir_all(package.join("src")).unwrap();
     fs::write(package.join("src"), "garbage").unwrap();
     assert_builds(&robot, "morning");
-    // A lock that nobody holds keeps nobody out, whatever it says.
+    // A lock file that no process has locked does not block a build, regardless of its contents.
     fs::write(robot.cache.folder().join("lock"), "4711 garbage").unwrap();
     assert_builds(&robot, "morning");
 }

@@ -1,4 +1,4 @@
-//! Tests that emitted Rust becomes a static executable, and that an error message explains why it cannot.
+//! Tests that emitted Rust is built into a static executable, or that an error message explains why it cannot be built.
 
 use std::fs;
 use std::process::Command;
@@ -83,7 +83,7 @@ fn a_target_must_be_what_its_alphabet_says() {
     assert!(matches!(error, LinkError::NotACrate(_)), "{error:?}");
 }
 
-/// Returns `true` if a 64-bit ELF file asks for a dynamic loader, by a program header of type 3.
+/// Returns `true` if a 64-bit ELF file requests a dynamic loader, with a program header of type 3.
 fn has_interpreter(elf: &[u8]) -> bool {
     assert_eq!(elf[..5], *b"\x7fELF\x02");
     let number = |at: usize, bytes: usize| elf[at..at + bytes].iter().rev().fold(0, |n, byte| n << 8 | *byte as usize);

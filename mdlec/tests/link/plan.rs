@@ -1,4 +1,4 @@
-// Emitted text as the tests of `link` need it: the plan is over at once.
+// Emitted text for the tests of `link`: a plan that ends at once.
 pub struct Nap;
 
 impl Nap {

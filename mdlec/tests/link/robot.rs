@@ -45,10 +45,10 @@ impl Robot {
         fs::write(folder.join("rover/Cargo.toml"), manifest).unwrap();
         fs::write(folder.join("rover/src/lib.rs"), rust).unwrap();
         static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
-        // A test that failed is not a reason for the next to fail.
+        // A failed test must not make the next test fail.
         let turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
         let cache = Cache::at(&tests.join("cache")).unwrap();
-        // The first build, of all libraries, mends a cache: that costs no other build of all libraries.
+        // The first build has to compile all libraries anyway, so it also tests the repair of a damaged cache.
         if !target(&cache).exists() {
             fs::write(target(&cache), "garbage").unwrap();
         }

@@ -46,19 +46,19 @@ enum Request {
     },
     /// Return diagnostics with their fixes, the names of plans, and semantic tokens.
     Diagnose(Draft),
-    /// Return proposals at a place.
+    /// Return completions at a position.
     Complete {
         #[serde(flatten)]
         draft: Draft,
         at: At,
     },
-    /// Return the text about a place.
+    /// Return the hover text at a position.
     Hover {
         #[serde(flatten)]
         draft: Draft,
         at: At,
     },
-    /// Return the signature of the call around a place.
+    /// Return the signature of the call that encloses a position.
     Signature {
         #[serde(flatten)]
         draft: Draft,
@@ -72,13 +72,13 @@ enum Request {
     Ready(Setup),
     /// Begin a run.
     Begin(Setup),
-    /// Make turns of the run.
+    /// Advance the run by at most `turns` turns.
     Step { turns: u64 },
     /// Explain a turn of the run.
     Why { turn: usize },
-    /// Make a complete run, and return its end.
+    /// Perform a complete run, and return its end.
     Trial(Setup),
-    /// Make a complete run, and return a file of it.
+    /// Perform a complete run, and return one of its files.
     Export {
         what: export::Kind,
         #[serde(flatten)]
@@ -86,7 +86,7 @@ enum Request {
     },
 }
 
-/// A place in a text, as `{"line":…,"character":…}`: both count from 0, and characters are UTF-16 code units.
+/// A position in a text, as `{"line":…,"character":…}`: both count from 0, and characters are UTF-16 code units.
 #[derive(Debug, Clone, Copy, Deserialize)]
 struct At {
     line: u32,
@@ -134,7 +134,7 @@ impl Session {
             Request::Floor { world } => floor::floor(&world),
             Request::Ready(setup) => setup.ready().and_then(|ready| floor::ready(&ready)),
             Request::Begin(setup) => {
-                // The memory of the last run is given back before the next is made.
+                // The memory of the previous run is freed before the next run is created.
                 self.run = None;
                 let run = self.run.insert(Run::begin(&setup)?);
                 run.description()

@@ -1,4 +1,4 @@
-//! Causes of transitions, as texts with the words of the plan.
+//! Formats the causes of transitions in the words of the plan.
 
 use mdle_quantity::cause_text;
 use mdle_runtime::{Measured, Plan, Printable, Transition};

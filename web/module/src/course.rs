@@ -34,11 +34,11 @@ pub(crate) struct Course {
 /// The reason why a run has ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum End {
-    /// The plan is over, with the last transition.
+    /// The plan is over.
     Over,
     /// The time limit was reached.
     Limit,
-    /// The robot has a fault, which the sentence describes.
+    /// The robot has a fault; contains its description.
     Fault(String),
 }
 
@@ -154,7 +154,7 @@ impl Course {
 
     /// Stops the robot.
     pub(crate) fn stop(&mut self) {
-        // The run has ended in any case.
+        // The run has ended, so an error is ignored.
         let _ = self.robot.stop();
     }
 

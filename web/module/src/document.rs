@@ -46,7 +46,7 @@ impl<'d> Document<'d> {
     /// Returns the document for a page's files.
     ///
     /// # Errors
-    /// Fails with a sentence if the text is too long, or if there is no such robot.
+    /// Fails if the text is too long, or if there is no such robot.
     pub(crate) fn of(draft: &'d Draft) -> Result<Self, String> {
         Self::for_robot(&draft.robot, draft)
     }
@@ -54,7 +54,7 @@ impl<'d> Document<'d> {
     /// Returns the document for a page's files, for the robot `name` instead of the page's robot.
     ///
     /// # Errors
-    /// Fails with a sentence if the text is too long, or if there is no such robot.
+    /// Fails if the text is too long, or if there is no such robot.
     pub(crate) fn for_robot(name: &str, draft: &'d Draft) -> Result<Self, String> {
         let robot = robot(name)?;
         let mut sources = Sources::default();
@@ -88,10 +88,10 @@ impl<'d> Document<'d> {
         self.read.iter().map(|(place, source)| (*source, place.clone())).collect()
     }
 
-    /// Returns the file in the editor, and `true` if it is among the files that were read for the file that is run.
+    /// Returns the file in the editor, and `true` if it is the file that is run or a file that was read for it.
     ///
     /// # Errors
-    /// Fails with a sentence if there is no such file, or if it is too long.
+    /// Fails if there is no such file, or if it is too long.
     pub(crate) fn shown(&mut self) -> Result<(SourceId, bool), String> {
         let place = if self.draft.file.is_empty() { FILE } else { &self.draft.file };
         if let Some(source) = self.read.get(place) {

@@ -36,8 +36,8 @@ impl Draft {
     }
 }
 
-/// Returns the path that results from `path` in the folder of the file `from`, and the same path without `.` and `..`.
-/// The second path is `None` if it leads out of the page's folder.
+/// Resolves `path` relative to the folder of the file `from`. Returns the joined path, and the same path without `.`
+/// and `..`. The second path is `None` if it leads out of the page's folder.
 pub(crate) fn looked_up(from: &str, path: &str) -> (String, Option<String>) {
     let whole = Path::new(from).parent().unwrap_or(Path::new("")).join(path);
     let mut parts = Vec::new();

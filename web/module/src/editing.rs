@@ -1,4 +1,4 @@
-//! Features of the editor. Places are lines and columns in UTF-16 code units, both from 0.
+//! Features of the editor. Positions are lines and columns in UTF-16 code units, both from 0.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -39,9 +39,9 @@ impl<'t> Places<'t> {
     }
 }
 
-/// Returns the diagnostics of the file that is run and of the file in the editor, with their fixes; the names of the
-/// plans of the file that is run, and of those among them that can be run; and the semantic tokens of the file in the
-/// editor.
+/// Returns the data that the editor shows: the diagnostics, with their fixes, of the file that is run and of the file
+/// in the editor; the names of all plans, and of the plans that can be run, of the file that is run; and the semantic
+/// tokens of the file in the editor.
 pub(crate) fn diagnose(document: &mut Document<'_>) -> Result<Value, String> {
     let found = document.check();
     let mut diagnostics = diagnostics(document, &found, |_| true);
@@ -101,7 +101,7 @@ fn diagnostics(document: &Document<'_>, found: &[Diagnostic], is_wanted: impl Fn
     numbered.map(diagnostic).collect()
 }
 
-/// Returns the proposals at a place.
+/// Returns the completions at a position.
 pub(crate) fn complete(document: &mut Document<'_>, at: Position) -> Result<Value, String> {
     let (shown, _) = document.shown()?;
     let text = document.sources.text(shown).to_owned();
@@ -131,7 +131,7 @@ fn item(item: &Item) -> Value {
     })
 }
 
-/// Returns the text about a place, in Markdown, or null.
+/// Returns the hover text at a position, in Markdown, or null.
 pub(crate) fn hover(document: &mut Document<'_>, at: Position) -> Result<Value, String> {
     let (shown, _) = document.shown()?;
     let text = document.sources.text(shown).to_owned();
@@ -140,7 +140,7 @@ pub(crate) fn hover(document: &mut Document<'_>, at: Position) -> Result<Value, 
     Ok(found.map_or(Value::Null, |found| json!({ "range": places.range(&found.range), "text": found.text })))
 }
 
-/// Returns the signature of the call around a place, or null.
+/// Returns the signature of the call that encloses a position, or null.
 pub(crate) fn signature(document: &mut Document<'_>, at: Position) -> Result<Value, String> {
     let (shown, _) = document.shown()?;
     let text = document.sources.text(shown).to_owned();

@@ -1,4 +1,4 @@
-//! Files of a run, with the bytes that `mdle run` writes.
+//! Exports the files of a run, byte for byte as `mdle run` writes them.
 
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ use crate::course::{Course, End, Exchange, Made};
 use crate::plan::Plan;
 use crate::setup::{PERIOD, Setup};
 
-/// Maximum number of bytes of a log or a table.
+/// Maximum size of a log or a table, in bytes.
 const MOST: usize = 128 << 20;
 
 /// A file of a run.
@@ -30,7 +30,7 @@ pub(crate) enum Kind {
     Record,
 }
 
-/// Repeats a run, and returns a file of it.
+/// Repeats a run, and returns its file of this kind.
 pub(crate) fn export(kind: Kind, setup: &Setup) -> Result<Value, String> {
     let plan = Plan::of(&setup.draft, setup.plan.as_deref())?;
     let ready = setup.ready()?;

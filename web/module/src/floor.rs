@@ -1,4 +1,4 @@
-//! Data of a world from which a page draws it.
+//! Returns the data from which a page draws a world.
 
 use mdle_simulator::{Form, Goal, Walls, World, Zone};
 use serde_json::{Value, json};
@@ -29,7 +29,7 @@ fn robot(ready: &Ready) -> Value {
 /// Returns the floor before a run, with the robot.
 ///
 /// # Errors
-/// Fails with a sentence if the world is too large to be drawn.
+/// Fails if the world is too large to be drawn.
 pub(crate) fn ready(ready: &Ready) -> Result<Value, String> {
     Ok(json!({ "floor": drawn(&ready.world, ready.goal)?, "robot": robot(ready) }))
 }
@@ -37,7 +37,7 @@ pub(crate) fn ready(ready: &Ready) -> Result<Value, String> {
 /// Returns the floor of a world, with the goal of a run.
 ///
 /// # Errors
-/// Fails with a sentence if the world is too large to be drawn.
+/// Fails if the world is too large to be drawn.
 fn drawn(world: &World, goal: Option<Goal>) -> Result<Value, String> {
     let corners: usize = world.outlines.iter().map(|outline| outline.points.len()).sum();
     if corners > CORNERS_MOST {

@@ -1,4 +1,5 @@
-//! Data of a turn from which a page draws it. Numbers are rounded for drawing; the files of a run have all digits.
+//! Returns the data from which a page draws a turn. Numbers are rounded for drawing; the files of a run have all
+//! digits.
 
 use std::collections::BTreeMap;
 
@@ -48,8 +49,8 @@ fn range(exchange: &Exchange, number: usize) -> Value {
     newest.and_then(|ping| ping.range).map_or(Value::Null, |range| json!(round(range.0)))
 }
 
-/// Returns the times since the innermost scope that encloses the current atom and the atom itself were entered, in this
-/// order. Returns an empty list if the atom has ended.
+/// Returns the times since the entry of the innermost scope that encloses the current atom and since the entry of the
+/// atom, in this order. Returns an empty list if the atom has ended.
 fn since(moment: Option<&Moment>) -> Value {
     let scopes = moment.filter(|moment| moment.cause.is_none()).map_or(&[][..], |moment| &moment.scopes);
     let inner = scopes.get(scopes.len().saturating_sub(2)..).unwrap_or(scopes);
@@ -66,8 +67,8 @@ fn skipped(moments: &[Moment]) -> Value {
     times.into_iter().map(|(atom, times)| json!([atom, times])).collect()
 }
 
-/// Returns the transitions: the scope that ended, the cause, and the atom that followed. If there are too many,
-/// the later ones are left out, except the last.
+/// Returns the transitions: the scope that ended, the cause, and the atom that followed. If there are too many, only
+/// the first ones and the last one are returned.
 fn fired(course: &Course) -> Value {
     let Some(machine) = &course.machine else { return json!([]) };
     let all = &course.seen.transitions;

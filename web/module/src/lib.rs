@@ -1,7 +1,7 @@
 //! The playground's module for a browser: the compiler, the language service and the simulator behind one function.
 //!
-//! A page sends a request as JSON and receives an answer as JSON, by the functions of [`page`]. The module imports
-//! nothing: it has no clock, no files and no network, so that the same request has the same answer everywhere.
+//! A page sends a request as JSON and receives an answer as JSON, through the functions of [`page`]. The module imports
+//! nothing: it has no clock, no files and no network, so the same request has the same answer everywhere.
 
 mod ask;
 mod causes;

@@ -6,7 +6,7 @@
 //! at = mdle_answer_at()                   the page reads `length` bytes there
 //! ```
 //!
-//! A module whose memory runs out, or that has a defect, stops with a trap; the page then begins another one.
+//! A module that runs out of memory or has a bug stops with a trap; the page then creates a new module.
 #![allow(unsafe_code, reason = "a page finds functions by names that are not mangled; nothing here is unsafe to call")]
 
 use std::cell::RefCell;
@@ -25,7 +25,7 @@ thread_local! {
     static EXCHANGE: RefCell<Exchange> = RefCell::default();
 }
 
-/// Makes room for a request of this many bytes, and returns its address.
+/// Allocates memory for a request of this many bytes, and returns its address.
 #[unsafe(no_mangle)]
 pub extern "C" fn mdle_room(length: usize) -> usize {
     EXCHANGE.with_borrow_mut(|exchange| {
@@ -38,7 +38,7 @@ pub extern "C" fn mdle_room(length: usize) -> usize {
 #[unsafe(no_mangle)]
 pub extern "C" fn mdle_answer() -> usize {
     EXCHANGE.with_borrow_mut(|Exchange { session, request, answer }| {
-        // The last answer may be large: it is given back before the next is made.
+        // The previous answer may be large: it is freed before the next answer is created.
         *answer = String::new();
         *answer = session.answer(&std::mem::take(request));
         answer.len()

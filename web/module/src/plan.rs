@@ -23,7 +23,7 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// Compiles and loads a plan for the robot `sim`, whichever robot its files are written for.
+    /// Compiles and loads a plan for the robot `sim`, regardless of the robot for which its files are written.
     ///
     /// # Errors
     /// Fails with messages as `mdlec` prints them.

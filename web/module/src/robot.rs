@@ -12,7 +12,7 @@ type Once = OnceLock<Result<ReadAlphabet, String>>;
 /// Returns the alphabet of a robot that is part of mdlec, or the alphabet of `sim` if `name` is empty.
 ///
 /// # Errors
-/// Fails with a sentence if there is no such robot.
+/// Fails if there is no such robot.
 pub(crate) fn robot(name: &str) -> Result<&'static ReadAlphabet, String> {
     static ROBOTS: OnceLock<Vec<(&builtin::Alphabet, Once)>> = OnceLock::new();
     let name = if name.is_empty() { NAME } else { name };

@@ -1,4 +1,4 @@
-//! A run that a page advances by turns.
+//! A run that a page advances turn by turn.
 
 use mdle_compiler::fsm::{Element, ElementKind};
 use mdle_compiler::load::{Moment, ScopeMoment};
@@ -22,7 +22,7 @@ struct Limits {
     /// Maximum size of all moments, in bytes; a turn whose moments are not kept is explained by repeating the
     /// run.
     moments: usize,
-    /// Maximum size of all turns, in bytes, as a page receives and keeps them; the run ends when it is reached.
+    /// Maximum size, in bytes, of all turns as a page receives and keeps them; the run ends when it is reached.
     turns: usize,
 }
 
@@ -33,7 +33,7 @@ pub(crate) struct Run {
     plan: Plan,
     ready: Ready,
     course: Course,
-    /// Moments of each turn from the first turn on, until their limit was reached.
+    /// Moments of each turn, from the first turn until the limit was reached.
     moments: Vec<Vec<Moment>>,
     /// Remaining size within the limits.
     left: Limits,
@@ -47,7 +47,7 @@ impl Run {
     /// Compiles the plan, and puts the robot at its start.
     ///
     /// # Errors
-    /// Fails with messages about the plan, or with a sentence about the setup.
+    /// Fails if the plan or the setup has errors.
     pub(crate) fn begin(setup: &Setup) -> Result<Self, String> {
         Self::within(LIMITS, setup)
     }
@@ -62,7 +62,7 @@ impl Run {
     /// Returns the plan's elements, and the floor with the robot's form.
     ///
     /// # Errors
-    /// Fails with a sentence if the world is too large to be drawn.
+    /// Fails if the world is too large to be drawn.
     pub(crate) fn description(&self) -> Result<Value, String> {
         let elements: Vec<_> = self.plan.machine.elements().map(|element| self.element(element)).collect();
         let mut description = floor::ready(&self.ready)?;
@@ -131,7 +131,7 @@ impl Run {
         }
     }
 
-    /// Returns the reason why the run has ended, with the result with respect to the goal; null before the end.
+    /// Returns the reason why the run has ended, and its result with respect to the goal; null before the end.
     fn end(&self) -> Value {
         let judged = self.course.judged(self.ready.goal.as_ref());
         match &self.course.end {
@@ -185,7 +185,7 @@ fn shown(mut moments: Vec<Moment>) -> Vec<Moment> {
         let last = moments.pop();
         moments.truncate(MOMENTS_MOST);
         moments.extend(last);
-        // A turn can have 4,096.
+        // A turn can have 4,096 moments, so the excess capacity is freed.
         moments.shrink_to_fit();
     }
     moments

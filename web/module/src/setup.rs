@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use crate::draft::Draft;
 
-/// Maximum duration of a run, in seconds of its own time.
+/// Maximum duration of a run, in seconds of simulated time.
 const LONGEST: f64 = 3600.0;
 
 /// A plan, and the world, the robot and the start of a run.
@@ -41,7 +41,7 @@ pub(crate) struct Setup {
     pub(crate) limit: Option<f64>,
 }
 
-/// World, body and start of a run, checked.
+/// Validated world, body and start of a run.
 pub(crate) struct Ready {
     pub(crate) world: World,
     pub(crate) make: Make,
@@ -60,7 +60,7 @@ impl Setup {
     /// Reads world, body and start.
     ///
     /// # Errors
-    /// Fails with a sentence that names the invalid field.
+    /// Fails if a field is invalid; the message names the field.
     pub(crate) fn ready(&self) -> Result<Ready, String> {
         let make = self.make()?;
         let world = World::parse("world", &self.world).map_err(|error| error.to_string())?;
@@ -126,7 +126,7 @@ impl Ready {
     /// Returns the robot at its start.
     ///
     /// # Errors
-    /// Fails with a sentence about the start.
+    /// Fails if the robot cannot start there; the message gives the reason.
     pub(crate) fn robot(&self) -> Result<Simulated, String> {
         let period = Duration::from_nanos(PERIOD.0);
         let robot = Simulated::with(&self.make, &self.world, self.begins, period);

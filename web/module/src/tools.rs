@@ -1,4 +1,4 @@
-//! Answers to requests for the commands of `mdlec`. They are byte for byte the output of these commands.
+//! Answers requests for the commands of `mdlec`, byte for byte with the output of these commands.
 
 use mdle_compiler::Compiled;
 use mdle_compiler::alphabet::{Declaration, DeclarationKind};
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use crate::document::Document;
 use crate::robot::robot;
 
-/// Maximum number of bytes of a trace.
+/// Maximum size of a trace, in bytes.
 const TRACE_MOST: usize = 64 << 20;
 
 fn output(text: impl Into<String>) -> Value {
@@ -45,7 +45,7 @@ pub(crate) fn explain(code: &str) -> Result<Value, String> {
     Ok(output(format!("{code}: {}\n\n{}", code.title(), code.explanation().text())))
 }
 
-/// Returns the interrupts, laws and signals of a robot, each with its signature and a sentence.
+/// Returns the interrupts, laws and signals of a robot, each with its signature and its description.
 pub(crate) fn quarks(name: &str) -> Result<Value, String> {
     let alphabet = &robot(name)?.alphabet;
     let able = alphabet.declarations().filter(|declaration| declaration.needs.iter().all(|need| alphabet.has(need)));

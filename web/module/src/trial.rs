@@ -1,4 +1,4 @@
-//! Makes a complete run and reports only its end, for batches of runs.
+//! Performs a complete run and reports only its end, for batches of runs.
 
 use mdle_runtime::{Nanos, Turn};
 use serde_json::{Value, json};
@@ -7,8 +7,8 @@ use crate::course::{Course, End};
 use crate::plan::Plan;
 use crate::setup::Setup;
 
-/// Makes a run, and returns its end: `over`, `limit` or `fault`; and, if there is a goal, `arrived`, `bumped`
-/// or `astray`, as `mdle run --goal` judges it.
+/// Performs a run, and returns its end: `over`, `limit` or `fault`; and, if there is a goal, `arrived`, `bumped` or
+/// `astray`, as `mdle run --goal` judges it.
 pub(crate) fn trial(setup: &Setup) -> Result<Value, String> {
     let plan = Plan::of(&setup.draft, setup.plan.as_deref())?;
     let ready = setup.ready()?;

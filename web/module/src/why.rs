@@ -1,5 +1,5 @@
-//! The explanation of a turn: the conditions of the scopes that enclose the atom, before each transition and at
-//! the end of the turn.
+//! Explains a turn: shows the conditions of the scopes that enclose the atom, before each transition and at the end of
+//! the turn.
 
 use mdle_compiler::fsm::Machine;
 use mdle_compiler::load::{Moment, ScopeMoment};
@@ -39,8 +39,8 @@ fn scope(machine: &Machine, words: &dyn Words, moment: &ScopeMoment) -> Value {
     })
 }
 
-/// Collects in `joined` the operands that AND and OR join, each with the value of the comparison that is shown for it.
-/// `parts` are the values of the condition and its operands; a condition comes before its operands.
+/// Appends to `joined` the operands that AND and OR join, each with the value of the comparison that is shown for it.
+/// `parts` are the values of the condition and its operands in pre-order.
 fn operands(condition: &Condition, parts: &mut std::slice::Iter<'_, Examined>, joined: &mut Vec<(Examined, bool)>) {
     let Some(part) = parts.next().copied() else { return };
     if condition.lasting().is_some() {

@@ -1,4 +1,4 @@
-//! The text of an `mdle.toml`: its keys and values, each with its line; no value contains U+0000.
+//! Parses the text of an `mdle.toml` into keys and values, each with its line number. No value contains U+0000.
 
 use std::ops::Range;
 
@@ -119,7 +119,7 @@ type Key<'i> = Spanned<std::borrow::Cow<'i, str>>;
 struct Reading<'t>(&'t str);
 
 impl Reading<'_> {
-    /// Reads a value that must be text; `example` shows an example.
+    /// Reads a value that must be text; `example` is a valid entry for the error message.
     fn text(&self, key: &Key<'_>, value: &Spanned<DeValue<'_>>, example: &str) -> Result<Setting, SettingsError> {
         let found = value.get_ref();
         match found.as_str() {
@@ -186,7 +186,7 @@ impl Reading<'_> {
         let found = value.get_ref();
         let text = match found {
             DeValue::String(text) if !text.contains('\0') => text,
-            // Numbers are in the text as an option takes them, aside from the separators of TOML.
+            // Options accept numbers as TOML writes them, except for TOML's digit separators.
             DeValue::Integer(number) if number.radix() == 10 => return Ok(format!("--{name}={number}")),
             DeValue::Float(number) => return Ok(format!("--{name}={number}")),
             DeValue::String(_)

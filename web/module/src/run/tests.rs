@@ -1,5 +1,5 @@
-//! Tests of a run's limits: turns whose moments are not stored can be explained like others, and a run whose data are
-//! too large ends.
+//! Tests the limits of a run: turns whose moments are not stored can still be explained, and a run with too much data
+//! ends.
 
 use serde_json::Value;
 
