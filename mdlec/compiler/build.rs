@@ -11,7 +11,8 @@ use std::path::PathBuf;
 use std::{env, fs};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // Cargo watches the package by itself only as long as a build script names nothing, and `alphabets` does.
+    // Once a build script names a file to watch, as `alphabets` does, Cargo no longer watches the whole package by
+    // itself.
     for watched in ["src", "build.rs", "build/targets.rs"] {
         println!("cargo::rerun-if-changed={watched}");
     }

@@ -15,12 +15,12 @@ pub use help::{Edit, Help};
 pub use json::{Message, Place};
 pub use sources::Sources;
 
-/// Identifier of a file that was read: its byte offset if all files are concatenated.
+/// Identifier of a source file: its byte offset in the concatenation of all files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceId(pub u32);
 
-/// A range of a source's text, as byte offsets in all files concatenated. Half of a syntax tree consists of spans, so
-/// small spans make the parser fast.
+/// A range of a source's text, as byte offsets in the concatenation of all files. Half of a syntax tree consists of
+/// spans, so small spans make the parser fast.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span {
     /// Byte offset of the span's start.
@@ -77,13 +77,13 @@ macro_rules! codes {
                 match self { $(Self::$name => stringify!($name),)* }
             }
 
-            /// Title of the code: a noun phrase.
+            /// Returns the title of the code, a noun phrase.
             #[must_use]
             pub fn title(self) -> &'static str {
                 match self { $(Self::$name => $title,)* }
             }
 
-            /// Text of `mdlec explain`, from the file named after the code.
+            /// Returns the text of `mdlec explain`, which comes from the file named after the code.
             #[must_use]
             pub fn explanation(self) -> Explanation {
                 Explanation(match self {
@@ -171,7 +171,7 @@ pub struct Label {
     pub span: Span,
     /// Text shown beside the place; may be empty.
     pub text: String,
-    /// `true` for the place of the defect, `false` for a place that explains the defect.
+    /// `true` for the place of the mistake, `false` for a place that explains it.
     pub primary: bool,
 }
 
@@ -180,7 +180,7 @@ pub struct Label {
 pub struct Diagnostic {
     /// Code of the diagnostic.
     pub code: Code,
-    /// Description of the defect, in one line without a full stop.
+    /// Description of the mistake, in one line without a full stop.
     pub message: String,
     /// Places, the primary one first.
     pub labels: Vec<Label>,
@@ -195,14 +195,14 @@ impl Diagnostic {
         Self { code, message: message.into(), labels: vec![label], help: Vec::new() }
     }
 
-    /// Adds the place `span`, which explains the defect.
+    /// Adds the place `span`, which explains the mistake.
     #[must_use]
     pub fn also(mut self, span: Span, text: impl Into<String>) -> Self {
         self.labels.push(Label { span, text: text.into(), primary: false });
         self
     }
 
-    /// Returns the place of the defect; `None` if the diagnostic has no places.
+    /// Returns the place of the mistake; `None` if the diagnostic has no places.
     #[must_use]
     pub fn span(&self) -> Option<Span> {
         self.labels.first().map(|label| label.span)
@@ -215,13 +215,13 @@ pub fn has_errors(diagnostics: &[Diagnostic]) -> bool {
     diagnostics.iter().any(|diagnostic| diagnostic.code.severity() == Severity::Error)
 }
 
-/// Maximum number of diagnostics that people are shown.
+/// Maximum number of diagnostics that are shown to people.
 const SHOWN: usize = 100;
-/// Maximum number of diagnostics that people are shown if more than this number are errors of notation: such a file is
-/// probably not a plan.
+/// Maximum number of diagnostics that are shown to people if more than this number are errors of notation: the file is
+/// then probably not a plan.
 const SHOWN_OF_NO_PLAN: usize = 10;
 
-/// Returns the maximum number of these diagnostics that people are shown.
+/// Returns the maximum number of these diagnostics that are shown to people.
 #[must_use]
 pub fn most_shown(diagnostics: &[Diagnostic]) -> usize {
     let notation = diagnostics.iter().filter(|diagnostic| diagnostic.code.is_notation()).count();

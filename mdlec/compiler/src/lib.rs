@@ -53,7 +53,7 @@ impl Compiled {
     }
 }
 
-/// Compiles the plan `wanted` of a text to a state machine, or, without `wanted`, every plan that no other plan uses;
+/// Compiles the plan `wanted` of a text to a state machine or, without `wanted`, every plan that no other plan uses;
 /// [`rust::emit`] turns a machine into Rust. Returns no plan if there is an error.
 #[must_use]
 pub fn compile(
@@ -77,7 +77,7 @@ pub fn compile_with(
     compile_within(source, text, alphabet, wanted, loader, |_| Ok(()))
 }
 
-/// Check of a plan's size for a certain use, such as a picture; returns an error if the plan is too large.
+/// Checks the size of a plan for a certain use, such as a picture; returns an error if the plan is too large.
 pub type Limit = fn(&plan::Nondegenerate) -> Result<(), Diagnostic>;
 
 /// Compiles like [`compile_with`]. If there is only one plan and it exceeds `limit`, it is not lowered, because
@@ -177,8 +177,8 @@ fn stages(
     (compiled, once_each(found))
 }
 
-/// Removes advice with edits from the diagnostics of the plan of one robot of a group, because the replacements are
-/// texts of this plan and not of the group's plan.
+/// Removes advice with edits from the diagnostics of the plan of one robot of a group, because the edits refer to the
+/// text of this plan and not to the text of the group's plan.
 fn of_part(mut found: Vec<Diagnostic>, part: Option<&projection::Part>) -> Vec<Diagnostic> {
     if part.is_some() {
         found.iter_mut().for_each(|diagnostic| diagnostic.help.retain(|help| help.edit.is_none()));
@@ -186,8 +186,8 @@ fn of_part(mut found: Vec<Diagnostic>, part: Option<&projection::Part>) -> Vec<D
     found
 }
 
-/// Removes repeated diagnostics from a sorted list: text that is copied to several plans causes a diagnostic in each
-/// plan.
+/// Removes repeated diagnostics from a sorted list. Text that is copied to several plans causes the same diagnostic in
+/// each plan.
 fn once_each(found: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let mut kept: Vec<Diagnostic> = Vec::with_capacity(found.len());
     for diagnostic in found {

@@ -1,4 +1,4 @@
-//! Helpers of unit tests: alphabets, and snapshots of a text with its messages.
+//! Helpers for unit tests: alphabets, and snapshots of a text with its messages.
 
 use crate::alphabet::{self, Alphabet, AlphabetFile};
 use crate::diagnostic::{SourceId, Sources};
@@ -43,14 +43,14 @@ pub(crate) fn compiled(text: &str) -> Vec<Compiled> {
     compiled
 }
 
-/// Shows a text with its messages, and the plan without degeneracy if there is one.
+/// Returns a text with its messages, and the plan without degeneracy if there is one.
 pub(crate) fn judged(text: &str, target: Option<&str>) -> String {
     let (compiled, messages) = diagnosed(text, target);
     let plans: Vec<_> = compiled.iter().map(|compiled| compiled.nondegenerate.plan().to_string()).collect();
     format!("{}\n----\n{messages}{}", text.trim_end(), plans.join(""))
 }
 
-/// Shows the first of these files with its messages and its plans; the file may use the others by their names.
+/// Returns the first of these files with its messages and its plans; the file may use the others by their names.
 pub(crate) fn judged_files(files: &[(&str, &str)]) -> String {
     struct Given(Sources, Vec<(String, SourceId)>);
     impl Loader for Given {
@@ -76,7 +76,7 @@ pub(crate) fn judged_files(files: &[(&str, &str)]) -> String {
     format!("{}----\n{messages}{}", texts.concat(), plans.concat())
 }
 
-/// Compiles a text, and renders its messages.
+/// Compiles a text; returns its plans and its rendered messages.
 fn diagnosed(text: &str, target: Option<&str>) -> (Vec<Compiled>, String) {
     let mut sources = sources();
     let source = sources.add("plan.mdle", text);

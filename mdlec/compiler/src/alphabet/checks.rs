@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::{AlphabetFile, Declaration, DeclarationKind, Kind};
 use crate::diagnostic::{Code, Diagnostic};
 
-/// Returns all defects of the declarations.
+/// Returns a diagnostic for each error in the declarations.
 pub(super) fn check(alphabet: &AlphabetFile) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let mut met = BTreeSet::new();

@@ -92,7 +92,7 @@ impl Alphabet {
         self.declarations.iter()
     }
 
-    /// Returns the declarations with this name, in the order in which overloads are counted.
+    /// Returns the declarations with this name, in the order in which overloads are numbered.
     pub fn declarations_of(&self, name: &str) -> impl Iterator<Item = &Declaration> {
         self.declarations.iter().filter(move |declaration| declaration.name == name)
     }

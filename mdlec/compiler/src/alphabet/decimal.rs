@@ -1,5 +1,5 @@
-//! Exact decimal numbers, by which arguments are compared as they are written, before any rounding
-//! (docs/src/reference/semantics.md, 7.2).
+//! Exact decimal numbers. Arguments are compared exactly as written, without rounding (docs/src/reference/semantics.md,
+//! 7.2).
 
 use std::fmt;
 

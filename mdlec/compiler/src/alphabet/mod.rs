@@ -1,5 +1,5 @@
-//! Alphabet 𝒜 = U ∪ B′ of a robot: its quarks with the types of their arguments, and its capabilities (paper,
-//! Definition 1; docs/src/reference/language.md, 6).
+//! Alphabet of a robot: its quarks (control laws and interrupts) with the types of their arguments, and its
+//! capabilities (𝒜 = U ∪ B′ in the paper, Definition 1; docs/src/reference/language.md, 6).
 
 mod checks;
 mod combined;
@@ -57,11 +57,11 @@ pub struct Capability {
 /// Kind of a declaration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum DeclarationKind {
-    /// A law, an element of U.
+    /// A control law (an element of the set U in the paper).
     Control,
-    /// An interrupt, an element of B′.
+    /// An interrupt (an element of the set B′ in the paper).
     Interrupt,
-    /// A signal, whose value comparisons read.
+    /// A signal: a value that comparisons can read.
     Signal,
 }
 
@@ -108,16 +108,16 @@ pub struct Param {
     pub name: String,
     /// Type of the parameter.
     pub kind: Kind,
-    /// Unit of a bare number; the base unit of the kind if the alphabet declares no other unit, and `None` if the kind
-    /// has no unit.
+    /// Unit of a number that is written without a unit (a bare number): the base unit of the kind if the alphabet
+    /// declares no other unit; `None` if the kind has no unit.
     pub unit: Option<Unit>,
     /// Default value as written, in the unit of a bare number.
     pub default: Option<String>,
     /// Minimum and maximum value, in the unit of a bare number.
     pub range: Option<(f64, f64)>,
-    /// Value in the range that is not allowed, in the unit of a bare number.
+    /// The only value in the range that is not allowed, in the unit of a bare number.
     pub except: Option<f64>,
-    /// Attributes of a module that the quark reads; a signal without such attributes reads the attribute with its own
-    /// name.
+    /// Attributes of a module that the quark reads. If a signal lists no attributes, it reads the attribute that has
+    /// the signal's name.
     pub with: Vec<String>,
 }

@@ -114,11 +114,11 @@ impl Kind {
     }
 }
 
-/// Returns `true` if a law with this name and with arguments of these kinds may use a direction of its frame: if it
-/// takes an angle, or a file or a module that may contain angles. The exception is `turn`, whose angle counts from the
-/// heading at which the atom began.
+/// Returns `true` if a law with this name and with arguments of these kinds may depend on the direction of its frame:
+/// it takes an angle, or a file or a module that may contain angles. The exception is `turn`, whose angle is relative
+/// to the heading at which the atom began.
 pub fn has_direction(law: &str, mut kinds: impl Iterator<Item = Kind>) -> bool {
-    // The angle of `turn` counts from the heading at which its atom began.
+    // The angle of `turn` is relative to the heading at which its atom began.
     law != "turn"
         && kinds.any(|kind| match kind {
             Kind::Angle | Kind::File | Kind::Module => true,
@@ -144,12 +144,12 @@ pub struct Unit {
     pub name: &'static str,
     /// Kind of quantity that the unit measures.
     pub kind: Kind,
-    /// Integer in the exact factor that converts this unit to the unit of its family: the factor is `factor` times ten
-    /// to the power `exponent`.
+    /// Integer factor of the exact conversion to the family's unit: one of this unit is `factor` times ten to the power
+    /// `exponent` of the family's unit.
     pub factor: u32,
-    /// Power of ten in the exact factor.
+    /// Exponent of ten in the exact conversion to the family's unit.
     pub exponent: i32,
-    /// Name of the family's unit, in which exact values are compared; degrees and radians belong to two families.
+    /// Name of the family's unit, in which exact values are compared; degrees and radians belong to different families.
     pub family: &'static str,
     /// `true` if this unit is the SI unit in which robots compute.
     pub is_base: bool,

@@ -1,5 +1,5 @@
-//! Reads an alphabet file (docs/src/reference/language.md, 6.1) by recursive descent. After a defect, reading continues
-//! after the next `;`.
+//! Parses an alphabet file (docs/src/reference/language.md, 6.1) by recursive descent. After an error, parsing
+//! continues after the next `;`.
 
 mod single;
 
@@ -24,7 +24,7 @@ pub fn read(source: SourceId, text: &str) -> (Option<AlphabetFile>, Vec<Diagnost
     (alphabet, found)
 }
 
-/// Error for a defect that has been reported; the declaration that contains the defect is dropped.
+/// Marks an error that has already been reported; the declaration that contains it is dropped.
 struct Defect;
 
 type Read<T> = Result<T, Defect>;

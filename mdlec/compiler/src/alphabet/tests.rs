@@ -1,4 +1,4 @@
-//! Tests of reading alphabets, and of the messages about faulty alphabets.
+//! Tests the reader of alphabets, and its messages about invalid alphabets.
 
 use super::{Alphabet, AlphabetFile, Capability, DeclarationKind, Origin, Unit, combine, read};
 use crate::diagnostic::{Code, SourceId, Sources};

@@ -1,5 +1,5 @@
-//! Enumerates all assignments of values to some variables (choices), and determines in which of them a condition has
-//! fired.
+//! Enumerates the choices of some variables, that is, all assignments of values to them, and determines the choices in
+//! which a condition has fired.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -35,8 +35,8 @@ pub(super) struct Choices {
 }
 
 impl Choices {
-    /// Enumerates the choices of the variables in `all`. `value` returns the value of a variable that has only one
-    /// value. Returns `None` if too many variables have two values.
+    /// Enumerates the choices of the variables in `all`. `value` returns the value of a variable that can have only one
+    /// value, and `None` for any other variable. Returns `None` if too many variables have two values.
     pub(super) fn new(all: &BTreeSet<Variable>, value: impl Fn(&Variable) -> Option<bool>) -> Option<Self> {
         let free = all.iter().filter(|variable| value(variable).is_none()).count();
         if free > VARIABLES {
@@ -98,7 +98,7 @@ impl Choices {
                 operands.iter().fold(self.constant(true), |all, operand| all.and(&inside(operand)))
             }
             Condition::Not(operand) => inside(operand).not(),
-            // It never has fired in the turn in which its scope is entered.
+            // RISING never fires in the turn in which its scope is entered.
             Condition::Rising { .. } if when == When::Entered => self.constant(false),
             Condition::Rising { memory, operand } => column(Variable::Memory(bracket, *memory)).and(&inside(operand)),
             Condition::After(after) => column(fact(after, when)),
@@ -149,7 +149,7 @@ pub(super) fn variables(read: Read<'_>, machine: &Machine, found: &mut BTreeSet<
     found.len() <= MOST
 }
 
-/// Returns the variable of the fact that `after` tests: of its current value, or of its value before an element ended.
+/// Returns the variable for the fact that `after` tests: its current value, or its value before an element ended.
 fn fact(after: &After, when: When) -> Variable {
     match when {
         When::Entered | When::Later => Variable::Fact(after.record, after.fact),

@@ -38,7 +38,7 @@ impl<'l> Constants<'l> {
         let condition = &interrupt.condition;
         let remembers =
             |part: &Condition| matches!(part, Condition::Quark(id) if self.alone.machine.quark(*id).remembers);
-        // What reads such a quark may change it.
+        // Reading a quark with memory may change its value.
         if condition.any(&remembers) {
             return None;
         }
@@ -108,10 +108,10 @@ impl<'l> Constants<'l> {
         }
     }
 
-    /// Returns the text of the condition with each operand negated that is true when the scope is entered; `None` if
-    /// there is no such operand, or if such an operand is always true.
+    /// Returns the text of the condition with a NOT before each operand that is true when the scope is entered; `None`
+    /// if there is no such operand, or if such an operand is always true.
     fn opposite(&self, bracket: u32, condition: &'l Condition) -> Option<String> {
-        // Where each operand may be false at once, only what joins them is at fault.
+        // If each operand by itself may be false at the entry, only the operator that joins them can be the mistake.
         if condition.operands().iter().all(|operand| self.stays(bracket, operand)) {
             return None;
         }
@@ -159,9 +159,9 @@ impl<'l> Constants<'l> {
         self.alone.is_possible(&wanted.collect::<Vec<_>>(), &BTreeMap::new())
     }
 
-    /// Returns the text of an operand of the interrupt's OR as written in the plan; in the condition, `wait inf`, for
-    /// example, has become `null`. If the written text has another number of operands, returns the text of the operand
-    /// in the condition.
+    /// Returns the text of an operand of the interrupt's OR as written in the plan; the condition may differ from it,
+    /// since it contains, for example, `null` for `wait inf`. If the written text has another number of operands,
+    /// returns the text of the operand in the condition.
     fn written(&self, operand: &Condition, interrupt: &Interrupt) -> String {
         let operands = interrupt.condition.operands();
         let texts = operands_of(&interrupt.text);

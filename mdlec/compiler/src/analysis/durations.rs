@@ -68,7 +68,7 @@ pub(super) fn longest(machine: &Machine, found: &[BracketFacts], most: Most) -> 
             ElementKind::Scope => inside[element.index()],
             ElementKind::Loop { times } => inside[element.index()].times(times.unwrap_or(0), number),
         };
-        // A loop has no interrupt, and so none that certainly fires.
+        // A loop has no interrupt that could end it earlier.
         let element_takes = if found.reach == Reach::Runs {
             let fires = certain(element.condition(), true);
             let timer = fires.map(|nanos| Longest::Bounded { nanos: nanos.into(), turns: u64::from(nanos > 0) });

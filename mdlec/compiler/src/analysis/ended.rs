@@ -32,7 +32,7 @@ pub(super) fn walk_with_records(machine: &Machine, one_turn: bool) -> PlanFacts 
 fn recorded(machine: &Machine, found: &[BracketFacts]) -> BTreeSet<(RecordId, u32)> {
     let mut ends = vec![false; found.len()];
     let mut facts = BTreeSet::new();
-    // Those inside an element have higher numbers.
+    // Nested elements have higher numbers, so the reverse order visits them first.
     for (element, found) in machine.elements().zip(found).rev() {
         ends[element.index()] = can_end(element, found, &ends);
         let marks = element.marks().iter().flat_map(|mark| mark.facts.iter().map(|fact| (mark.record, fact)));

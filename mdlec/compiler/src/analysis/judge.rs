@@ -15,7 +15,8 @@ impl<'l> Walk<'l> {
     pub(super) fn judge(&mut self, number: u32, found: &mut BracketFacts) -> Option<u64> {
         let clock = self.clock?;
         let condition = self.element(number).condition();
-        // Where a search is cut, what it has come to is read again in the next turn.
+        // If a search may reach the limit of a turn, the conditions of the element at which it stops are read again in
+        // the next turn.
         let when = if self.one_turn { When::Entered } else { When::Later };
         let none = Question { any: vec![self.read(condition, number, when)], fired: false };
         let just = Question { any: self.facts.clone(), fired: true };
@@ -74,7 +75,7 @@ impl<'l> Walk<'l> {
         if !fits || timers.len() > TIMERS {
             return self.world.is_possible(&asked, &BTreeMap::new()).then_some(0);
         }
-        // The timers of one scope are in the order of their lengths.
+        // The timers of a scope are sorted by their lengths.
         let over = (0..=timers.len()).find(|over| {
             let fixed = timers.iter().enumerate().map(|(place, (timer, _))| (*timer, place < *over)).collect();
             self.world.is_possible(&asked, &fixed)

@@ -1,5 +1,5 @@
-//! Facts that are known at the place where a condition is read: no interrupt of an enclosing scope has fired, because
-//! these interrupts are read first (docs/src/reference/semantics.md, 5.2).
+//! Facts that are known where a condition is read: no interrupt of an enclosing scope has fired, because these
+//! interrupts are read first (docs/src/reference/semantics.md, 5.2).
 //!
 //! "Impossible" holds for every run; "possible" may also mean that the question was too large to decide.
 
@@ -137,7 +137,7 @@ impl<'l> KnownFacts<'l> {
                 None => self.add_clause(read, &mut added),
             }
         }
-        // Several timers of one scope are one deadline.
+        // If a scope has several timers, only the shortest is its deadline.
         if added.deadline {
             while let [.., before, last] = self.deadlines.as_slice()
                 && before.1 == last.1
@@ -207,7 +207,8 @@ impl<'l> KnownFacts<'l> {
             return;
         }
         for variable in variables {
-            // Timers are met by way of the other variables: every scope has some.
+            // Timers and paths do not index conditions, because nearly every scope has one; the other variables find
+            // the conditions.
             if !matches!(variable, Variable::Timer(..) | Variable::Way(..)) {
                 self.clauses.entry(variable).or_default().push(read);
                 added.clauses.push(variable);
@@ -238,7 +239,7 @@ impl<'l> KnownFacts<'l> {
     /// Returns the value of a variable at this place; `None` if both values may be possible.
     fn known(&self, variable: Variable) -> Option<bool> {
         if let Variable::Way(bracket, nanometers) = variable {
-            // The path since an outer entry is as long at least.
+            // The path since the entry of an outer scope is at least as long.
             let is_beyond = || self.distance(bracket).is_some_and(|(shortest, _)| nanometers >= shortest);
             return if nanometers == 0 { Some(true) } else { is_beyond().then_some(false) };
         }
@@ -253,7 +254,7 @@ impl<'l> KnownFacts<'l> {
         let at = self.entered[bracket as usize].saturating_add(nanos);
         match self.deadline() {
             _ if nanos == 0 => Some(true),
-            // `inf`
+            // The timer of `wait inf` never ends.
             _ if nanos == u64::MAX => Some(false),
             Some((deadline, _)) if at >= deadline => Some(false),
             Some(_) | None => None,
@@ -274,7 +275,8 @@ impl<'l> KnownFacts<'l> {
         let value = |variable: &Variable| fixed.get(variable).copied().or_else(|| self.known(*variable));
         let mut all = variables.clone();
         all.extend(self.relatives(&variables));
-        // What is around may be left out: then more is possible. What is wanted may not.
+        // Conditions of enclosing scopes may be left out, because this only makes more choices possible. The conditions
+        // in `wanted` may not be left out.
         let clauses = self.clauses(&mut all, &value);
         let (choices, clauses) = match (Choices::new(&all, value), Choices::new(&variables, value)) {
             (Some(choices), _) => (choices, clauses),
@@ -300,7 +302,7 @@ impl<'l> KnownFacts<'l> {
             let any = vec![Read { condition, bracket, when }];
             self.is_possible(&[Question { any, fired: false }], &BTreeMap::new())
         };
-        // Of an OR too long to be looked at, each operand may be short enough.
+        // If the OR is too long to be examined, each of its operands may still be short enough.
         let operands = condition.operands();
         operands.iter().all(not) && (operands.len() == 1 || not(condition))
     }

@@ -1,4 +1,4 @@
-//! Warns of conditions whose value is always the same, of operands that never end their scope, and of elements that are
+//! Warns about conditions whose value is always the same, operands that never end their scope, and elements that are
 //! always skipped or never reached (W0202 to W0206, W0302 and W0303).
 //!
 //! A warning about a plan that is used more than once is reported only if it holds in every use.
@@ -21,7 +21,7 @@ pub(super) fn lints(machine: &Machine, found: &[BracketFacts]) -> Vec<Diagnostic
         *uses.entry(interrupt.span).or_default() += 1;
         let mut once = BTreeSet::new();
         for lint in lints.element(element, interrupt, found).into_iter().flatten() {
-            // What an interrupt says is told once, whichever of its operands are concerned.
+            // An interrupt gets each warning at most once, even if the warning applies to several of its operands.
             if once.insert(lint.code) {
                 warnings.entry((interrupt.span, lint.code)).or_insert((0, lint)).0 += 1;
             }
@@ -62,7 +62,7 @@ impl<'l> Lints<'l> {
             Outcome::Repeated(outer) => (Code::W0204, outer),
             Outcome::Beaten(outer) => (Code::W0205, outer),
             Outcome::Late(outer) => (Code::W0206, outer),
-            // What is never true is W0203's.
+            // W0203 reports operands that are never true.
             Outcome::Possible | Outcome::Never | Outcome::Unread => return None,
         };
         let (whose, outer) = self.whose(outer);
@@ -106,7 +106,7 @@ impl<'l> Lints<'l> {
         let (span, text) = (interrupt.span, &interrupt.text);
         let behind = match found.skipped? {
             Skip::Inside => return None,
-            // That is W0203's.
+            // W0203 reports this element.
             Skip::AtOnce if !self.constants.stays(element.number(), &interrupt.condition) => return None,
             Skip::AtOnce => {
                 let message = format!("`{text}` is true whenever this is entered, so it is always skipped");

@@ -1,5 +1,5 @@
-//! Static analysis: finds facts about every run of a plan without running it: the atoms that run, the operands that can
-//! end them, durations, and the size of the machine.
+//! Static analysis: determines, without running a plan, facts that hold in every run: the atoms that run, the operands
+//! that can end them, durations, and the size of the machine.
 //!
 //! "Never" holds for every run; "possible" may also mean that the question was too large to decide.
 
@@ -197,7 +197,8 @@ struct Answers {
 impl Answers {
     fn new(machine: &Machine, found: &[BracketFacts]) -> Self {
         let mut answers = Self { scopes: Vec::new(), atoms: Vec::new() };
-        // For each bracket the number of the innermost scope that it is or is in, and whether anything ends that.
+        // For each bracket: the number of the innermost scope that it is or that encloses it, and `true` if the
+        // condition of that scope or of a scope around it can fire.
         let mut scope_of: Vec<(usize, bool)> = Vec::with_capacity(found.len());
         for (element, found) in machine.elements().zip(found) {
             let around = element.parent().map_or((0, false), |parent| scope_of[parent.index()]);
@@ -240,8 +241,8 @@ impl Answers {
     }
 }
 
-/// Returns the texts of the operands by which an interrupt can fire, and the texts of the operands by which it cannot
-/// fire, without `null`.
+/// Returns the texts of the operands by which an interrupt can fire, and the texts of those by which it cannot, both
+/// without `null`.
 fn by(condition: &Condition, found: &BracketFacts, machine: &Machine) -> (Vec<String>, Vec<String>) {
     let (mut can, mut never) = (Vec::new(), Vec::new());
     for (operand, outcome) in condition.operands().iter().zip(&found.operands) {

@@ -41,7 +41,7 @@ pub(super) fn possible(
     for counted in [timers, ways] {
         for (inner, at, over) in &counted {
             for (outer, until, column) in &counted {
-                // The outer one has run for longer, and farther.
+                // The outer timer or path began earlier, so it is at least as long.
                 if !std::ptr::eq(*over, *column) && outer <= inner && until <= at {
                     possible = possible.and(&(*over).clone().not().or(column));
                 }

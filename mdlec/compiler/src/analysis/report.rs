@@ -4,14 +4,14 @@ use std::fmt::Write;
 
 use super::{Analysis, AtomAnswer, Duration, Reach, ScopeAnswer};
 
-/// Maximum number of enclosing scopes that are named among the causes of an atom's end.
+/// Maximum number of enclosing scopes that are listed as causes of an atom's end.
 const AROUND: usize = 3;
 
 impl Analysis {
     /// Returns the analysis as a JSON object.
     #[must_use]
     pub fn to_json(&self) -> String {
-        // Only maps with keys that are not strings cannot be written, and there are none.
+        // Serialization fails only for maps with keys that are not strings, and there are none.
         serde_json::to_string_pretty(self).map(|text| text + "\n").unwrap_or_default()
     }
 
@@ -32,7 +32,7 @@ impl Analysis {
         let Self { plan, states, atom_count, interrupts, depth, loop_depth, transitions, bytes, .. } = self;
         let mut text = String::new();
         let mut line = |name: &str, value: String| {
-            // A text takes what is written to it.
+            // Writing to a string cannot fail.
             let _ = writeln!(text, "{name:22}{value}");
         };
         line("plan", plan.clone());

@@ -24,14 +24,15 @@ pub struct Bytes {
     pub memories: u64,
     /// Size of the tables of brackets and atoms.
     pub machine: u64,
-    /// Size of the texts that the machine shows: a reference for each use of a text, and each different text once.
+    /// Size of the texts that the machine shows: a reference for each use of a text, and the bytes of each different
+    /// text once.
     pub texts: u64,
 }
 
 /// Returns the sizes of the parts of the emitted machine.
 pub(super) fn bytes(machine: &Machine) -> Bytes {
     let number = |count: usize| u64::try_from(count).unwrap_or(u64::MAX);
-    // A cursor holds the number of its atom, in front of numbers of eight bytes.
+    // The atom's number in a cursor takes eight bytes, because numbers of eight bytes follow it.
     let entries = match machine.sizes().stamps {
         true => size_of::<Stamps<[Stamp; 0]>>() + machine.sizes().levels * size_of::<Stamp>(),
         false => machine.sizes().levels * size_of::<Nanos>(),

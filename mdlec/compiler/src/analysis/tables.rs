@@ -7,7 +7,7 @@ pub(super) const VARIABLES: usize = 12;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Table(Vec<u64>);
 
-/// Columns of the first six variables in one word.
+/// Truth tables of the first six variables, in one word each.
 const SHORT: [u64; 6] = [
     0xAAAA_AAAA_AAAA_AAAA,
     0xCCCC_CCCC_CCCC_CCCC,

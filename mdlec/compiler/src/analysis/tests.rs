@@ -1,4 +1,4 @@
-//! Tests of analyses of small plans: each warning is tested with a plan that has it, and with a near miss.
+//! Tests the analyses of small plans: each warning with a plan that causes it, and with a similar plan that does not.
 
 mod texts;
 
@@ -83,7 +83,7 @@ fn conditions_that_are_true_only_when_an_outer_one_is() {
         "{ P (theta < 10deg) (Atom (theta < 5deg OR wait 5) stop) }",
         "{ P (rendezvous ada) (Atom (rendezvous ada AND bumper OR wait 5) stop) }",
         "{ P (RISING bumper) (Atom (bumper OR wait 5) stop) }",
-        // In another use of the plan it is read.
+        // The operand can end the atom in the other use of the plan.
         "{ P Leg { Q (bumper) Leg } } { Leg (Atom (bumper AND sync ada OR wait 5) stop) }",
     ]);
 }
@@ -101,7 +101,7 @@ fn records_without_what_is_asked_of_them() {
     ");
     assert_silent(&[
         "{ P (wait 60) s1: (Atom (bumper OR wait 5) stop) (Atom (after s1 bumper OR wait 5) stop) }",
-        // In the second pass the first has ended.
+        // In the second pass, the element `s2` of the first pass has ended.
         "{ P (wait 60) ((Atom (after s2 OR wait 5) stop) s2: (Atom (after s2 OR wait 1) stop))^2 }",
         "{ P (wait 60) { Q (after s1 OR bumper) s1: (Atom (wait 5) stop) } }",
     ]);
@@ -149,7 +149,7 @@ fn what_is_cut_off_and_what_is_always_skipped() {
         "{ P (Atom (r0 < 50cm) stop) (Atom (r0 < 30cm OR wait 2) stop) }",
         "{ P (Atom (r0 < 30cm) rotate 90) (Atom (r0 < 50cm OR wait 2) stop) }",
         "{ P (Atom (r0 < 30cm) stop) (Atom (RISING r0 < 50cm OR wait 2) stop) }",
-        // A loop begins with its first element again.
+        // The second pass begins again with the loop's first element.
         "{ P ExecPlan 2 { (Atom (sync ada) stop) (Atom (wait 1) stop) } (Atom (wait 1) stop) }",
         "{ P (Atom (bumper) stop) ExecPlan 2 { (Atom (bumper OR wait 1) stop) (Atom (wait 1) stop) } }",
     ]);
@@ -231,7 +231,7 @@ fn loops_are_not_written_out() {
     };
     assert_eq!((nested(9).states, nested(9).shortest), (1_000_000_001, Some(1e9)));
     let analysis = nested(12);
-    // A plan's time is counted up to 2^64 nanoseconds.
+    // Durations are at most 2^64 nanoseconds.
     assert_eq!((analysis.states, analysis.shortest), (1_000_000_000_001, Some(18_446_744_073.709_553)));
     assert_eq!((analysis.longest.seconds, analysis.longest.turns), (Some(1e12), Some(1_000_000_000_000)));
 }

@@ -108,7 +108,7 @@ impl Chains {
             let inside = if later.must { 1 } else { self.inside.max(1) };
             return Self { pass: Some(1), first: 0, last: Some(1), inside };
         }
-        // What has ended in the turn may be what it asks.
+        // An element that `after` tests may have ended earlier in this turn.
         let [first, inside] = [self.first, self.inside].map(|count| if asks_after { count } else { 0 });
         let pass =
             self.pass.max(if asks_after { one(later).map(|one: u64| first.saturating_add(one)) } else { one(at_once) });
@@ -177,7 +177,7 @@ fn certainty(condition: &Condition, quarks: &[QuarkId], choice: usize, entered: 
             quarks.iter().position(|quark| quark == id).map_or(unknown, |bit| known(choice >> bit & 1 == 1))
         }
         Condition::Wait { nanos, .. } => timer(*nanos),
-        // Of the way, too, nothing has been driven at first.
+        // At the entry of a scope, its path has length zero, just as its timer is at zero.
         Condition::Elapsed { from, until, .. } | Condition::Driven { from, until, .. } => {
             let (from, until) = (timer(*from), until.map_or(known(true), |until| not(timer(until))));
             Certainty { can: from.can && until.can, must: from.must && until.must }

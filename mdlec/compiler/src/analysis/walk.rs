@@ -39,8 +39,8 @@ pub(super) struct BracketFacts {
     pub(super) body_ends: bool,
     /// Reason why the bracket is always skipped, if it is.
     pub(super) skipped: Option<Skip>,
-    /// Number of the previous element, if it is the reason why this element is never reached, and the text alone does
-    /// not show that; `None` otherwise.
+    /// Number of the previous element if it is the reason why this element is never reached, and if the text alone does
+    /// not show this; `None` otherwise.
     pub(super) cut_off_by: Option<u32>,
 }
 
@@ -49,7 +49,7 @@ pub(super) struct BracketFacts {
 pub(super) enum Skip {
     /// The element's interrupt has always fired when the element is entered.
     AtOnce,
-    /// The element's interrupt has fired whenever the previous element ends; the number is that of the outermost
+    /// The element's interrupt has fired whenever the previous element ends. The number is that of the outermost
     /// bracket whose interrupt can end the previous element.
     Behind(u32),
     /// An enclosing element is skipped.
@@ -122,7 +122,7 @@ pub(super) fn walk(machine: &Machine, one_turn: bool, facts: &PossibleFacts) -> 
 
 pub(super) struct Walk<'l> {
     pub(super) world: KnownFacts<'l>,
-    /// Knowledge about a place without enclosing scopes.
+    /// Facts that are known at a place without enclosing scopes.
     pub(super) alone: KnownFacts<'l>,
     open: Vec<Open>,
     found: Vec<BracketFacts>,
@@ -163,7 +163,7 @@ impl<'l> Walk<'l> {
             skipped: (reach == Reach::Skipped).then_some(Skip::Inside),
             cut_off_by: self.before.filter(|_| is_cut_off),
         };
-        // It is told once, for the first of what is never reached.
+        // Of several successive elements that are never reached, only the first is reported.
         let written = self.written && !is_cut_off;
         let mut open = Open { reach, clock: self.clock, own: None, added: Assumptions::default(), written };
         self.written = written;
@@ -201,8 +201,8 @@ impl<'l> Walk<'l> {
         Read { condition, bracket, when }
     }
 
-    /// Records the timers of a scope's interrupt among those of enclosing scopes when the scope is opened, and removes
-    /// them again when it is closed.
+    /// Adds the timers of a scope's interrupt to the timers of enclosing scopes when the scope is opened, and removes
+    /// them when it is closed.
     fn wait_for(&mut self, element: Element<'l>, opened: bool) {
         for operand in element.condition().operands() {
             let Condition::Wait { quark, .. } = operand else { continue };
@@ -250,7 +250,7 @@ impl<'l> Walk<'l> {
         self.before = Some(element.number());
         match open.reach {
             Reach::Never => self.clock = None,
-            // The first atom of what is skipped is all that is met of it.
+            // Of a skipped element, only the first atom is entered, so the element ends only by its own condition.
             Reach::Skipped => self.clock = open.own,
             Reach::Runs => {
                 self.clock = match element.kind() {

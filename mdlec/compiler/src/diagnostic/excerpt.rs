@@ -13,9 +13,9 @@ use super::{Diagnostic, Severity, SourceId, Sources, most_shown};
 
 /// Maximum length of a line that is shown whole, in bytes.
 const WHOLE: usize = 240;
-/// Number of bytes that are shown before and after the start and the end of each place, in a line that is cut.
+/// Number of bytes that a cut line shows before and after the start and the end of each place.
 const AROUND: usize = 60;
-/// Sign in the place of each part of a line that is not shown.
+/// Mark that replaces each omitted part of a line.
 const CUT: &str = "…";
 
 /// A diagnostic in the form of codespan-reporting, with the lines that it shows.
@@ -63,8 +63,7 @@ impl Sources {
         term::emit_to_write_style(out, &term::Config::default(), &excerpt, &excerpt.report)
     }
 
-    /// Writes diagnostics to a terminal, at most as many as people are shown, and then the number of the remaining
-    /// diagnostics.
+    /// Writes diagnostics to a terminal, up to the maximum number, and then the number of the remaining diagnostics.
     ///
     /// # Errors
     /// Fails if writing a diagnostic fails; the other diagnostics are written nevertheless.
@@ -133,7 +132,7 @@ impl<'s> Excerpt<'s> {
             let lines = places.entry(label.file_id).or_default();
             let [first, last] = [label.range.start, label.range.end].map(|byte| file.line_index((), byte));
             let (first, last) = (first?, last?);
-            // A single line between two that are shown is shown as well.
+            // A single line between two shown lines is shown as well.
             for line in first..=last.saturating_add(1) {
                 lines.entry(line).or_default();
             }
@@ -214,7 +213,7 @@ fn stretches(line: &str, places: impl Iterator<Item = usize>) -> Vec<Range<usize
     for place in places {
         let from = line.floor_char_boundary(place.saturating_sub(AROUND));
         let to = line.ceil_char_boundary(place.saturating_add(AROUND));
-        // What is no longer than the mark of a cut is not cut.
+        // A part that is not longer than the mark of a cut is shown.
         match stretches.last_mut() {
             Some(last) if from <= last.end + CUT.len() => last.end = to,
             None if from <= CUT.len() => stretches.push(0..to),

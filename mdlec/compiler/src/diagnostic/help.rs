@@ -1,4 +1,4 @@
-//! Adds help to diagnostics: advice about a defect, and the edit that removes it.
+//! Adds help to diagnostics: advice about a mistake, and the edit that corrects it.
 
 use super::{Diagnostic, Span};
 
@@ -16,7 +16,7 @@ pub struct Edit {
 pub struct Help {
     /// A sentence that quotes the text to type in backticks.
     pub text: String,
-    /// Edit that removes the defect, if the exact text is known.
+    /// Edit that corrects the mistake, if the exact text is known.
     pub edit: Option<Edit>,
 }
 

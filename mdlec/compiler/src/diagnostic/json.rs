@@ -14,7 +14,7 @@ pub struct Message<'a> {
     pub severity: &'static str,
     /// Text of the message.
     pub message: &'a str,
-    /// Places in the text: first the defect, then others that explain it.
+    /// Places in the text: first the place of the mistake, then places that explain it.
     pub spans: Vec<Place<'a>>,
     /// Advice for the user.
     pub help: Vec<&'a str>,
@@ -33,7 +33,7 @@ pub struct Place<'a> {
     pub end_line: usize,
     /// Column of the end.
     pub end_column: usize,
-    /// `true` for the place of the defect, `false` for one that explains it.
+    /// `true` for the place of the mistake, `false` for a place that explains it.
     pub primary: bool,
     /// Text shown beside the place; may be empty.
     pub text: &'a str,
@@ -51,7 +51,7 @@ impl<'a> Message<'a> {
     /// Returns the message as one line of JSON, without the line break.
     #[must_use]
     pub fn to_json(&self) -> String {
-        // Only maps with keys that are not strings cannot be written, and there are none.
+        // Serialization fails only for maps with keys that are not strings, and there are none.
         serde_json::to_string(self).unwrap_or_default()
     }
 }

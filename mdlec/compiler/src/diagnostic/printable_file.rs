@@ -1,5 +1,5 @@
-//! Makes the text of a file printable: characters that are not printable appear as numbers, and offsets can be
-//! converted.
+//! Makes the text of a file printable, by replacing characters that are not printable by their numbers, and converts
+//! offsets between the original and the printable text.
 
 use codespan_reporting::files::SimpleFile;
 use mdle_runtime::{Printable, is_printable};
@@ -21,7 +21,7 @@ impl PrintableFile {
         let mut kept = 0;
         for (place, letter) in text.char_indices().filter(|(_, letter)| !is_printable(*letter)) {
             let after = place + letter.len_utf8();
-            // Line breaks, a carriage return before one of them included, and tabs are the renderer's business.
+            // The renderer handles tabs and line breaks, including a carriage return before a line break.
             let is_layout = matches!(letter, '\n' | '\t') || letter == '\r' && text[after..].starts_with('\n');
             if !is_layout {
                 shown += &text[kept..place];

@@ -1,4 +1,4 @@
-//! Stores the files that messages show. Offsets of spans refer to the concatenation of all files.
+//! Stores the files that messages show. Spans are offsets in the concatenation of all files.
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -45,8 +45,8 @@ impl Sources {
         id
     }
 
-    /// Returns the offset of the next file. One byte separates two files, so that the end of a file is not part of the
-    /// next file.
+    /// Returns the offset of the next file. One byte separates two files, so that the end of a file does not belong to
+    /// the next file.
     fn next(&self) -> SourceId {
         SourceId(self.files.last().map_or(0, |(last, file)| Span::new(*last, 0, file.written.source().len() + 1).end))
     }
@@ -179,7 +179,7 @@ mod tests {
                  alphabets can have 4294967295 in all"
             )
         );
-        // Where all of that is taken, the last place is one that a span can name.
+        // Even if the files use up all offsets, a span can refer to the last place.
         let last = Span::new(SourceId(1_001), 0, room);
         assert_eq!((last.end, last.within(SourceId(1_001))), (u32::MAX - 1, 0..room));
         assert_eq!(sources.file(500).map(|(id, _)| *id), Some(first));

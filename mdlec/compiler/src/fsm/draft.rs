@@ -87,8 +87,9 @@ pub struct Sizes {
     /// Number of levels of scopes, down to the deepest level with a `wait`, a `way` or a `FRAME here`. The machine does
     /// not record the entry of scopes at deeper levels.
     pub levels: usize,
-    /// `true` if the machine stores, in addition to the time, odometer and heading at the entry of scopes and the
-    /// progress of the law. A plan with `way`, `FRAME here`, `stuck` or `rendezvous` needs them.
+    /// `true` if the machine stores not only the time at which each scope was entered, but also the odometer and the
+    /// heading at that moment, and the progress of the law. A plan with `way`, `FRAME here`, `stuck` or `rendezvous`
+    /// needs them.
     pub stamps: bool,
     /// Maximum number of loops that enclose an atom.
     pub slots: usize,

@@ -33,7 +33,7 @@ pub enum ElementKind<'m> {
     Atom(Atom<'m>),
 }
 
-/// Consequence of the end of an element, one step outwards.
+/// Immediate consequence of the end of an element.
 #[derive(Debug, Clone, Copy)]
 pub enum Exit<'m> {
     /// The plan is over.
@@ -176,7 +176,7 @@ impl<'m> Element<'m> {
         self.tables.marks.get(&self.number).map_or(&[], Vec::as_slice)
     }
 
-    /// Returns the consequence of the element's end, one step outwards.
+    /// Returns the immediate consequence of the element's end.
     #[must_use]
     pub fn exit(self) -> Exit<'m> {
         let Some(parent) = self.parent() else { return Exit::Over };
@@ -184,8 +184,8 @@ impl<'m> Element<'m> {
         if parent.bracket().last == last {
             return Exit::Last(parent);
         }
-        // First atoms ascend in pre-order: the next element begins with the first atom after this one's last. After an
-        // atom it is the next of all.
+        // In pre-order, the first atoms of elements ascend, so the next element begins with the atom after this
+        // element's last atom. If this element is an atom, the next element follows it directly in the table.
         let after = self.index() + 1;
         let rest = &self.tables.brackets[after..];
         let nested = match rest.first() {

@@ -1,4 +1,4 @@
-//! Writes finite loops out (paper, section II-A: `(s1 s2)^3 → s1 s2 s1 s2 s1 s2`), so that every state has a number.
+//! Expands finite loops (paper, section II-A: `(s1 s2)^3 → s1 s2 s1 s2 s1 s2`), so that every state has a number.
 
 use super::{STATES, lower};
 use crate::diagnostic::{Code, Diagnostic, Span};
@@ -60,14 +60,14 @@ pub fn expanded_states(plan: &Nondegenerate) -> Result<u64, Diagnostic> {
         return Ok(states);
     }
     if states > STATES {
-        // It says which loops multiply.
+        // Reports the loops whose counts multiply.
         lower(plan)?;
     }
     Err(too_large(&Expanded { all: states, ..expanded }, &count, EXPANDED, plan))
 }
 
 fn expand_scope(scope: &Scope) -> Scope {
-    // Field by field: a copy of the whole would copy the body at each level.
+    // The fields are copied one by one, because a copy of the whole scope would include the body at each level.
     Scope {
         name: scope.name.clone(),
         interrupt: scope.interrupt.clone(),

@@ -1,5 +1,5 @@
-//! Writes a machine as an FSM file (docs/src/reference/interfaces.md, 5), which contains its states, and its interrupts
-//! with their moves; finite loops are expanded.
+//! Writes a machine as an FSM file (docs/src/reference/interfaces.md, 5), which contains the states, and the interrupts
+//! with their transitions; finite loops are expanded.
 
 use serde::Serialize;
 
@@ -33,18 +33,18 @@ pub struct FsmFile {
     pub scopes: Vec<ScopeEntry>,
 }
 
-/// An interrupt with its transition matrix, which is given by its moves.
+/// An interrupt with its transition matrix, which is given as a list of transitions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InterruptEntry {
     /// Name of the interrupt: `x1`, `x2`, …, or `completed`.
     pub name: String,
     /// Text of the interrupt's condition.
     pub text: String,
-    /// The moves of the transition matrix, from state to state.
+    /// The transitions of the matrix, from state to state.
     pub moves: Moves,
 }
 
-/// Pairs of the state left and the state entered, in the order of the states left.
+/// Transitions, as pairs of the state that is left and the state that is entered, ordered by the state that is left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moves(pub Vec<(String, String)>);
 
@@ -67,12 +67,12 @@ pub struct ScopeEntry {
     pub last: String,
 }
 
-/// Returns the FSM file of a plan: its transition matrices, each with the columns that its interrupt lists.
+/// Returns the FSM file of a plan: for each interrupt, the columns of its transition matrix that the interrupt lists.
 ///
 /// # Errors
 /// Fails with E0501 or E0502 as [`expand`](super::expand) does.
 pub fn fsm_file(plan: &Nondegenerate) -> Result<FsmFile, Diagnostic> {
-    // The file repeats the text of a condition for each state that it is copied to.
+    // The file contains the text of a condition again for each state to which expansion copies the condition.
     expands(plan)?;
     let matrices = matrices(plan)?;
     let plan = plan.plan();
@@ -110,7 +110,7 @@ impl FsmFile {
     /// Returns the file as JSON, on several lines.
     #[must_use]
     pub fn to_json(&self) -> String {
-        // Only maps with keys that are not strings cannot be written, and there are none.
+        // Serialization fails only for maps with keys that are not strings, and there are none.
         serde_json::to_string_pretty(self).map(|text| text + "\n").unwrap_or_default()
     }
 }

@@ -18,7 +18,7 @@ pub const STATES: u64 = 1 << 53;
 ///
 /// # Errors
 /// Fails with E0501 if the expanded plan has more than [`STATES`] states; E0901 if the machine does not agree with the
-/// plan, which would be a defect of this compiler.
+/// plan, which would be a bug in this compiler.
 pub fn lower(nondegenerate: &Nondegenerate) -> Result<Machine, Diagnostic> {
     let plan = nondegenerate.plan();
     let mut lowering = Lowering {

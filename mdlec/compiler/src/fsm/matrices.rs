@@ -23,10 +23,10 @@ pub struct Matrices<'p> {
 
 impl<'p> Matrices<'p> {
     /// Returns, for each atom whose law may complete, in order, the number of the atom's own interrupt in
-    /// [`transitions`](Self::transitions) and the matrix by which the atom ends.
+    /// [`transitions`](Self::transitions), and the matrix of the transition when the law completes.
     pub fn completion(&self, plan: &Plan) -> impl Iterator<Item = (usize, Matrix)> {
         let mut own = vec![None; self.laws.len()];
-        // An atom is inside every scope that encloses it, so it comes last of those that list its column.
+        // The interrupts of enclosing scopes come first, so the atom's own interrupt is the last that lists its column.
         for (number, Transition { matrix, .. }) in self.transitions.iter().enumerate() {
             if matrix.first == matrix.last {
                 own[matrix.first] = Some((number, *matrix));
@@ -46,7 +46,7 @@ pub struct Transition<'p> {
     pub name: &'p str,
     /// Number of scopes that enclose the interrupt's scope.
     pub level: usize,
-    /// `true` if the scope is entered in a frame of its own: `FRAME here`.
+    /// `true` if the scope has `FRAME here`.
     pub here: bool,
     /// Transition matrix of the interrupt.
     pub matrix: Matrix,
@@ -298,7 +298,8 @@ mod tests {
         let plan = "{ P { Q (bumper) (Atom (wait 1) stop)^2 } ((Atom (wait 2) stop) (Atom (wait 3) stop))^inf }";
         let compiled = compiled(plan).swap_remove(0).nondegenerate;
         let matrices = matrices(&compiled).unwrap().transitions;
-        // In order: the first atom, its copy, the first of the loop and the second, which starts the next pass.
+        // The interrupts of the first atom, its copy, the first atom of the loop, the second atom (which starts the
+        // next pass), and again the first atom of the loop.
         let fired = [2, 3, 4, 5, 4];
         let sparse = fired.iter().fold(UnitVector { row: 0 }, |e, i| &matrices[*i].matrix * e);
         let product =

@@ -16,7 +16,7 @@ use crate::plan::{Function, Functions};
 /// an interrupt once. The brackets must be in pre-order and nested, which [`validate`](super::validate) checks.
 ///
 /// # Errors
-/// Fails with E0901 for the first interrupt that is repeated inside its scope, which is a defect of the compiler.
+/// Fails with E0901 for the first interrupt that is repeated inside its scope, which is a bug in the compiler.
 pub fn observation1(machine: &Machine) -> Result<(), Diagnostic> {
     let functions = Functions::new(machine.quarks());
     let mut open: BTreeMap<Function, &str> = BTreeMap::new();

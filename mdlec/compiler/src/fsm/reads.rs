@@ -45,8 +45,8 @@ fn reads_of<'m>(quark: &'m Quark, alphabet: &'m Alphabet) -> Vec<AttributeRead<'
     reads.collect()
 }
 
-/// Returns the SI unit of an attribute, that is, of the signal that has this name and reads a module; `None` if there
-/// is no such signal.
+/// Returns the SI unit of an attribute, which is the unit of the signal of a module with the attribute's name; `None`
+/// if there is no such signal.
 fn unit(attribute: &str, alphabet: &Alphabet) -> Option<&'static str> {
     let is_read = |declaration: &&Declaration| {
         let own = |param: &crate::alphabet::Param| param.kind == Kind::Module && param.with.is_empty();

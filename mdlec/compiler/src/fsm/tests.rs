@@ -1,4 +1,4 @@
-//! Tests of the tables of a plan, and of the limit on its states, with values that were derived by hand from the rules
+//! Tests the tables of a plan, and the limit on its states, with values that were derived by hand from the rules
 //! (docs/src/reference/semantics.md, 8.1).
 
 use mdle_runtime::fsm::{Atom, Bracket};
@@ -16,14 +16,14 @@ fn brackets_are_in_pre_order_and_count_the_scopes_and_loops_around_them() {
     let brackets = [
         Bracket::scope(0, 0, 4, 0),
         Bracket::scope(1, 0, 0, 0),
-        // A pass of the outer loop is two of the inner one and an atom.
+        // A pass of the outer loop has five states: two passes of the inner loop with two states each, and an atom.
         Bracket::repeat(3, 0, 5, 1, 3, 0),
         Bracket::repeat(2, 1, 2, 1, 2, 2),
         Bracket::scope(1, 1, 1, 3),
         Bracket::scope(1, 2, 2, 3),
         Bracket::scope(2, 2, 2, 5),
         Bracket::scope(1, 3, 3, 2),
-        // Passes of a loop without end share their states.
+        // All passes of an endless loop use the same states.
         Bracket::repeat(0, 0, 0, 4, 4, 0),
         Bracket::repeat(4, 1, 1, 4, 4, 8),
         Bracket::scope(1, 4, 4, 9),
@@ -77,7 +77,7 @@ const NESTED: &str =
     "{ P (bumper) (((Atom (wait 1) stop) { Q (wait 9) (Atom (null) rotate 9) })^2 (Atom (wait 3) stop))^inf
     (Atom (wait 4) stop) }";
 
-/// Returns an element as a word.
+/// Returns a short text that identifies an element.
 fn word(element: Element<'_>) -> String {
     match element.kind() {
         ElementKind::Scope => element.name().to_owned(),

@@ -20,7 +20,7 @@ use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Record, Scope};
 /// Checks that `draft` is the machine of `plan`.
 ///
 /// # Errors
-/// Fails with E0901 for the first difference between plan and machine, which is a defect of the compiler.
+/// Fails with E0901 for the first difference between plan and machine, which is a bug in the compiler.
 pub fn validate(plan: &Nondegenerate, draft: &Draft) -> Result<(), Diagnostic> {
     let root = &plan.plan().root;
     let mut walk = Walk { draft, brackets: 0, atoms: 0 };
@@ -44,11 +44,11 @@ struct Around {
     loops: u16,
     /// Number of states of the expanded plan before the node, in the first pass of every loop.
     states: u128,
-    /// Level of the innermost enclosing scope that is entered in a frame of its own; `None` if there is no such scope.
+    /// Level of the innermost enclosing scope with `FRAME here`; `None` if there is no such scope.
     here: Option<u16>,
 }
 
-/// Consequence of the end of a node, one step outwards.
+/// Immediate consequence of the end of a node.
 #[derive(Debug, PartialEq)]
 enum Step {
     /// The plan is over.
@@ -106,7 +106,7 @@ impl Walk<'_> {
         let (number, first) = self.met();
         let inside = Around { holder: number, loops: around.loops.saturating_add(1), ..around };
         let pass = self.sequence(&repeated.body, inside)?;
-        // Passes of a loop without end are the same states again.
+        // All passes of an endless loop use the same states.
         let (times, stride) = repeated.times.map_or((0, 0), |times| (times, pass));
         same(repeated.span, "the states of a pass", Some(stride), self.stride(number))?;
         let kind = Kind::Loop { times, slot: around.loops, stride: stride as u64 };
@@ -162,7 +162,7 @@ impl Walk<'_> {
         (self.brackets - 1, self.atoms)
     }
 
-    /// Checks that a bracket has this kind and this first atom, and that its successor is the one in the plan.
+    /// Checks that a bracket has this kind and this first atom, and the successor that the plan requires.
     fn bracket(&self, number: u32, first: u32, kind: Kind, around: Around, span: Span) -> Result<(), Diagnostic> {
         let in_machine = self.draft.brackets.get(number as usize);
         same(
@@ -173,7 +173,7 @@ impl Walk<'_> {
         )?;
         let in_plan = match around.behind {
             None => Step::Over,
-            // All that is in it was met, so the next atom is the first one behind it.
+            // The walk has visited all atoms inside the bracket, so the next atom is the first after the bracket.
             Some(true) => Step::Enters { atom: self.atoms, inside: around.holder },
             Some(false) => Step::Ends { bracket: around.holder },
         };
@@ -185,7 +185,7 @@ impl Walk<'_> {
         if number == 0 {
             return (bracket.parent == 0 && bracket.last as usize + 1 == self.draft.atoms.len()).then_some(Step::Over);
         }
-        // Who asks outwards comes to the plan in the end.
+        // Because each parent has a smaller number, the steps outwards end at the plan.
         let holder = self.draft.brackets.get(bracket.parent as usize).filter(|_| bracket.parent < number)?;
         Some(if bracket.last == holder.last {
             Step::Ends { bracket: bracket.parent }
@@ -249,7 +249,7 @@ impl Walk<'_> {
     }
 }
 
-/// Checks that the plan and the machine agree.
+/// Checks that a value, which `what` names, is the same in the plan and in the machine.
 fn same<T: PartialEq + fmt::Debug>(span: Span, what: &str, in_plan: T, in_machine: T) -> Result<(), Diagnostic> {
     if in_plan == in_machine {
         Ok(())

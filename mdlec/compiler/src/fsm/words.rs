@@ -90,7 +90,7 @@ impl Writing<'_> {
             return;
         };
         let parts = interrupt.condition.joined();
-        // What was removed has no operands, and what is null has none that can fire.
+        // A removed interrupt has no operands, and a null interrupt has no operands that can fire.
         let operands = if parts.len() == interrupt.operands.len() { &*interrupt.operands } else { &[] };
         for (number, (part, place)) in parts.iter().zip(operands).enumerate() {
             let text = interrupt.operand_text(number, part, &|id| machine.quark(id).text.clone());
@@ -113,7 +113,7 @@ impl Writing<'_> {
             "" => (text.clone(), [None; 2]),
             words => one_line(words, ends),
         };
-        // The timer of formal notation is a time alone.
+        // In formal notation, a timer is written as a time without `wait`.
         let written = if written.starts_with(|letter: char| letter.is_ascii_digit()) {
             format!("wait {written}")
         } else {

@@ -1,4 +1,5 @@
-//! Stores the entries of scopes of a loaded plan: only times, unless the plan also needs odometer and heading.
+//! Stores the moment at which each scope of a loaded plan was entered: the time and, if the plan needs them, the
+//! odometer and the heading.
 
 use mdle_runtime::{Entries, Here, Nanometers, Nanos, Output, Radians, Stamp, Stamps};
 
@@ -22,8 +23,7 @@ impl Entered {
         Self::new(sizes.levels, sizes.stamps.then_some(machine))
     }
 
-    /// Returns storage for all data of all levels of a machine, including levels without timers, for a plan that is
-    /// observed.
+    /// Returns storage for all data of all levels of a machine, including levels without timers, for an observed plan.
     pub(super) fn observed(machine: &Machine) -> Self {
         Self::new(machine.depth(), Some(machine))
     }

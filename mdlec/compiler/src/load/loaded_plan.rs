@@ -75,7 +75,7 @@ impl<A: Alphabet> LoadedPlan<A> {
 impl<A: Alphabet> LookedAt<A> {
     /// Records the moment before a transition, or at the end of a turn.
     fn note(&mut self, rows: &LoadedRows<A>, cursor: &Position, cause: Option<Cause>, y: &A::Output, t: Nanos) {
-        // A plan that goes on after a suspension may make a turn of the same time again.
+        // A plan that resumes after a suspension may repeat a turn at the same time.
         let is_settled = self.moments.last().is_some_and(|last| last.cause.is_none());
         if self.t.replace(t) != Some(t) || is_settled {
             self.moments.clear();

@@ -26,11 +26,11 @@ pub use table::{Loaded, Shared};
 /// Reason why a plan cannot be loaded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LoadError {
-    /// The target, whose name is given, is bound to another alphabet than the one for which the plan was compiled.
+    /// The target with this name is bound to another alphabet than the one for which the plan was compiled.
     OtherAlphabet(String),
     /// The target does not implement the quark with this text, although its alphabet declares the quark.
     Unbound(String),
-    /// With this plan, the names of all plans that this process has loaded would have more than [`MOST_NAMES`] bytes.
+    /// With this plan, the names of all plans that this process has loaded would exceed [`MOST_NAMES`] bytes.
     TooManyNames,
     /// The new names in the plan have more bytes than are left in its [`NameBudget`].
     OverBudget,

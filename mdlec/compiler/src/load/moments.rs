@@ -1,5 +1,5 @@
-//! Records the moments of a turn: the state of the scopes that enclose the atom, before each transition and at the end
-//! of the turn.
+//! Records the moments of a turn, which are the states of the enclosing scopes of the current atom before each
+//! transition and at the end of the turn.
 
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::{Alphabet, Cause, Cursor, Examined, Nanometers, Nanos, Plan as _};

@@ -1,4 +1,4 @@
-//! Stores the names in loaded plans as long as the process runs.
+//! Stores the names in loaded plans until the process ends.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -18,8 +18,8 @@ pub const MOST_NAMES: usize = 1_000_000;
 /// The names of this process.
 static NAMES: Mutex<Names> = Mutex::new(Names { kept: BTreeSet::new(), bytes: 0 });
 
-/// Number of bytes that new names in the plans from one source may still have. With a budget of its own, another
-/// robot's plans cannot use up the names that the operator's plans need.
+/// Number of bytes that new names in the plans from one source may still use. A separate budget prevents another
+/// robot's plans from using up the names that the operator's plans need.
 #[derive(Debug)]
 pub struct NameBudget(Cell<usize>);
 
@@ -64,7 +64,7 @@ pub(super) fn reads(
     if let Some(known) = lists.get(&*list) {
         return Ok(known);
     }
-    // Its names count once more, so that lists have a limit as well.
+    // The names in a new list are counted again, so that the number of lists is limited as well.
     let bytes = list.iter().map(|read| read.module.len() + read.attribute.len()).sum();
     NAMES.lock().unwrap_or_else(PoisonError::into_inner).count(bytes, budget)?;
     let list: &'static [ModuleRead] = list.leak();

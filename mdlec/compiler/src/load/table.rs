@@ -21,7 +21,7 @@ pub struct Loaded<A: Alphabet> {
     names: Vec<Box<str>>,
     entered: Entered,
     slots: usize,
-    /// Number of memories for each level of scopes, and number of these levels.
+    /// Number of memories for each level of scopes, and number of levels.
     memories: (usize, usize),
     /// The machine of the plan; `None` if the plan is not observed.
     machine: Option<Arc<Machine>>,
@@ -44,7 +44,7 @@ pub(super) struct Owned<A: Alphabet> {
 /// The table rows of a loaded plan, with its memories.
 pub(super) type LoadedRows<A> = InRows<Shared<A>, Entered, Box<[u64]>, Memories<Box<[bool]>>>;
 
-/// Tables that several machines may run, each at a position of its own.
+/// Tables that several machines can run at the same time, each at its own position.
 pub struct Shared<A: Alphabet>(Arc<Loaded<A>>);
 
 impl<A: Alphabet> Loaded<A> {
@@ -66,8 +66,8 @@ impl<A: Alphabet> Loaded<A> {
         Self { brackets, atoms, termination, owned, laws, conditions, names, entered, slots, memories, machine: None }
     }
 
-    /// Returns the plan in observed form, in which it records the moments of its turns. `machine` is the machine of
-    /// this plan.
+    /// Returns the plan as an observed plan, which records the moments of its turns. `machine` is the machine of this
+    /// plan.
     #[must_use]
     pub fn looked_at(self, machine: Arc<Machine>) -> Self {
         Self { machine: Some(machine), ..self }

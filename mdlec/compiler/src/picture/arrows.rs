@@ -135,14 +135,14 @@ fn exit(element: Element<'_>, placed: &Placed, to: (i64, i64), over: i64) -> Vec
 }
 
 /// Returns the arrow of a scope's exit by its own condition, for a scope at the end of a row. If the scope can also end
-/// with its last element, the arrow stops in the gap below the row, where it meets the arrow of that end; otherwise it
-/// continues to `to`.
+/// with its last element, the arrow stops in the gap below the row, where it joins the arrow from the last element;
+/// otherwise it continues to `to`.
 fn exit_below(element: Element<'_>, placed: &Placed, to: (i64, i64), gap: i64) -> Vec<Polyline> {
     let right = placed.x + placed.width;
     if placed.flows {
         return exit(element, placed, (right - 8, gap), right + GAP / 2);
     }
-    // Nothing else draws the way to the next row.
+    // The scope has no other arrow to the next row, so this arrow has to reach it.
     let mut lines = exit(element, placed, (to.0 - SIDE / 2, gap), right + GAP / 2);
     lines.iter_mut().for_each(|line| line.points.extend([(to.0 - SIDE / 2, to.1), to]));
     lines

@@ -13,7 +13,7 @@ use crate::fsm::{Atom, Element, ElementKind, Machine, Visit};
 const LETTERS: usize = 30;
 /// Maximum number of lines of a label.
 const LINES: usize = 3;
-/// Maximum number of edges. If several loops end with an element, the element has an edge for each of them.
+/// Maximum number of edges. An element with which several loops end has an edge for each of these loops.
 const EDGES: usize = 10_000;
 
 /// Returns the plan in Graphviz's language.
@@ -106,7 +106,8 @@ impl Graph {
             attributes.push(format!("tooltip={}", quoted(&bounded(&until.text()))));
             if element.is_scope() {
                 let number = element.number();
-                // Which cluster is left also where it cannot be drawn, since the edge leads into it again.
+                // The class names the cluster that the edge leaves even if this cannot be drawn, because the edge leads
+                // back into the cluster.
                 attributes.push(format!("class=\"cluster{number}\", color=\"#c2410c\", fontcolor=\"#c2410c\""));
                 if !leads_inside(destination, element) {
                     attributes.push(format!("ltail=cluster{number}"));

@@ -15,7 +15,8 @@ pub(super) enum Destination<'m> {
     Over { last_pass: bool },
 }
 
-/// Returns the destinations of an element: each loop that ends with the element, and the element after these loops.
+/// Returns the destinations of an element: the beginning of each loop that ends with the element, and the element after
+/// these loops.
 pub(super) fn destinations(element: Element<'_>) -> Vec<Destination<'_>> {
     let (mut all, mut exit, mut last_pass) = (Vec::new(), element.exit(), false);
     loop {
@@ -55,7 +56,7 @@ pub(super) struct WaysOut {
 /// Returns the ways in which each element can end, indexed by the element's number.
 pub(super) fn ends(machine: &Machine) -> Vec<WaysOut> {
     let mut ends = vec![WaysOut::default(); machine.elements().len()];
-    // Inner elements come before those that hold them.
+    // In reverse order, nested elements come before the elements that enclose them.
     for element in machine.elements().rev() {
         let by_itself = until(element).ends();
         let at_its_end = match element.kind() {

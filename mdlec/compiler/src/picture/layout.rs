@@ -6,7 +6,7 @@ use super::texts::{Until, exponent, labels, passes, until};
 use crate::fsm::{Atom, Element, ElementKind, Machine};
 use crate::plan::frame_text;
 
-/// Maximum width of a picture whose elements do not need more, in pixels.
+/// Maximum width of a picture, in pixels, unless a single element is wider.
 const PICTURE: i64 = 1180;
 /// Minimum width of a box's content at any depth, in pixels.
 const LEAST: i64 = 400;

@@ -20,11 +20,11 @@ fn columns(text: &str) -> i64 {
     text.chars().map(|letter| if letter < '\u{1100}' { 1 } else { 2 }).sum()
 }
 
-/// Breaks a text into at most `lines` lines of at most `letters` characters, where possible before OR and AND,
-/// otherwise between words. Text that does not fit is left out; then the last line ends with `…`.
+/// Breaks a text into at most `lines` lines of at most `letters` characters: before OR and AND where possible,
+/// otherwise between words. Text that does not fit is left out, and the last line then ends with `…`.
 pub(super) fn wrapped(text: &str, letters: usize, lines: usize) -> Vec<String> {
     let letters = letters.max(4);
-    // More is never shown, however long the text is.
+    // No more than this is ever shown, so the rest of a long text is not processed.
     let shown = (letters + 1) * lines + 1;
     let enough: String = text.chars().take(shown).collect();
     let mut wrapped = vec![String::new()];

@@ -63,7 +63,8 @@ impl Diagram {
         self.line(&format!("[*] --> b{}", number + 1));
     }
 
-    /// Writes the transitions of an element to its destinations: by its own condition, and when its last element ends.
+    /// Writes the transitions that leave an element: when its condition fires, and when the last element inside it
+    /// ends.
     fn leave(&mut self, element: Element<'_>) {
         if element.atom().is_none() {
             self.depth -= 1;

@@ -141,7 +141,7 @@ impl<'p> Machine<'_, 'p> {
             any.push(done);
         }
         if !any.is_empty() {
-            // The limit of transitions cuts the turn: nothing is applied, and the search goes on in the next one.
+            // At the limit of transitions, the turn ends without a law, and the next turn continues the search.
             let cut = format!("n == {TRANSITIONS_PER_TURN} && law !== null && ({})", any.join(" || "));
             self.line(2, &format!("<transition cond=\"{}\">", escaped(&cut)));
             self.assign(3, "law", "null");
@@ -209,7 +209,7 @@ impl<'p> Machine<'_, 'p> {
         self.line(2, "</transition>");
     }
 
-    /// Writes the assignments to the facts that `after` tests and that change because the transition ends elements.
+    /// Writes the assignments to the facts that `after` tests and that change when the transition ends elements.
     fn record(&mut self, transition: &Transition<'p>, number: usize, by_condition: bool) {
         let own = transition.marks.iter().map(|mark| (mark, by_condition));
         let ended: Vec<(&Mark, bool)> = own.chain(transition.ends_with.iter().map(|mark| (*mark, false))).collect();
@@ -305,7 +305,7 @@ fn fact(record: RecordId, number: u32) -> String {
 
 /// Returns a quark's text as a string of ECMAScript, in which strings of JSON are valid.
 fn text(quark: &Quark) -> String {
-    // A string can always be written.
+    // Serializing a string cannot fail.
     let text = serde_json::to_string(&quark.text).unwrap_or_default();
     let escape = |letter: char| -> String {
         letter.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\u{unit:04x}")).collect()

@@ -15,7 +15,7 @@ pub(super) enum Until {
     Done,
     /// The atom ends when this condition fires or its law completes.
     FiresOrDone(String),
-    /// The element has no condition: its condition, with this text, was removed because an outer scope repeats it.
+    /// The element has no condition, because its condition, with this text, was removed: an outer scope repeats it.
     Removed(String),
     /// The element has no condition.
     Never,

@@ -1,8 +1,8 @@
-//! Writes angles in degrees where a number with at most six decimals represents the angle up to rounding errors.
+//! Writes angles in degrees if a number with at most six decimals represents the angle up to rounding errors.
 
 use mdle_runtime::Radians;
 
-/// Returns the angle in degrees, rounded to a millionth, if this differs from the angle at most by the rounding errors
+/// Returns the angle in degrees, rounded to a millionth, if this changes the angle by no more than the rounding errors
 /// of a sum; `None` otherwise.
 #[must_use]
 pub fn in_degrees(radians: f64) -> Option<f64> {
@@ -10,7 +10,7 @@ pub fn in_degrees(radians: f64) -> Option<f64> {
     ((Radians::from_degrees(degrees).0 - radians).abs() < 1e-12 * radians.abs().max(1.0)).then_some(degrees)
 }
 
-/// Prefix of an element whose frame is the heading at which the element is entered.
+/// Prefix of an element whose frame is the robot's heading when the element is entered.
 pub const HERE: &str = "FRAME here ";
 
 /// Returns the prefix of an element whose frame is turned by this angle: `FRAME 30deg `, or an empty text for

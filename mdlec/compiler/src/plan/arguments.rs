@@ -72,8 +72,8 @@ fn fitted(
     }
 }
 
-/// Returns the number of faults of a call for this declaration: arguments that are missing, superfluous, or of
-/// the wrong kind.
+/// Returns the number of errors in a call of this declaration: arguments that are missing, superfluous, or of the wrong
+/// kind.
 pub(super) fn complaints(call: &Call, declaration: &Declaration, parameters: &Parameters<'_>) -> usize {
     let params = &declaration.params;
     let needed = params.iter().filter(|param| param.default.is_none()).count();
@@ -156,7 +156,7 @@ impl Fitting<'_> {
         }
         match &parameter.given {
             Some(given) => self.argument(given, param, parameter.unit()),
-            // It stands for itself, until the plan is used.
+            // Until the plan is used, the parameter has no argument, and its name is its value.
             None => Ok((Value::Name(param.kind, parameter.name.node.to_owned()), parameter.name.node.to_owned())),
         }
     }

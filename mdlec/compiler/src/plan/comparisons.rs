@@ -9,9 +9,9 @@ use crate::alphabet::{self, Decimal, Declaration, DeclarationKind, Kind, Unit, f
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{self, Arg, Call, Number, Operand};
 
-/// Name of the signal that is time.
+/// Name of the signal for the time.
 const TIME: &str = "t";
-/// Name of the signal that is the length of the path driven.
+/// Name of the signal for the length of the path driven.
 const WAY: &str = "way";
 
 type Resolved<T> = Result<T, Vec<Diagnostic>>;
@@ -68,7 +68,7 @@ pub(super) fn resolve(
         Operand::Signal(call) if call.args.is_empty() => names.parameters.get(call.name),
         Operand::Signal(_) | Operand::Number(_) | Operand::Infinity(_) => None,
     };
-    // What is wrong with either side is told at once.
+    // Errors of both sides are reported together.
     let right = match (&written.right, parameter) {
         (Operand::Signal(call), None) if names.parameters.is_untyped(call.name) => Some(Err(Vec::new())),
         (Operand::Signal(call), None) => Some(self::signal(call, quarks, names)),
@@ -144,7 +144,7 @@ fn given(parameter: &Parameter<'_>, at: Span, signal: Signal<'_>) -> Fitted {
     match parameter.given {
         Some(Arg::Number(number)) => value(&number, parameter.unit().unwrap_or(unit), unit, declaration),
         Some(Arg::Infinity(_)) => without_end(at, signal),
-        // It stands for itself, until the plan is used.
+        // Until the plan is used, the parameter has no argument, and its name is its value.
         Some(Arg::String(_) | Arg::Name(_) | Arg::Module(_)) | None => {
             let name = parameter.name.node.to_owned();
             Ok((Value::Name(unit.kind, name.clone()), name))
@@ -207,7 +207,7 @@ fn interval(comparison: &Comparison, counted: EntrySignal, span: Span) -> Resolv
         Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) | Value::Name(..) => None,
     };
     let time = match &comparison.with {
-        // A parameter that stands for nothing yet.
+        // A parameter without an argument yet.
         Compared::Value(Value::Name(..)) => Some(0),
         Compared::Value(value) => nanos(value),
         Compared::Signal(_) => None,
@@ -245,7 +245,7 @@ fn signal<'a>(call: &Call, quarks: &mut Quarks<'a>, names: Names<'_, '_>) -> Res
     let declaration = quarks.alphabet().declarations_of(name).nth(overload);
     match declaration.and_then(|declaration| Some((declaration, declaration.unit?))) {
         Some((declaration, (unit, tolerance))) => Ok(Signal { quark, declaration, unit, tolerance }),
-        // The alphabet was refused for that.
+        // A signal without a unit is an error in the alphabet, which has been reported.
         None => Err(Vec::new()),
     }
 }

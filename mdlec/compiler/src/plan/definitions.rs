@@ -50,7 +50,7 @@ impl<'a> Definitions<'a> {
             let name = plan.name.node;
             if let Some(first) = by_name.get(name).and_then(|first: &usize| files.plans.get(*first)) {
                 let message = format!("there are two plans called `{name}`");
-                // A string before σ_null has no name of its own.
+                // A string before σ_null is a plan whose name is not in the text.
                 let is_bare = [plan, first].iter().any(|plan| plan.name.span.start == plan.name.span.end);
                 let help = match is_bare {
                     true => "write one of them with braces and a name of its own: `{ Name … }`",
@@ -122,7 +122,7 @@ impl<'a> Definitions<'a> {
         }
         let mut ready: Vec<usize> = (0..self.plans.len()).filter(|index| waits[*index] == 0).collect();
         let mut sizes = vec![Size::default(); self.plans.len()];
-        // With nothing copied in yet, the sizes are those of the text.
+        // All sizes are still zero, so these are the sizes of the plans as written, without copies.
         self.written = self.plans.iter().fold(Size::default(), |sum, plan| sum.and(self.size_of(plan, &sizes)));
         let mut done = 0;
         while let Some(index) = ready.pop() {
@@ -195,7 +195,8 @@ impl<'a> Definitions<'a> {
         for start in &stuck {
             let mut path = Vec::new();
             let mut here = *start;
-            // Every stuck plan refers to a stuck one, so this walk ends in a cycle or in one that was walked before.
+            // Every stuck plan refers to another stuck plan, so this walk ends in a cycle or at a plan that was visited
+            // before.
             while seen.insert(here) {
                 path.push(here);
                 match self.refers[here].keys().find(|target| stuck.contains(target)) {

@@ -1,4 +1,4 @@
-//! Determines families of interrupts whose values exclude each other: a signal has only one value, and an interrupt
+//! Determines families of interrupts whose values depend on each other: a signal has only one value, and an interrupt
 //! that its alphabet declares `exclusive` fires for at most one value of its arguments.
 
 use super::{Compared, Comparison, Operator, Quark, QuarkId, Value};
@@ -16,7 +16,7 @@ pub(crate) enum Family<'q> {
 /// Returns the family of a quark; `None` if the quark's values are independent.
 pub(crate) fn family(quark: &Quark) -> Option<Family<'_>> {
     match &quark.comparison {
-        // An angle comes round to where it was.
+        // Angles wrap around, so comparisons of angles have no family.
         Some(comparison) => threshold(comparison).map(|_| Family::Signal(comparison.signal)),
         None => quark.exclusive.then_some(Family::Exclusive(&quark.name, quark.overload)),
     }
@@ -50,7 +50,7 @@ pub(crate) enum Readings {
 pub(crate) fn at_once<'q>(quarks: impl Iterator<Item = &'q Quark>, readings: Readings) -> Vec<Vec<bool>> {
     let quarks: Vec<&Quark> = quarks.collect();
     let are_numbers = readings == Readings::Numbers && !quarks.iter().any(|quark| quark.exclusive);
-    // No exclusive interrupt has to fire.
+    // It is possible that no exclusive interrupt fires.
     let mut all = if are_numbers { Vec::new() } else { vec![vec![false; quarks.len()]] };
     for value in values(&quarks) {
         all.push(quarks.iter().map(|quark| holds(quark, value)).collect());

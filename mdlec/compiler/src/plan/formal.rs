@@ -40,7 +40,7 @@ impl<'p> Writer<'p> {
         self.definitions.push(String::new());
         let body = self.sequence(&scope.body).into_iter().map(|line| format!("  {line}\n")).collect::<String>();
         let text = in_parentheses(&scope.interrupt);
-        // A string of plans by name behind the plan's own could be read as its condition.
+        // After the plan's name, a string of plans used by name could be read as the plan's condition.
         let uses_others = self.definitions.len() > number + 1;
         let condition = if text == "null" && !uses_others { String::new() } else { format!(" ({text})") };
         self.definitions[number] = format!("{{ {name}{condition}\n{body}}}\n");
@@ -64,7 +64,7 @@ impl<'p> Writer<'p> {
             }
         };
         for (place, Mark { label, .. }) in marks.iter().enumerate() {
-            // What ends with it is around it.
+            // The elements that end with the node enclose it.
             lines = if place == 0 {
                 begun(lines, &format!("{label}: "))
             } else {
@@ -112,12 +112,12 @@ fn interrupt(interrupt: &Interrupt) -> String {
     let (condition, time) = match text.strip_prefix("wait ") {
         Some(time) => ("null", time),
         None => match text.rsplit_once(" OR wait ") {
-            // `ξ, T` is one OR of all operands of ξ and the time, and the time alone where ξ is null.
+            // `ξ, T` means one OR of all operands of ξ and the time, or only the time if ξ is null.
             Some((condition, time)) if interrupt.nested.is_none() && condition != "null" => (condition, time),
             Some(_) | None => return text.to_owned(),
         },
     };
-    // Behind the time something else may follow, and a parenthesis may be open.
+    // The text after `wait` may be more than a time, for example `5 AND bumper` or `5)`.
     match time.parse::<f64>() {
         Ok(_) if time.starts_with(|digit: char| digit.is_ascii_digit()) => format!("{condition}, {time}s"),
         _ => text.to_owned(),

@@ -47,7 +47,7 @@ impl<'q> Functions<'q> {
         Self { quarks, same: same_functions(quarks) }
     }
 
-    /// Returns the function of a condition; `None` if the condition never fires or is a different function in
+    /// Returns the function of a condition; `None` if the condition never fires, or if it is a different function in
     /// each place.
     #[must_use]
     pub fn function(&self, condition: &Condition) -> Option<Function> {
@@ -65,7 +65,7 @@ impl<'q> Functions<'q> {
             Condition::Quark(id) => self.quarks.get(id.0 as usize).is_some_and(|quark| !quark.remembers),
             Condition::Wait { .. } => !under_not,
             Condition::Elapsed { .. } | Condition::Driven { .. } | Condition::Rising { .. } => false,
-            // It is the same label of the same use of a plan, or it is another one.
+            // Equal `after` conditions read the same label of the same use of a plan in every place.
             Condition::After(_) => true,
             Condition::Or(operands) | Condition::And(operands) => {
                 operands.iter().all(|operand| self.can_be_repeated(operand, under_not))

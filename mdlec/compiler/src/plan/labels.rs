@@ -55,7 +55,7 @@ impl Labels {
     /// Records a label; reports the label if it was used before.
     pub(super) fn add(&mut self, label: Name<'_>, found: &mut Vec<Diagnostic>) {
         if let Some(first) = self.labels.get_mut(label.node) {
-            // Which element `after` means is not known.
+            // It is unknown which of the elements `after` means.
             (first.ends, first.is_ambiguous) = (EndCauses::Unknown, true);
             let message = format!("there are two labels `{}` in this plan", label.node);
             found.push(
@@ -133,7 +133,8 @@ impl Labels {
                 let place = (0..).zip(operands).find(|(_, operand)| *operand == cause).map(|(place, _)| place);
                 place.map(Some).ok_or_else(|| {
                     let message = format!("`{cause}` is not an operand of the interrupt of `{label}`");
-                    // A cause that asks for the label itself would be another one as soon as it is written.
+                    // An operand that contains `after` with this label is not proposed as a cause, because writing it
+                    // would change the operand itself.
                     let itself = format!("after {label}");
                     let meant = operands.iter().filter(|operand| !operand.contains(&itself));
                     let meant: BTreeSet<_> = meant.map(|operand| cause_of(label, operand)).collect();

@@ -1,4 +1,4 @@
-//! Resolved plans: names, arguments, units and plans by name (paper, Definition 2).
+//! Resolved plans: names, arguments and units are resolved, and plans used by name are copied in (paper, Definition 2).
 //!
 //! Later stages refer to a quark by its id, and not by its text. An argument has its exact decimal value and its unit
 //! family.
@@ -118,7 +118,7 @@ pub enum Compared {
     Value(Value),
 }
 
-/// The value of an argument. Values are compared exactly, to the last digit.
+/// The value of an argument. Values are compared exactly, in all digits.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Value {
     /// A number with a kind.
@@ -143,8 +143,8 @@ pub enum Value {
 }
 
 impl Value {
-    /// Returns the value of a quantity in SI units, in which signals are compared; `f64::MAX` for `inf`, and 0 for any
-    /// other value.
+    /// Returns the value of a quantity in SI units, in which signals are compared; `f64::MAX` for `inf`, and 0 for a
+    /// value of any other kind.
     #[must_use]
     pub fn in_si(&self) -> f64 {
         match self {
@@ -262,8 +262,8 @@ pub struct Fact {
 }
 
 impl Fact {
-    /// Returns `true` if the fact holds once the node has ended by `operand` of its interrupt; `None` means
-    /// that it ended by another cause.
+    /// Returns `true` if the fact holds once the node has ended by `operand` of its interrupt; `None` means that the
+    /// node ended by another cause.
     #[must_use]
     pub fn holds(&self, operand: Option<u32>) -> bool {
         self.operand.is_none() || self.operand == operand
@@ -277,7 +277,8 @@ pub struct Interrupt {
     pub condition: Condition,
     /// Text of the condition, which is kept even if the condition was removed.
     pub text: String,
-    /// Text of the condition with parentheses around each OR that is directly in an OR; `None` without such an OR.
+    /// Text of the condition with parentheses around each OR that is directly in another OR; `None` if there is no such
+    /// OR.
     pub nested: Option<Box<str>>,
     /// Places of the operands, which are the [joined](Condition::joined) parts of the condition.
     pub operands: Box<[OperandPlace]>,

@@ -1,4 +1,4 @@
-//! Proposes laws of the paper or of this project for movements that are written in the words of other languages.
+//! Proposes laws of the paper or of this project for movements that are written with commands of other languages.
 
 use crate::alphabet::{Kind, Unit};
 use crate::syntax::tree::{Arg, Call, Number};

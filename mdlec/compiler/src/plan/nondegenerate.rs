@@ -43,7 +43,8 @@ pub fn remove_degeneracy(mut plan: Plan) -> (Nondegenerate, Vec<Diagnostic>) {
     (Nondegenerate(plan), warnings)
 }
 
-/// Interrupts of the enclosing scopes during the removal, each with the name of its scope and its span.
+/// State of the pass that removes degeneracy. `around` holds the interrupts of the enclosing scopes, each with the name
+/// of the scope and the span of the interrupt.
 struct Removal<'a> {
     functions: Functions<'a>,
     quarks: &'a [Quark],
@@ -54,7 +55,7 @@ struct Removal<'a> {
 
 impl Removal<'_> {
     fn scope(&mut self, scope: &mut Scope) {
-        // New, or it would have been removed.
+        // This function is not in `around` yet, because a repeated interrupt is removed and returns `None`.
         let function = self.interrupt(&mut scope.interrupt, None);
         if let Some(function) = &function {
             self.around.insert(function.clone(), (scope.name.clone(), scope.interrupt.span));
@@ -77,8 +78,8 @@ impl Removal<'_> {
         }
     }
 
-    /// Replaces the interrupt by null if it is repeated, and then returns `None`. Otherwise returns its function;
-    /// `None` if the function cannot be repeated.
+    /// Replaces the interrupt by null and returns `None` if an enclosing scope has the same interrupt. Otherwise
+    /// returns the function of the interrupt; `None` if the function cannot be repeated.
     fn interrupt(&mut self, interrupt: &mut Interrupt, law: Option<QuarkId>) -> Option<Function> {
         let function = self.functions.function(&interrupt.condition)?;
         let Some((scope, outer)) = self.around.get(&function).cloned() else { return Some(function) };

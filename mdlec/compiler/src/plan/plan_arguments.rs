@@ -6,8 +6,8 @@ use crate::alphabet::{Alphabet, Declaration, DeclarationKind, Origin, Param};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{self, Call};
 
-/// Returns the parameters of `plan` with the arguments of `call`, in a definition whose own parameters are
-/// `around`.
+/// Returns the parameters of `plan` with the arguments of `call`. `around` contains the parameters of the definition in
+/// which the call is.
 ///
 /// # Errors
 /// Fails if the number, the type or the unit of the arguments differs from the declaration.

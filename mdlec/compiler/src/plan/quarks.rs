@@ -1,5 +1,5 @@
-//! Resolves quarks by name: chooses the declaration of a call, checks that the robot has it, and gives equal calls one
-//! id.
+//! Resolves quarks by name: chooses the declaration for a call, checks that the robot has the quark, and gives equal
+//! calls the same id.
 
 use std::collections::BTreeMap;
 
@@ -53,8 +53,8 @@ impl<'a> Quarks<'a> {
                 None => self.unknown(call, kind, names.plans),
             }]);
         }
-        // Declarations of one name differ in the kinds of their arguments; if none fits, what is wrong is told of the
-        // one with the fewest complaints.
+        // Declarations of one name differ in the kinds of their arguments. If none fits, the errors are those for the
+        // declaration with the fewest errors.
         candidates.sort_by_key(|(_, declaration)| complaints(call, declaration, names.parameters));
         let mut wrong = None;
         for (overload, declaration) in candidates {
@@ -70,7 +70,7 @@ impl<'a> Quarks<'a> {
     }
 
     fn intern(&mut self, declaration: &Declaration, overload: usize, arguments: Arguments) -> QuarkId {
-        // The paper writes the range of a sonar as one word.
+        // As in the paper, the range of a sonar is written as one word, such as `r3`.
         let is_indexed =
             declaration.kind == DeclarationKind::Signal && matches!(arguments.values[..], [Value::Sonar(_)]);
         let blank = if is_indexed { "" } else { " " };

@@ -44,13 +44,13 @@ pub fn resolve(
     let asked: Vec<_> = wanted.map_or_else(|| roots().collect(), |name| definitions.get(name).into_iter().collect());
     let names: BTreeSet<_> = asked.iter().map(|plan| plan.name.node).collect();
     let mut alone = BTreeMap::new();
-    // Each plan by itself: what is wrong with it is said once, however often it is used.
+    // Each plan is checked by itself, so that its errors are reported once, however often it is used.
     for (index, plan) in definitions.plans.iter().enumerate() {
         let parameters = Parameters::declared(plan, alphabet, &mut found);
         let mut resolver = Resolver::new(&definitions, alphabet, Uses::Check);
         let (root, _) = resolver.plan(plan, parameters, Framing::PLAN);
         found.append(&mut resolver.found);
-        // Where no copy of another plan belongs, nothing is left to be done.
+        // A plan that uses no other plan is already complete.
         if names.contains(plan.name.node) && definitions.stands_alone(index) {
             alone.insert(plan.name.node, Plan { root, quarks: resolver.quarks.into_vec() });
         }
@@ -73,13 +73,14 @@ pub fn resolve(
     let (plans, more): (Vec<_>, Vec<_>) = asked.iter().map(&mut copy).unzip();
     found.extend(more.into_iter().flatten());
     if wanted.is_some() && definitions.plans.iter().any(|plan| !plan.params.is_empty()) {
-        // What is given to parameters may be out of range, and only a copy tells.
+        // An argument may be out of the range of a quark to which a plan passes it, and only a copy of the plan shows
+        // this.
         found.extend(roots().flat_map(|plan| copy(&plan).1));
     }
     if has_errors(&found) { (Vec::new(), found) } else { (plans, found) }
 }
 
-/// Treatment of a plan that is used by name.
+/// Treatment of plans that are used by name.
 #[derive(Debug, Clone, Copy)]
 enum Uses {
     /// Check that the plan exists.
@@ -248,7 +249,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         let times = self.count(&exec.count);
         let mut body = self.sequence(exec.body, frame);
         if frame.here {
-            // Anew in each pass.
+            // The frame is set anew in each pass.
             body = framed(body, span);
         }
         nodes.push(Node::Loop(Loop { times, body, marks: Vec::new(), span }));
@@ -348,7 +349,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
     fn reference(&mut self, call: &Call<'a>) -> Option<(&'r tree::Plan<'a>, Parameters<'a>)> {
         let Some(plan) = self.definitions.get(call.name) else {
             let unknown = self.unknown_plan(call);
-            // It may stand in a file that was reported missing.
+            // The plan may be in a used file that is missing, which has been reported.
             if unknown.code != Code::E0201 || !self.definitions.is_incomplete {
                 self.found.push(unknown);
             }
@@ -371,7 +372,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
             Count::Name(name) => match self.parameters.get(name.node).filter(|found| found.kind == Kind::Count) {
                 Some(Parameter { given: Some(Arg::Number(number)), .. }) => number,
                 Some(Parameter { given: Some(Arg::Infinity(_)), .. }) => return None,
-                // It stands for itself, until the plan is used.
+                // Until the plan is used, the parameter has no argument; any count is valid.
                 Some(_) => return Some(1),
                 None if self.parameters.is_untyped(name.node) => return Some(1),
                 None => {
@@ -384,7 +385,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         let whole = Decimal::parse(number.digits()).filter(Decimal::is_whole).filter(|_| number.unit().is_none());
         let times = whole.map(|whole| {
             let positive = whole.to_f64() > 0.0;
-            // Counts that no u64 holds are too many states, and reported as such where these are counted.
+            // A count that exceeds a u64 causes too many states, which is reported where states are counted.
             if positive { whole.to_string().parse().unwrap_or(u64::MAX) } else { 0_u64 }
         });
         if let Some(times) = times.filter(|times| *times > 0) {

@@ -48,7 +48,7 @@ pub(super) fn interrupt(
     }
     let mut condition = without_infinite_waits(condition);
     if condition != Condition::Null && constant(&condition) == Some(false) {
-        // Reports name the operand of a condition that has no operands any more by its whole text.
+        // The condition has no operands left, so reports name it by its whole text.
         places = vec![OperandPlace { span: written.span, signals: [None; 2], text: Some(Box::new(text.clone())) }];
         (condition, memories) = (Condition::Null, 0);
     }
@@ -101,7 +101,7 @@ fn constant(condition: &Condition) -> Option<bool> {
         Condition::Or(operands) => Some(all(operands)?.contains(&true)),
         Condition::And(operands) => Some(!all(operands)?.contains(&false)),
         Condition::Not(operand) => constant(operand).map(|value| !value),
-        // It never becomes true, as it is so from the beginning or never.
+        // RISING of a constant never fires, because the operand never changes from false to true.
         Condition::Rising { operand, .. } => constant(operand).map(|_| false),
         Condition::Quark(_) | Condition::Wait { .. } | Condition::Elapsed { .. } => None,
         Condition::Driven { .. } | Condition::After(_) => None,
@@ -133,7 +133,8 @@ impl Resolving<'_, '_, '_> {
     }
 
     fn after(&mut self, after: &tree::After) -> Condition {
-        // Only its text tells which operand of the label's interrupt it is, so the memories in it are not its own.
+        // The cause only serves to find an operand of the label's interrupt by its text, so its RISINGs get no memories
+        // here.
         let memories = self.memories;
         let is_unknown = |call: &Call| self.around.quarks.alphabet().declarations_of(call.name).next().is_none();
         if let Some(by) = after.cause.as_ref().and_then(|cause| by_word(cause, is_unknown)) {
@@ -144,7 +145,7 @@ impl Resolving<'_, '_, '_> {
         let cause = after.cause.as_ref().map(|cause| (self.condition(cause), cause));
         self.memories = memories;
         if self.around.found.len() > before {
-            // A cause that cannot be resolved is not an operand either.
+            // A cause that cannot be resolved cannot be an operand.
             return Condition::Null;
         }
         let cause = cause.map(|(cause, written)| {

@@ -1,8 +1,8 @@
 //! Computes and limits the size that a plan will have once every plan used by name is copied in, before any
 //! copy is made.
 //!
-//! Sizes multiply where plans use plans, so that a short text may need more memory than any computer has. A
-//! file that writes out all its elements is never too large.
+//! Sizes multiply where plans use plans, so a short text may need more memory than any computer has. A file in which
+//! all elements are written out is never too large.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ pub struct Bounds {
     pub operands: u64,
     /// Maximum length, in bytes, of a plan's text as `--emit plan` prints it.
     pub text: u64,
-    /// `true` if a plan that is not larger than its files as written is always accepted.
+    /// `true` if a plan of any size is accepted that is not larger than its files as written.
     pub is_written_free: bool,
 }
 
@@ -123,14 +123,14 @@ impl Measure<'_> {
                 Primary::Broken => Size { brackets: 1, depth: 1, ..Size::default() },
                 Primary::Atom(atom) => self.condition(&atom.condition).and(self.atom(atom.control)),
                 Primary::Plan(plan) => self.plan(plan),
-                // In formal notation a law looks like a plan by name.
+                // In formal notation, a law is parsed as a plan used by name.
                 Primary::Ref(call) => match self.by_name.get(call.name) {
                     Some(index) => self.sizes.get(*index).copied().unwrap_or_default(),
                     None => self.atom(call),
                 },
                 Primary::Exec(exec) => {
                     let size = self.elements(exec.body).nested();
-                    // Each pass becomes a scope.
+                    // With `FRAME here`, each pass becomes a scope.
                     if element.frame() == Some(&Frame::Here) { size.nested() } else { size }
                 }
                 // An open string is not a scope of its own, except in `FRAME here`.
@@ -139,7 +139,7 @@ impl Measure<'_> {
                 Primary::Formal(formal) => {
                     let time = formal.time.map_or(Size::default(), |time| self.operand(length(time.span()), 1));
                     let size = self.condition(&formal.condition).and(time).and(self.elements(formal.body));
-                    // One law is an atom, which is counted already.
+                    // A single law forms an atom, which has been counted already.
                     if self.is_law(formal.body) { size.indented() } else { size.nested() }
                 }
             };

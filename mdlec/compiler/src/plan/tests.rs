@@ -1,4 +1,4 @@
-//! Tests of names, arguments, plans by name and degeneracy, by resolved plans and messages.
+//! Tests name resolution, arguments, plans used by name and degeneracy; compares the resolved plans and the messages.
 
 mod degeneracy;
 mod files;

@@ -77,7 +77,7 @@ impl<'p> Words<'p> {
 
     /// Compiles the plan `text`, which contains the script's word `written`; `None` if it has errors.
     fn read(&self, written: &str, text: &str) -> Option<Plan> {
-        // What closes a bracket or begins a comment would be read as more than a name.
+        // Text that closes a bracket or begins a comment could be read as more than one name.
         if written.contains(['{', '}', ';', '\n', '"']) || written.contains("//") || written.contains("/*") {
             return None;
         }

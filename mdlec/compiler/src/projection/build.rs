@@ -15,7 +15,7 @@ pub(super) struct Build<'b, 's> {
     pub(super) alphabet: &'b Alphabet,
     /// Name of the group's plan.
     pub(super) group: &'s str,
-    /// For each atom of the group, its number in the plans of the robots after the first; the last entry is the number
+    /// For each atom of the group, its number in the plans of the robots after the first. The last entry is the number
     /// of the final stop in these plans.
     pub(super) numbers: Vec<usize>,
     /// Number of atoms that have been projected.
@@ -68,7 +68,7 @@ impl<'s> Build<'_, 's> {
         Condition { node: ConditionNode::Call(call), span }
     }
 
-    /// Returns the condition that the first robot has reached this atom of its plan.
+    /// Returns the condition that the first robot has reached the atom with this number in its plan.
     pub(super) fn past_first(&self, number: usize, span: Span) -> Condition<'s> {
         let first = self.robots.first().copied().unwrap_or(Spanned { node: "", span });
         self.past(&first, number, begin(span))

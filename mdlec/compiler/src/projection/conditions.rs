@@ -1,5 +1,5 @@
-//! Projects the conditions of a group. The first robot reads the conditions of atoms and behaviors. An operand about
-//! one robot in the group's own condition becomes a part of the condition of this robot's plan, and the first robot
+//! Projects the conditions of a group. The first robot reads the conditions of atoms and behaviors. An operand of the
+//! group's own condition that is about one robot becomes a part of the condition of this robot's plan; the first robot
 //! detects by `past` that another robot has left its plan.
 
 use super::build::{Build, begin};
@@ -90,7 +90,7 @@ impl<'s> Build<'_, 's> {
         owners.retain(|owner| *owner != Owner::Timer);
         match owners.as_slice() {
             [] => all.collect(),
-            // Each robot reads its own quark.
+            // The quark is in the plan of each robot, and each robot reads its own value.
             [Owner::Any] => all.collect(),
             [Owner::One(first), others @ ..] if others.iter().all(|owner| *owner == Owner::One(*first)) => vec![*first],
             _ => {
@@ -140,7 +140,7 @@ impl<'s> Build<'_, 's> {
             ConditionNode::After(after) => {
                 let cause = after.cause.map(|cause| self.cause(after.label.node, &cause, place, robot));
                 match cause {
-                    // It was reported.
+                    // The error has been reported.
                     Some(Condition { node: ConditionNode::Broken, .. }) => ConditionNode::Broken,
                     Some(_) | None => ConditionNode::After(self.arena.alloc(After { cause, ..*after })),
                 }

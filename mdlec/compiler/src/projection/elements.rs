@@ -1,5 +1,5 @@
-//! Makes a plan for each robot of a group. The first robot keeps the group's conditions; an atom of any other robot
-//! ends when the first robot has reached its next atom.
+//! Makes a plan for each robot of a group. The plan of the first robot keeps the group's conditions; in the plan of any
+//! other robot, an atom ends when the first robot has reached its next atom.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,7 +15,8 @@ use crate::syntax::tree::{
     Arg, Atom, Condition, ConditionNode, Element, Frame, Marks, Name, Number, Plan, Primary, Spanned,
 };
 
-/// Time for which each robot stops at the end: a robot whose plan is over sends nothing more, and a state may be lost.
+/// Time for which each robot stops at the end of its plan: a robot whose plan has ended sends nothing, and a message on
+/// the state link may be lost.
 const LAST_STOP: &str = "2s";
 
 /// Elements of each robot, in the order of the group.
@@ -94,7 +95,8 @@ impl<'s> Build<'_, 's> {
         let guarded =
             Plan { docs: &[], label: None, group: None, params: &[], condition: guard, elements: body, ..*plan };
         let guarded = Element { primary: Primary::Plan(self.arena.alloc(guarded)), marks: None, span: plan.span };
-        // No text has this condition: reports of runs show its own words.
+        // The condition is not in the group's text, so its span is empty, and reports of runs show the condition's own
+        // text.
         let at = begin(span);
         let wait = self.call("wait", &[Arg::Number(Number::new(LAST_STOP, at))], at);
         let condition = Condition { node: ConditionNode::Call(wait), span: at };
@@ -145,7 +147,7 @@ impl<'s> Build<'_, 's> {
                         "write `(Atom (condition) law)`",
                     );
                 }
-                // A group within a group is reported as a group within any plan is.
+                // A group in a group is reported like a group in any other plan.
                 Primary::Plan(_) | Primary::Broken => {}
             }
         }

@@ -46,8 +46,8 @@ impl Shape {
         }
     }
 
-    /// Returns the free width that `others` more robots need beside the first robot, for a spacing of 1. A column needs
-    /// some width because it swings out in bends.
+    /// Returns the width that must be free beside the first robot for `others` more robots, for a spacing of 1. A
+    /// column needs some width because it swings out in bends.
     fn width(self, others: u32) -> f64 {
         match self {
             Self::Line => f64::from(others.div_ceil(2)),
@@ -65,7 +65,7 @@ pub(super) fn read<'s>(call: &Call<'s>, build: &mut Build<'_, 's>) -> Option<For
     let (shape, (metres, span), law) = match (shape, spacing, law) {
         (Ok(shape), Ok(spacing), Ok(law)) => (shape, spacing, law),
         (shape, spacing, law) => {
-            // Where one part is missing, those after it are missing as well.
+            // If one part is missing, the parts after it are missing as well.
             let errors = [shape.err(), spacing.err(), law.err()];
             build.found.extend(errors.into_iter().flatten().take(if call.args.len() < 3 { 1 } else { 3 }));
             return None;
@@ -73,7 +73,7 @@ pub(super) fn read<'s>(call: &Call<'s>, build: &mut Build<'_, 's>) -> Option<For
     };
     let room = build.length(shape.width(others) * metres, span);
     let first = match law.name {
-        // Errors of arguments are reported of the law that is written.
+        // If the arguments do not fit, the law stays as written, so that the errors name the written law.
         "goAvoid" if fit(law.args, build.alphabet) => {
             let args: Vec<_> = std::iter::once(room).chain(law.args.iter().copied()).collect();
             build.call(LEAD, &args, law.span)

@@ -60,7 +60,7 @@ pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet)
         return (Vec::new(), found);
     }
     let uses = robots::uses_of_groups(files);
-    // The uses are reported here, and not as uses of missing plans.
+    // Uses of groups are reported here, so that they are not reported again as uses of missing plans.
     files.is_incomplete |= !uses.is_empty();
     found.extend(uses);
     found.extend(robots::equal_names(files));
@@ -77,7 +77,7 @@ pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet)
                         group: plan.name.node.to_owned(),
                         robot: robot.node.to_owned(),
                         plan: own.name.node.to_owned(),
-                        // The others have no meetings.
+                        // Only the first robot has meetings.
                         meetings: std::mem::take(&mut meetings),
                     }));
                     plans.extend(projected);

@@ -1,4 +1,4 @@
-//! Checks the heads of groups, and that the plan of a group is neither inside another plan nor used by one.
+//! Checks the heads of groups, and that the plan of a group is not inside another plan and not used by another plan.
 
 use std::collections::BTreeSet;
 
@@ -9,8 +9,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::Files;
 use crate::syntax::tree::{Arg, Call, Element, Name, Plan, Primary};
 
-/// Returns the robots of a group, the first of which decides; `None` if there are fewer than two or too many. Reports
-/// errors in the head of the group.
+/// Returns the robots of a group, beginning with the robot that decides; `None` if there are fewer than two or too
+/// many. Reports errors in the head of the group.
 pub(super) fn named<'s>(plan: &Plan<'s>, written: &[Arg<'s>], found: &mut Vec<Diagnostic>) -> Option<Vec<Name<'s>>> {
     let first = found.len();
     if let [param, ..] = plan.params {

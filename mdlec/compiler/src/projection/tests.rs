@@ -1,4 +1,4 @@
-//! Tests of the projected plans of groups, as text, and of the messages about groups.
+//! Tests the projected plans of groups, as text, and the messages about groups.
 
 use super::projected;
 use crate::compile;
@@ -6,8 +6,8 @@ use crate::diagnostic::{Code, SourceId};
 use crate::samples::{alphabet, judged};
 use crate::syntax::NoFiles;
 
-/// Returns the plans of the robots of the groups in `text`. Asserts that these plans compile to the same plans by
-/// themselves, without groups.
+/// Returns the plans of the robots of the groups in `text`. Asserts that the text of these plans, which contains no
+/// groups, compiles to the same plans.
 fn plans(text: &str) -> String {
     let alphabet = alphabet(None);
     let (compiled, found) = compile(SourceId(0), text, &alphabet, None);

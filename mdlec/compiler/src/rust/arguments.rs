@@ -23,8 +23,8 @@ pub(super) fn type_of(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     quote!(runtime::Comparison<#signal, #with>)
 }
 
-/// Emits a comparison: `runtime::Comparison::new(…)`. `signal` emits the comparison's signals; `none` is the type that
-/// a comparison with a value has instead of the second signal's type.
+/// Emits a comparison: `runtime::Comparison::new(…)`. `signal` emits the comparison's signals. If a signal is compared
+/// with a value, `none` takes the place of the second signal's type.
 pub(super) fn compared(
     comparison: &Comparison,
     none: &TokenStream,
@@ -70,7 +70,8 @@ pub(super) fn arguments(quark: &Quark) -> impl Iterator<Item = TokenStream> {
     quark.args.iter().map(argument)
 }
 
-/// Emits an angle, in degrees if a number of degrees with at most six decimals represents it up to rounding errors.
+/// Emits an angle: in degrees if a number of degrees with at most six decimals converts to exactly this angle, and
+/// otherwise in radians.
 pub(super) fn angle(radians: f64) -> TokenStream {
     if let Some(degrees) = exact_degrees(radians).map(number) {
         return quote!(runtime::Radians::from_degrees(#degrees));
@@ -79,8 +80,8 @@ pub(super) fn angle(radians: f64) -> TokenStream {
     quote!(runtime::Radians(#radians))
 }
 
-/// Returns the number of degrees that gives this very angle. Frames in frames add up in radians: 30° in 45° is not the
-/// value of 75°, but the one next to it.
+/// Returns the number of degrees that converts to exactly this angle; `None` if there is none. Nested frames add up in
+/// radians: 30° in 45° is not the value of 75°, but the floating-point number next to it.
 pub(super) fn exact_degrees(radians: f64) -> Option<f64> {
     in_degrees(radians).filter(|degrees| Radians::from_degrees(*degrees).0 == radians)
 }

@@ -1,5 +1,5 @@
-//! Formats Rust code, with long lists in pieces, so that only a small part is parsed and formatted at a time, however
-//! long the plan is.
+//! Formats Rust code, and formats long lists in pieces, so that only a small part is parsed and formatted at a time,
+//! whatever the length of the plan.
 
 use std::mem;
 
@@ -40,7 +40,7 @@ fn with_gaps(tokens: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStr
     let tokens = tokens.into_iter().map(|token| match token {
         TokenTree::Group(group) => {
             let (delimiter, inside) = (group.delimiter(), group.stream());
-            // Nobody else has these tokens then, and they are moved.
+            // Without this second owner, the tokens are moved and not copied.
             drop(group);
             let inside =
                 if delimiter == Delimiter::Bracket { elements(inside, lists) } else { with_gaps(inside, lists) };

@@ -111,7 +111,7 @@ pub fn emit_as(shape: Shape, machine: &Machine, header: Header<'_>, alphabet: &A
     let plan = format_ident!("{}", plan_type(header.plan));
     let doc = format!(" The plan `{}`.", header.plan);
     let paths = tables::paths(machine, alphabet);
-    // What a plan remembers is in rows, whatever is asked for.
+    // A plan with memories is always emitted as rows.
     let meaning = match if machine.sizes().memories > 0 { Shape::Rows } else { shape } {
         Shape::Code => code::machine(&plan, &doc, machine, paths.as_ref()),
         Shape::Rows => rows::machine(&plan, &doc, machine, alphabet, paths.as_ref()),
@@ -143,8 +143,8 @@ pub fn emit_as(shape: Shape, machine: &Machine, header: Header<'_>, alphabet: &A
     format!("{}{}", heading(header, alphabet), layout::file_text(file))
 }
 
-/// Returns an assertion that fails to compile if the target is bound to another alphabet than the one against
-/// which the plan was checked.
+/// Emits an assertion that fails to compile if the target is bound to another alphabet than the alphabet against which
+/// the plan was checked.
 fn same_alphabet(alphabet: &Alphabet) -> TokenStream {
     let hash = bind::hash(alphabet);
     let message = format!("the crate of target `{}` is bound to another alphabet: run `mdlec bind`", alphabet.name);
@@ -236,7 +236,7 @@ mod tests {
         let compiled = compiled(&format!("{{ P (Atom ({}) stop) }}", operands.join(" OR "))).swap_remove(0);
         let sources = Sources::default();
         let header = Header { sources: &sources, file: "plan.mdle", plan: "P" };
-        // It would be rows.
+        // `emit` would choose rows for this plan.
         let rust = emit_as(Shape::Code, &compiled.machine, header, &alphabet(Some("sim")));
         assert!(syn::parse_file(&rust).is_ok());
         let dense: String = rust.split_whitespace().collect();

@@ -28,8 +28,8 @@ const BOUND: &[&str] = &[
 ];
 /// Names of the constants of every emitted plan.
 const CONSTANTS: &[&str] = &["FSM", "LAWS", "CONDITIONS", "NAMES", "OPERANDS", "SOURCE"];
-/// Names of an emitted plan's functions, arguments and variables, which must not be hidden by other functions,
-/// and a keyword that syn does not know yet.
+/// Names of an emitted plan's functions, arguments and variables, which other functions must not hide, and a keyword
+/// that syn does not know yet.
 const FUNCTIONS: &[&str] = &["gen", "cursor", "y", "t", "tell", "law", "atom", "begin", "scope"];
 
 /// Returns the name of a plan's type: the plan's name in camel case.

@@ -221,7 +221,7 @@ fn follower(Follows { atom, from, to }: Follows) -> TokenStream {
 }
 
 /// Emits the angle by which a frame is turned: `degrees(90.0)` if a number of degrees with at most six decimals
-/// represents it up to rounding errors, and otherwise radians.
+/// converts to exactly this angle, and radians otherwise.
 fn turn(Radians(radians): Radians) -> TokenStream {
     let Some(degrees) = exact_degrees(radians).map(number) else { return angle(radians) };
     quote!(degrees(#degrees))

@@ -65,7 +65,7 @@ impl Meaning<'_> {
             };
         }
         match condition {
-            // A plan with these is rows.
+            // `null` never fires; a plan with RISING or `after` is emitted as rows.
             Condition::Null | Condition::Rising { .. } | Condition::After(_) => quote!(false),
             Condition::Quark(QuarkId(id)) => {
                 let quark = &self.constants[*id as usize];

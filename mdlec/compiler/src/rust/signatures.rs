@@ -18,7 +18,7 @@ pub(super) fn from_arguments(quark: &Bound<'_>, visibility: &TokenStream) -> Tok
         let variant = argument_variant(*kind);
         quote!(runtime::Argument::#variant(#name))
     });
-    // A slice becomes a word of the right length, if it has it.
+    // Converts a slice to a word if the slice has the right length.
     let words = parameters
         .iter()
         .filter(|(_, kind)| matches!(kind, Kind::Bits(_)))

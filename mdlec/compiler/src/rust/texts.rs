@@ -12,7 +12,7 @@ pub(super) fn text_list<'t>(texts: impl Iterator<Item = &'t str>) -> TokenStream
         parts.extend(Some(text).filter(|text| !text.is_empty()));
     }
     match parts.is_empty() {
-        // Where nothing has a name.
+        // The list contains no texts at all.
         true if ends.is_empty() => quote!(runtime::TextList::NONE),
         true => quote!(runtime::TextList::new("", &[#(#ends),*])),
         false => quote!(runtime::TextList::new(concat![#(#parts),*], &[#(#ends),*])),

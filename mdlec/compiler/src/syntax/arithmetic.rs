@@ -1,5 +1,5 @@
-//! Writes messages about arithmetic, which MDLe does not have. The messages contain the result, and convert values in
-//! units that MDLe does not have.
+//! Writes messages about arithmetic, which MDLe does not have. The messages contain the result; values in foreign units
+//! are converted to units of MDLe.
 
 use super::number::split;
 use super::source::{Place, Source};
@@ -28,7 +28,7 @@ const FOREIGN: &[(&[&str], f64, &str)] = &[
 /// Names of pi.
 const PI: [&str; 4] = ["pi", "PI", "Pi", "π"];
 
-/// Returns a number with a foreign unit as a number with a unit of MDLe.
+/// Returns a number with a foreign unit as a number with a unit of MDLe; `None` if the unit is unknown.
 pub(super) fn foreign_unit(number: &str, unit: &str) -> Option<String> {
     let (_, factor, ours) = FOREIGN.iter().find(|(names, _, _)| names.contains(&unit))?;
     Some(format!("{}{ours}", rounded(number.parse::<f64>().ok()? * factor)?))
@@ -106,7 +106,7 @@ pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Optio
         );
     }
     if !is_number(left) || !is_number(right) {
-        // `go 5 - 3` means a sign, `Dock / 2` nobody knows.
+        // In `go 5 - 3` the operator is a sign; the meaning of `Dock / 2` is unknown.
         if let Some(name) = hyphenated(source, left, operator, right, place) {
             let whole = source.span(Place::new(left_start, right_end));
             let message = format!("`{left}-{right}` is not a name");
@@ -140,7 +140,7 @@ fn negative_name(source: Source<'_>, operator: &str, place: Place) -> Option<Dia
     let name = after.get(..after.find(|c: char| !is_in_word(c)).unwrap_or(after.len()))?;
     let follows = after.get(name.len()..)?.trim_start();
     let is_sign = operator == "-" && before.ends_with([' ', '(', ',']) && name.starts_with(char::is_alphabetic);
-    // In a comparison it is a difference of signals.
+    // In a comparison, the operator is a difference of signals.
     (is_sign && !follows.starts_with(['<', '>', '=', '≤', '≥'])).then(|| {
         if is_pi(name) {
             let whole = source.span(Place::new(place.start, place.end + name.len()));

@@ -1,4 +1,4 @@
-//! Balances brackets before the grammar reads the tokens (docs/src/reference/language.md, 3.7). Afterwards every
+//! Balances brackets before the grammar reads the tokens (docs/src/reference/language.md, 3.7). After this, every
 //! bracket has a partner, brackets are nested at most 256 deep, and no atom contains an atom.
 
 mod inside;
@@ -24,7 +24,7 @@ pub(super) struct Balanced<'s> {
     pub(super) tokens: Vec<Token<'s>>,
     /// Doc comments, each with the index of the token that follows it.
     pub(super) docs: Vec<(usize, &'s str)>,
-    /// Regions of the tokens: one defect may affect all tokens of a region.
+    /// Regions of the tokens; an error may affect all tokens of its region.
     pub(super) regions: Regions,
     /// Lexical errors, and errors of the brackets.
     pub(super) diagnostics: Vec<Diagnostic>,
@@ -36,8 +36,8 @@ pub(super) struct Balanced<'s> {
     is_repaired: bool,
 }
 
-/// Balances the brackets of a text. A brace that is never closed is closed where its indentation shows the end, or else
-/// where its plan seems to end, if no other bracket remains unmatched then.
+/// Balances the brackets of a text. Braces that are never closed are closed where the indentation shows their end or,
+/// if this leaves fewer errors, where their plan seems to end. A repair that adds errors is dropped.
 pub(super) fn balance<'s>(source: Source<'s>, lexed: &Lexed<'s>) -> Balanced<'s> {
     let (plain, ends) = pass(source, lexed, &BTreeMap::new());
     if !plain.is_open {
@@ -48,7 +48,7 @@ pub(super) fn balance<'s>(source: Source<'s>, lexed: &Lexed<'s>) -> Balanced<'s>
     ways.into_iter().filter(|ends| !ends.is_empty()).map(|ends| pass(source, lexed, &ends).0).fold(
         plain,
         |best, next| {
-            // What closes a brace too early leaves a closing one over.
+            // If a brace is closed too early, its closing brace is left over and reported.
             let is_better = next.diagnostics.len() <= best.diagnostics.len()
                 && !(best.is_repaired && best.diagnostics.len() == next.diagnostics.len());
             if is_better { Balanced { is_repaired: true, ..next } } else { best }

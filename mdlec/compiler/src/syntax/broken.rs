@@ -1,4 +1,4 @@
-//! Removes elements from the tree that a syntax error has affected: the parser may have read other words as names, and
+//! Removes elements that a syntax error has affected from the tree: the parser may have read other words as names, and
 //! later stages must not report these names. Elements outside the error's region remain.
 
 use bumpalo::Bump;
@@ -19,7 +19,7 @@ pub(super) fn take_out<'s>(
 ) {
     let defects = Defects { source, arena, tokens, regions };
     let count = file.plans.len();
-    // A name and a group before the brace are the head of something else.
+    // A brace after a name and a group in parentheses belongs to something other than a plan.
     let has_head = |plan: &Plan<'_>| {
         let name = tokens.partition_point(|token| token.place.start < plan.name.span.within(source.id).start);
         name.checked_sub(2).and_then(|before| tokens.get(before)).is_some_and(|before| before.kind == Tok::RParen)

@@ -32,7 +32,7 @@ pub(super) fn diagnostics(
     for (at, expected) in errors {
         let site = Site { source, tokens, openers: &openers, plans: &plans, at, expected };
         if site.in_nameless_head() {
-            // That the plan has no name was reported.
+            // The missing name of the plan has been reported.
             continue;
         }
         if !regions.is_spoiled_once(site.decisive()) {

@@ -1,5 +1,5 @@
-//! Reports words of other languages and misspelled keywords, with one message each. Replaces them by tokens with which
-//! parsing continues as if the plan were written in MDLe.
+//! Reports words of other languages and misspelled keywords, with one message each, and replaces them by tokens with
+//! which parsing continues as if the plan were written in MDLe.
 
 mod advice;
 mod loops;
@@ -79,7 +79,7 @@ fn ends(tokens: &[Token<'_>]) -> BTreeMap<usize, usize> {
             Tok::LBracket => open.push((at, Tok::RBracket)),
             Tok::RParen | Tok::RBrace | Tok::RBracket => match open.pop() {
                 Some((opener, closer)) if closer == token.kind => drop(ends.insert(opener, at)),
-                // What is around does not match either.
+                // After a mismatch, the enclosing brackets have no partner either.
                 Some(_) | None => open.clear(),
             },
             _ => {}
@@ -121,7 +121,7 @@ impl<'s> Rewriting<'_, 's> {
         while at < self.old.len() {
             let first = self.new.len();
             at = self.next(at).max(at + 1);
-            // All tokens that were taken in at once have the same place.
+            // All original tokens that were processed together map to the same index.
             self.moved.resize(at, first);
         }
     }
@@ -271,7 +271,7 @@ impl<'s> Rewriting<'_, 's> {
         (is_short && inside.iter().all(is_condition)).then_some(text)
     }
 
-    /// Skips the condition after a word, and reads the braces after the condition as parentheses.
+    /// Skips the condition after a word; replaces the braces after the condition by parentheses.
     fn past_condition(&mut self, at: usize) -> usize {
         let mut next = at;
         if matches!(self.kind(at), Some(Tok::LParen | Tok::TouchParen)) && self.kind(at + 1) != Some(Tok::Atom) {

@@ -26,7 +26,8 @@ const INDENT: usize = 2;
 /// Returns the text in the canonical layout.
 ///
 /// # Errors
-/// Returns the diagnostics if the text has errors: the parser then had to guess, so that nothing is moved.
+/// Returns the diagnostics if the text has errors: the parser then had to guess the structure, so the text is not
+/// formatted.
 pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
     let arena = arena_for(text);
     let (_, found) = parse(id, text, &arena);

@@ -29,7 +29,7 @@ impl<'t> Reader<'t> {
     pub(super) fn crate_name(&mut self) -> Read<String> {
         let (name, span) = self.word()?;
         let is_ascii = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
-        // A keyword that syn does not know yet.
+        // `gen` is a keyword that syn does not know yet.
         let is_word_of_rust = name == "gen" || syn::parse_str::<syn::Ident>(&name).is_err();
         if is_ascii && !is_word_of_rust {
             return Ok(name);

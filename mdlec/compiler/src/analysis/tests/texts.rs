@@ -1,4 +1,4 @@
-//! Tests of the texts of lints, and of plans without lints.
+//! Tests the texts of lints, and checks that correct plans cause no lints.
 
 use crate::samples::judged;
 
@@ -59,7 +59,7 @@ fn neighbours_that_are_always_skipped() {
 }"
     );
     assert_silent(&[
-        // It may have ended because it was done; or the condition may be true no more.
+        // The first element may have ended because its law completed, or the condition may no longer be true.
         "{ P (Atom (bumper) rotate 90) (Atom (bumper) go 5 0) }",
         "{ P (Atom (wait 5) stop) (Atom (wait 5) stop) (Atom (bumper OR wait 5) stop) (Atom (bumper OR wait 5) stop) }",
         "{ P (wait 60) (Atom (rendezvous ada) stop) (Atom (rendezvous ada) stop) }",

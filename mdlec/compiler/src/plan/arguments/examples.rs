@@ -41,7 +41,7 @@ pub(super) fn bits_apart(call: &Call, declaration: &Declaration) -> Option<Strin
     (bits.len() == *length as usize).then(|| format!("{} {bits}", call.name))
 }
 
-/// Reports two arguments whose units show that their order is exchanged.
+/// Reports two arguments in the wrong order, as their units show.
 pub(super) fn swapped(call: &Call, found: &[Diagnostic], fits: impl Fn(&Call) -> bool) -> Option<Diagnostic> {
     let [first, second] = call.args else { return None };
     if found.len() != 2 || found.iter().any(|found| found.code != Code::E0303) {

@@ -6,7 +6,7 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::nearest_unit;
 use crate::syntax::tree::{Arg, Call, Number};
 
-/// Reports the units of `call` that are separated from their numbers, and the faults that the call still has when they
+/// Reports the units of `call` that are separated from their numbers, and the errors that the call still has when they
 /// are joined; `None` if no unit is separated.
 pub(super) fn apart(
     call: &Call,
@@ -34,7 +34,7 @@ pub(super) fn apart(
     });
     let touching: Vec<_> = touching.collect();
     let wrong = fitted(&Call { args: &touching, ..*call }).err().unwrap_or_default();
-    // Where the count is wrong, it is not known which parameter an argument is for.
+    // If the number of arguments is wrong, it is not known which argument belongs to which parameter.
     let wrong: Vec<_> = wrong.into_iter().filter(|wrong| wrong.code != Code::E0301).collect();
     let is_wrong = |span: Span| wrong.iter().any(|wrong| wrong.span() == Some(span));
     let apart = pairs.iter().filter(|pair| !is_wrong(pair.whole())).map(Apart::report);

@@ -1,10 +1,10 @@
-//! Warns of atoms that never end, and of elements that are unreachable because an earlier element never ends (W0201 and
-//! W0202).
+//! Warns about atoms that never end, and about elements that are unreachable because an earlier element never ends
+//! (W0201 and W0202).
 
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
 
-/// Warns of atoms that never end and of unreachable elements.
+/// Warns about atoms that never end and about unreachable elements.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     let mut ends = EndsLint { plan, pause: 10.0, found };
     ends.enter(&plan.root.interrupt);
@@ -33,7 +33,7 @@ struct Endless<'p> {
 }
 
 impl<'p> EndsLint<'p, '_> {
-    /// Keeps the proposed duration in a scope below the timers of its interrupt.
+    /// Shortens the proposed duration so that it is below the timers of this scope's interrupt.
     fn enter(&mut self, interrupt: &Interrupt) {
         for operand in interrupt.condition.operands() {
             if let Condition::Wait { nanos, .. } = operand

@@ -1,10 +1,10 @@
-//! Warns of a `FRAME here` that contains no law which turns to a heading or drives at a bearing (W0207).
+//! Warns about a `FRAME here` that contains no law that turns to a heading or drives at a bearing (W0207).
 
 use crate::alphabet::has_direction;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Atom, Node, Plan, Quark, Value};
 
-/// Warns of every `FRAME here` that no law uses.
+/// Warns about every `FRAME here` that no law uses.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     Frames { plan, found }.sequence(&plan.root.body);
 }
@@ -40,7 +40,7 @@ impl<'p> Frames<'p, '_> {
                     .help("remove `FRAME here`; laws such as `goAvoid` and `rotate` use it"),
             );
         }
-        // A frame inside hides the one around it.
+        // A law inside this frame does not use the enclosing frame.
         (first, false)
     }
 }

@@ -1,4 +1,5 @@
-//! Warns of valid plans that are probably not what was meant (docs/src/reference/language.md, 5: W02xx to W04xx).
+//! Warns about valid plans that probably do not mean what the author wanted (docs/src/reference/language.md, 5: W02xx
+//! to W04xx).
 //!
 //! A lint reports only code that is certainly useless, and never code that may be intended.
 
@@ -18,8 +19,8 @@ pub use numbers::bare_numbers;
 use super::Nondegenerate;
 use crate::diagnostic::{Code, Diagnostic, Span};
 
-/// Warns of suspicious parts of a plan without degeneracy. Each place is reported once, however often its plan
-/// is used.
+/// Warns about suspicious parts of a plan without degeneracy. Each place is reported once, however often its plan is
+/// used.
 #[must_use]
 pub fn lints(plan: &Nondegenerate) -> Vec<Diagnostic> {
     let plan = plan.plan();

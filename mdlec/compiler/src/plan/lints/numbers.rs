@@ -1,5 +1,5 @@
-//! Warns of numbers without a unit that were probably meant in another unit, such as a speed of `0.5`, which means 0.5
-//! cm/s (W0401).
+//! Warns about numbers without a unit that were probably meant in another unit, such as a speed of `0.5`, which means
+//! 0.5 cm/s (W0401).
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::syntax::tree::{
     self, Arg, Call, Compared, Condition, ConditionNode, Element, Frame, Number, Operand, Primary,
 };
 
-/// Warns of numbers with a doubtful unit, in every plan of files that resolve.
+/// Warns about numbers with a doubtful unit in all plans of files that resolve without errors.
 #[must_use]
 pub fn bare_numbers(files: &Files, alphabet: &Alphabet) -> Vec<Diagnostic> {
     let with_parameters = files.plans.iter().filter(|plan| !plan.params.is_empty());
@@ -23,7 +23,7 @@ pub fn bare_numbers(files: &Files, alphabet: &Alphabet) -> Vec<Diagnostic> {
     numbers.found
 }
 
-/// Range, in metres, that no sonar reaches.
+/// Range, in metres, that exceeds the range of every sonar.
 const SONAR: f64 = 20.0;
 /// Length, in metres, that hardly any plan drives.
 const FAR: f64 = 100.0;
@@ -62,7 +62,7 @@ impl Numbers<'_> {
                 }
                 Primary::Ref(call) => match self.parameters.get(call.name).copied() {
                     Some(plan) => self.given(call, plan),
-                    // In formal notation a law looks like a plan by name.
+                    // In formal notation, a law is parsed as a plan used by name.
                     None => self.call(call),
                 },
                 Primary::Broken => {}
@@ -78,7 +78,7 @@ impl Numbers<'_> {
             ConditionNode::Not(operand) | ConditionNode::Rising(operand) => self.condition(operand),
             ConditionNode::Call(call) => self.call(call),
             ConditionNode::Comparison(compared) => self.compared(compared),
-            // What `after` names is written elsewhere as well.
+            // The cause in `after` is also an operand of the labelled element's condition, and is checked there.
             ConditionNode::After(_) | ConditionNode::Null | ConditionNode::Broken => {}
         }
     }
@@ -165,7 +165,7 @@ impl Numbers<'_> {
     }
 }
 
-/// Warns of a heading that `theta` never has: its values are between -180 and 180 degrees.
+/// Warns about a heading that `theta` never has: its values are between -180 and 180 degrees.
 fn beyond_half_a_turn(number: &Number, value: f64) -> Option<Diagnostic> {
     let (half, unit) = match number.unit() {
         None | Some("deg") => (180.0, "deg"),
@@ -190,7 +190,7 @@ fn beyond_half_a_turn(number: &Number, value: f64) -> Option<Diagnostic> {
 fn doubt(kind: Kind, unit: &str, value: f64) -> Option<(&'static str, &'static str)> {
     let size = value.abs();
     let is = |name: &str| Unit::from_name(name).is_some_and(|found| found.kind == kind) && unit == name;
-    // Up to a full circle, in radians.
+    // The value is at most a full circle in radians.
     let is_circle = size <= std::f64::consts::TAU;
     Some(match () {
         () if size == 0.0 => return None,

@@ -1,4 +1,4 @@
-//! Warns of loops that can be skipped in one turn, because no pass takes time while some conditions hold (W0301).
+//! Warns about loops that can be skipped in one turn, because no pass takes time while some conditions hold (W0301).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ const QUARKS: usize = 8;
 /// Maximum number of elements of a loop that is checked.
 const ELEMENTS: usize = 64;
 
-/// Warns of loops that can be skipped.
+/// Warns about loops that can be skipped.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     let mut skipped = Skipped { plan, known: BTreeMap::new(), found };
     skipped.inside(&plan.root);
@@ -78,7 +78,7 @@ impl Skipped<'_, '_> {
     /// does.
     fn skips(&self, body: &[Node]) -> Option<String> {
         let skip = all(body, &mut ELEMENTS.clone())?;
-        // What has ended before depends on the pass.
+        // The elements that ended last differ from pass to pass.
         if skip.any(&|part| matches!(part, Condition::After(_))) {
             return None;
         }
@@ -94,14 +94,14 @@ impl Skipped<'_, '_> {
             |choice: u32, id| quarks.iter().position(|quark| *quark == id).is_some_and(|bit| choice >> bit & 1 == 1);
         let skips = |choice: u32| skip.fired(&AtOnce(|id| value(choice, id)));
         let choices = || 0..1_u32 << quarks.len();
-        // What is skipped in any case has a condition that is always true, and W0203.
+        // A loop that is always skipped has a condition that is always true, which W0203 reports.
         if choices().all(skips) {
             return None;
         }
         let can_be = |choice: &u32| self.can_be(quarks.iter().map(|id| (*id, value(*choice, *id))));
         let choice =
             choices().filter(|choice| skips(*choice) && can_be(choice)).min_by_key(|choice| choice.count_ones())?;
-        // Only what matters is told: the rest may be as it likes.
+        // The message contains only the quarks whose values matter.
         let mut matters = (1_u32 << quarks.len()) - 1;
         for bit in (0..quarks.len()).map(|bit| 1 << bit) {
             let without = matters & !bit;
@@ -160,7 +160,7 @@ impl<F: Fn(QuarkId) -> bool> Situation for AtOnce<F> {
     }
 
     fn recorded(&self, _: RecordId, _: u32) -> bool {
-        // Loops in which `after` stands are left alone.
+        // Not used, because loops with `after` are not checked.
         false
     }
 }

@@ -1,4 +1,4 @@
-//! Tests of the messages of each lint, and of plans that no lint reports.
+//! Tests the messages of each lint, and plans that no lint reports.
 
 use crate::samples::judged;
 
@@ -24,7 +24,7 @@ fn a_plan_that_nothing_ends() {
         "{ P (bumper) (Atom (null) go 20 0) }",
         "{ P { Q (wait 5) (Atom (null) go 20 0) } }",
         "{ P (Atom (null) rotate 90) }",
-        // On purpose.
+        // An endless loop counts as intended.
         "{ P ExecPlan inf { (Atom (wait 5) go 20 0) (Atom (null) rotate 90) } }",
     ]);
 }
@@ -108,7 +108,7 @@ fn loops_that_are_skipped_whole() {
 { R (r0 < 1m) ExecPlan inf { (Atom (bumper) go 20 0) (Atom (r0 < 50cm OR wait 4) go -20 0) } }"
     );
     assert_silent(&[
-        // A pass takes time, cannot be skipped, or is the only one.
+        // A pass takes time or cannot be skipped, or there is only one pass.
         "{ P ExecPlan 4 { (Atom (bumper) go 20 0) (Atom (wait 0.5) stop) } }",
         "{ P ExecPlan 4 { (Atom (bumper) go 20 0) (Atom (NOT bumper) stop) } }",
         "{ P ExecPlan 4 { (Atom (atIsection 1000) go 20 0) (Atom (atIsection 0100) stop) } }",

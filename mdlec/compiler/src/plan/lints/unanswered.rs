@@ -1,10 +1,10 @@
-//! Warns of an atom that waits for another robot without a time limit, so that it waits forever if that robot is off
+//! Warns about an atom that waits for another robot without a time limit, because it waits forever if that robot is off
 //! (W0209).
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
 
-/// Warns of every atom that waits for another robot without a time limit.
+/// Warns about every atom that waits for another robot without a time limit.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     let mut lint = Unanswered { plan, found };
     let is_limited = is_timed(&plan.root.interrupt);
@@ -22,7 +22,7 @@ impl<'p> Unanswered<'p, '_> {
         for node in body {
             match node {
                 Node::Atom(atom) => {
-                    // A law that completes ends its atom in any case.
+                    // A law that completes ends its atom even without the other robot.
                     let is_limited = is_limited || is_timed(&atom.interrupt) || self.plan.quark(atom.law).completes;
                     if let Some(text) = self.waits(&atom.interrupt.condition).filter(|_| !is_limited) {
                         self.warn(atom, &text);

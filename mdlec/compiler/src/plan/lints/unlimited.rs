@@ -1,10 +1,10 @@
-//! Warns of a `goAvoid` to a point that only arrival or contact ends, because it never ends if no path leads to the
-//! point (W0208).
+//! Warns about a `goAvoid` to a point that ends only on arrival or contact, because it never ends if no path leads to
+//! the point (W0208).
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
 
-/// Warns of every `goAvoid` that only arrival or contact ends.
+/// Warns about every `goAvoid` that ends only on arrival or contact.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     let mut lint = Unlimited { plan, found };
     let is_limited = lint.limits(&plan.root.interrupt);
@@ -23,7 +23,7 @@ impl<'p> Unlimited<'p, '_> {
             match node {
                 Node::Atom(atom) => {
                     let law = self.plan.quark(atom.law);
-                    // `goAvoid` with a module follows it, and has no point to arrive at.
+                    // A `goAvoid` that follows a module never arrives, and does not complete.
                     let arrives = law.name == "goAvoid" && law.completes;
                     if arrives && !is_limited && !self.limits(&atom.interrupt) {
                         self.warn(atom);
@@ -38,8 +38,8 @@ impl<'p> Unlimited<'p, '_> {
         }
     }
 
-    /// Returns `true` if an interrupt may end a drive that leads nowhere. Contact does not count, since
-    /// obstacles are avoided.
+    /// Returns `true` if an interrupt may end a drive whose goal cannot be reached. Contact does not count, since the
+    /// law avoids obstacles.
     fn limits(&self, interrupt: &Interrupt) -> bool {
         interrupt.condition.operands().iter().any(|operand| match operand {
             Condition::Null => false,
@@ -54,7 +54,7 @@ impl<'p> Unlimited<'p, '_> {
         let (span, text) = (atom.interrupt.span, &atom.interrupt.text);
         let message = format!("where no way leads to its point, `{law}` never ends");
         let lint = Diagnostic::new(Code::W0208, message, span, "neither this nor an enclosing scope limits its time");
-        // The text of an interrupt that was removed is one of an enclosing scope.
+        // A removed interrupt keeps its text, which is not to be proposed again because an enclosing scope has it.
         let is_null = atom.interrupt.condition == Condition::Null;
         let with = |limit: &str| if is_null { format!("({limit})") } else { format!("({text} OR {limit})") };
         let lint = lint.fix("end it where it comes no nearer for some time: {}", span, with("stuck 30s"));

@@ -1,5 +1,4 @@
-//! Reports common mistakes that the parser accepts, and names that no plan has, with the element that was
-//! probably meant.
+//! Reports common mistakes that the parser accepts, and unknown plan names, with the element that was probably meant.
 
 use super::Resolver;
 use crate::alphabet::{self, DeclarationKind, Kind, Unit};
@@ -42,13 +41,13 @@ impl<'a> Resolver<'_, 'a> {
             (call.args.is_empty() && self.definitions.get(call.name).is_none()).then_some(*call)
         };
         let names: Vec<_> = plan.elements.iter().map_while(name).collect();
-        // The last one is the name of the group.
+        // The last name is the name of the group.
         let Some((_, robots @ [first, .., last])) = names.split_last() else { return 0 };
         let span = first.span.to(last.span);
         let list = format!("[{}]", robots.iter().map(|robot| robot.name).collect::<Vec<_>>().join(" "));
         let found = Diagnostic::new(Code::E0208, "no brackets are around the robots of this group", span, "robots");
         self.found.push(found.fix("write {}", span, list));
-        // What looks like a condition in them follows the names.
+        // All elements count, because the condition after the names was read as an element.
         plan.elements.len()
     }
 

@@ -1,5 +1,5 @@
-//! Tests of the result of degeneracy removal (docs/src/reference/semantics.md, 7.4): traces cannot show the
-//! result, since the outer interrupt always wins.
+//! Tests the result of degeneracy removal (docs/src/reference/semantics.md, 7.4). Traces cannot show the result, since
+//! the outer interrupt always wins.
 
 use crate::alphabet;
 use crate::diagnostic::SourceId;
@@ -38,7 +38,7 @@ fn a_condition_is_repeated_only_where_it_is_the_same_function() {
         let Some(Node::Scope(scope)) = body.last() else { panic!("{body:?}") };
         matches!(&scope.body[..], [Node::Atom(atom)] if atom.interrupt.removed)
     };
-    // What the label says is the same in both places; what has been since a scope was entered is not.
+    // The record that `after` reads is the same in both places, but RISING and `t` depend on the entry of each scope.
     assert!(removed("after s bumper", "s: (Atom (bumper) stop)"));
     assert!(!removed("RISING bumper", ""));
     assert!(!removed("t > 5s", ""));
@@ -68,7 +68,7 @@ fn degrees_and_radians_are_never_the_same() {
         of_first_atom(compiled.first().unwrap_or_else(|| panic!("{found:?}"))).removed
     };
     assert!(removed("180deg") && removed("1.8e2"));
-    // As near as a float comes to half a turn, and still another number.
+    // The float nearest to half a turn is nevertheless a different number.
     assert!(!removed("3.141592653589793rad"));
 }
 

@@ -1,5 +1,5 @@
-//! Tests of files that use each other: the plans that each file can use, the plan that runs, and messages about files
-//! that cannot be used.
+//! Tests files that use each other: the plans that each file can use, the plan that runs, and messages about files that
+//! cannot be used.
 
 use crate::samples::judged_files;
 

@@ -1,8 +1,8 @@
-//! Tests that formal notation resolves to the plan from which it was printed, whatever labels `after` reads.
+//! Tests that a plan printed in formal notation resolves to the same plan again, including labels that `after` reads.
 
 use crate::samples::{compiled, judged};
 
-/// Returns the formal text of a plan, after checking that the formal text of this text is the same.
+/// Returns the text of a plan in formal notation; checks that compiling and printing this text gives the same text.
 fn formal(text: &str) -> String {
     let formal = compiled(text)[0].plan.formal();
     assert_eq!(compiled(&formal)[0].plan.formal(), formal);

@@ -1,4 +1,4 @@
-//! Tests of `advance`, `way` and `FRAME here` in plans.
+//! Tests `advance`, `way` and `FRAME here` in plans.
 
 use crate::alphabet;
 use crate::diagnostic::Sources;

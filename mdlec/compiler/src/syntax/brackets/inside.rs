@@ -1,4 +1,4 @@
-//! Reports defects from which the grammar could not recover: a label inside its atom, and a `use` inside a plan.
+//! Reports errors from which the grammar could not recover: a label inside its atom, and a `use` inside a plan.
 
 use super::{BracketKind, Pass};
 use crate::diagnostic::{Code, Diagnostic};

@@ -55,7 +55,7 @@ fn line_ends(blank: &str) -> usize {
     blank.matches('\n').count()
 }
 
-/// Kind of a piece that begins a line, which determines if an empty line precedes it.
+/// Position of a piece that begins a line, which determines if an empty line precedes it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Before {
     /// The first of several pieces: no empty line precedes it.
@@ -72,7 +72,7 @@ impl Layout<'_> {
     /// Writes the comments before the next piece, which begins a line.
     pub(super) fn boundary(&mut self, before: Before) {
         let indent = INDENT * self.depth;
-        // The comments before a closing bracket belong to what it closes.
+        // Comments before a closing bracket belong to its content.
         let inner =
             if before == Before::Close && self.pieces.kind(self.at).is_some() { indent + INDENT } else { indent };
         let Gap { comments, lines: behind } = self.pieces.take_gap(self.at);
@@ -81,7 +81,7 @@ impl Layout<'_> {
         let keeps_empty = before != Before::First;
         let has_empty = comments.iter().map(|comment| comment.lines).chain([behind]).any(|lines| lines > 1);
         let mut needs_empty = before == Before::Apart && !has_empty;
-        // Comments between two pieces of one line lead to the second.
+        // Comments between two pieces on one line belong to the second piece.
         let leads = behind == 0 && comments.iter().all(|comment| comment.lines == 0 && !comment.ends_line());
         let mut is_fresh = false;
         for (number, comment) in comments.iter().enumerate() {
