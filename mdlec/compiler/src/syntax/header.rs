@@ -6,14 +6,14 @@ use std::collections::BTreeSet;
 use super::token::{Tok, Token};
 use crate::alphabet::Kind;
 
-/// Kind of content after a parenthesis in a header.
+/// Meaning of the content after a parenthesis in a header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Begins<'s> {
     /// The parentheses contain parameters.
     Parameters,
     /// The parentheses do not contain parameters.
     Others,
-    /// The parentheses contain, as in `(v: spead)`, a parameter of an unknown type or, if a plan has the name `spead`,
+    /// The content may be, as in `(v: spead)`, a parameter of an unknown type or, if a plan is called `spead`, a use of
     /// that plan with a label.
     Either(&'s str),
 }
@@ -91,7 +91,7 @@ pub(super) fn names<'s>(tokens: &[Token<'s>]) -> BTreeSet<&'s str> {
 pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s> {
     match (behind.next(), behind.next()) {
         (Some(Tok::Name(_)), Some(Tok::Colon)) => {}
-        // `(bumper, v: speed)`, where a condition is before the parameters, or a parameter has no type.
+        // As in `(bumper, v: speed)`: a condition is before the parameters, or a parameter has no type.
         (Some(Tok::Name(_)), Some(Tok::Comma)) => {
             let next = [behind.next(), behind.next(), behind.next()];
             let is_typed =
@@ -107,7 +107,7 @@ pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s
             // A colon is missing between the second name and its type.
             [Some(Tok::Comma), Some(Tok::Name(_)), Some(Tok::Name(kind))] if is_type(kind) => Begins::Parameters,
             [Some(Tok::LBracket), ..] | [Some(Tok::Comma), Some(Tok::Name(_)), Some(Tok::Colon)] => Begins::Parameters,
-            // What has a power is not a list.
+            // A list of parameters cannot have a loop count.
             [Some(Tok::RParen), Some(Tok::Caret), ..] => Begins::Others,
             [Some(Tok::RParen), ..] => Begins::Either(name),
             _ => Begins::Others,
@@ -122,11 +122,12 @@ fn is_type(name: &str) -> bool {
     name == "bits" || Kind::NAMES.contains(&name)
 }
 
-/// Returns `true` if a group, whose parenthesis precedes the tokens `behind`, contains a token that cannot be in a
-/// condition: an element, a colon, or a comma that is not between arguments, at any depth.
+/// Returns `true` if a group contains a token that cannot be in a condition, at any depth: an element, a colon, or a
+/// comma that is not between arguments. `behind` contains the tokens after the group's opening parenthesis.
 pub(super) fn is_element<'s>(behind: impl Iterator<Item = Tok<'s>>) -> bool {
     let mut depth = 1_usize;
-    // How deep the parenthesis is in which arguments stand, and whether one of those may come next.
+    // Depth of the outermost parenthesis that contains arguments, and `true` if arguments may begin with the next
+    // token.
     let (mut arguments, mut takes) = (None, false);
     for token in behind {
         #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens say nothing")]

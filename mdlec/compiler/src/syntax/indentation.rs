@@ -24,7 +24,7 @@ struct Open {
 }
 
 /// Returns the tokens before which a brace must be closed. Such a token begins a line that is not indented deeper than
-/// the line of the brace, while a line between the two is.
+/// the line of the brace, although a line between the two lines is.
 pub(super) fn ends(source: Source<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, End> {
     let mut ends = BTreeMap::new();
     let mut open: Vec<Open> = Vec::new();
@@ -40,7 +40,7 @@ pub(super) fn ends(source: Source<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, 
                     inner.is_deeper |= here > inner.indentation;
                     break;
                 }
-                // The outermost that ends here.
+                // If several braces end here, the outermost is kept.
                 ends.insert(at, End::OfBrace(inner.brace));
                 open.pop();
             }

@@ -42,7 +42,7 @@ fn name_length(text: &str) -> Option<usize> {
     }
     let mut words = 0;
     let mut next = parts.next()?.ok()?;
-    // A space before `\text` is none of the words.
+    // A space before `\text` does not belong to the words.
     let mut ahead = parts.clone();
     if next == Part::Space && follows(&mut ahead, Part::Text) {
         (parts, next) = (ahead, Part::Text);

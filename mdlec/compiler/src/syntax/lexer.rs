@@ -1,4 +1,4 @@
-//! Splits text into tokens (docs/src/reference/language.md, 2). Spaces, comments and typesetting are left out, and each
+//! Splits text into tokens (docs/src/reference/language.md, 2). Spaces, comments and typesetting are left out. Each
 //! parenthesis records if it touches a name.
 
 use logos::{Lexer, Logos};
@@ -224,7 +224,8 @@ impl<'s> Reader<'s> {
         self.end_run();
         let unit = tail.trim_start();
         if unit.len() < tail.len() {
-            // It is a name, as units without a `/` are, so that the quark can say what it takes.
+            // Like a unit without `/`, the unit becomes a name, so that the error message about the quark can show its
+            // arguments.
             let (end, start) = (place.start + number.len(), place.end - unit.len());
             self.push(Tok::Number(number), Place::new(place.start, end));
             self.push(Tok::Name(unit), Place::new(start, place.end));

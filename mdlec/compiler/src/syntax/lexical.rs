@@ -55,7 +55,7 @@ fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, plac
             diagnostic.help("text is written between plain double quotes: `\"path.txt\"`")
         }
         "−" | "–" | "—" => sign(diagnostic, source, "-", place),
-        // Plans begin with a capital.
+        // A name that begins with a lower-case letter is not a plan, because plans begin with a capital.
         "." if ends_name(source, place.start) && next.is_some_and(char::is_lowercase) => {
             diagnostic.help("in a condition of a group, a dot is between a robot and its signal: `robot1.x > 7m`")
         }
@@ -156,7 +156,7 @@ fn sign(diagnostic: Diagnostic, source: Source<'_>, found: &str, place: Place) -
     diagnostic.fix(words, span, format!("{found}{number}"))
 }
 
-/// Returns a word that replaces characters, with spaces around it where the characters touch other text.
+/// Returns a word that replaces characters, with spaces where the characters touch other text.
 fn apart(source: Source<'_>, place: Place, word: &str) -> String {
     let is_blank = |c: Option<char>| c.is_none_or(char::is_whitespace);
     let before = source.text.get(..place.start).and_then(|before| before.chars().next_back());
@@ -240,7 +240,7 @@ pub(super) fn number(source: Source<'_>, number: &str, tail: &str, place: Place)
         let digits = number.trim_start_matches(['+', '-']).replace('.', "_");
         return diagnostic.fix("a name begins with a letter: {}", whole, format!("{tail}{digits}"));
     }
-    // Beside hours, `m` means minutes.
+    // After hours, `m` means minutes.
     let of_time = || Some(format!("{tail}in")).filter(|_| tail.starts_with('h') && tail.ends_with('m'));
     if let Some(sum) = sum_of_units(number, tail).or_else(|| sum_of_units(number, &of_time()?)) {
         let message = format!("`{number}{tail}` is a sum of two units");
@@ -328,7 +328,7 @@ fn shown(text: &str) -> String {
     format!("`{shown}`")
 }
 
-/// Returns `diagnostic` with help about a comment in `(*` and `*)`; both ends have the same message.
+/// Returns `diagnostic` with help about a comment in `(*` and `*)`; the characters at both ends have the same help.
 fn pascal_comment(diagnostic: Diagnostic, source: Source<'_>, place: Place) -> Diagnostic {
     let text = source.text;
     let begins = |at: usize| text.get(..at).filter(|before| before.ends_with('(')).map(|before| before.len() - 1);

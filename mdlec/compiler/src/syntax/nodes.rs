@@ -36,7 +36,7 @@ pub(super) struct Nodes<'t, 's> {
     pub(super) source: Source<'s>,
     /// Arena of the tree.
     arena: &'s Bump,
-    /// Tokens of the text, from which broken elements are made.
+    /// Tokens of the text, from which the nodes of broken elements are made.
     pub(super) tokens: &'t [Token<'s>],
     /// Doc comments, each with the index of the token that follows it.
     docs: &'t [(usize, &'s str)],
@@ -96,7 +96,7 @@ impl<'t, 's> Nodes<'t, 's> {
         let name = name.or_else(|| self.name_before(start)).unwrap_or(Spanned { node: "", span });
         let (docs, elements) = (self.docs_of(start), self.elements(first));
         let elements = match elements {
-            // Behind a brace without a name, a parenthesis that looks like a string is the plan's condition.
+            // After a brace without a name, a parenthesis that looks like a string is the plan's condition.
             [Element { primary: Primary::String(_), .. }, behind @ ..] if is_headless => behind,
             all => all,
         };

@@ -21,7 +21,7 @@ pub fn one_line<const N: usize>(text: &str, ends: [Option<usize>; N]) -> (String
     for token in tokens.get(range).into_iter().flatten() {
         match last.and_then(|end| text.get(end..token.place.start)) {
             None | Some("") => {}
-            // Only in a group a dot is a part of a name.
+            // A dot is between tokens only in the plan of a group, where it is part of a name.
             Some(".") => line.push('.'),
             Some(_) => line.push(' '),
         }

@@ -91,9 +91,9 @@ enum Inside {
 /// Returns the commas between elements, and the plans without braces, each as its first token and its `σ_null`.
 fn found(tokens: &[Token<'_>]) -> (Vec<usize>, Vec<(usize, usize)>) {
     let (mut commas, mut plans, mut open) = (Vec::new(), Vec::new(), Vec::new());
-    // The first token of what is outside of all plans.
+    // Index at which the text outside of all plans begins.
     let mut first = 0;
-    // The last token of the header of the plan that has begun last.
+    // Index of the last token in the header of the plan that has begun last.
     let (mut header, mut names) = (None, None);
     let before = |at: usize, back: usize| at.checked_sub(back).and_then(|at| tokens.get(at)).map(|token| token.kind);
     for (at, token) in tokens.iter().enumerate() {
@@ -151,8 +151,8 @@ fn is_string(tokens: &[Token<'_>], first: usize, end: usize) -> bool {
     })
 }
 
-/// Returns `true` if an element ends with the last of two tokens. An angle of `FRAME` and a count of `ExecPlan` do not
-/// end an element, and neither does the brace of a plan outside all plans.
+/// Returns `true` if an element ends with the last of two tokens. The angle of `FRAME`, the count of `ExecPlan` and the
+/// brace of a plan outside all plans do not end an element.
 fn ends_element([before, last]: [Option<Tok<'_>>; 2], is_outside: bool) -> bool {
     let is_word = matches!(before, Some(Tok::Frame | Tok::ExecPlan));
     match last {
@@ -163,8 +163,8 @@ fn ends_element([before, last]: [Option<Tok<'_>>; 2], is_outside: bool) -> bool 
     }
 }
 
-/// Returns `true` if an element follows a comma. In parentheses a condition may follow it, so that a name, or a group
-/// that may be a condition, does not count as an element.
+/// Returns `true` if an element follows a comma. In parentheses, a condition may follow the comma, so a name or a group
+/// that may be a condition does not count as an element.
 fn begins_element(tokens: &[Token<'_>], comma: usize, inside: Option<Inside>) -> bool {
     let kind = |ahead: usize| tokens.get(comma + ahead).map(|token| token.kind);
     let Some(next) = kind(1).filter(|_| inside != Some(Inside::Others)) else { return false };

@@ -1,4 +1,5 @@
-//! Constructors for those alternatives of the grammar that recover from errors: nodes in place of dropped tokens.
+//! Constructors for the alternatives of the grammar that recover from errors: they make nodes in place of dropped
+//! tokens.
 
 use super::nodes::{Head, Nodes, Recovery};
 use super::source::{Location, Place};
@@ -75,7 +76,7 @@ impl<'s> Nodes<'_, 's> {
         None
     }
 
-    /// Returns the span between two locations, also if dropped text begins or ends there.
+    /// Returns the span between two locations, even if dropped text begins or ends there.
     fn around(&self, start: Location, end: Location) -> Span {
         let first = self.tokens.get(start.token as usize).map_or(self.source.text.len(), |token| token.place.start);
         let last = (end.token as usize).checked_sub(1).and_then(|last| self.tokens.get(last));

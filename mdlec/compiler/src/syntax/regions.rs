@@ -1,4 +1,4 @@
-//! Regions of tokens that a single defect may affect. A region is an outermost parenthesis inside its innermost brace,
+//! Regions of tokens that a single error may affect. A region is an outermost parenthesis inside its innermost brace,
 //! or the tokens between two such parentheses on one line. Only the first error in a region is reported.
 
 /// Regions of a text, which are built together with its tokens.

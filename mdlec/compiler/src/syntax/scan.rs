@@ -8,7 +8,7 @@ use crate::alphabet::Unit;
 pub(super) fn number<'s, T: Logos<'s, Source = str>>(lexer: &mut Lexer<'s, T>) -> Result<&'s str, ()> {
     let rest = lexer.remainder();
     let tail = match rest.as_bytes() {
-        // Most numbers stand by themselves.
+        // Most numbers have no unit.
         [] | [b')' | b',' | b'\n', ..] => return Ok(lexer.slice()),
         [b' ' | b'\t', ..] => unit_apart(rest),
         _ => touching(rest),
@@ -35,8 +35,8 @@ fn touching(rest: &str) -> usize {
     rest.len()
 }
 
-/// Returns the length in bytes of the spaces and the unit after a number, if the unit contains `/`: only units contain
-/// this sign, so that a space may precede them.
+/// Returns the length in bytes of the spaces and the unit after a number, if the unit contains `/`. Only units contain
+/// `/`, so spaces may precede such a unit.
 fn unit_apart(rest: &str) -> usize {
     let blanks = rest.bytes().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
     let behind = rest.get(blanks..).unwrap_or("");

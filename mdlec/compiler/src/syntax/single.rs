@@ -31,7 +31,7 @@ pub fn operands(text: &str) -> Option<Vec<&str>> {
     });
     let alone = ranges.len() == 1;
     let operand = |range: &std::ops::Range<usize>| {
-        // The condition itself may have parentheses around it that are the template's.
+        // The range of a single operand may include the parentheses of the template, so the whole text is returned.
         if alone {
             Some(text.trim())
         } else {

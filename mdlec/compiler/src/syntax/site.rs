@@ -80,8 +80,8 @@ impl<'s> Site<'_, 's> {
         self.kind(paren - 1) == Some(Tok::LBrace) && is_condition && !is_loop
     }
 
-    /// Returns the index of the token whose region contains the defect. For a plan without a name, this is the brace
-    /// and not the token at which the name is missing.
+    /// Returns the index of the token whose region contains the error. For a plan without a name, this is the brace and
+    /// not the token at which the name is missing.
     pub(super) fn decisive(&self) -> usize {
         if self.is_plan_without_name() { self.at - 1 } else { self.at }
     }
@@ -113,8 +113,8 @@ impl<'s> Site<'_, 's> {
         self.expects("string") && self.expects("number")
     }
 
-    /// Returns the source text from token `first` to token `last`, if it is on one line and short enough for a
-    /// sentence.
+    /// Returns the source text from token `first` to token `last`; `None` if the text is not on one line or is too long
+    /// for a sentence.
     pub(super) fn text(&self, first: usize, last: usize) -> Option<&'s str> {
         let (first, last) = (self.tokens.get(first)?, self.tokens.get(last)?);
         let text = self.source.slice(Place::new(first.place.start, last.place.end));

@@ -1,4 +1,4 @@
-//! Tests of the parser with snapshots: each source beside its outline and messages.
+//! Tests the parser with snapshots: each source with its outline and messages.
 
 mod format;
 mod forms;

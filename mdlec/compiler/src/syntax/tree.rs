@@ -206,7 +206,7 @@ pub struct Compared<'s> {
 pub struct After<'s> {
     /// Label of the element that must have ended last.
     pub label: Name<'s>,
-    /// Operand that must have caused the end of that element; `None` if any cause counts.
+    /// Operand that must have caused the end of the element; `None` if any cause counts.
     pub cause: Option<Condition<'s>>,
 }
 
@@ -316,7 +316,7 @@ impl<'s> Number<'s> {
     /// Returns the sign, digits, fraction and exponent as written.
     #[must_use]
     pub fn digits(&self) -> &'s str {
-        // A unit is letters, and a number ends with a digit.
+        // A number ends with a digit, and a unit contains none.
         self.text.trim_end_matches(|c: char| !c.is_ascii_digit())
     }
 

@@ -1,4 +1,4 @@
-//! The machine `counted`: the run-time system's machine on a lowered plan, with loops as the paper's counters
+//! The machine `counted`: the run-time system's machine runs a lowered plan, with loops as the paper's counters
 //! (docs/src/reference/semantics.md, 9). Robots run the same machine; in a trace, a script replaces the robot.
 
 use mdle_runtime::{
@@ -103,7 +103,7 @@ impl mdle_runtime::Output for Reports {
 #[derive(Debug)]
 struct Scripted<'p> {
     plan_machine: &'p fsm::Machine,
-    /// Memories of all levels of scopes, level after level.
+    /// Memories of all levels of scopes, one level after the other.
     memories: Vec<bool>,
 }
 
@@ -167,7 +167,7 @@ impl<'p> Scripted<'p> {
         let fired = |(level, interrupt): &(u16, &Interrupt)| {
             interrupt.condition.fired(&Read { scripted: self, cursor, level: *level, y })
         };
-        // Outwards, so that the last one found is the outermost.
+        // The scopes are in order from the inside outwards, so the last match is the outermost.
         let outermost = self.scopes(cursor).filter(fired).last().map(|(level, _)| Cause::Fired(level));
         outermost.or_else(|| self.completed(cursor, y))
     }

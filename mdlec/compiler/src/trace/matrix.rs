@@ -1,10 +1,10 @@
-//! The oracle `matrix` computes an execution as a product of transition matrices, by the paper's own algebra (paper,
-//! Eq. 4; docs/src/reference/semantics.md, 8.4 and 9). The machines that robots run are compared with it; it shares no
+//! The machine `matrix`: computes an execution as a product of transition matrices, as in the paper (Eq. 4;
+//! docs/src/reference/semantics.md, 8.4 and 9). It is the oracle for the machines that robots run, and shares no
 //! stepping code with them.
 //!
-//! Only the first state's column of the product `E_i(tm) … E_i(t2) E_i(t1)` of the interrupts that have fired,
-//! in order, is computed: `e(t)` is this product applied to `e(0)`. The matrices do not express which scopes
-//! restart when a state is entered.
+//! Of the product `E_i(tm) … E_i(t2) E_i(t1)`, whose factors are the matrices of the interrupts that have fired, in
+//! order, only the column of the first state is computed: `e(t)` is this product applied to `e(0)`. The matrices do not
+//! express which scopes restart when a state is entered.
 
 use std::collections::BTreeSet;
 
@@ -20,11 +20,11 @@ use crate::plan::{Nondegenerate, Plan, Quark, QuarkId, RecordId, Situation};
 pub struct MatrixProduct<'p> {
     plan: &'p Plan,
     matrices: Matrices<'p>,
-    /// For each column, the indices of the interrupts whose matrices move it, outermost first.
+    /// For each column, the indices of the interrupts that list it, outermost first.
     listing: Vec<Vec<u32>>,
     /// For each interrupt, the moment at which its scope was entered.
     entered: Vec<Moment>,
-    /// Memories of RISING that are set, each given by the number of its interrupt and its number in that interrupt.
+    /// Memories of RISING that are set. Each has the number of its interrupt and its number in that interrupt.
     risen: BTreeSet<(usize, u32)>,
     /// Facts that hold in the records of the elements that ended last.
     facts: BTreeSet<(RecordId, u32)>,
@@ -121,8 +121,8 @@ impl<'p> MatrixProduct<'p> {
         self.matrices.laws.iter().copied().nth(self.e.row).map(|law| self.plan.quark(law))
     }
 
-    /// Returns the frame of the law, if an enclosing scope is entered in a frame of its own. The innermost such
-    /// scope has the highest number.
+    /// Returns the frame of the law if an enclosing scope has `FRAME here`. The innermost of these scopes has the
+    /// highest number.
     fn frame(&self) -> Option<Frame> {
         let turned = self.matrices.frames.get(self.e.row)?;
         let anew = self.listed().rev().find(|number| self.matrices.transitions[*number].here)?;

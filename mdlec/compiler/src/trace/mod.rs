@@ -1,4 +1,4 @@
-//! The machines of `mdlec trace`, which run the same plan in different ways and share no stepping code
+//! The machines of `mdlec trace`. They run the same plan in different ways, and share no stepping code
 //! (docs/src/reference/semantics.md, 9).
 
 mod counted;

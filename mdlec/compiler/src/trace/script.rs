@@ -116,7 +116,7 @@ impl Script {
     /// Reads a script: one object per line; empty lines are ignored.
     ///
     /// # Errors
-    /// Fails at the first line that is not such an object, or whose time or path length is less than in the previous
+    /// Fails at the first line that is not a valid object, or whose time or path length is less than in the previous
     /// line.
     pub fn read(text: &str) -> Result<Self, ScriptError> {
         let (mut turns, mut lines): (Vec<Reports>, Vec<usize>) = (Vec::new(), Vec::new());
@@ -188,7 +188,7 @@ fn nanos(seconds: f64) -> Option<u64> {
 /// Parses a line.
 fn written(line: &str) -> Result<ScriptLine, String> {
     let expected = r#"expected one object per line, as in {"t": 0.0, "fired": ["bumper"]}"#;
-    // Without this check, a list of values would be read as an object with them.
+    // Without this check, a JSON list of values would be accepted as an object with these values.
     match line.trim_start().chars().next() {
         Some('{') => {}
         Some('[') => return Err(format!("a script is no JSON list: {expected}")),
@@ -196,7 +196,7 @@ fn written(line: &str) -> Result<ScriptLine, String> {
     }
     serde_json::from_str(line).map_err(|error| {
         let reason = reason(&error);
-        // Messages about keys say which there are.
+        // Messages about unknown keys already list the valid keys.
         if reason.contains(" field `") { reason } else { format!("{reason}; {expected}") }
     })
 }

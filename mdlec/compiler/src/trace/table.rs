@@ -1,8 +1,8 @@
 //! The machine `table`: the expanded FSM of Algorithm 1, with a row for each interrupt
 //! (docs/src/reference/semantics.md, 8 and 9).
 //!
-//! Everything is computed beforehand: the destination of each interrupt, the scopes that restart there, and the
-//! elements that end on the way. A turn only reads the table.
+//! The table contains the destination of each interrupt, the scopes that restart there, and the elements that end on
+//! the way. All are computed in advance, so a turn only reads the table.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -40,8 +40,8 @@ struct AtomState<'p> {
     own: usize,
     /// Angle by which the state's frame is turned, in radians.
     turned: f64,
-    /// Row of the innermost scope that contains the state and is entered in a frame of its own, perhaps the row of the
-    /// atom itself; `None` if there is no such scope.
+    /// Row of the innermost scope with `FRAME here` that contains the state, perhaps the row of the atom itself; `None`
+    /// if there is no such scope.
     here: Option<usize>,
 }
 
@@ -55,8 +55,8 @@ struct Row<'p> {
     /// Record that is kept with the row's scope; `None` if the scope has no record.
     record: Option<Record>,
     next: Next,
-    /// Labels of the row's scope. `ends_with` holds the labels of the elements whose last element is this
-    /// scope.
+    /// Labels of the row's scope. `ends_with` holds the labels of the elements that end with this scope, because it is
+    /// their last element.
     marks: &'p [Mark],
     ends_with: Vec<&'p Mark>,
 }
@@ -126,7 +126,7 @@ impl<'p> Table<'p> {
         let plan = plan.plan();
         let mut filling = Filling { plan, states: Vec::new(), rows: Vec::new(), ended: Vec::new(), begun: None };
         filling.scope(&plan.root, None, None);
-        // What ends the plan leads behind its last state, where nothing starts afresh.
+        // The interrupts that end the plan lead to the state after its last state, where no scope restarts.
         filling.lead_to(&Next { state: filling.states.len(), afresh: 0..0 });
         let Filling { states, rows, .. } = filling;
         let fresh = |row: &Row<'_>| {
@@ -215,7 +215,7 @@ impl<'p> Table<'p> {
 impl<'p> Machine<'p> for Table<'p> {
     fn turn(&mut self, reports: &Reports) -> Outcome<'p> {
         if !std::mem::replace(&mut self.has_begun, true) {
-            // Whatever is entered later is entered anew.
+            // The scopes that are entered later get a new moment at their entry.
             self.memories.iter_mut().for_each(|memory| memory.entered = reports.moment());
         }
         let mut fired = Vec::new();

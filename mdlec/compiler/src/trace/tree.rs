@@ -16,7 +16,7 @@ use crate::plan::{Atom, Interrupt, Loop, Mark, Node, Plan, QuarkId, RecordId, Sc
 #[derive(Debug, Clone)]
 pub struct Tree<'p> {
     plan: &'p Plan,
-    /// Scopes, loops and atoms of the plan, the plan itself first and each element before its own elements. The
+    /// Scopes, loops and atoms of the plan: the plan itself first, and each element before its nested elements. The
     /// list is flat because a plan may be nested more deeply than the stack allows for recursion.
     elements: Arc<[Element<'p>]>,
     /// Open elements, outermost first; the last is the current atom. Empty before the first turn and after the plan has
@@ -173,8 +173,7 @@ impl<'p> Tree<'p> {
         }
     }
 
-    /// Returns the frame of the current atom, if the atom or an enclosing scope is entered in a frame of its
-    /// own.
+    /// Returns the frame of the current atom if the atom or an enclosing scope has `FRAME here`.
     fn frame(&self) -> Option<Frame> {
         let NodeKind::Atom(atom) = self.elements[self.open.last()?.element].kind else { return None };
         let anew = self.open.iter().rev().find(|open| self.elements[open.element].kind.is_here())?;
@@ -206,11 +205,11 @@ impl<'p> Tree<'p> {
             {
                 open.pass = open.pass.saturating_add(1);
                 open.index = 0;
-                // The passes of a loop without end share their states.
+                // All passes of an endless loop use the same states.
                 open.first = open.first.saturating_add(if repeated.times.is_some() { states } else { 0 });
                 open.here = open.first;
             } else {
-                // It has ended because its last element has.
+                // The element has ended with its last element.
                 ended.push((kind.marks(), None));
                 self.open.pop();
                 continue;
@@ -271,7 +270,7 @@ impl<'p> NodeKind<'p> {
         }
     }
 
-    /// Returns `true` if the element is entered in a frame of its own.
+    /// Returns `true` if the element has `FRAME here`.
     fn is_here(self) -> bool {
         match self {
             Self::Scope(scope) => scope.here,
@@ -308,7 +307,7 @@ impl Element<'_> {
     }
 }
 
-/// Returns the elements of a plan, each before its own elements; the elements of a body are consecutive.
+/// Returns the elements of a plan, each before its nested elements; the elements of a body are consecutive.
 fn flat(root: &Scope) -> Vec<Element<'_>> {
     let mut elements = vec![Element { kind: NodeKind::Scope(root), body: &root.body, held: 0, states: 0 }];
     let mut next = 0;

@@ -79,7 +79,7 @@ impl MatrixFiles<'_, '_> {
             matrices: self.0.live.iter().map(|term| entry(term, Some(file_name(term)))).collect(),
             never: self.0.never.iter().map(|term| entry(term, None)).collect(),
         };
-        // Only maps with keys that are not strings cannot be written, and there are none.
+        // Serialization fails only for maps with keys that are not strings, and the list contains no such map.
         serde_json::to_string_pretty(&list).map(|text| text + "\n").unwrap_or_default()
     }
 

@@ -1,5 +1,5 @@
 //! The terms of `Π(t) = Σ E_i ξ̄_i(t)` of a plan (paper, Eq. 2), or of the sum in which equal interrupts are combined
-//! to one term (Eq. 3).
+//! into one term (Eq. 3).
 //!
 //! Terms are numbered as in the FSM file: `x1`, `x2`, … in pre-order, and `completed` for the completion of laws.
 
@@ -20,7 +20,7 @@ pub struct Terms<'p> {
     pub live: Vec<Term<'p>>,
     /// Terms whose interrupt never fires: it is null, or was removed because an outer interrupt repeats it.
     pub never: Vec<Term<'p>>,
-    /// `true` if equal interrupts are combined to one term.
+    /// `true` if equal interrupts are combined into one term.
     pub combined: bool,
 }
 
@@ -42,8 +42,8 @@ pub struct Term<'p> {
 /// row. All indices count from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Extent<'p> {
-    /// Number of the interrupt in pre-order, from 1. If several interrupts fire at the same time, the one with the
-    /// lowest number takes effect.
+    /// Number of the interrupt in pre-order, from 1. If several interrupts fire at the same time, the lowest number
+    /// takes effect.
     pub number: usize,
     /// Name of the scope; empty for an atom.
     pub scope: &'p str,
@@ -75,7 +75,7 @@ impl Terms<'_> {
     }
 }
 
-/// Returns the terms of a plan with expanded finite loops; `combined` combines equal interrupts to one term.
+/// Returns the terms of a plan with expanded finite loops; `combined` combines equal interrupts into one term.
 ///
 /// # Errors
 /// Fails with E0501 or E0502 as [`expand`](mdle_compiler::fsm::expand) does.

@@ -1,8 +1,8 @@
-//! Prefix of an order of a machine's states, with its scopes and loops. Computes the scopes that must end if a certain
-//! state follows, and checks that they can end (Theorem 1, R1 to R4).
+//! State of the search for an order of a machine's states: a prefix of the order, with its scopes and loops. Computes
+//! the scopes that must end if a given state follows, and checks that they can end (Theorem 1, R1 to R4).
 //!
-//! When scopes and loops end, the range of positions that they enclose is closed. All closed ranges are pairwise nested
-//! or disjoint, and each state but the last has an interrupt of its own.
+//! When scopes and loops end, the range of positions that they enclose is closed. Invariants: all closed ranges are
+//! pairwise nested or disjoint, and each state but the last has an interrupt of its own.
 
 mod fits;
 
@@ -173,8 +173,8 @@ impl<'m> Beginning<'m> {
         }
     }
 
-    /// Returns the boundary at which the scopes that are marked in `ends` end, or the condition that is broken if they
-    /// end.
+    /// Returns the boundary at which the scopes marked in `ends` end, or the condition that is broken if they end
+    /// there.
     fn ended(&self, open: &[Open], next: State, ends: &[bool], widest: usize) -> Result<Boundary, Broken> {
         let here = self.order.len() - 1;
         let mut ending = Boundary { widest: Some(widest), ..Boundary::default() };

@@ -102,7 +102,7 @@ pub enum Broken {
     },
 }
 
-/// Maximum number of states that a sentence names of an order; these are the last states of the order.
+/// Maximum number of states of an order that a sentence names; the last states are named.
 const NAMED: usize = 6;
 
 /// Returns the conditions that a machine breaks in every order of its states.

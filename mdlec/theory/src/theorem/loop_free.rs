@@ -27,8 +27,8 @@ pub(super) fn runs(machine: &Machine, order: &[State]) -> Result<Vec<Run>, Vec<B
     if broken.is_empty() { Ok(runs) } else { Err(broken) }
 }
 
-/// Combines the moves of an interrupt from consecutive positions to the same destination into a run (R2). Returns the
-/// runs that end just before their destination, and the conditions that all other runs break.
+/// Combines the transitions of an interrupt from consecutive positions to the same destination into runs (R2). Returns
+/// the runs that end just before their destination, and the conditions that all other runs break.
 pub(super) fn cut(machine: &Machine, order: &[State]) -> (Vec<Run>, Vec<Broken>) {
     let places = places(order);
     let (mut runs, mut skips) = (Vec::new(), Vec::new());

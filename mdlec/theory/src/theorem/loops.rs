@@ -1,5 +1,5 @@
-//! Theorem 1 with endless loops (R4). Searches among the orders of the states, and abandons a prefix of an order if no
-//! next state is possible.
+//! Theorem 1 with endless loops (R4): a backtracking search for an order of the states, which abandons a prefix of an
+//! order if no next state is possible.
 
 use std::collections::BTreeSet;
 
@@ -31,7 +31,7 @@ struct Search<'m> {
     /// States to which each state leads, without duplicates.
     next: Vec<Vec<State>>,
     beginning: Beginning<'m>,
-    /// Hashes of prefixes that cannot become a string.
+    /// Hashes of prefixes that cannot be completed to a string.
     failed: BTreeSet<[u8; 32]>,
     furthest: Furthest,
     leaves: Leaves,
@@ -160,8 +160,8 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Returns the scopes and loops that end if `next` follows and the next choice of an additional open scope ends;
-    /// the first choice is no additional scope. Returns `None` if they cannot end.
+    /// Returns the scopes and loops that end if `next` follows, together with the next choice of an additional open
+    /// scope; the first choice is no additional scope. Returns `None` if they cannot end.
     fn ending(&mut self, step: &mut Step, next: State) -> Option<Boundary> {
         let extra = step.extra.checked_sub(1);
         let result = self.beginning.ending(&step.open, next, extra);

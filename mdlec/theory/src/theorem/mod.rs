@@ -109,8 +109,8 @@ pub struct Loop {
 }
 
 impl Machine {
-    /// Returns a machine with these states and interrupts. Each interrupt has moves, which lead from one state to
-    /// another, at most one from each state. Moves from or to unknown states are ignored.
+    /// Returns a machine with these states and interrupts. Each interrupt has transitions, as pairs of source and
+    /// destination, at most one from each state. Transitions from or to unknown states are ignored.
     #[must_use]
     pub fn new(states: Vec<String>, interrupts: Vec<(Named, Vec<(State, State)>)>) -> Self {
         let mut exits = vec![Vec::new(); states.len()];

@@ -103,7 +103,7 @@ fn is_in_names(letter: char) -> bool {
     letter.is_ascii_alphanumeric() || letter == '_' || !letter.is_ascii() && is_law(&format!("_{letter}"))
 }
 
-/// Converts a text so that it can be in a one-line comment.
+/// Escapes a text for a one-line comment.
 pub(super) fn in_a_comment(text: &str) -> String {
     Printable(text).to_string()
 }

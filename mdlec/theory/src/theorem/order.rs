@@ -41,7 +41,7 @@ fn leave(machine: &Machine, root: State, seen: &mut [bool], left: &mut Vec<State
     }
 }
 
-/// Returns the position in `order` of each state; the index is that of the state in the file.
+/// Returns the position in `order` of each state, indexed by the state's index in the file.
 pub(super) fn places(order: &[State]) -> Vec<usize> {
     let mut places = vec![0; order.len()];
     for (place, state) in order.iter().enumerate() {

@@ -1,8 +1,8 @@
 //! Checks the conditions R1 to R4 of Theorem 1 as printed in the paper, on the columns of transition matrices, both
 //! literally and as intended.
 //!
-//! The columns of an interrupt are the columns that it moves. A move to the same state does not count, because there
-//! the matrix is the identity.
+//! An interrupt's columns are those in which its matrix differs from the identity. A transition to the same state does
+//! not count, because its column is that of the identity.
 
 use super::loop_free::{crossings, cut};
 use super::order::{forwards, places};
@@ -45,7 +45,7 @@ pub fn as_printed(machine: &Machine, exactly: &Answer) -> [Rule; 4] {
         Rule { name: "R1", letter: first.clone(), meant: first },
         Rule { name: "R2", letter: second.clone(), meant: second },
         Rule { name: "R3", letter: columns.nested_to_the_letter(), meant: columns.nested() },
-        // R2 forbids the moves that R4 is about.
+        // R2 already forbids the transitions that R4 is about.
         Rule { name: "R4", letter: columns.loops_to_the_letter(), meant: None },
     ]
 }
@@ -58,8 +58,8 @@ struct Same {
     behind: usize,
 }
 
-/// Minimum destination row of a set of moves, with its interrupt, and the minimum destination row of the moves by all
-/// other interrupts.
+/// Minimum destination row of a set of transitions, with its interrupt, and the minimum destination row of the
+/// transitions of all other interrupts.
 #[derive(Debug, Clone, Copy, Default)]
 struct Lowest {
     one: Option<(usize, InterruptId)>,
@@ -67,7 +67,7 @@ struct Lowest {
 }
 
 impl Lowest {
-    /// Returns the minimum rows after an additional move.
+    /// Returns the minimum rows after an additional transition.
     fn with(self, interrupt: InterruptId, row: usize) -> Self {
         let Some((lowest, of)) = self.one else { return Self { one: Some((row, interrupt)), other: None } };
         if of == interrupt {
@@ -79,7 +79,7 @@ impl Lowest {
         Self { other: Some(self.other.map_or(row, |other| other.min(row))), ..self }
     }
 
-    /// Returns the minimum destination row of the moves by interrupts other than `interrupt`.
+    /// Returns the minimum destination row of the transitions of interrupts other than `interrupt`.
     fn of_another(self, interrupt: InterruptId) -> usize {
         match self.one {
             Some((lowest, of)) if of != interrupt => lowest,
@@ -90,8 +90,8 @@ impl Lowest {
 }
 
 impl Columns<'_> {
-    /// Returns all moves of interrupts to a different position, each as the interrupt, the position from which it
-    /// leads, and the position to which it leads.
+    /// Returns all transitions to a different position, each as the interrupt, the source position, and the destination
+    /// position.
     fn moves(&self) -> impl Iterator<Item = (InterruptId, usize, usize)> {
         let from = self.order.iter().enumerate();
         let all = from.flat_map(|(place, state)| self.machine.exits(*state).iter().map(move |exit| (place, exit)));
@@ -156,12 +156,12 @@ impl Columns<'_> {
         })
     }
 
-    /// Returns, for each move in order, the consecutive columns around it that have their 1 in the move's destination
-    /// row in the interrupt's matrix.
+    /// Returns, for each transition in order, the consecutive columns around its source that have their 1 in the same
+    /// row of the interrupt's matrix.
     fn runs(&self) -> Vec<Same> {
         let moves: Vec<_> = self.moves().collect();
         let mut runs: Vec<Same> = moves.iter().map(|(_, from, _)| Same { first: *from, behind: from + 1 }).collect();
-        // The move of each interrupt that was met last.
+        // Index of the latest transition of each interrupt.
         let mut near: Vec<Option<usize>> = vec![None; self.machine.interrupts().len()];
         for (number, (interrupt, from, to)) in moves.iter().enumerate() {
             let before = near[interrupt.0 as usize].replace(number);
@@ -193,8 +193,8 @@ impl Columns<'_> {
         Some(sentence.trim_start_matches("R3: ").to_owned())
     }
 
-    /// Returns the first column such that this column and all later ones up to the destination row of a move have their
-    /// 1 in this row; `None` if there is no such column.
+    /// Returns the first column from which all columns up to a transition's destination have their 1 in the row of the
+    /// destination; `None` if there is no such column.
     fn first_enclosed(&self, moves: &[(InterruptId, usize, usize)], runs: &[Same], number: usize) -> Option<usize> {
         let (interrupt, from, to) = moves[number];
         if from < to {
@@ -219,7 +219,7 @@ impl Columns<'_> {
             let (interrupt, from, to) = (*interrupt, *from, *to);
             let first = self.first_enclosed(&moves, &runs, number);
             let is_enclosed = |column: usize| column < from && first.is_some_and(|first| first <= column);
-            // First the moves that begin before the enclosed columns, then those that begin in the same column.
+            // First the transitions that begin before the enclosed columns, then those that begin in the same column.
             let asked =
                 first.map_or(number, |first| moves.partition_point(|(_, column, _)| *column < first).min(number));
             let beside = moves[..number].iter().rev().take_while(|(_, column, _)| *column == from);

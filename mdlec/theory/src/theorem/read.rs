@@ -1,7 +1,7 @@
-//! Reads FSM files (docs/src/reference/interfaces.md, 5): states, and interrupts with their moves.
+//! Reads FSM files (docs/src/reference/interfaces.md, 5): states, and interrupts with their transitions.
 //!
-//! In the resulting machine, every move is between states of the file, and an interrupt has at most one destination for
-//! each state.
+//! In the resulting machine, every transition connects two states of the file, and each state has at most one
+//! transition per interrupt.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -16,9 +16,9 @@ use mdle_compiler::syntax::{is_law, operands};
 /// Reason why a file cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileError {
-    /// Number of the faulty line, from 1, if the fault is in one line.
+    /// Line of the error, from 1; `None` if the error is not in a single line.
     pub line: Option<usize>,
-    /// Description of the fault.
+    /// Description of the error.
     pub message: String,
 }
 
@@ -40,7 +40,7 @@ struct WrittenInterrupt {
     text: Option<String>,
 }
 
-/// Destinations of the moves, by the names of the states from which they lead.
+/// Transitions of an interrupt: the destination by the name of the state from which it leads.
 struct Moves(BTreeMap<String, String>);
 
 impl<'de> Deserialize<'de> for Moves {

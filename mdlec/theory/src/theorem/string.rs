@@ -46,7 +46,7 @@ pub fn string(machine: &Machine, found: &Found) -> String {
     }
     let last = found.order.len().saturating_sub(2);
     let root = enclosed.first().copied().filter(|one| one.first == 0 && one.last.0 == last && one.rank != Rank::Loop);
-    // An atom is not a plan.
+    // A plan cannot consist of an atom alone.
     let root = root.filter(|_| last > 0 || enclosed.len() > 1);
     let rest = if root.is_some() { &enclosed[1..] } else { &enclosed[..] };
     let condition = root.and_then(|root| root.interrupt).map_or("null", |interrupt| condition(&texts, interrupt));

@@ -1,7 +1,7 @@
 //! Collects formatted lines, each with its trailing comment. Trailing comments of neighbouring lines with the same
 //! indentation are aligned.
 
-/// Number of columns between the longest of neighbouring lines and its comment.
+/// Number of columns between the longest of several neighbouring lines and their comments.
 const GAP: usize = 4;
 
 /// A formatted line.

@@ -26,7 +26,7 @@ pub(super) struct Piece<'s> {
     may_break: bool,
     /// Number of columns that all pieces before this one need on one line.
     left: usize,
-    /// Number of comments between the start of the text and the piece.
+    /// Number of comments before the piece in the whole text.
     comments: usize,
 }
 
@@ -111,7 +111,7 @@ impl<'s> Pieces<'s> {
         if !self.get(first).may_break {
             return Chunk { may_break: false, width: 0 };
         }
-        // A line breaks before OR rather than before AND, which binds closer.
+        // AND binds more tightly than OR, so a line breaks before OR and not before AND.
         let is_and = |at: usize| self.get(at).kind == Tok::And;
         let next =
             (first + 1..end).find(|at| self.get(*at).may_break && (is_and(first) || !is_and(*at))).unwrap_or(end);
@@ -119,7 +119,7 @@ impl<'s> Pieces<'s> {
     }
 }
 
-/// Returns the printed form of a token: words and numbers as they are written, but without typesetting.
+/// Returns the printed form of a token: words and numbers as written, but without typesetting.
 fn text<'s>(source: Source<'s>, token: Token<'s>) -> Cow<'s, str> {
     let written = source.slice(token.place);
     #[allow(clippy::wildcard_enum_match_arm, reason = "all others are written as they are")]

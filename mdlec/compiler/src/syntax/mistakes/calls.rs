@@ -47,7 +47,7 @@ fn names_group(site: &Site<'_, '_>, before: usize) -> bool {
 
 /// Reports a decimal comma, as in `0,5`.
 pub(super) fn decimal_comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    // What stops the parser is the comma, or the digits after it.
+    // The parser stops at the comma or at the digits after it.
     let comma = [Some(site.at), site.at.checked_sub(1)];
     let comma = comma.into_iter().flatten().find(|at| site.kind(*at) == Some(Tok::Comma))?;
     let whole = comma.checked_sub(1)?;
@@ -155,7 +155,7 @@ fn second_condition(site: &Site<'_, '_>, opener: usize, end: usize, second: &str
         .checked_sub(1)
         .filter(|closer| site.partner(*closer) == Some(Tok::ConditionParen) && is_condition(second))?;
     let first = site.opener_of(closer)?;
-    // On a line of its own it is an element.
+    // If the second parentheses are on another line, they are an element.
     site.text(first, end)?;
     let condition = site.text(first + 1, closer - 1)?;
     let joined = match condition.contains(" AND ") || second.contains(" AND ") {

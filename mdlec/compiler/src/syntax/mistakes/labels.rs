@@ -29,7 +29,7 @@ pub(super) fn label_and_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
         }
         let name = site.at.checked_sub(1).filter(|_| site.expects_element())?;
         let begins = matches!(site.kind(site.at + 1), Some(Tok::LParen | Tok::LBrace | Tok::ExecPlan | Tok::Frame));
-        // The first name is that of the plan.
+        // The first name in braces is the name of the plan.
         let is_first = site.before(2) == Some(Tok::LBrace);
         if let (Some(text), true, Some(_)) = (site.name_at(name), begins && !is_first, site.opener()) {
             let diagnostic = site.about(site.at, format!("`{text} =` is not a label"), "expected a colon");
@@ -85,7 +85,7 @@ fn named_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let is_first = opener + 1 == name;
     let diagnostic = site.about(site.at, "arguments have no names: they are given in order", "not expected here");
     Some(match before.filter(|_| is_first) {
-        // The call is upset as well.
+        // The error affects the call as well, so the edit also covers the beginning of the call.
         Some(before) => diagnostic.fix(&words, site.span(plan, site.at), before),
         None => diagnostic.fix(&words, site.span(name, site.at), ""),
     })

@@ -1,4 +1,4 @@
-//! Tests of the canonical layout: examples, and checks that it keeps the tree and every comment.
+//! Tests the canonical layout with examples, and checks that it keeps the tree and every comment.
 
 use proptest::prelude::*;
 

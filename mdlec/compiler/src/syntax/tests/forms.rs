@@ -1,4 +1,4 @@
-//! Tests of every form of the language, by its tree.
+//! Tests the tree of every form of the language.
 
 use super::check;
 

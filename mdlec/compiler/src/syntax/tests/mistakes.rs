@@ -1,4 +1,4 @@
-//! Tests of the messages about defects: one message for each defect, with a text to type.
+//! Tests the messages about mistakes: one message for each mistake, with a text to type.
 
 use super::{Arena, check, one, parse};
 use crate::diagnostic::{Code, SourceId};

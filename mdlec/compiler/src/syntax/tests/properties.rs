@@ -1,4 +1,4 @@
-//! Tests of properties that hold for every text.
+//! Tests properties that hold for every text.
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -104,7 +104,7 @@ fn reads(text: &str) {
     let arena = Arena::new();
     let (file, diagnostics) = parse(id, text, &arena);
     let _ = outline(&file);
-    // A brace may be closed by none and belong to no name.
+    // A brace can cause two messages: it is not closed, and its plan has no name.
     assert!(diagnostics.len() <= 2 * text.len() + 1);
     assert!(!file.plans.is_empty() || !diagnostics.is_empty());
     assert!(diagnostics.is_sorted_by_key(|found| found.span()));
@@ -165,7 +165,7 @@ proptest! {
         prop_assert!(open.is_empty());
     }
 
-    /// Checks that a defect in one atom is reported once and does not affect the other elements.
+    /// Checks that an error in one atom is reported once and does not affect the other elements.
     #[test]
     fn one_broken_atom_is_one_message(piece in proptest::sample::select(&["=", ":", "^", "==", "[", "]", "use", "FRAME", "7x", "@", "Γ_a", ","][..]), place in 0_usize..6) {
         let mut atom = ["(Atom", "(", "wait 5", ")", "(go 5 0)", ")"].map(str::to_owned);

@@ -37,8 +37,8 @@ impl<'p> Tree<'p> {
         }
     }
 
-    /// Makes the next step of a turn in which `made` transitions have been made so far; [`begin`](Self::begin)
-    /// must come first.
+    /// Executes the next step of a turn; `made` is the number of transitions so far in this turn.
+    /// [`begin`](Self::begin) must be called first.
     pub fn step(&mut self, reports: &Reports, made: usize) -> Step<'p> {
         match self.fired(reports) {
             Some(mut ending) if made < TRANSITIONS_PER_TURN as usize => {
@@ -61,8 +61,8 @@ impl<'p> Tree<'p> {
         self.open.iter().map(|open| OpenPart { tree: self, open })
     }
 
-    /// Returns the spans of the operands that are true in the interrupt by which the next step ends a scope; an
-    /// empty list if the step ends no scope, or if the law has completed.
+    /// Returns the spans of the true operands of the interrupt that ends a scope in the next step; an empty list if the
+    /// step ends no scope, or if the law has completed.
     #[must_use]
     pub fn firing(&self, reports: &Reports) -> Vec<Span> {
         let fired = |part: &OpenPart<'_, 'p>| {
@@ -116,8 +116,8 @@ impl<'t, 'p> OpenPart<'t, 'p> {
         &self.open.facts
     }
 
-    /// Returns `true` if `condition`, a condition of the part's interrupt or a part of such a condition, is
-    /// true.
+    /// Returns `true` if `condition` is true; `condition` is the condition of the part's interrupt or a part of that
+    /// condition.
     #[must_use]
     pub fn holds(self, condition: &Condition, reports: &Reports) -> bool {
         condition.fired(&Read { tree: self.tree, open: self.open, reports })

@@ -50,8 +50,8 @@ impl Beginning<'_> {
             }
         }
         for source in self.outside(next).filter(|source| *source != next) {
-            // `source` will have a later place and lead back to `next`. If it also leads to an earlier place, the scope
-            // of that interrupt begins before `next`, so `next` must have the interrupt as well.
+            // `source` will have a later position and lead back to `next`. If it also leads to an earlier position, the
+            // scope of that interrupt begins before `next`, so `next` must have the interrupt as well.
             let mut exits = self.machine.exits(source).iter().filter(|exit| self.place(exit.to).is_some());
             let lacking = exits.find(|exit| self.machine.destination(next, exit.interrupt) != Some(exit.to));
             if let Some(exit) = lacking {
