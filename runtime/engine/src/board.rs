@@ -1,5 +1,5 @@
 //! The board, which contains the last value of every attribute of every module and changes only at turn breaks.
-//! Positions on the board are determined when modules are loaded or unloaded, so that no turn looks up names.
+//! Positions on the board are determined when modules are loaded or unloaded, so a turn looks up no names.
 
 use std::sync::Arc;
 
@@ -13,8 +13,7 @@ use crate::module::{About, Declared, Ports, Refusal, Source};
 #[derive(Debug, Default)]
 pub struct Board {
     posts: Vec<Post>,
-    /// Attributes for which a value was refused for the first time, because it contained NaN, since they were last
-    /// taken.
+    /// Attributes whose first value with a NaN was refused since the last call of [`Board::newly_refused`].
     refused: Vec<AttributeName>,
 }
 
@@ -27,13 +26,13 @@ pub struct Post {
     pub about: About,
     /// The value that was published last; `None` before the first publication.
     pub reading: Option<Reading>,
-    /// Latency that the module declares: the time from one of its exchanges to the next.
+    /// Latency that the module declares: the time between two of its exchanges.
     pub latency: Nanos,
-    /// Number of values with a NaN, which were not published.
+    /// Number of values that were not published because they contain NaN.
     pub refused: u64,
 }
 
-/// Positions on the board of the values that a module reads, in the order of its declaration; `None` for a setting, and
+/// Board position of each value that a module reads, in the order of the module's declaration; `None` for a setting and
 /// for an attribute that no module publishes.
 pub(crate) type Wires = Vec<Option<usize>>;
 
@@ -60,8 +59,8 @@ impl Board {
         self.posts.iter().position(|post| &*post.name.module == module && &*post.name.attribute == attribute)
     }
 
-    /// Returns the position of an attribute that a plan reads; for `age`, the position of the module's first attribute.
-    /// Returns `None` if the attribute is not on the board.
+    /// Returns the position of an attribute that a plan reads; for `age`, returns the position of the module's first
+    /// attribute. Returns `None` if the attribute is not on the board.
     pub(crate) fn place_of(&self, read: &ModuleRead) -> Option<usize> {
         if read.attribute == AGE {
             return self.posts.iter().position(|post| &*post.name.module == read.module);
@@ -85,13 +84,14 @@ impl Board {
         self.posts.retain(|post| &*post.name.module != module);
     }
 
-    /// Returns the position of a module's first attribute, or the number of attributes if the module has none.
+    /// Returns the position of a module's first attribute; if the module has none, returns the number of all
+    /// attributes.
     pub(crate) fn first(&self, module: &str) -> usize {
         self.posts.iter().position(|post| &*post.name.module == module).unwrap_or(self.posts.len())
     }
 
-    /// Adds an attribute of a module that is not loaded here: a module of the recorded run that is repeated, or of
-    /// another robot. An earlier attribute with this name is replaced.
+    /// Adds an attribute of a module that is not loaded here: a module of a recorded run that is replayed, or a module
+    /// of another robot. Replaces an earlier attribute with this name.
     pub(crate) fn restore(&mut self, name: AttributeName, kind: AttributeKind) {
         self.forget(&name);
         let unit = kind.quantity().and_then(Kind::base_unit);
@@ -99,7 +99,7 @@ impl Board {
         self.posts.push(Post { name, about, reading: None, latency: Nanos::ZERO, refused: 0 });
     }
 
-    /// Sets the value of a restored attribute, as in the recorded run.
+    /// Sets the value of a restored attribute to its value in the recorded run.
     pub(crate) fn restore_reading(&mut self, name: &AttributeName, reading: Reading) {
         if let Some(post) = self.posts.iter_mut().find(|post| post.name == *name) {
             post.reading = Some(reading);
@@ -114,7 +114,7 @@ impl Board {
     /// Returns the positions on the board of all values that a module reads.
     ///
     /// # Errors
-    /// Fails if the module reads an attribute as another kind than the attribute has.
+    /// Fails if the module expects another kind than an attribute has.
     pub(crate) fn wires(&self, reader: &str, declared: &Declared) -> Result<Wires, Refusal> {
         let wire = |source: &Source| {
             let Source::Attribute(name, read) = source else { return Ok(None) };
@@ -159,7 +159,7 @@ impl Board {
         }
     }
 
-    /// Returns the attributes for which a value that contains NaN was refused for the first time, since the last call.
+    /// Returns the attributes whose first value with a NaN was refused since the last call.
     pub(crate) fn newly_refused(&mut self) -> impl Iterator<Item = AttributeName> {
         self.refused.drain(..)
     }

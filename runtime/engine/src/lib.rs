@@ -1,7 +1,7 @@
-//! The Modular Engine (section III of the paper), in which modules and plans make a robot's turns together.
+//! The Modular Engine (paper, section III): modules and plans together make a robot's turns.
 //!
-//! To implement a module: [`Module`] or [`Background`], and [`Declare`], which declares the attributes that the
-//! module publishes and reads.
+//! A module implements [`Module`] or [`Background`], and declares the attributes that it publishes and reads with
+//! [`Declare`].
 #![forbid(unsafe_code)]
 
 mod attribute;

@@ -1,4 +1,4 @@
-//! The modules of a program, as functions that create them for each run.
+//! The modules of a program: functions that create the modules for each run.
 
 use std::fmt;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use mdle_host::StopRequest;
 use crate::attribute::is_name;
 use crate::module::{Background, Candidate, Declare, Module, PLAN, ROBOT, Refusal};
 
-/// The modules that each run of a program loads, in order.
+/// Modules that each run of a program loads, in order.
 pub struct Library<Y> {
     makers: Vec<(String, Arc<MakeCandidate<Y>>)>,
 }
@@ -23,7 +23,7 @@ impl<Y> Library<Y> {
         Self { makers: Vec::new() }
     }
 
-    /// Adds a registered module of this name, which `make` declares and returns.
+    /// Adds a registered module with this name; `make` declares the module's attributes and returns the module.
     pub fn registered<M: Module<Y> + 'static>(
         &mut self,
         name: &str,
@@ -33,13 +33,13 @@ impl<Y> Library<Y> {
         self.makers.push((name.to_owned(), Arc::new(move |_| Candidate::registered(&own, &make))));
     }
 
-    /// Adds a background module of this name, which `make` declares and returns.
+    /// Adds a background module with this name; `make` declares the module's attributes and returns the module.
     pub fn background<M: Background>(&mut self, name: &str, make: impl Fn(&mut Declare) -> M + Send + Sync + 'static) {
         let own = name.to_owned();
         self.makers.push((name.to_owned(), Arc::new(move |_| Candidate::background(&own, &make))));
     }
 
-    /// Adds a background module of this name that is a child process, which `/bin/sh` starts by this command line: see
+    /// Adds a background module with this name that is a child process; `/bin/sh` starts it with this command line. See
     /// [`Candidate::process`].
     pub fn process(&mut self, name: &str, command: &str) {
         let (own, command) = (name.to_owned(), command.to_owned());
@@ -54,7 +54,7 @@ impl<Y> Library<Y> {
     /// Checks that a module can be added under this name.
     ///
     /// # Errors
-    /// Fails if no module may have the name, or if another module has it.
+    /// Fails if the name is invalid or taken.
     pub fn admits(&self, name: &str) -> Result<(), Refusal> {
         if !is_name(name) {
             return Err(Refusal::BadName(name.to_owned()));
@@ -63,12 +63,12 @@ impl<Y> Library<Y> {
         if is_taken { Err(Refusal::NameTaken(name.to_owned())) } else { Ok(()) }
     }
 
-    /// Creates the modules, unless `request` is made before.
+    /// Creates the modules; stops if `request` is made.
     pub(crate) fn candidates(&self, request: &StopRequest) -> impl Iterator<Item = Result<Candidate<Y>, Refusal>> {
         self.makers.iter().map(move |(_, make)| make(request))
     }
 
-    /// Creates the module of this name, unless `request` is made before.
+    /// Creates the module with this name; stops if `request` is made.
     ///
     /// # Errors
     /// Fails if there is no such module, or if it cannot be created.

@@ -18,9 +18,9 @@ pub(crate) const AGE: &str = "age";
 pub trait Attribute: Sized {
     /// Kind of the attributes that have this type.
     const KIND: AttributeKind;
-    /// Converts this into a value of the kind.
+    /// Converts this value into a [`Value`] of kind [`Attribute::KIND`].
     fn into_value(self) -> Value;
-    /// Returns the content of a value of this kind; `None` for any other kind.
+    /// Returns the content of `value`; `None` if `value` has another kind.
     fn from_value(value: &Value) -> Option<Self>;
 }
 
@@ -69,7 +69,7 @@ macro_rules! places {
                 Self(place, PhantomData)
             }
 
-            /// Returns the position among the module's own attributes.
+            /// Returns the index among the module's own attributes.
             pub(crate) const fn place(self) -> usize {
                 self.0
             }

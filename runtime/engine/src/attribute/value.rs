@@ -72,7 +72,7 @@ pub enum Value {
 pub struct Reading {
     /// The value.
     pub value: Value,
-    /// Time at which the turn before the turn break began.
+    /// Time at which the last turn before the turn break began.
     pub at: Nanos,
 }
 
@@ -104,7 +104,7 @@ impl AttributeKind {
         Self::ALL.get(usize::from(number)).copied()
     }
 
-    /// Returns the name of the kind in words, with its article: "an angle".
+    /// Returns the kind in words, with an article: "an angle".
     #[must_use]
     pub fn words(self) -> String {
         match (self, self.quantity()) {
@@ -118,7 +118,7 @@ impl AttributeKind {
         }
     }
 
-    /// Returns the corresponding kind of an alphabet, or `None` if plans cannot read values of this kind as numbers.
+    /// Returns the corresponding kind in an alphabet, or `None` if plans cannot read values of this kind as numbers.
     #[must_use]
     pub fn quantity(self) -> Option<Kind> {
         match self {
@@ -156,7 +156,8 @@ impl Value {
         }
     }
 
-    /// Returns the value as the number that plans read, in SI units, or `None` if plans cannot read values of its kind.
+    /// Returns the value as the number that plans read, in SI units, or `None` if plans cannot read values of this
+    /// kind.
     #[must_use]
     pub fn number(&self) -> Option<f64> {
         match self {
@@ -188,8 +189,8 @@ impl Value {
         }
     }
 
-    /// Returns the value of kind `kind` that has these bits. For a kind that plans cannot read, returns a placeholder
-    /// that they cannot read either.
+    /// Converts these bits to a value of kind `kind`. For a kind that plans cannot read as a number, returns a
+    /// placeholder that they cannot read either.
     pub(crate) fn of_bits(kind: AttributeKind, bits: u64) -> Self {
         let number = f64::from_bits(bits);
         match kind {
@@ -209,7 +210,7 @@ impl Value {
         }
     }
 
-    /// Returns `true` if a number in the value is NaN, so that it must not be published.
+    /// Returns `true` if the value contains NaN and must not be published.
     #[must_use]
     pub fn has_nan(&self) -> bool {
         match self {

@@ -1,4 +1,4 @@
-//! Events of modules, for people and for the log.
+//! Events of modules, shown to users and written to the log.
 
 use std::fmt;
 use std::sync::Arc;
@@ -12,11 +12,11 @@ pub enum Event {
     Loaded(Arc<str>),
     /// The module was unloaded.
     Unloaded(Arc<str>),
-    /// The module makes turns, from the next turn on.
+    /// The module makes turns, beginning with the next turn.
     Started(Arc<str>),
     /// The module makes no turns until it is started again.
     Stopped(Arc<str>),
-    /// The module cannot continue: the reason, as a sentence.
+    /// The module cannot continue; contains the reason as a sentence.
     Failed(Arc<str>, String),
     /// The module had not finished its turn at the deadline.
     Late(Arc<str>),
@@ -24,7 +24,7 @@ pub enum Event {
     GivenUp(Arc<str>),
     /// The thread of the background module has ended.
     Ended(Arc<str>),
-    /// The value of this attribute was NaN for the first time.
+    /// A value of this attribute was NaN for the first time.
     NotANumber(AttributeName),
 }
 
@@ -44,30 +44,30 @@ impl fmt::Display for Event {
     }
 }
 
-/// The inputs of a turn break that do not follow from computation. Together with the robot's outputs, they suffice to
-/// repeat a run exactly.
+/// Inputs of a turn break that cannot be recomputed. Together with the robot's outputs, they suffice to replay a run
+/// exactly.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Arrivals {
-    /// Values from background modules, in order, each with its position on the board.
+    /// Values from background modules in order of arrival, each with its position on the board.
     pub values: Vec<(usize, Value)>,
-    /// Background modules that have ended, each with the way in which it ended.
+    /// Background modules that have ended, each with the reason.
     pub ended: Vec<(Arc<str>, End)>,
     /// Registered modules that had not finished their turn at the deadline.
     pub late: Vec<Arc<str>>,
-    /// Registered modules whose turn no thread had begun at the deadline.
+    /// Registered modules that no thread had started by the deadline.
     pub skipped: Vec<Arc<str>>,
 }
 
-/// End of a background module.
+/// Reason why a background module has ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum End {
     /// The module's code has returned.
     Returned,
-    /// The module cannot continue: the reason, as a sentence.
+    /// The module cannot continue; contains the reason as a sentence.
     Failed(String),
-    /// The module's code panicked: the message of the panic.
+    /// The module's code panicked; contains the panic message.
     Panicked(String),
-    /// In stepped time, the module did not exchange values in time, although its latency had passed.
+    /// In stepped time, the module exchanged no values in time, although its latency had passed.
     GivenUp,
 }
 

@@ -1,4 +1,4 @@
-//! Attributes of other robots on the board, which the state link puts there before a turn.
+//! Attributes of other robots. The state link puts them on the board before a turn.
 
 use mdle_runtime::ModuleRead;
 
@@ -43,10 +43,10 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         self.board.posts().iter().filter(move |post| !is_own(post))
     }
 
-    /// Checks that the modules of these reads are loaded.
+    /// Checks that all modules that `reads` name are loaded.
     ///
     /// # Errors
-    /// Fails if one of them is not loaded.
+    /// Fails if a module is not loaded.
     pub(super) fn check_loaded(&self, reads: &[ModuleRead]) -> Result<(), Refusal> {
         let missing = reads.iter().find(|read| !self.loaded.iter().any(|module| *module.name == *read.module));
         missing.map_or(Ok(()), |read| Err(Refusal::Unknown(read.module.to_owned())))

@@ -1,4 +1,4 @@
-//! Requests of people to stop and to start a module.
+//! Stops and starts modules on a user's request.
 
 use super::loaded::ModuleState;
 use super::modules::Modules;
@@ -7,24 +7,26 @@ use crate::module::Refusal;
 /// Effect of a request to stop or to start a module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HoldEffect {
-    /// The request changes nothing: the module has been stopped by a request before, or makes turns.
+    /// The request has no effect: the module was already stopped by a request, or already makes turns.
     None,
-    /// The module makes no turn from the next turn on.
+    /// The module stops: it makes no turns from the next turn on.
     Stops,
-    /// The module makes no turns already, as nothing reads it; from now on it makes none if something does.
+    /// The module already makes no turns because nothing reads it; from now on, it makes none even if something reads
+    /// it.
     StaysStopped,
-    /// The module makes turns again, from the next turn on.
+    /// The module starts: it makes turns from the next turn on.
     Starts,
-    /// The module makes no turns before something reads it.
+    /// The module makes no turns until something reads it.
     WaitsForReaders,
-    /// The module is late: it is stopped when it is done with its turn.
+    /// The module is late, and is stopped when its current turn ends.
     StopsWhenDone,
-    /// The module is late, and makes turns again when it is done with its turn.
+    /// The module is late, and makes turns again when its current turn ends.
     StartsWhenDone,
 }
 
 impl<Y: Send + Sync + 'static> Modules<Y> {
-    /// Stops a module on a person's request, or lets it make turns again; returns the effect of the request.
+    /// Stops a module on a user's request if `is_held` is `true`, or lets it make turns again; returns the effect of
+    /// the request.
     ///
     /// # Errors
     /// Fails if no module has this name, or if the module will never make a turn again.

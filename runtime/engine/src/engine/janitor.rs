@@ -1,5 +1,5 @@
-//! A thread of the process that drops values which the control thread no longer needs: large plans, and
-//! modules, whose destructors may take long.
+//! The janitor: a thread that drops values for the control thread. Dropping a large plan takes long, and the destructor
+//! of a module may take any time.
 
 use std::any::Any;
 use std::io;
@@ -8,7 +8,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// Channel to the janitor's thread, for the values that it drops.
+/// Channel that passes values to the janitor's thread, which drops them.
 #[derive(Debug, Clone)]
 pub(crate) struct Janitor(Sender<Box<dyn Any + Send>>);
 
@@ -28,7 +28,7 @@ impl Janitor {
         let (sender, waste) = channel();
         let drop_all = move || {
             for thing in waste {
-                // A panic while it is dropped concerns nobody else.
+                // A panic in a destructor affects nothing else.
                 let _ = catch_unwind(AssertUnwindSafe(|| drop::<Box<dyn Any + Send>>(thing))).map_err(std::mem::forget);
             }
         };
@@ -38,7 +38,7 @@ impl Janitor {
 
     /// Drops a value on the janitor's thread, at some later time.
     pub(crate) fn drop_later(&self, thing: impl Any + Send) {
-        // Without its thread the value is dropped here.
+        // If the thread has ended, the value is dropped here.
         let _ = self.0.send(Box::new(thing));
     }
 }

@@ -17,7 +17,7 @@ pub(crate) struct Loaded<Y> {
     pub(crate) wires: Wires,
     pub(crate) runs: Runs<Y>,
     pub(crate) state: ModuleState,
-    /// `true` while a person has stopped the module.
+    /// `true` while a user has stopped the module.
     pub(crate) is_held: bool,
     /// Number of turns that ended without the module because it was late.
     pub(crate) late_turns: u64,
@@ -33,12 +33,12 @@ pub(crate) enum Runs<Y> {
     InBackground(Visit),
 }
 
-/// State of the exchange of values between a background module and the turn breaks.
+/// State of a background module's exchange of values with the turn breaks.
 pub(crate) struct Visit {
     pub(crate) gate: ThreadGate,
     /// Time at which the module's next exchange is due, in stepped time.
     pub(crate) due: Nanos,
-    /// Values of the module while a break serves it; `None` otherwise.
+    /// Values of the module while a turn break processes them; `None` otherwise.
     pub(crate) ports: Option<Ports>,
 }
 
@@ -47,9 +47,9 @@ pub(crate) struct Visit {
 pub enum ModuleState {
     /// The module makes turns, or exchanges values.
     Active,
-    /// The module makes no turns for now: a person has stopped it, or nothing reads it.
+    /// The module makes no turns for now: a user has stopped it, or nothing reads it.
     Stopped,
-    /// A thread is still running the module's turn of this number and time.
+    /// The module is late: a thread is still running its turn with this number and time.
     Late(u64, Nanos),
     /// The module was late for too long, and makes no further turn.
     GivenUp,
@@ -71,8 +71,8 @@ impl ModuleState {
 }
 
 impl<Y> Loaded<Y> {
-    /// Returns a module that is loaded at `now`. If `lives` is `true`, the thread of a background module begins to run;
-    /// in a replay it never runs.
+    /// Returns a module that is loaded at `now`. If `lives` is `true`, the thread of a background module starts to run;
+    /// in a replay, it never runs.
     pub(crate) fn new(candidate: Candidate<Y>, now: Nanos, lives: bool) -> Self {
         let Candidate { name, declared, form } = candidate;
         let (runs, state) = match form {
@@ -109,7 +109,7 @@ impl<Y> Loaded<Y> {
         }
     }
 
-    /// Returns the seat if the module is to be queued for the next turn; `None` otherwise.
+    /// Returns the module's seat if the module has to be queued for the next turn; `None` otherwise.
     pub(crate) fn queued(&self) -> Option<&Arc<Seat<Y>>> {
         let seat = self.seat()?;
         let is_queued = match self.state {

@@ -1,7 +1,7 @@
-//! Modules that are created while the robot drives, each on a separate thread, because its code may take long.
+//! Creates modules while the robot drives, each on its own thread, because a module's code may take long.
 //!
-//! The thread that starts these threads is itself started with the engine, before the control thread is scheduled in
-//! real time: threads and child processes inherit the scheduling of the thread that starts them.
+//! The thread that starts these threads is started with the engine, before the control thread gets real-time
+//! scheduling: threads and child processes inherit the scheduling of the thread that starts them.
 
 use std::io;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -15,26 +15,26 @@ use crate::module::{Candidate, Refusal};
 /// Maximum number of modules that are created at the same time.
 const AT_ONCE: usize = 4;
 
-/// The modules that are being created, and those that are ready to be loaded at the next break.
+/// Modules that are being created, and modules that are ready to be loaded at the next turn break.
 pub(crate) struct Loading<Y> {
     library: Library<Y>,
     orders: Sender<(u32, NewModule)>,
     done: Receiver<Made<Y>>,
     /// Number of the last request.
     last: u32,
-    /// Number of modules that are being created.
+    /// Number of modules that are currently being created.
     begun: usize,
 }
 
-/// The number of a request, with the created module or the reason why it could not be created.
+/// Number of a request, with the created module or the reason why it could not be created.
 type Made<Y> = (u32, Result<Candidate<Y>, Refusal>);
 
 /// A module to create.
 #[derive(Debug, Clone)]
 pub(crate) enum NewModule {
-    /// A module of the library: its name.
+    /// A module of the library, given by its name.
     OfLibrary(String),
-    /// A child process: the name of its module, and its command line.
+    /// A child process, given by the name of its module and its command line.
     Process(String, String),
 }
 
@@ -60,10 +60,10 @@ impl<Y: 'static> Loading<Y> {
         &self.library
     }
 
-    /// Begins to create a module; returns the number of the request.
+    /// Starts to create a module; returns the number of the request.
     ///
     /// # Errors
-    /// Fails with a sentence if no module can be created at present.
+    /// Fails with a sentence if no module can be created now.
     pub(crate) fn begin(&mut self, module: NewModule) -> Result<u32, String> {
         if self.begun >= AT_ONCE {
             return Err(format!("{AT_ONCE} modules are being made already: try again later"));
@@ -74,7 +74,7 @@ impl<Y: 'static> Loading<Y> {
         Ok(self.last)
     }
 
-    /// Returns the next module that has been created; `None` if there is none yet. Never waits.
+    /// Returns the next module that was created; `None` if none is ready. Never waits.
     pub(crate) fn next(&mut self) -> Option<Made<Y>> {
         let made = self.done.try_recv().ok()?;
         self.begun = self.begun.saturating_sub(1);
@@ -106,7 +106,7 @@ fn start<Y: 'static>(
             NewModule::OfLibrary(name) => library.candidate(&name, &request),
             NewModule::Process(name, command) => Candidate::process(&name, &command, &request),
         };
-        // The run may have ended meanwhile.
+        // The run may have ended in the meantime.
         let _ = own.send((number, candidate));
     };
     if let Err(error) = thread::Builder::new().name("mdle maker".to_owned()).spawn(make) {

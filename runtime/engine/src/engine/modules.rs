@@ -1,4 +1,4 @@
-//! The modules of an engine: their turns, and the turn breaks between them, in a fixed order.
+//! The modules of an engine. They make turns, with turn breaks in a fixed order in between.
 
 use std::collections::VecDeque;
 use std::io;
@@ -15,44 +15,44 @@ use crate::board::Board;
 use crate::fork::{Fork, Threads};
 use crate::module::{About, Candidate, PLAN, ROBOT, Refusal, Source};
 
-/// Clock that decides when a background module is served.
+/// Rule that decides when a background module is served.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Service {
-    /// Real time: the module is served at the first break at which it waits.
+    /// In real time, the module is served at the first turn break at which it waits.
     WhenReady,
-    /// Stepped time: the module is served at the first break after its latency. The break waits for the module,
-    /// so that every run with the same inputs is the same.
+    /// In stepped time, the module is served at the first turn break after its latency. The turn break waits for the
+    /// module, so runs with the same inputs are equal.
     WhenDue,
 }
 
-/// Modules with the board on which they publish.
+/// Modules, with the board on which they publish.
 ///
-/// A turn is [`Modules::turn`], then [`Modules::settle`], then changes by requests, then [`Modules::prepare`]:
-/// the last three steps are the turn break.
+/// A turn consists of [`Modules::turn`], [`Modules::settle`], changes by requests, and [`Modules::prepare`]; the last
+/// three steps are the turn break.
 pub struct Modules<Y> {
     pub(super) board: Board,
-    /// The loaded modules in the order in which they were loaded, which is the order at every break.
+    /// Loaded modules in the order in which they were loaded. Every turn break uses this order.
     pub(super) loaded: Vec<Loaded<Y>>,
-    /// The order in which threads take the modules.
+    /// Order in which threads take the modules.
     pub(super) order: Vec<usize>,
     pub(super) fork: Fork<Y>,
     pub(super) service: Service,
     pub(super) janitor: Janitor,
-    /// Attributes that plans, safety rules and other robots read, including those of plans that may become active.
+    /// Attributes that plans, safety rules and other robots read, including plans that may become active.
     pub(super) plan_reads: Vec<ModuleRead>,
-    /// `true` if the relevance of modules has to be determined again.
+    /// `true` if the relevant modules have to be determined again.
     pub(super) has_changed: bool,
     pub(super) events: Vec<Event>,
     pub(super) arrivals: Arrivals,
-    /// Arrivals at the remaining breaks of the run that is replayed; `None` if no run is replayed. No background module
-    /// runs in a replay.
+    /// Arrivals at the remaining turn breaks of the run that is replayed; `None` if no run is replayed. In a replay, no
+    /// background module runs.
     pub(super) replayed: Option<VecDeque<Arrivals>>,
-    /// Number and time of the current turn.
+    /// Number and start time of the current turn.
     pub(super) turn: (u64, Nanos),
 }
 
 impl<Y: Send + Sync + 'static> Modules<Y> {
-    /// Returns an engine's modules before any is loaded.
+    /// Returns the modules of an engine, none of which is loaded yet.
     ///
     /// # Errors
     /// Fails if the system cannot create the threads.
@@ -73,7 +73,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         })
     }
 
-    /// Returns the modules of a replay. `arrivals` are the arrivals at the turn breaks of the recorded run, in order.
+    /// Returns the modules of a replay. `arrivals` contains the arrivals at the turn breaks of the recorded run, in
+    /// order.
     ///
     /// # Errors
     /// Fails if the system cannot create the threads.
@@ -83,13 +84,13 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         Ok(modules)
     }
 
-    /// Returns the board as of the last break.
+    /// Returns the board as of the last turn break.
     #[must_use]
     pub fn board(&self) -> &Board {
         &self.board
     }
 
-    /// Returns the board for writing, so that a replay can put the values of the recorded run on it.
+    /// Returns the board for writing: a replay puts the values of the recorded run on it.
     pub(super) fn board_mut(&mut self) -> &mut Board {
         &mut self.board
     }
@@ -100,14 +101,14 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         &self.events
     }
 
-    /// Returns the arrivals at the last break: values and ends of background modules, and the registered modules that
+    /// Returns the arrivals at the last turn break: values and ends of background modules, and registered modules that
     /// were late or skipped.
     #[must_use]
     pub fn arrivals(&self) -> &Arrivals {
         &self.arrivals
     }
 
-    /// Returns the names of the loaded modules, with their states.
+    /// Returns the name and the state of each loaded module.
     pub fn names(&self) -> impl Iterator<Item = (&str, ModuleState)> {
         self.loaded.iter().map(|module| (&*module.name, module.state))
     }
@@ -143,11 +144,12 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         self.loaded.iter().find(|module| &*module.name == name)
     }
 
-    /// Loads a module, which follows all loaded modules in the order of turn breaks. A registered module makes its
-    /// first turn after the next [`Modules::prepare`].
+    /// Loads a module, which comes last in the order of turn breaks. A registered module makes its first turn after the
+    /// next [`Modules::prepare`].
     ///
     /// # Errors
-    /// Fails without any change if the name is taken, or if an attribute has another kind than a reader expects.
+    /// Fails without any change if the name is taken, or if an attribute has another kind than one of its readers
+    /// expects.
     pub fn load(&mut self, candidate: Candidate<Y>) -> Result<(), Refusal> {
         let name = Arc::clone(&candidate.name);
         let is_loaded = self.names().any(|(known, _)| known == &*name);
@@ -170,15 +172,14 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         Ok(())
     }
 
-    /// Returns the name of each loaded module that reads attributes which no loaded module publishes, with a sentence
-    /// about these attributes.
+    /// Returns each loaded module that reads unpublished attributes: its name, and a sentence about these attributes.
     pub(super) fn unpublished(&self) -> impl Iterator<Item = (&str, String)> {
         let sentence = |module: &Loaded<Y>| unpublished(&module.name, &module.declared, &self.board);
         self.loaded.iter().filter_map(move |module| Some((&*module.name, sentence(module)?)))
     }
 
-    /// Unloads a module, and removes its attributes from the board. A thread that still runs a turn of the module keeps
-    /// it until the turn ends.
+    /// Unloads a module, and removes its attributes from the board. A thread that is still running a turn of the module
+    /// keeps the module until the turn ends.
     ///
     /// # Errors
     /// Fails if no module has this name.
@@ -188,12 +189,12 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         self.board.remove(name);
         self.rewire();
         self.events.push(Event::Unloaded(Arc::clone(&module.name)));
-        // Code of the module runs when it is dropped.
+        // Dropping the module runs its code, which may take long.
         self.janitor.drop_later(module.runs);
         Ok(())
     }
 
-    /// Changes a setting of a module; the module has it from its next turn or exchange on.
+    /// Changes a setting of a module; the new value applies from the module's next turn or exchange on.
     ///
     /// # Errors
     /// Fails if there is no such module or setting, or if the value has another kind or is NaN.
@@ -242,7 +243,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
 }
 
 impl<Y> Drop for Modules<Y> {
-    /// Asks the threads of all background modules to end, before the modules are dropped, which waits for each thread.
+    /// Asks the threads of all background modules to end. The modules are then dropped, which waits for each thread.
     fn drop(&mut self) {
         for module in &self.loaded {
             if let Runs::InBackground(visit) = &module.runs {

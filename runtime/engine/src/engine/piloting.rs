@@ -1,4 +1,4 @@
-//! The engine of a run: its plans and its modules, which it creates, loads and replaces.
+//! The engine of a run: creates, loads and replaces the plans and modules of a robot.
 
 mod turn;
 
@@ -19,34 +19,34 @@ use crate::plans::{EngineAlphabet, NoTrial, Plans, When, reads};
 use crate::recorder::Recorder;
 use crate::replay::{History, Repeats};
 
-/// Number of workers in real time.
+/// Number of worker threads in real time.
 const WORKERS: usize = 2;
 
-/// An engine: the plans and the modules of one robot.
+/// An engine: the plans and modules of one robot.
 pub struct Engine<A: EngineAlphabet> {
     plans: Plans<A>,
     modules: Modules<A::Output>,
     loading: Loading<A::Output>,
-    /// Time from the output of a turn to the deadline of its modules; `None` in stepped time.
+    /// Time from a turn's output to the deadline of its modules; `None` in stepped time.
     patience: Option<Duration>,
-    /// Attributes of modules that safety rules read; `None` without rules.
+    /// Module attributes that safety rules read; `None` without rules.
     rules_read: Option<&'static [ModuleRead]>,
     messages: Vec<String>,
-    /// History of this run, for a record; `None` if the run is not recorded.
+    /// History of this run, for the record; `None` if the run is not recorded.
     history: Option<History>,
-    /// State of the recorded run that is repeated; `None` if no run is repeated.
+    /// State of the recorded run that is replayed; `None` if no run is replayed.
     repeats: Option<Repeats>,
     link: Option<StateLink>,
     recorder: Option<Box<dyn Recorder<A::Output>>>,
 }
 
 impl<A: EngineAlphabet> Engine<A> {
-    /// Returns an engine for a run with this plan and these modules. In real time modules make their turns on workers,
-    /// in stepped time on the thread of the caller.
+    /// Returns an engine for a run with this plan and these modules. Modules make their turns on worker threads in real
+    /// time, and on the caller's thread in stepped time.
     ///
     /// # Errors
-    /// Fails if a module is refused, or publishes an attribute of another kind than the plan expects (exit status 2),
-    /// if the system gives no threads, or if the run is asked to end before it begins.
+    /// Fails if a module is refused, or publishes an attribute of another kind than the plan expects (exit status 2);
+    /// if the system cannot create threads; or if the run is asked to end before it begins.
     pub fn new(
         plan: LoadedPlan<A>,
         library: &Library<A::Output>,
@@ -90,11 +90,11 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(engine)
     }
 
-    /// Puts the engine under safety rules that read these attributes of modules; from now on, outputs contain the
+    /// Prepares the engine for safety rules that read these module attributes; from now on, outputs contain the
     /// attributes.
     ///
     /// # Errors
-    /// Fails if no module publishes such an attribute, or one publishes it with another kind (exit status 2).
+    /// Fails if no module publishes one of the attributes, or if it has another kind (exit status 2).
     pub fn under_rules(self, reads: &'static [ModuleRead]) -> Result<Self, mdle_host::Refusal> {
         reads::check(reads, self.modules.board()).map_err(mdle_host::Refusal::Usage)?;
         let mut engine = Self { rules_read: Some(reads), ..self };
@@ -103,20 +103,20 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(engine)
     }
 
-    /// Lets the engine repeat a recorded run. `rules_read` are the attributes of modules that safety rules read, if the
-    /// run had rules. [`Engine::repeat`] supplies the values of modules; the engine has no modules except the module of
+    /// Lets the engine replay a recorded run, whose module values [`Engine::repeat`] supplies. `rules_read` lists the
+    /// module attributes that safety rules read, if the run had rules. The engine has no modules except the module of
     /// the plans.
     #[must_use]
     pub fn repeating(self, rules_read: Option<&'static [ModuleRead]>) -> Self {
         Self { rules_read, repeats: Some(Repeats::default()), ..self }
     }
 
-    /// Repeats a change of the recorded run before the next turn. The caller has to repeat plans that were armed, with
-    /// [`Plans::replace`], the limits of safety rules, and recorded paths, which are part of outputs.
+    /// Repeats a change of the recorded run before the next turn. The caller has to repeat armed plans (with
+    /// [`Plans::replace`]), the limits of safety rules, and recorded paths, which are part of outputs.
     pub fn repeat(&mut self, change: &Change) {
         match change {
             Change::Cancelled => self.plans.cancel(),
-            // A record notes only what was carried out.
+            // The record contains only changes that were carried out.
             Change::RolledBack(why) => drop(self.rollback(why)),
             Change::Trial(time) => self.plans.set_trial(*time),
             Change::Attribute { .. }
@@ -137,11 +137,10 @@ impl<A: EngineAlphabet> Engine<A> {
         }
     }
 
-    /// Attaches a state link, by which the robot sends its state to other robots, and plans read the states of other
-    /// robots.
+    /// Attaches a state link: the robot sends its state to other robots, and plans read the states of other robots.
     ///
     /// # Errors
-    /// Fails if a module whose attributes the robot is to share is not loaded (exit status 2).
+    /// Fails if a module whose attributes the robot shares is not loaded (exit status 2).
     pub fn linked(self, link: StateLink) -> Result<Self, mdle_host::Refusal> {
         let checked = self.modules.check_loaded(link.shares());
         checked.map_err(|refusal| {
@@ -158,8 +157,8 @@ impl<A: EngineAlphabet> Engine<A> {
         self.link.as_ref().map_or(&[], StateLink::recipients)
     }
 
-    /// Sends a plan to the robot `to`: the name and text of the plan, and the moment at which it is to take over. The
-    /// answer of the robot becomes a message to the operator.
+    /// Sends a plan, given by its name, its text and the moment at which it takes over, to the robot `to`. The robot's
+    /// answer becomes a message to the operator.
     ///
     /// # Errors
     /// Returns a sentence with the reason if the plan cannot be sent.
@@ -170,15 +169,15 @@ impl<A: EngineAlphabet> Engine<A> {
         }
     }
 
-    /// Updates the attributes for which modules have to make turns: those that plans and safety rules read, and those
-    /// that the robot shares with other robots.
+    /// Updates the attributes for which modules have to make turns: attributes that plans and safety rules read, and
+    /// attributes that the robot shares with other robots.
     fn read_modules(&mut self) {
         let Self { plans, modules, rules_read, link, .. } = self;
         let shares = link.as_ref().map_or(&[][..], StateLink::shares);
         modules.plan_reads(plans.reads().chain(rules_read.unwrap_or_default()).chain(shares));
     }
 
-    /// Attaches a recorder, which turns the path driven under some laws into a path that plans replay.
+    /// Attaches a path recorder, which records the path driven under certain laws for plans to replay.
     #[must_use]
     pub fn recording(self, recorder: Box<dyn Recorder<A::Output>>) -> Self {
         Self { recorder: Some(recorder), ..self }
@@ -209,20 +208,20 @@ impl<A: EngineAlphabet> Engine<A> {
         self.loading.library().names()
     }
 
-    /// Begins to load a module of the library, which is created on a thread of its own; returns the number of
-    /// the request, which [`Engine::progress`] answers.
+    /// Starts to load a module of the library, which is created on its own thread; returns the number of the request.
+    /// [`Engine::progress`] returns the result.
     ///
     /// # Errors
-    /// Fails with a sentence if the module cannot be loaded at present.
+    /// Fails with a sentence if the module cannot be loaded now.
     pub fn load(&mut self, name: &str) -> Result<u32, String> {
         self.begin_loading(NewModule::OfLibrary(name.to_owned()))
     }
 
-    /// Begins to load a child process as a module of this name, as [`Engine::load`] does; `/bin/sh` reads the command
-    /// line.
+    /// Starts to load a child process as a module of this name, as [`Engine::load`] does; `/bin/sh` interprets the
+    /// command line.
     ///
     /// # Errors
-    /// Fails with a sentence if the module cannot be loaded at present.
+    /// Fails with a sentence if the module cannot be loaded now.
     pub fn load_process(&mut self, name: &str, command: &str) -> Result<u32, String> {
         self.begin_loading(NewModule::Process(name.to_owned(), command.to_owned()))
     }
@@ -242,9 +241,9 @@ impl<A: EngineAlphabet> Engine<A> {
         self.messages.push(message);
     }
 
-    /// Continues with requests at a break: arms a plan that has been compiled, loads a module that has been
-    /// created, and updates the modules' copies of attributes that have changed. Returns the number and the
-    /// result of a request to load a module, if one is done.
+    /// Continues requests at a turn break: arms a plan that was compiled, loads a module that was created, and updates
+    /// the modules' copies of attributes that have changed. Returns the number and the result of a request to load a
+    /// module, if one is finished.
     pub fn progress(&mut self) -> Option<(u32, Result<(), Refusal>)> {
         self.plans.arm();
         let made = self.loading.next();
@@ -256,7 +255,7 @@ impl<A: EngineAlphabet> Engine<A> {
         loaded
     }
 
-    /// Loads a module that was created while the robot drives. Reports attributes that the module reads and no module
+    /// Loads a module that was created while the robot drives. Reports attributes that the module reads but no module
     /// publishes.
     fn load_made(&mut self, candidate: Candidate<A::Output>) -> Result<(), Refusal> {
         let name = candidate.name().to_owned();
@@ -266,7 +265,7 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(())
     }
 
-    /// Ends the plan on trial for the reason `why`. The plan that it replaced continues at its atom in the next turn,
+    /// Ends the plan on trial, with the reason `why`. The plan that it replaced continues at its atom in the next turn,
     /// as if no time had passed.
     ///
     /// # Errors
@@ -277,18 +276,18 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(())
     }
 
-    /// Ends the plan on trial, as [`Engine::rollback`] does, but does not note a change for the record.
+    /// Ends the plan on trial, as [`Engine::rollback`] does, but does not record the change.
     fn go_back(&mut self, why: &str) -> Result<(), NoTrial> {
         let was_late = self.plans.is_late();
         self.plans.rollback(why)?;
         if was_late {
-            // The plan before goes on, with a module of its own.
+            // The previous plan continues, with its own module.
             self.load_plan_module();
         }
         Ok(())
     }
 
-    /// Loads the module that makes the turns of plans. An earlier one, which may hang, is unloaded first.
+    /// Loads the module that makes the turns of plans. First unloads the previous one, which may hang.
     fn load_plan_module(&mut self) {
         let module = self.plans.module();
         let candidate = Candidate::registered(PLAN, |declare: &mut Declare| {

@@ -3,8 +3,8 @@
 
 use super::loaded::Loaded;
 
-/// Returns, for each module, `true` if it is relevant. `plan` yields the positions on the board of the attributes that
-/// the plan reads.
+/// Returns, for each module, `true` if it is relevant. `plan` yields the board positions of the attributes that the
+/// plan reads.
 pub(crate) fn relevant<Y>(modules: &[Loaded<Y>], plan: impl Iterator<Item = usize>) -> Vec<bool> {
     let owner = |place: usize| {
         let count = |module: &Loaded<Y>| module.declared.publishes.len();

@@ -1,4 +1,4 @@
-//! A turn of all modules, and the turn break after it, in the order of docs/src/engine.md.
+//! A turn of all modules and the turn break after it, in the order of docs/src/engine.md.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -14,18 +14,18 @@ use crate::module::{Fault, ThreadEnd};
 
 /// Number of turns after which a late module is given up, if [`PATIENCE`] has passed as well.
 const LATE_TURNS: u64 = 10;
-/// Time after which a late module is given up; also the maximum wait for a background module without a latency in
+/// Time after which a late module is given up. Also the maximum wait for a background module without a latency in
 /// stepped time.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// Maximum part of a declared latency that is added to [`PATIENCE`] when a break in stepped time waits for a background
-/// module, because a turn may take at most ten seconds.
+/// Maximum part of a declared latency that is added to [`PATIENCE`] when a turn break in stepped time waits for a
+/// background module. The sum has to stay below ten seconds, the maximum duration of a turn.
 const LONGEST_LATENCY: Duration = Duration::from_secs(8);
-/// Number of turns between two times at which the modules are sorted by cost.
+/// Number of turns after which the modules are sorted by cost again.
 const REORDERED: u64 = 128;
 
 impl<Y: Send + Sync + 'static> Modules<Y> {
-    /// Makes turn `number` of every relevant module, with output `y`, which was taken at `now`. In real time, the call
-    /// returns at `deadline` even if some modules are not done.
+    /// Makes turn `number` of every relevant module, with the output `y`, which was measured at `now`. In real time,
+    /// the call returns at `deadline` even if some modules have not finished.
     pub fn turn(&mut self, y: Y, number: u64, now: Nanos, deadline: Option<Instant>) {
         let Self { loaded, order, fork, events, replayed, turn, .. } = self;
         *turn = (number, now);
@@ -37,8 +37,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         fork.turn(y, number, now, seats, deadline);
     }
 
-    /// Makes the first part of the turn break: finds the modules that are late or have failed, publishes the
-    /// values of registered modules, and then those of background modules that wait.
+    /// Performs the first part of the turn break: finds modules that are late or have failed, publishes the values of
+    /// registered modules, and then publishes the values of waiting background modules.
     pub fn settle(&mut self) {
         self.arrivals.clear();
         if let Some(replayed) = &mut self.replayed {
@@ -57,8 +57,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         self.events.extend(self.board.newly_refused().map(Event::NotANumber));
     }
 
-    /// Makes the last part of the turn break: determines the relevant modules, and updates every module's
-    /// copies of the attributes that it reads.
+    /// Performs the last part of the turn break: determines the relevant modules, and updates each module's copies of
+    /// the attributes that it reads.
     pub fn prepare(&mut self) {
         if std::mem::take(&mut self.has_changed) {
             let relevant = self.relevant();
@@ -96,8 +96,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         relevant(&self.loaded, places)
     }
 
-    /// Sets the attributes that plans, safety rules and other robots read. A module that only they need makes turns
-    /// only while they need it.
+    /// Sets the attributes that plans, safety rules and other robots read. A module that only they read makes turns
+    /// only while one of them reads it.
     pub(crate) fn plan_reads(&mut self, reads: impl Iterator<Item = &'static ModuleRead> + Clone) {
         if !self.plan_reads.iter().eq(reads.clone()) {
             self.plan_reads.clear();
@@ -106,7 +106,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         }
     }
 
-    /// Drops values on another thread, at some later time.
+    /// Drops values later, on another thread.
     pub(crate) fn drop_later(&self, things: impl Iterator<Item: Send + 'static>) {
         things.for_each(|thing| self.janitor.drop_later(thing));
     }
@@ -143,7 +143,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
                     arrivals.late.push(Arc::clone(name));
                 }
                 *late_turns = late_turns.saturating_add(1);
-                // A module that is late again and again is reported once, and its turns are counted.
+                // A module that is late repeatedly is reported once, and its late turns are counted.
                 let is_new = |event: &Event| *late_turns == 1 || !matches!(event, Event::Late(_));
                 events.extend(state.is_late(name, *turn).filter(is_new));
             }
@@ -155,7 +155,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         let Some(mut occupant) = seat.occupant() else { return };
         if let ModuleState::Late(..) = state {
             *state = ModuleState::Active;
-            // It may have become irrelevant meanwhile.
+            // The module may have become irrelevant in the meantime.
             self.has_changed = true;
         }
         if let Some(Fault(sentence)) = occupant.fault.take() {
@@ -199,7 +199,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         arrivals.ended.push((Arc::clone(&module.name), end));
     }
 
-    /// Publishes the values that arrived at this break in the recorded run, and notes the modules that ended there.
+    /// Publishes the values that arrived at this turn break in the recorded run, and notes the modules that ended
+    /// there.
     fn settle_replayed(&mut self) {
         let Self { board, loaded, events, arrivals, turn, .. } = self;
         for (place, value) in &arrivals.values {
@@ -213,7 +214,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
 }
 
 impl Arrivals {
-    /// Returns the progress that a module had at this break of the recorded run.
+    /// Returns the progress of a module at this turn break of the recorded run.
     fn progress(&self, name: &Arc<str>) -> Progress {
         match (self.late.contains(name), self.skipped.contains(name)) {
             (true, _) => Progress::Late,
@@ -224,8 +225,8 @@ impl Arrivals {
 }
 
 impl ModuleState {
-    /// Records that a module is late at the break of this turn. Returns the event if the module was not late before, or
-    /// if it is given up now.
+    /// Records that a module is late at the turn break of this turn. Returns the event if the module was not late
+    /// before, or if it is given up now.
     fn is_late(&mut self, name: &Arc<str>, (number, now): (u64, Nanos)) -> Option<Event> {
         let Self::Late(since, at) = *self else {
             *self = Self::Late(number, now);
@@ -247,7 +248,7 @@ impl<Y> Loaded<Y> {
         let (state, event) = match (self.state, is_wanted) {
             (ModuleState::Stopped, true) => {
                 if let Some(task) = task {
-                    // A module that was not stopped yet goes on.
+                    // A module with a pending stop continues.
                     *task = if *task == Task::Stop { Task::Turn } else { Task::Start };
                 }
                 (ModuleState::Active, Event::Started(Arc::clone(&self.name)))
@@ -265,7 +266,7 @@ impl<Y> Loaded<Y> {
         Some(event)
     }
 
-    /// Returns the real time for which a break in stepped time waits for a background module.
+    /// Returns the real time for which a turn break in stepped time waits for a background module.
     fn patience(&self) -> Duration {
         PATIENCE.saturating_add(Duration::from_nanos(self.declared.latency.0).min(LONGEST_LATENCY))
     }

@@ -1,4 +1,4 @@
-//! Attributes that a loaded module reads and no loaded module publishes.
+//! Finds attributes that a loaded module reads but no loaded module publishes.
 
 use mdle_compiler::alphabet::nearest;
 
@@ -7,8 +7,8 @@ use crate::board::Board;
 use crate::module::{Declared, Source};
 use crate::tree::listed;
 
-/// Returns a sentence about the attributes that a module reads and no loaded module publishes; `None` if there are
-/// none.
+/// Returns a sentence about the attributes that a module reads but no loaded module publishes; `None` if there are no
+/// such attributes.
 pub(super) fn unpublished(reader: &str, declared: &Declared, board: &Board) -> Option<String> {
     let names = declared.reads.iter().filter_map(|source| match source {
         Source::Attribute(name, _) => Some(name),

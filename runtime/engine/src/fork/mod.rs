@@ -1,4 +1,4 @@
-//! A turn on several threads: workers take modules from a list, and the control thread only waits for them,
+//! Runs a turn on several threads: workers take modules from a list, and the control thread only waits for the workers,
 //! until a deadline (paper, section III-A).
 
 mod seat;
@@ -15,41 +15,41 @@ use rustix::thread::futex;
 use rustix::time::Timespec;
 pub(crate) use seat::{Progress, Seat, Task};
 
-/// Maximum expected duration of a round that a single worker runs, because waking a second worker would take longer.
+/// Maximum expected duration of a round that a single worker runs. Waking a second worker would take longer.
 const SMALL: Duration = Duration::from_micros(50);
 /// Maximum time for which the control thread polls for the end of a small round before it sleeps. Waking it up would
-/// take as long.
+/// take equally long.
 const LOOKS: Duration = Duration::from_micros(200);
 
 /// Threads on which modules make their turns.
 #[derive(Debug, Clone, Copy)]
 pub enum Threads {
-    /// The control thread itself runs the modules one after the other, without a deadline.
+    /// The control thread runs the modules itself, one after the other and without a deadline.
     Sequential,
-    /// The number of workers, at least one, and a function that each calls first, for example to set its
+    /// Worker threads: their number, at least one, and a function that each worker calls first, for example to set its
     /// priority.
     Workers(usize, fn()),
 }
 
-/// Threads that make turns.
+/// Threads that run the turns of modules.
 pub(crate) struct Fork<Y> {
     crew: Option<Crew<Y>>,
-    /// Rounds that are reused. Several exist, because a worker may still have the previous round for a short time, and
-    /// a module that hangs keeps its round for ever.
+    /// Rounds that are reused. More than one is needed: a worker may still use the previous round for a short time, and
+    /// a module that hangs keeps its round forever.
     rounds: Vec<Arc<Round<Y>>>,
 }
 
-/// The modules of one turn, and their progress.
+/// Modules of one turn, and their progress.
 struct Round<Y> {
     y: Option<Y>,
     number: u64,
     now: Nanos,
     seats: Vec<Arc<Seat<Y>>>,
-    /// Expected time of the round: the sum of the mean times of the modules' turns.
+    /// Expected duration of the round: the sum of the modules' mean turn times.
     cost: Duration,
     /// Position of the next module to be taken.
     next: AtomicUsize,
-    /// Number of modules that are not done; the control thread waits until it is zero.
+    /// Number of modules that have not finished; the control thread waits until it is zero.
     left: AtomicU32,
 }
 
@@ -57,12 +57,12 @@ struct Round<Y> {
 struct Crew<Y> {
     call: Arc<Call<Y>>,
     workers: usize,
-    /// `true` if the machine has several cores, so that workers and the control thread can run at the same time.
+    /// `true` if the machine has several cores, so that workers and control thread can run at the same time.
     is_parallel: bool,
     prepare: fn(),
 }
 
-/// Data by which the control thread gives rounds to the workers.
+/// Data through which the control thread passes rounds to the workers.
 struct Call<Y> {
     round: Mutex<Option<Arc<Round<Y>>>>,
     /// Number of rounds so far; workers wait until it changes.
@@ -83,7 +83,7 @@ impl<Y: Send + Sync + 'static> Fork<Y> {
         Ok(Self { crew, rounds: Vec::new() })
     }
 
-    /// Makes a turn of these modules. Threads take the modules in this order, and those that are not done at the
+    /// Makes a turn of these modules. Threads take the modules in this order; modules that have not finished at the
     /// deadline are late or skipped.
     pub(crate) fn turn<'s>(
         &mut self,
@@ -110,7 +110,7 @@ impl<Y: Send + Sync + 'static> Fork<Y> {
         self.rounds.push(round);
     }
 
-    /// Prepares a round. Does not allocate if an earlier round is no longer in use and large enough.
+    /// Prepares a round. Does not allocate if an unused earlier round is large enough.
     fn round<'s>(
         &mut self,
         y: Y,
@@ -123,7 +123,7 @@ impl<Y: Send + Sync + 'static> Fork<Y> {
     {
         let free = self.rounds.iter_mut().position(|round| Arc::get_mut(round).is_some());
         let mut round = free.map_or_else(|| Arc::new(Round::default()), |free| self.rounds.swap_remove(free));
-        // The round of a module that hangs is left to it.
+        // A module that hangs keeps its round.
         if free.is_none() && self.rounds.len() > 8 {
             self.rounds.clear();
         }
@@ -156,8 +156,8 @@ impl<Y> Default for Round<Y> {
 }
 
 impl<Y> Round<Y> {
-    /// Takes modules and runs them until none is left; returns `false` if a module was late, because another thread
-    /// then replaces this one.
+    /// Takes modules and runs them until none is left; returns `false` if a module was late, because another thread has
+    /// then replaced this one.
     fn work(&self) -> bool {
         let Some(y) = &self.y else { return true };
         while let Some(seat) = self.seats.get(self.next.fetch_add(1, Ordering::AcqRel)) {
@@ -172,7 +172,7 @@ impl<Y> Round<Y> {
         true
     }
 
-    /// Polls for the end of the round until this time; returns `true` if all modules are done.
+    /// Polls for the end of the round until this time; returns `true` if all modules have finished.
     fn ends_before(&self, until: Instant) -> bool {
         while self.left.load(Ordering::Acquire) > 0 {
             if Instant::now() >= until {
@@ -183,7 +183,7 @@ impl<Y> Round<Y> {
         true
     }
 
-    /// Waits until all modules are done, or until the deadline.
+    /// Waits until all modules have finished, or until the deadline.
     fn wait(&self, deadline: Option<Instant>) {
         loop {
             let left = self.left.load(Ordering::Acquire);
@@ -214,20 +214,20 @@ impl<Y: Send + Sync + 'static> Crew<Y> {
         thread::Builder::new().name("mdle worker".to_owned()).spawn(worker).map(|_| ())
     }
 
-    /// Starts a worker for each worker that is still running a late module. If the system cannot create a thread, the
-    /// other workers continue without it.
+    /// Starts a replacement for each worker that is still running a late module. If the system cannot create a thread,
+    /// the other workers continue without it.
     fn replace(&self, late: usize) {
         (0..late).for_each(|_| _ = self.hire());
     }
 
-    /// Gives the workers a round, without waking them yet.
+    /// Passes a round to the workers, but does not wake them.
     fn call(&self, round: &Arc<Round<Y>>) {
         *self.call.round.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(round));
         self.call.epoch.fetch_add(1, Ordering::AcqRel);
     }
 
-    /// Wakes a single worker if the round is small, and polls for the end of the round; returns `true` if the
-    /// round has ended.
+    /// If the round is small, wakes a single worker and polls for the end of the round; returns `true` if the round has
+    /// ended.
     fn makes_alone(&self, round: &Round<Y>, deadline: Option<Instant>) -> bool {
         let is_small = self.is_parallel && round.cost <= SMALL;
         is_small && {
@@ -243,7 +243,7 @@ impl<Y: Send + Sync + 'static> Crew<Y> {
 }
 
 impl<Y> Call<Y> {
-    /// Runs rounds on a worker, until it is to quit or has been replaced.
+    /// Runs rounds on a worker until the workers have to end or this worker has been replaced.
     fn answer(&self, mut seen: u32) {
         loop {
             wait(&self.epoch, seen, None);
@@ -264,7 +264,7 @@ impl<Y> Call<Y> {
 }
 
 impl<Y> Drop for Crew<Y> {
-    /// Lets the workers end, without waiting for a module that hangs.
+    /// Asks the workers to end, without waiting for a module that hangs.
     fn drop(&mut self) {
         self.call.quit.store(true, Ordering::Release);
         self.call.epoch.fetch_add(1, Ordering::AcqRel);
@@ -279,7 +279,7 @@ fn wait(word: &AtomicU32, value: u32, deadline: Option<Instant>) {
         tv_sec: i64::try_from(left.as_secs()).unwrap_or(i64::MAX),
         tv_nsec: left.subsec_nanos().into(),
     });
-    // An error is a value that has changed, a signal, or the end of the time: the caller looks for itself.
+    // An error means that the value has changed, a signal arrived, or the time is over: the caller checks again.
     let _ = futex::wait(word, futex::Flags::PRIVATE, value, left.as_ref());
 }
 

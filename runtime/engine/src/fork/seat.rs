@@ -1,4 +1,4 @@
-//! A registered module with its ports, and the progress of its turn.
+//! A registered module with its ports and the progress of its turn.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
@@ -10,7 +10,7 @@ use mdle_runtime::Nanos;
 
 use crate::module::{Fault, Module, Ports, Turn, panicked};
 
-/// A registered module as the threads of a turn share it, with its progress and its cost.
+/// A registered module as the threads of a turn share it, with its progress and its cost (mean turn time).
 pub(crate) struct Seat<Y> {
     /// Name of the module.
     name: Arc<str>,
@@ -20,20 +20,21 @@ pub(crate) struct Seat<Y> {
     occupant: Mutex<Occupant<Y>>,
 }
 
-/// A registered module with its values. The thread that runs the module locks it; between turns, the engine does.
+/// A registered module with its values. It is locked by the thread that runs the module and, between turns, by the
+/// engine.
 pub(crate) struct Occupant<Y> {
     module: Box<dyn Module<Y>>,
     pub(crate) ports: Ports,
-    /// Work of the module in the next round.
+    /// Task of the module in the next round.
     pub(crate) task: Task,
     /// Reason why the module cannot continue; `None` if it can.
     pub(crate) fault: Option<Fault>,
 }
 
-/// Work of a module in a round.
+/// Task of a module in a round.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Task {
-    /// Call [`Module::start`], and make a turn.
+    /// Call [`Module::start`], then make a turn.
     Start,
     /// Make a turn.
     Turn,
@@ -44,7 +45,7 @@ pub(crate) enum Task {
 /// Progress of a module's turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Progress {
-    /// The module has nothing to do, or has done it.
+    /// The module has no task, or has finished it.
     Done,
     /// No thread has taken the module yet.
     Queued,
@@ -81,8 +82,8 @@ impl<Y> Seat<Y> {
         self.progress.store(Progress::Queued as u8, Ordering::Release);
     }
 
-    /// Ends the round at the deadline: no thread may begin the module any more. Returns `true` if a thread is
-    /// running it, so that the module is late.
+    /// Ends the round for the module at the deadline: no thread may start it any more. Returns `true` if a thread is
+    /// running the module, which is then late.
     pub(crate) fn cut(&self) -> bool {
         !self.moved(Progress::Queued, Progress::Skipped) && self.moved(Progress::Running, Progress::Late)
     }

@@ -1,5 +1,5 @@
-//! The link between robots in one process. States may arrive late, be lost or be duplicated, depending on a random
-//! seed. Letters may only arrive late, because a real sender would send lost letters again.
+//! The link between robots in one process. A random seed determines which states are delayed, lost or duplicated.
+//! Letters are only delayed, because a real sender would retransmit lost letters.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -10,10 +10,10 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use super::letter;
 use super::{Letter, Link, State};
 
-/// Maximum number of unread states of one robot. A robot that makes no more turns reads none.
+/// Maximum number of unread states for one robot. A robot that makes no more turns reads no states.
 const UNREAD: usize = 4096;
 
-/// Faults of the link between two robots.
+/// Faults of the link between two robots: delay, loss and duplication.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Faults {
     /// Minimum and maximum transmission time of a state or a letter.
@@ -26,19 +26,19 @@ pub struct Faults {
 
 /// One robot's end of a link between robots in one process.
 ///
-/// A state arrives in a later turn than the one in which it was sent, so that the order in which robots make their
-/// turns has no effect. The faults of the states from one robot to another have a separate stream of random numbers.
+/// A state arrives in a later turn than the turn in which it was sent, so the order in which robots make their turns
+/// has no effect. The states from one robot to another have their own stream of random numbers.
 pub struct Air {
     own: usize,
     faults: Faults,
-    /// Random numbers for the states to each robot.
+    /// Random number generator of each robot to which states are sent.
     randoms: Vec<ChaCha8Rng>,
-    /// Random numbers for the letters.
+    /// Random number generator for letters.
     random: ChaCha8Rng,
     mail: Arc<[Mail]>,
 }
 
-/// States and letters on their way to a robot.
+/// States and letters on the way to a robot.
 struct Mail {
     /// Name of the robot.
     robot: String,
@@ -54,7 +54,7 @@ struct Sent<T> {
 }
 
 impl Air {
-    /// Returns the ends of a link between robots with these names, in the same order.
+    /// Returns the endpoints of a link between robots with these names, in the order of the names.
     #[must_use]
     pub fn new(names: &[&str], faults: Faults, seed: u64) -> Vec<Self> {
         let empty =
@@ -98,7 +98,7 @@ fn lock<T>(sent: &Mutex<Vec<Sent<T>>>) -> MutexGuard<'_, Vec<Sent<T>>> {
     sent.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Calls `take` with everything that has arrived by `now`, and removes it.
+/// Calls `take` with everything that has arrived by `now`, and removes it from `sent`.
 fn arrive<T: Clone>(sent: &Mutex<Vec<Sent<T>>>, now: Nanos, take: &mut dyn FnMut(T)) {
     lock(sent).retain(|sent| {
         let arrives = sent.sent < now && sent.due <= now;
@@ -116,7 +116,7 @@ impl Link for Air {
             if other == *own {
                 continue;
             }
-            // As many numbers for each state, so that one fault does not move the others.
+            // Each state uses the same number of random numbers, so one fault does not change the later ones.
             let (is_lost, is_doubled) = (unit(random) < faults.loss, unit(random) < faults.duplication);
             let delays = [faults.delay(random), faults.delay(random)];
             let copies = if is_lost { 0 } else { 1 + usize::from(is_doubled) };
@@ -163,7 +163,7 @@ mod tests {
 
     const TURN: u64 = 100_000_000;
 
-    /// Returns the numbers of the states that arrive in each turn, if one state is sent in each turn.
+    /// Returns the numbers of the states that arrive in each turn if one state is sent per turn.
     fn heard(faults: Faults, turns: u64, seed: u64) -> Vec<Vec<u64>> {
         let [mut ada, mut bob] = Air::new(&["ada", "bob"], faults, seed).try_into().ok().unwrap();
         let turn = |number| {

@@ -3,12 +3,12 @@
 /// Maximum length of a name, in bytes.
 pub(super) const NAME: usize = 64;
 
-/// Returns `true` if the length of a name permits it in a frame: 1 to [`NAME`] bytes.
+/// Returns `true` if a name has a valid length for a frame: 1 to [`NAME`] bytes.
 pub(super) fn fits(name: &str) -> bool {
     (1..=NAME).contains(&name.len())
 }
 
-/// Appends a name that satisfies [`fits`], preceded by its length.
+/// Appends a name for which [`fits`] returns `true`, preceded by its length.
 pub(super) fn put_name(to: &mut Vec<u8>, name: &str) {
     let bytes = name.as_bytes();
     let bytes = bytes.get(..bytes.len().min(NAME)).unwrap_or_default();
@@ -16,7 +16,7 @@ pub(super) fn put_name(to: &mut Vec<u8>, name: &str) {
     to.extend(bytes);
 }
 
-/// Bytes of a frame, which are read from the front.
+/// Bytes of a frame, read from front to back.
 pub(super) struct Bytes<'b>(&'b [u8]);
 
 impl<'b> Bytes<'b> {
@@ -24,17 +24,17 @@ impl<'b> Bytes<'b> {
         Self(bytes)
     }
 
-    /// Returns the bytes that have not been read.
+    /// Returns the bytes that were not read yet.
     pub(super) fn rest(&self) -> &'b [u8] {
         self.0
     }
 
-    /// Returns `true` if all bytes have been read.
+    /// Returns `true` if all bytes were read.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Takes all remaining bytes as text; `None` if they are not UTF-8.
+    /// Reads all remaining bytes as text; `None` if they are not UTF-8.
     pub(super) fn text(&mut self) -> Option<String> {
         String::from_utf8(std::mem::take(&mut self.0).to_vec()).ok()
     }

@@ -1,13 +1,12 @@
-//! The clock of the link, by which robots measure how long a frame was on its way.
+//! The clock of the link, with which robots measure the transmission time of frames.
 
 use mdle_runtime::Nanos;
 use rustix::time::{ClockId, Timespec, clock_gettime};
 
 /// Returns the time since the computer was started, including suspensions.
 ///
-/// The seconds of this clock are those of the computer's quartz. NTP lets the clock of [`std::time::Instant`] run
-/// faster or slower until the time of day is right, so that the frames of a good peer would seem to arrive later and
-/// later.
+/// The rate of this clock is the rate of the computer's quartz. NTP adjusts the rate of [`std::time::Instant`] until
+/// the time of day is correct; by that clock, the frames of a good peer would seem to arrive later and later.
 pub(super) fn now() -> Nanos {
     let [raw, slewed, slewed_with_suspensions] =
         [ClockId::MonotonicRaw, ClockId::Monotonic, ClockId::Boottime].map(|clock| nanos(clock_gettime(clock)));
@@ -15,7 +14,7 @@ pub(super) fn now() -> Nanos {
 }
 
 fn nanos(Timespec { tv_sec, tv_nsec }: Timespec) -> u64 {
-    // Since the computer was started, so neither is negative.
+    // Both values count from the start of the computer, so they are not negative.
     let [seconds, nanos] = [tv_sec, tv_nsec].map(|number| u64::try_from(number).unwrap_or(0));
     seconds.saturating_mul(1_000_000_000).saturating_add(nanos)
 }
@@ -30,7 +29,7 @@ mod tests {
         let suspension = |_| [ClockId::Monotonic, ClockId::Boottime].map(now);
         let suspended = (0..100).map(suspension).map(|[slewed, time]| time - slewed).min().unwrap();
         let (before, time, after) = (now(ClockId::MonotonicRaw), super::now().0, now(ClockId::MonotonicRaw));
-        // The other clocks drift from this one while the computer runs.
+        // The other clocks drift relative to this clock while the computer runs.
         let raw = time - suspended;
         assert!((before.saturating_sub(500_000)..=after + 500_000).contains(&raw), "{before} {raw} {after}");
     }

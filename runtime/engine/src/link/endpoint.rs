@@ -1,5 +1,5 @@
-//! The endpoint of a link to other processes, whatever medium carries the frames. It drafts the frames of its robot,
-//! checks the frames that arrive, and keeps their contents until the robot's turn.
+//! The endpoint of a link to other processes, for any medium that carries frames. It prepares the frames of its robot,
+//! checks frames that arrive, and keeps their contents until the robot's turn.
 
 #[cfg(test)]
 mod tests;
@@ -21,7 +21,7 @@ use super::source::Source;
 use super::state_frame::{self, LONGEST, has_fitting_name};
 use super::{Letter, Posted, RefusedPlan, State, clock, lock};
 
-/// Maximum number of messages that wait to be shown to the operator.
+/// Maximum number of messages in the queue to the operator.
 const MESSAGES: usize = 32;
 
 /// Names and keys of a link, for any medium.
@@ -31,16 +31,16 @@ pub struct LinkSettings {
     pub name: String,
     /// Name of each other robot.
     pub peers: Vec<String>,
-    /// Key that all robots of the link have.
+    /// Key that all robots of the link share.
     pub key: String,
-    /// Name of each robot with which plans are exchanged, with the key that only this robot and the other have.
+    /// Name of each robot with which plans are exchanged, with the key that only these two robots share.
     pub plans: Vec<(String, String)>,
 }
 
-/// Endpoint of one robot's link. The threads that carry frames share it with the robot's turns.
+/// Endpoint of one robot's link. The robot's turns and the threads that carry frames share it.
 pub struct Endpoint {
     session: u64,
-    /// Time at which the session began.
+    /// Start time of the session.
     begun: Nanos,
     /// Names of the robots from which states are accepted.
     peers: Vec<String>,
@@ -54,11 +54,11 @@ pub struct Endpoint {
 }
 
 impl Endpoint {
-    /// Returns the endpoint of a robot in a new session.
+    /// Returns the endpoint of a robot, with a new session.
     #[must_use]
     pub fn new(settings: &LinkSettings) -> Self {
         let LinkSettings { name, peers, key, plans } = settings;
-        // Keyed by random numbers of the system.
+        // The hasher is seeded with random numbers of the system.
         let session = RandomState::new().hash_one(name);
         Self {
             session,
@@ -85,7 +85,7 @@ impl Endpoint {
         &self.peers
     }
 
-    /// Returns the draft of a state of this robot, without attributes whose names are too long.
+    /// Returns the draft of this robot's state. Attributes whose names are too long are omitted.
     #[must_use]
     pub fn state(&self, state: &State) -> Draft {
         for shared in state.attributes.iter().filter(|shared| !has_fitting_name(shared)) {
@@ -95,11 +95,11 @@ impl Endpoint {
         state_frame::written(state, times, &self.key)
     }
 
-    /// Returns a letter to a peer in the form in which it is sent. If the letter is a plan, an answer is expected,
-    /// unless [`Endpoint::is_unsent`] is called.
+    /// Returns a letter to a peer in the form in which it is sent. A letter with a plan is registered as waiting for an
+    /// answer until [`Endpoint::is_unsent`] is called.
     ///
     /// # Errors
-    /// Returns a sentence if the robot and the peer have no key for letters, or if no state of the peer has arrived.
+    /// Returns a sentence if the robot and the peer share no key for letters, or if no state of the peer has arrived.
     pub fn letter(&self, to: &str, letter: &Letter) -> Result<Posted, String> {
         let session = lock(&self.states).session(to);
         let draft = self.letters.draft(to, letter, session, self.time(clock::now()))?;
@@ -108,12 +108,12 @@ impl Endpoint {
         Ok(Posted { to: to.to_owned(), number: letter.number, draft, is_plan, limit })
     }
 
-    /// Notes that a letter was refused before it was sent, so that no answer to it is expected.
+    /// Records that a letter was refused before it was sent, so no answer to it is expected.
     pub fn is_unsent(&self, number: u64) {
         self.letters.forget(number);
     }
 
-    /// Reports that a letter was dropped, since it could not be sent in time.
+    /// Reports that a letter was dropped because it could not be sent in time.
     pub fn is_late(&self, letter: &Posted) {
         self.letters.forget(letter.number);
         let Posted { to, is_plan, limit, .. } = letter;
@@ -121,17 +121,17 @@ impl Endpoint {
         self.say(format!("warning: state link: the {what} {to} is dropped: it could not be sent for {seconds} s"));
     }
 
-    /// Converts a time of the link's clock to the time since the robot's session began.
+    /// Converts a time on the link's clock to the time since the start of the robot's session.
     fn time(&self, now: Nanos) -> Nanos {
         now.since(self.begun)
     }
 
-    /// Takes a frame, without its length, that has arrived from a source. The first frame of a source must be a state,
-    /// which proves the name of its robot.
+    /// Processes a frame, without its length, from a source. The first frame of a source must be a state, which proves
+    /// the name of the robot.
     ///
     /// # Errors
-    /// Returns the end of a sentence if no further frames of the source are to be accepted, because it sends something
-    /// other than states and letters of one peer, or too many of them.
+    /// Returns the end of a sentence if the source must be closed, because it sends anything other than states and
+    /// letters of one peer, or too many of them.
     pub fn take(&self, source: &mut Source, frame: &[u8]) -> Result<(), String> {
         let now = clock::now();
         if is_letter(frame) {
@@ -140,7 +140,7 @@ impl Endpoint {
             let robot = robot.as_deref().ok_or_else(|| "it sends a letter before its state".to_owned())?;
             let session = lock(&self.states).session(robot);
             let late = |sent| lag.of(sent, self.time(now));
-            // The robot has proved its name, so that its states are taken, whatever its letter is.
+            // The robot has proved its name: even if this letter is refused, its states are accepted.
             if let Err(reason) = self.letters.take(frame, challenge, (robot, session), late) {
                 self.refuse(&format!("a letter of {robot}"), &reason);
             }
@@ -170,18 +170,18 @@ impl Endpoint {
         lock(&self.states).take(State { age, ..state }, now)
     }
 
-    /// Takes the newest state of each robot that has arrived since the last call.
+    /// Takes, for each robot, the newest state if one has arrived since the last call.
     pub fn states(&self) -> impl Iterator<Item = State> + use<> {
         lock(&self.states).take_all()
     }
 
-    /// Takes the letters that have arrived since the last call. Plans that are too late by now are refused.
+    /// Takes the letters that have arrived since the last call. Refuses plans that are too late by now.
     #[must_use]
     pub fn letters(&self) -> Vec<Letter> {
         self.letters.arrived(clock::now())
     }
 
-    /// Takes the plans that were refused since the last call, and reports them. The caller has to answer each of them.
+    /// Takes the plans that were refused since the last call, and reports them. The caller has to answer each plan.
     #[must_use]
     pub fn refused_plans(&self) -> Vec<RefusedPlan> {
         let plans = self.letters.refused();
@@ -189,13 +189,13 @@ impl Endpoint {
         plans
     }
 
-    /// Reports that `what` was refused for a reason, unless this was reported a short while ago.
+    /// Reports that `what` was refused for a reason, unless this was reported a short time ago.
     pub fn refuse(&self, what: &str, reason: &str) {
         let warning = lock(&self.refusals).warning(what, reason, Instant::now());
         warning.into_iter().for_each(|warning| self.say(warning));
     }
 
-    /// Reports a message to the operator, unless too many messages wait.
+    /// Reports a message to the operator, unless the queue is full.
     pub fn say(&self, message: String) {
         let mut messages = lock(&self.messages);
         if messages.len() < MESSAGES {
@@ -214,7 +214,7 @@ impl Endpoint {
         messages
     }
 
-    /// Notes that the robot's run has ended.
+    /// Records that the robot's run has ended.
     pub fn end(&self) {
         self.is_over.store(true, Ordering::Relaxed);
     }

@@ -1,5 +1,5 @@
-//! Names of the attributes that other robots share. Each robot may share a limited number of attributes, and no two
-//! robots share a module with the same name.
+//! Names of the attributes that other robots share. The number of attributes per robot is limited, and the modules of
+//! different robots must have different names.
 
 use mdle_runtime::Nanos;
 
@@ -7,25 +7,25 @@ use super::state_frame::ATTRIBUTES;
 use super::{Foreign, State};
 use crate::attribute::{AttributeName, Reading};
 
-/// The names of the attributes that other robots share.
+/// Names of the attributes that all other robots share.
 #[derive(Debug, Default)]
 pub(super) struct ForeignNames(Vec<NamesOf>);
 
-/// The names of the attributes that one robot shares, at most [`ATTRIBUTES`] including those that were refused.
+/// Names of the attributes that one robot shares, at most [`ATTRIBUTES`] including refused names.
 #[derive(Debug)]
 struct NamesOf {
     robot: String,
     /// Names on the board.
     taken: Vec<AttributeName>,
-    /// Names that were refused; each refusal was reported.
+    /// Names that were refused and reported.
     refused: Vec<AttributeName>,
     /// `true` once it has been reported that the robot shares too many attributes.
     has_more: bool,
 }
 
 impl ForeignNames {
-    /// Puts the attributes of a state that arrived at time `at` on the board. Calls `say` once with a message about
-    /// each name that is refused.
+    /// Puts the attributes of a state that arrived at time `at` on the board. For each refused name, calls `say` with a
+    /// message, but only once.
     pub(super) fn put(&mut self, state: &State, at: Nanos, board: &mut dyn Foreign, say: &mut dyn FnMut(String)) {
         let robot = &state.name;
         let place = self.0.iter().position(|names| names.robot == *robot);
@@ -39,7 +39,7 @@ impl ForeignNames {
             let age = shared.age.0.saturating_add(state.age.0);
             let reading = Reading { value: shared.value.clone(), at: Nanos(at.0.saturating_sub(age)) };
             let put = match self.owner(&name) {
-                // The robot `a` has a module `b_c`, and `a_b` a module `c`.
+                // Two names can coincide: robot `a` with module `b_c`, and robot `a_b` with module `c`.
                 Some(other) => Err(format!("the robot `{other}` shares the module `{}`", name.module)),
                 None => board.put_foreign(&name, reading).map_err(|refusal| refusal.to_string()),
             };
@@ -55,7 +55,7 @@ impl ForeignNames {
         self.0.push(own);
     }
 
-    /// Returns the robot that shares attributes of the module that `name` names; `None` if no robot does.
+    /// Returns the robot that shares attributes of the module in `name`; `None` if no robot does.
     fn owner(&self, name: &AttributeName) -> Option<&str> {
         let owns = |names: &&NamesOf| names.taken.iter().any(|taken| taken.module == name.module);
         self.0.iter().find(owns).map(|names| names.robot.as_str())
@@ -67,7 +67,7 @@ impl NamesOf {
         Self { robot: robot.to_owned(), taken: Vec::new(), refused: Vec::new(), has_more: false }
     }
 
-    /// Returns `true` if the robot may share one more attribute. The first time that it may not is reported.
+    /// Returns `true` if the robot may share one more attribute. Reports the first refusal.
     fn has_room(&mut self, say: &mut dyn FnMut(String)) -> bool {
         let has_room = self.taken.len() + self.refused.len() < ATTRIBUTES;
         if !has_room && !std::mem::replace(&mut self.has_more, true) {

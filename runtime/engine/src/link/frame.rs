@@ -1,4 +1,4 @@
-//! Frames, each with its length, first bytes, version, checksum, proof of the key, and body
+//! Frames: magic number, version, checksum, proof of the key, and body, preceded by the length
 //! (docs/src/reference/interfaces.md, 6.5).
 
 use std::io;
@@ -10,31 +10,32 @@ use rustix::rand::{GetRandomFlags, getrandom};
 use super::bytes::Bytes;
 use super::clock;
 
-/// Version of frames.
+/// Version of the frame format.
 pub(super) const VERSION: u8 = 5;
-/// First bytes of a greeting.
+/// Magic number of a greeting: its first bytes.
 const GREETING: [u8; 4] = *b"MDLg";
-/// Length of a greeting, in bytes: its first bytes, version, and challenge.
+/// Length of a greeting, in bytes: magic number, version, and challenge.
 pub(super) const GREETING_LENGTH: usize = 4 + 1 + 16;
-/// Number of bytes before the body: first bytes, version, checksum, and proof.
+/// Length of the header before the body, in bytes: magic number, version, checksum, and proof.
 const HEAD: usize = 4 + 1 + 4 + 32;
 
-/// A key that robots share.
+/// A key that several robots share.
 #[derive(Clone)]
 pub(super) struct Key([u8; 32]);
 
 impl Key {
-    /// Returns the key of states, which all robots of a link share.
+    /// Returns the key for states, which all robots of a link share.
     pub(super) fn of(text: &str) -> Self {
         Self(blake3::derive_key("mdle state link 1", text.as_bytes()))
     }
 
-    /// Returns the key of letters, which two robots share.
+    /// Returns the key for letters, which two robots share.
     pub(super) fn of_letters(text: &str) -> Self {
         Self(blake3::derive_key("mdle letters 1", text.as_bytes()))
     }
 
-    /// Returns the proof that the writer of a frame has the key, and has written the frame in answer to this challenge.
+    /// Returns the proof that the writer of a frame has the key, and has written the frame in response to this
+    /// challenge.
     fn proof(&self, challenge: &Challenge, magic: [u8; 4], body: &[u8]) -> blake3::Hash {
         let mut hasher = blake3::Hasher::new_keyed(&self.0);
         hasher.update(&challenge.0).update(&magic).update(&[VERSION]).update(body);
@@ -42,17 +43,16 @@ impl Key {
     }
 }
 
-/// Random bytes that the receiver of a connection sends first. The proof of each frame covers them, so that a recorded
-/// frame is invalid on any other connection.
+/// Random bytes that the receiver of a connection sends first. The proof of each frame covers them, so a frame that is
+/// replayed on another connection is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Challenge([u8; 16]);
 
 impl Challenge {
-    /// The challenge on a medium without connections. The proof of a frame does not show there when the frame was
-    /// written.
+    /// Challenge on a medium without connections. There, the proof of a frame does not show when the frame was written.
     pub const NONE: Self = Self([0; 16]);
 
-    /// Returns a new challenge.
+    /// Returns a new random challenge.
     ///
     /// # Errors
     /// Fails if the system has no random numbers.
@@ -64,7 +64,7 @@ impl Challenge {
         }
     }
 
-    /// Returns the greeting, with which a receiver sends the challenge to a sender.
+    /// Returns the greeting with which a receiver sends the challenge to a sender.
     pub(super) fn greeting(&self) -> [u8; GREETING_LENGTH] {
         let mut greeting = [0; GREETING_LENGTH];
         let bytes = GREETING.into_iter().chain([VERSION]).chain(self.0);
@@ -92,37 +92,37 @@ impl Challenge {
 /// Reason why a frame is refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Refused {
-    /// The bytes are not a frame, or were changed on the way.
+    /// The bytes are not a frame, or were damaged during transmission.
     Garbage,
-    /// The frame has another version: its number.
+    /// The frame has a different version; contains its version.
     Version(u8),
-    /// The sender has a different key, or has written the frame for another connection.
+    /// The sender has a different key, or wrote the frame for a different connection.
     Key,
-    /// The pose or the velocity is larger than that of any robot.
+    /// The state contains a pose or velocity that no robot can have.
     Impossible,
 }
 
-/// A frame without the parts that are written anew for each connection: the proof, and the times of a state.
+/// A frame without the parts that are computed for each connection: the proof, and the times of a state.
 #[derive(Clone)]
 pub struct Draft {
     magic: [u8; 4],
-    /// Times of the state, which the body begins with; `None` if the frame is not that of a state.
+    /// Times of a state, with which the body begins; `None` for any other frame.
     times: Option<Times>,
     body: Arc<[u8]>,
     key: Key,
 }
 
-/// Timestamps of a state, according to the clock of its robot.
+/// Timestamps of a state on the clock of its robot.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Times {
-    /// Time at which the robot's session began.
+    /// Start time of the robot's session.
     pub(super) begun: Nanos,
     /// Time at which the state was measured.
     pub(super) measured: Nanos,
 }
 
 impl Times {
-    /// Returns the times that a frame contains if it is written at `now`: the time since the session began, and the age
+    /// Returns the times that a frame written at `now` contains: the time since the start of the session, and the age
     /// of the state.
     fn at(self, now: Nanos) -> [Nanos; 2] {
         [now.since(self.begun), now.since(self.measured)]
@@ -130,18 +130,19 @@ impl Times {
 }
 
 impl Draft {
-    /// Returns the draft of a frame with these first bytes. `times` are those of a state, `None` for any other frame.
+    /// Returns the draft of a frame with this magic number. `times` are the times of a state; `None` for any other
+    /// frame.
     pub(super) fn new(magic: [u8; 4], times: Option<Times>, body: Vec<u8>, key: &Key) -> Self {
         Self { magic, times, body: body.into(), key: key.clone() }
     }
 
-    /// Returns the frame, including its length, written now with a proof for this challenge.
+    /// Returns the frame, including its length, as written now with a proof for this challenge.
     #[must_use]
     pub fn frame(&self, challenge: &Challenge) -> Vec<u8> {
         self.frame_at(challenge, clock::now())
     }
 
-    /// Returns the frame, including its length, written at time `now` with a proof for this challenge.
+    /// Returns the frame, including its length, as written at time `now` with a proof for this challenge.
     pub(super) fn frame_at(&self, challenge: &Challenge, now: Nanos) -> Vec<u8> {
         let Self { magic, times, body, key } = self;
         let times = times.iter().flat_map(|times| times.at(now)).flat_map(|time| time.0.to_le_bytes());
@@ -168,10 +169,10 @@ fn checksum(body: &[u8]) -> [u8; 4] {
     blake3::hash(body).as_bytes().first_chunk().copied().unwrap_or_default()
 }
 
-/// Checks the first bytes, version, checksum and proof of a frame, and returns its body.
+/// Checks the magic number, version, checksum and proof of a frame, and returns its body.
 ///
 /// # Errors
-/// Fails if the bytes are not such a frame, or if its writer did not have this key and this challenge.
+/// Fails if the bytes are not a frame of this type, or if its proof is not for this key and this challenge.
 pub(super) fn opened<'b>(
     magic: [u8; 4],
     frame: &'b [u8],
@@ -191,7 +192,7 @@ pub(super) fn opened<'b>(
     if checksum(from.rest()) != sum {
         return Err(Refused::Garbage);
     }
-    // Hashes are compared in constant time: nobody learns a proof byte by byte.
+    // The comparison takes constant time, so its duration reveals nothing about a valid proof.
     if key.proof(challenge, magic, from.rest()) != blake3::Hash::from_bytes(proof) {
         return Err(Refused::Key);
     }

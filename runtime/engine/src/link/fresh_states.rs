@@ -1,4 +1,4 @@
-//! The sessions of the other robots, and the newest state of each robot that has arrived since this robot's last turn.
+//! Sessions of the other robots, and the newest state of each robot that has arrived since this robot's last turn.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -8,11 +8,11 @@ use mdle_runtime::Nanos;
 use super::sessions::Sessions;
 use super::{State, clock};
 
-/// States of other robots. Sessions and states share one lock, so that an older state never replaces a newer one.
+/// States of other robots. A single lock protects sessions and states, so an older state never replaces a newer one.
 #[derive(Debug, Default)]
 pub(super) struct FreshStates {
     sessions: Sessions,
-    /// For each robot, the newest state, and the time at which it arrived.
+    /// Newest state of each robot, with its arrival time.
     states: BTreeMap<String, (State, Nanos)>,
 }
 
@@ -22,11 +22,10 @@ impl FreshStates {
         self.sessions.of(robot)
     }
 
-    /// Takes a state that has arrived at time `at`, unless a newer state of its robot has arrived.
+    /// Stores a state that has arrived at time `at`, unless a newer state of its robot has already arrived.
     ///
     /// # Errors
-    /// Returns the end of a sentence if the state belongs to a session that is over, or to another robot with the same
-    /// name.
+    /// Returns the end of a sentence if the state belongs to an ended session, or to another robot with the same name.
     pub(super) fn take(&mut self, state: State, at: Nanos) -> Result<(), String> {
         if self.sessions.take(&state.name, (state.session, state.number), Instant::now())? {
             self.states.insert(state.name.clone(), (state, at));
@@ -34,7 +33,7 @@ impl FreshStates {
         Ok(())
     }
 
-    /// Takes the newest state of each robot that has arrived since the last call. The time since its arrival is added
+    /// Takes, for each robot, the newest state if one has arrived since the last call. Adds the time since its arrival
     /// to its age.
     pub(super) fn take_all(&mut self) -> impl Iterator<Item = State> + use<> {
         let now = clock::now();

@@ -1,4 +1,4 @@
-//! Letters between robots: plans as text, and the answers to them. In contrast to a state, no letter replaces another.
+//! Letters between robots: plans as text, and answers to plans. Unlike a state, a letter never replaces an earlier one.
 
 use std::time::Duration;
 
@@ -8,17 +8,17 @@ use crate::plans::When;
 pub const LONGEST_TEXT: usize = 65_536;
 /// Maximum length of the sentence in an answer, in bytes.
 pub(super) const LONGEST_SENTENCE: usize = 4096;
-/// Maximum number of plans that wait for one robot.
+/// Maximum number of plans in the queue to one robot.
 pub(super) const UNREAD: usize = 8;
 /// Time within which a plan that takes over at once has to be sent, and has to arrive.
 const NOW: Duration = Duration::from_secs(2);
-/// Time within which any other letter has to be sent, and a plan has to arrive.
+/// Time within which any other letter has to be sent; a plan also has to arrive within this time.
 const SOON: Duration = Duration::from_secs(10);
 
 /// A letter from one robot to another.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Letter {
-    /// Name of the robot that has sent the letter.
+    /// Name of the robot that sent the letter.
     pub from: String,
     /// Number of the letter; each sender counts its letters from 1.
     pub number: u64,
@@ -29,7 +29,7 @@ pub struct Letter {
 /// Content of a letter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Content {
-    /// A plan that is to take over.
+    /// A plan that takes over on the recipient.
     Plan {
         /// Moment at which the plan takes over.
         when: When,
@@ -47,10 +47,10 @@ pub enum Content {
     },
 }
 
-/// A plan that was refused on its arrival, and has to be answered.
+/// A plan that was refused on arrival and has to be answered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RefusedPlan {
-    /// Name of the robot that has sent the plan.
+    /// Name of the robot that sent the plan.
     pub from: String,
     /// Number of the letter with the plan.
     pub number: u64,
@@ -59,12 +59,12 @@ pub struct RefusedPlan {
 }
 
 impl Content {
-    /// Returns `true` for a plan.
+    /// Returns `true` if the letter contains a plan.
     pub(super) fn is_plan(&self) -> bool {
         matches!(self, Self::Plan { .. })
     }
 
-    /// Returns the time within which the letter has to be sent, and a plan has to arrive.
+    /// Returns the time within which the letter has to be sent; a plan also has to arrive within this time.
     pub(super) fn limit(&self) -> Duration {
         match self {
             Self::Plan { when: When::Now, .. } => NOW,
@@ -73,7 +73,7 @@ impl Content {
     }
 }
 
-/// Returns the beginning of a text, at most `longest` bytes of whole characters.
+/// Returns the beginning of a text: as many whole characters as fit into `longest` bytes.
 pub(super) fn cut(text: &str, longest: usize) -> &str {
     text.get(..text.floor_char_boundary(longest)).unwrap_or(text)
 }

@@ -1,5 +1,5 @@
-//! Letters in binary form. The proof of a letter requires the key that sender and recipient share, and covers the
-//! sessions of both (docs/src/reference/interfaces.md, 6.5).
+//! Letters in binary form. The proof of a letter is computed with the key that sender and recipient share, and covers
+//! the sessions of both (docs/src/reference/interfaces.md, 6.5).
 
 use mdle_runtime::Nanos;
 
@@ -8,16 +8,16 @@ use super::frame::{Challenge, Draft, Key, Refused, opened};
 use super::letter::{Content, LONGEST_SENTENCE, LONGEST_TEXT, Letter, cut};
 use crate::plans::When;
 
-/// First bytes of a letter's frame.
+/// Magic number of a letter's frame.
 const MAGIC: [u8; 4] = *b"MDLl";
-/// Maximum length of the frame of a letter, in bytes, without the four bytes of the length. No frame is longer.
+/// Maximum length of a letter's frame, in bytes, without the four bytes of the length. All other frames are shorter.
 pub const LONGEST_LETTER: usize = LONGEST_TEXT + 1024;
-/// Numbers that identify the kind of a letter's content: a plan, or one of two answers.
+/// Numbers that identify the content of a letter: a plan, or one of two answers.
 const PLAN: u8 = 0;
 const REFUSAL: u8 = 1;
 const ACCEPTANCE: u8 = 2;
 
-/// Sender and recipient of a letter, with their sessions; the proof of the letter covers them.
+/// Sender and recipient of a letter, with their sessions; the proof covers them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Envelope {
     pub(super) from: String,
@@ -26,7 +26,7 @@ pub(super) struct Envelope {
     pub(super) sent_in: u64,
     /// Session of the recipient.
     pub(super) meant_for: u64,
-    /// Time of the sender's session at which the letter was posted.
+    /// Time, since the start of the sender's session, at which the letter was posted.
     pub(super) sent: Nanos,
 }
 
@@ -57,10 +57,10 @@ pub(super) fn written(envelope: &Envelope, letter: &Letter, key: &Key) -> Draft 
     Draft::new(MAGIC, None, body, key)
 }
 
-/// Reads the frame of a letter, without its length.
+/// Parses the frame of a letter, without its length.
 ///
 /// # Errors
-/// Fails if the bytes are not a letter, or if its writer did not have this key and this challenge.
+/// Fails if the bytes are not a letter, or if its proof is not for this key and this challenge.
 pub(super) fn read(frame: &[u8], key: &Key, challenge: &Challenge) -> Result<(Envelope, Letter), Refused> {
     letter(&mut opened(MAGIC, frame, key, challenge)?).ok_or(Refused::Garbage)
 }
@@ -140,7 +140,7 @@ mod tests {
             assert!(frame.len() <= LONGEST_LETTER);
             assert_eq!(read(&frame[4..], &key, &Challenge::NONE), Ok((envelope(), of(cut))));
         }
-        // A peer that cuts nothing.
+        // A peer may send a longer sentence than this robot would.
         let mut body = written(&envelope(), &of(answer(String::new())), &key).frame(&Challenge::NONE).split_off(45);
         body.extend([b'x'; LONGEST_TEXT]);
         let frame = Draft::new(MAGIC, None, body, &key).frame(&Challenge::NONE);

@@ -1,4 +1,4 @@
-//! The turns of an engine that drives a robot: plan, modules, turn break, and the effects of safety rules.
+//! The turns of an engine that drives a robot: plan, modules, turn break, and effects of safety rules.
 
 use std::time::Instant;
 
@@ -105,7 +105,7 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
 
     fn ended_by(&mut self, rule: &str) -> bool {
         let goes_on = self.ends_trial(&format!("the safety rule {rule} ends it")).is_ok();
-        // A replay finds by itself that the trial ends, and knows no requests of other robots.
+        // A replay detects the end of the trial by itself, and has no requests of other robots.
         if self.plans.bar_peers(ENDED) {
             self.plans.note(Change::Cancelled);
         }
@@ -138,7 +138,7 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
 }
 
 impl<A: EngineAlphabet> Engine<A> {
-    /// Collects the result of the plan's turn. A plan on trial that panicked or hangs is rolled back.
+    /// Collects the result of the plan's turn. Rolls back a plan on trial that panicked.
     fn land(&mut self, t: Nanos, is_new: bool, transitions: &mut Transitions) -> Result<Turn<A::Input>, PilotFault> {
         if self.repeats.as_ref().is_some_and(|repeats| !repeats.lands()) {
             return Ok(Turn::Cut);
@@ -151,7 +151,7 @@ impl<A: EngineAlphabet> Engine<A> {
                     (true, true) => Some(Change::Late),
                     (true, false) => Some(Change::Skipped),
                     (false, false) if was_away => Some(Change::Back),
-                    // It is not back yet, or waits for what it reads.
+                    // The plan is not back yet, or waits for attributes that it reads.
                     (false, _) => None,
                 };
                 if let Some(history) = &mut self.history {
@@ -174,11 +174,10 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(())
     }
 
-    /// Reports faults of modules to the operator. A plan that has been given up because it hangs is rolled back if it
-    /// is on trial.
+    /// Reports faults of modules to the operator. A plan on trial that was given up because it hangs is rolled back.
     ///
     /// # Errors
-    /// Fails if such a plan is not on trial.
+    /// Fails if a plan was given up that is not on trial.
     fn turn_break(&mut self) -> Result<(), PilotFault> {
         let mut is_given_up = false;
         for event in self.modules.events() {

@@ -1,4 +1,4 @@
-//! Tests of endpoints without a medium: frames are passed directly from one endpoint to another.
+//! Tests endpoints without a medium: frames are passed directly from one endpoint to another.
 
 use super::*;
 use crate::link::frame::Challenge;
@@ -11,13 +11,13 @@ fn endpoint(name: &str, peer: &str) -> Endpoint {
     Endpoint::new(&LinkSettings { name, peers, key, plans })
 }
 
-/// Returns the frame of a state with this number on a medium without connections.
+/// Returns the frame of the state with this number on a medium without connections.
 fn state(from: &Endpoint, name: &str, number: u64) -> Vec<u8> {
     let state = State { session: from.session, ..State::of(name, number) };
     from.state(&state).frame(&Challenge::NONE)[4..].to_vec()
 }
 
-/// Returns the frame of a state that is measured and written at this time in seconds of its session.
+/// Returns the frame of a state that was measured and written `seconds` seconds after the start of its session.
 fn written_at(state: &State, seconds: u64) -> Vec<u8> {
     let times = Times { begun: Nanos::ZERO, measured: Nanos(seconds * 1_000_000_000) };
     let draft = state_frame::written(state, times, &Key::of("key"));
@@ -55,7 +55,7 @@ fn the_newest_plan_of_a_robot_counts() {
     }
     send(11, Content::Answer { of: 7, is_accepted: true, sentence: String::new() });
     assert_eq!(bob.letters().iter().map(|letter| letter.number).collect::<Vec<_>>(), [10]);
-    // Those of a flood are not all answered.
+    // In a flood of plans, only the first refused plans are answered.
     assert_eq!(bob.refused_plans().iter().map(|plan| plan.number).collect::<Vec<_>>(), (1..=8).collect::<Vec<_>>());
     let messages = [
         "a letter of ada is refused: it answers a plan that was not sent",
@@ -73,7 +73,7 @@ fn a_state_that_was_held_back_is_old() {
         bob.take(&mut from_ada, &written_at(&state, sent)).unwrap();
         bob.states().next().unwrap().age.0 / 1_000_000_000
     };
-    // Two are sent at nine seconds, one at six, and all arrive at once.
+    // Two states are sent at nine seconds and one at six, and all arrive at the same time.
     assert_eq!((send(9, 9), send(10, 6), send(11, 9)), (0, 3, 0));
     assert!(send(12, 2) >= 7);
 }
@@ -92,7 +92,7 @@ fn a_plan_that_was_held_back_is_refused() {
         (bob.letters.arrived(now).len(), bob.refused_plans().len())
     };
     let (taken, refused) = ((1, 0), (0, 1));
-    // The time on the way and the wait for the turn count.
+    // The transmission time and the wait for the turn both count.
     assert_eq!([send(1, When::Now, 17, 0), send(2, When::Now, 20, 3), send(3, When::Now, 19, 2)], [refused; 3]);
     assert_eq!([send(4, When::PlanEnds, 9, 0), send(5, When::AtomEnds, 15, 6)], [refused; 2]);
     assert_eq!([send(6, When::Now, 19, 0), send(7, When::PlanEnds, 17, 0), send(8, When::AtomEnds, 20, 3)], [taken; 3]);
